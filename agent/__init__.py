@@ -1,0 +1,1 @@
+"""The policy, its training, search and evaluation."""

@@ -1,0 +1,1 @@
+"""Document, desktop window, command line."""

@@ -1,0 +1,1 @@
+"""The half-edge mesh and all that changes it. Knows neither torch nor Qt."""
