@@ -1,0 +1,140 @@
+"""The console command ``meshwright``.
+
+Nothing heavy is imported here nor by the modules that describe the subcommands: each imports what
+it needs when it runs, so that ``meshwright --help`` answers at once.
+
+Exit codes: 0 done; 1 a bug of ours; 2 wrong use, bad input, or stopped by Ctrl-C; 141 the reader
+of stdout went away.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import NoReturn
+
+from app.commands import COMMANDS, Command
+from app.report import Report, UserError
+
+DONE, BUG, REFUSED, READER_GONE = 0, 1, 2, 141
+
+DEBUG = "MESHWRIGHT_DEBUG"
+
+EPILOG = """\
+Without a command the window opens; with the name of a mesh file or a shape it opens on that.
+
+examples:
+  meshwright demo                                         the star, with the agent ready
+  meshwright mesh star -o star.vtk --kind quad            a quad mesh of a shape
+  meshwright improve star.vtk -o better.vtk --png a.png   let the policy work on it
+  meshwright better.vtk                                   look at it in the window
+"""
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser that raises UserError in place of printing two lines and leaving."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise the message with a hint where to read more."""
+        raise UserError(f"{message} (see {self.prog} --help)")
+
+
+class Version(argparse.Action):
+    """Print the installed version and leave."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object, **__: object) -> None:
+        """Look the version up only now: the package metadata takes time to read."""
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            number = version("meshwright")
+        except PackageNotFoundError:
+            number = "of a source folder that is not installed"
+        sys.stdout.write(f"meshwright {number}\n")
+        parser.exit()
+
+
+def build_parser() -> Parser:
+    """Return the parser of the whole command line."""
+    parser = Parser(
+        prog="meshwright",
+        description="Edit the connectivity of triangle and quad meshes half-edge by half-edge,\n"
+        "with a trained agent beside you.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action=Version, nargs=0, help="print the version and leave")
+    subparsers = parser.add_subparsers(
+        dest="command", metavar="COMMAND", title="commands", parser_class=Parser
+    )
+    for name, command in COMMANDS.items():
+        sub = subparsers.add_parser(
+            name, help=command.SUMMARY, description=command.DESCRIPTION, allow_abbrev=False
+        )
+        command.add_arguments(sub)
+        sub.add_argument(
+            "--json", action="store_true", help="print one JSON object on stdout, nothing else"
+        )
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    report = Report(as_json="--json" in words)
+    name = "meshwright"
+    try:
+        words = _with_command(words)
+        arguments = build_parser().parse_args(words)
+        command: Command = COMMANDS[arguments.command]
+        name = f"meshwright {arguments.command}"
+        command.run(arguments, report)
+    except BrokenPipeError:
+        _silence_stdout()
+        return READER_GONE
+    except SystemExit as leave:
+        return leave.code if isinstance(leave.code, int) else DONE
+    except KeyboardInterrupt:
+        report.error(name, "stopped by Ctrl-C; no file is half written")
+        return REFUSED
+    except UserError as error:
+        _traceback_if_wanted()
+        report.error(name, str(error))
+        return REFUSED
+    except MemoryError:
+        _traceback_if_wanted()
+        report.error(name, "not enough memory for this")
+        return REFUSED
+    except Exception as error:
+        shown = _traceback_if_wanted()
+        hint = "" if shown else f"; run again with {DEBUG}=1 for the traceback, and please tell us"
+        report.error(name, f"internal error: {type(error).__name__}: {error}{hint}")
+        return BUG
+    return DONE
+
+
+def _with_command(words: list[str]) -> list[str]:
+    """Return the words with ``view`` put first where the user left the command out."""
+    if not words or words == ["--json"] or (words[0][:1] != "-" and words[0] not in COMMANDS):
+        return ["view", *words]
+    return words
+
+
+def _traceback_if_wanted() -> bool:
+    if not os.environ.get(DEBUG):
+        return False
+    traceback.print_exc()
+    return True
+
+
+def _silence_stdout() -> None:
+    """Keep the interpreter from complaining again when it flushes stdout at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,106 @@
+"""``meshwright demo``: the star with the agent ready; without a display, the same as a picture."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app import display, inputs
+from app.outputs import checked_output
+from app.report import Report
+
+if TYPE_CHECKING:
+    from meshcore import HalfEdgeMesh
+
+SUMMARY = "open a shape with the agent ready; without a display, write a picture of its run"
+DESCRIPTION = (
+    "Open the window on a shape with the agent ready. On a machine without a display, or with -o, "
+    "let the policy complete the mesh and write a picture: start, half-way, end."
+)
+
+PICTURE = "meshwright-demo.png"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Describe the shape and where a picture goes."""
+    parser.add_argument("--shape", metavar="SHAPE", default="star", help="shape or file (star)")
+    parser.add_argument(
+        "--kind", choices=("tri", "quad"), default="quad", help="triangles or quads (quad)"
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="PICTURE.png",
+        help=f"write a picture in place of opening the window ({PICTURE} without a display)",
+    )
+
+
+def run(arguments: argparse.Namespace, report: Report) -> None:
+    """Open the window where that is possible and wanted, else write the picture."""
+    output = _checked(arguments.output) if arguments.output else None
+    probe = None if output else display.Probe()
+    domain = inputs.read_domain(arguments.shape)
+    mesh = inputs.make_mesh(domain, arguments.kind)
+    name = domain.name or Path(arguments.shape).stem
+    problem = probe.problem() if probe else ""
+    if output or problem:
+        _picture(mesh, name, output or _checked(PICTURE), problem, report)
+        return
+    from app import desktop
+    from app.document import Document
+
+    code = desktop.run(Document(mesh, name=name), demo=True)
+    if code != 0:
+        raise RuntimeError(f"the window ended with code {code}")
+    if report.as_json:
+        report.result({"command": "demo", "shape": name, "window": True}, "")
+
+
+def _checked(path: str) -> Path:
+    return checked_output(path, (".png",))
+
+
+def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: Report) -> None:
+    from app import filmstrip
+    from app.commands.improve import ROLLOUTS, normalised_return
+    from app.report import one_line
+
+    policy = inputs.read_policy(None, mesh.kind)
+    from agent import search
+
+    with report.progress("the policy is at work", ROLLOUTS) as update:
+        solution = search.improve(
+            mesh,
+            policy,
+            rollouts=ROLLOUTS,
+            progress=lambda done, best: update(done, f"s = {best}, s* = {mesh.optimum}"),
+        )
+    start = mesh.score
+    filmstrip.write(output, mesh, solution.operations)
+    values = {
+        "command": "demo",
+        "shape": name,
+        "window": False,
+        "picture": str(output.resolve()),
+        "reason": problem or "a picture was asked for",
+        "policy": policy.name,
+        "kind": mesh.kind,
+        "elements_before": mesh.n_elements,
+        "score_before": start,
+        "score_after": solution.score,
+        "optimum": mesh.optimum,
+        "normalised_return": normalised_return(start, solution.score, mesh.optimum),
+        "operations": len(solution.operations),
+    }
+    optimum = (
+        ", the optimum" if solution.score == mesh.optimum else f" (the optimum is {mesh.optimum})"
+    )
+    text = (
+        f"the policy took the {name}, {mesh.n_elements} {inputs.KIND_NOUN[mesh.kind]}, from "
+        f"s = {start} to s = {solution.score}{optimum}, in {len(solution.operations)} operations; "
+        f"the picture of it is {output.resolve()}"
+    )
+    if problem:
+        text = f"{problem}, so in place of the window: {text}"
+    report.result(values, one_line(text[:1].upper() + text[1:] + "."))

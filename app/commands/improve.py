@@ -1,0 +1,155 @@
+"""``meshwright improve``: let a policy work on the connectivity of a mesh file."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from typing import TYPE_CHECKING, Any
+
+from app import inputs, meshfile
+from app.outputs import checked_output, replacing
+from app.report import Report, table
+
+if TYPE_CHECKING:
+    from agent.search import Solution
+
+    from meshcore import HalfEdgeMesh
+
+SUMMARY = "let a trained policy improve the connectivity of a mesh file"
+DESCRIPTION = (
+    "Read a mesh of triangles or of quads, let a policy change its connectivity until no vertex "
+    "is more irregular than it must be, smooth it, and write it. Corners stay where they are, "
+    "and every other boundary vertex stays on its own side of the outline."
+)
+
+ROLLOUTS = 10
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Describe the files and how long to search."""
+    parser.add_argument("input", metavar="IN", help="mesh file to read")
+    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="mesh file to write")
+    effort = parser.add_mutually_exclusive_group()
+    effort.add_argument(
+        "--rollouts",
+        metavar="K",
+        type=inputs.positive_int,
+        help=f"run the policy K times and keep the best ({ROLLOUTS})",
+    )
+    effort.add_argument(
+        "--search",
+        metavar="SECONDS",
+        type=inputs.positive_float,
+        help="run the policy again and again for so long and keep the best",
+    )
+    parser.add_argument(
+        "--steps", metavar="N", type=inputs.positive_int, help="at most N operations in a run"
+    )
+    parser.add_argument(
+        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
+    )
+    parser.add_argument(
+        "--policy", metavar="P", help="name of a shipped policy, or a policy file (the shipped one)"
+    )
+    parser.add_argument("--png", metavar="P.png", help="write a picture of the result too")
+    parser.add_argument(
+        "--corner-angle",
+        metavar="DEGREES",
+        type=inputs.angle,
+        help="a boundary vertex is a corner where the boundary turns by more (0.01); raise it "
+        "where curved sides are drawn as short straight pieces",
+    )
+
+
+def run(arguments: argparse.Namespace, report: Report) -> None:
+    """Check everything that can be checked, then search, replay, settle and write."""
+    checked_output(arguments.output)
+    png = checked_output(arguments.png, (".png",), "--png") if arguments.png else None
+    mesh = inputs.read_mesh(arguments.input, arguments.corner_angle)
+    output = meshfile.checked_mesh_output(arguments.output, mesh.kind)
+    policy = inputs.read_policy(arguments.policy, mesh.kind)
+
+    start = time.perf_counter()
+    before = {"score": mesh.score, "elements": mesh.n_elements, "optimum": mesh.optimum}
+    solution = _search(arguments, report, mesh, policy)
+    replay(mesh, solution)
+    inverted = meshfile.settle(mesh)
+    mesh.validate()
+    if mesh.optimum != before["optimum"]:
+        raise RuntimeError(f"s* changed from {before['optimum']} to {mesh.optimum}")
+    meshfile.write_mesh(output, mesh)
+    if png:
+        from app import scene
+
+        with replacing(png) as temporary:
+            scene.picture(mesh, temporary)
+
+    values = {
+        "command": "improve",
+        "input": arguments.input,
+        "output": str(output),
+        "png": str(png) if png else None,
+        "policy": policy.name,
+        "kind": mesh.kind,
+        "score_before": before["score"],
+        "score_after": mesh.score,
+        "optimum": mesh.optimum,
+        "at_optimum": mesh.score == mesh.optimum,
+        "normalised_return": normalised_return(before["score"], mesh.score, mesh.optimum),
+        "elements_before": before["elements"],
+        "elements": mesh.n_elements,
+        "vertices": mesh.n_vertices,
+        "inverted_elements": len(inverted),
+        "inverted_ids": inverted,
+        "operations": len(solution.operations),
+        "rollouts": solution.rollouts,
+        "seconds": round(time.perf_counter() - start, 3),
+    }
+    report.result(values, _text(values))
+
+
+def replay(mesh: HalfEdgeMesh, solution: Solution) -> None:
+    """Apply the operations of a solution to the mesh that it was found for."""
+    for operation, halfedge in solution.operations:
+        mesh.apply(operation, halfedge)
+    if mesh.score != solution.score:
+        raise RuntimeError(f"the replay ends at s = {mesh.score}, the search at {solution.score}")
+
+
+def normalised_return(start: int, end: int, optimum: int) -> float:
+    """Return (start - end) / (start - optimum), and 1 where there was nothing to gain."""
+    return (start - end) / (start - optimum) if start != optimum else 1.0
+
+
+def _search(
+    arguments: argparse.Namespace, report: Report, mesh: HalfEdgeMesh, policy: Any
+) -> Solution:
+    from agent import search
+
+    rollouts = None if arguments.search else arguments.rollouts or ROLLOUTS
+    with report.progress("searching", rollouts) as update:
+        return search.improve(
+            mesh,
+            policy,
+            rollouts=rollouts,
+            seconds=arguments.search,
+            max_steps=arguments.steps,
+            seed=arguments.seed,
+            progress=lambda done, best: update(done, f"s = {best}, s* = {mesh.optimum}"),
+        )
+
+
+def _text(values: dict[str, Any]) -> str:
+    s = f"{values['score_before']} -> {values['score_after']}, s* = {values['optimum']}"
+    if values["at_optimum"]:
+        s += ", at the optimum"
+    elements = f"{values['elements_before']} -> {values['elements']}"
+    rows = [
+        ("s", s),
+        ("elements", f"{elements} {inputs.KIND_NOUN[values['kind']]}"),
+        ("inverted", meshfile.inverted_words(values["inverted_ids"]) or "none"),
+        ("operations", f"{values['operations']} (best of {values['rollouts']})"),
+        ("seconds", f"{values['seconds']:.1f}"),
+    ]
+    written = values["output"] + (f", {values['png']}" if values["png"] else "")
+    return f"{values['input']} -> {written}\n" + table(rows)

@@ -1,0 +1,67 @@
+"""``meshwright mesh``: make a mesh of a shape and write it to a file."""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+from app import inputs, meshfile
+from app.report import Report
+
+SUMMARY = "make a triangle or quad mesh of a shape and write it to a file"
+DESCRIPTION = (
+    "Mesh a shape of the gallery, or a polygon in a JSON file "
+    '({"outline": [[x, y], ...], "holes": [[[x, y], ...], ...]}), and write the mesh.'
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Describe the shape, the kind and the size of the elements."""
+    parser.add_argument("shape", metavar="SHAPE-or-FILE", help="name of a shape, or polygon file")
+    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="mesh file to write")
+    parser.add_argument("--kind", choices=("tri", "quad"), required=True, help="triangles or quads")
+    parser.add_argument(
+        "--max-edge",
+        metavar="H",
+        type=inputs.positive_float,
+        help="no edge longer than this, in the units of the shape",
+    )
+    parser.add_argument(
+        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
+    )
+
+
+def run(arguments: argparse.Namespace, report: Report) -> None:
+    """Make the mesh, settle its positions, write it."""
+    output = meshfile.checked_mesh_output(arguments.output, arguments.kind)
+    domain = inputs.read_domain(arguments.shape)
+    start = time.perf_counter()
+    with report.progress(f"meshing {domain.name or arguments.shape}"):
+        mesh = inputs.make_mesh(domain, arguments.kind, arguments.max_edge, arguments.seed)
+        inverted = meshfile.settle(mesh)
+        mesh.validate()
+    meshfile.write_mesh(output, mesh)
+    values = {
+        "command": "mesh",
+        "shape": arguments.shape,
+        "output": str(output),
+        "kind": mesh.kind,
+        "vertices": mesh.n_vertices,
+        "elements": mesh.n_elements,
+        "corners": int(mesh.geometric()[mesh.vertices()].sum()),
+        "score": mesh.score,
+        "optimum": mesh.optimum,
+        "inverted_elements": len(inverted),
+        "inverted_ids": inverted,
+        "seconds": round(time.perf_counter() - start, 3),
+    }
+    report.result(values, _text(values))
+
+
+def _text(values: dict[str, object]) -> str:
+    noun = inputs.KIND_NOUN[str(values["kind"])]
+    text = (
+        f"{values['output']}: {values['elements']} {noun}, {values['vertices']} vertices, "
+        f"s = {values['score']}, s* = {values['optimum']}"
+    )
+    return text + meshfile.inverted_words(values["inverted_ids"], lead="; ")

@@ -1,0 +1,80 @@
+"""``meshwright view``, and ``meshwright`` alone: open the window."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app import display, inputs
+from app.report import Report, UserError
+
+if TYPE_CHECKING:
+    from app.document import Document
+
+SUMMARY = "open the window, on a mesh file or a shape if one is named"
+DESCRIPTION = "Open the window. The words view FILE may be shortened to FILE."
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Describe what to open."""
+    parser.add_argument(
+        "file",
+        metavar="FILE-or-SHAPE",
+        nargs="?",
+        help="mesh file, polygon file (.json) or name of a shape",
+    )
+    parser.add_argument(
+        "--kind", choices=("tri", "quad"), default="quad", help="how to mesh a shape (quad)"
+    )
+    parser.add_argument(
+        "--corner-angle",
+        metavar="DEGREES",
+        type=inputs.angle,
+        help="a boundary vertex is a corner where the boundary turns by more (0.01)",
+    )
+
+
+def run(arguments: argparse.Namespace, report: Report) -> None:
+    """Read what is to be opened, then open the window; return when it is closed."""
+    probe = display.Probe()
+    document = _document(arguments)
+    problem = probe.problem()
+    if problem:
+        raise UserError(f"{problem}; without one, meshwright demo writes a picture")
+    from app import desktop
+
+    code = desktop.run(document)
+    if code != 0:
+        raise RuntimeError(f"the window ended with code {code}")
+    if report.as_json:
+        report.result({"command": "view", "file": arguments.file}, "")
+
+
+def _document(arguments: argparse.Namespace) -> Document | None:
+    name = arguments.file
+    if name is None:
+        return None
+    from app.document import Document
+
+    if not inputs.looks_like_path(name) and not Path(name).exists():
+        _refuse_near_command(name)
+    if inputs.looks_like_path(name) and Path(name).suffix.lower() != ".json":
+        mesh = inputs.read_mesh(name, arguments.corner_angle)
+        return Document(mesh, name=Path(name).name, path=Path(name))
+    domain = inputs.read_domain(name)
+    return Document(inputs.make_mesh(domain, arguments.kind), name=domain.name or Path(name).stem)
+
+
+def _refuse_near_command(word: str) -> None:
+    """Raise UserError if the word is no shape but close to a command: ``meshwright improv``."""
+    from difflib import get_close_matches
+
+    from app.commands import COMMANDS
+    from meshcore import shapes
+
+    close = get_close_matches(word, COMMANDS, n=1, cutoff=0.75)
+    if close and word not in shapes.gallery():
+        raise UserError(
+            f"{word}: neither a command, a shape nor a file; did you mean the command {close[0]}?"
+        )

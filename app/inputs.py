@@ -1,0 +1,173 @@
+"""What a command is given: meshes, shapes, policies, numbers.
+
+Everything that can be wrong with an input is found here and raised as UserError or, for a number
+on the command line, as argparse's own error. A MeshError that comes later, while a command works,
+is therefore a bug of ours and is reported as one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.outputs import reason
+from app.report import UserError
+
+if TYPE_CHECKING:
+    from agent.policies import Policy
+
+    from meshcore import HalfEdgeMesh
+    from meshcore.domain import Domain
+
+KIND_NOUN = {"tri": "triangles", "quad": "quads"}
+
+
+def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
+    """Return the mesh in a file, or raise UserError that says what is wrong with it.
+
+    ``corner_angle`` in degrees: a boundary vertex where the boundary turns by more is a corner.
+    """
+    _require_file(path)
+    import meshcore
+
+    with _bad_input(path):
+        if corner_angle is None:
+            return meshcore.read(path)
+        return meshcore.read(path, corner_angle=corner_angle)
+
+
+def read_domain(shape: str) -> Domain:
+    """Return the domain with this name in the gallery, or in this polygon file (JSON)."""
+    from meshcore import shapes
+    from meshcore.domain import Domain
+
+    gallery = shapes.gallery()
+    if shape in gallery:
+        return gallery[shape]
+    if not Path(shape).exists() and not looks_like_path(shape):
+        close = get_close_matches(shape, gallery, n=1)
+        hint = f"did you mean {close[0]}?" if close else "see meshwright shapes"
+        raise UserError(f"{shape}: neither a shape of the gallery nor a file; {hint}")
+    _require_file(shape)
+    with _bad_input(shape):
+        return Domain.from_json(shape)
+
+
+def make_mesh(
+    domain: Domain, kind: str, max_edge: float | None = None, seed: int = 0
+) -> HalfEdgeMesh:
+    """Return a mesh of the domain, or raise UserError if it cannot be meshed as asked."""
+    from meshcore import generate
+
+    with _bad_input(domain.name or "the domain"):
+        return generate.mesh_domain(domain, kind, max_edge=max_edge, seed=seed)
+
+
+def read_policy(name: str | None, kind: str) -> Policy:
+    """Return a policy for meshes of this kind: by name, from a file, or the one we ship."""
+    from agent import policies
+
+    if name is None:
+        shipped = policies.shipped(kind)
+        if not shipped:
+            raise UserError(f"no policy for {KIND_NOUN[kind]} is installed; give one by --policy")
+        name = shipped[0]
+    elif looks_like_path(name):
+        _require_file(name)
+    with _bad_input(name, policies.PolicyError):
+        policy = policies.load(name)
+    if policy.kind != kind:
+        raise UserError(
+            f"{name}: this policy is for {KIND_NOUN[policy.kind]}, the mesh is of {KIND_NOUN[kind]}"
+        )
+    return policy
+
+
+def looks_like_path(text: str) -> bool:
+    """Tell whether the user meant a file: it has an ending or a folder."""
+    return bool(Path(text).suffix) or "/" in text or "\\" in text
+
+
+def positive_int(text: str) -> int:
+    """Read a whole number of at least 1 from the command line."""
+    value = _int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least 1")
+    return value
+
+
+def seed(text: str) -> int:
+    """Read a seed, a whole number of at least 0, from the command line."""
+    value = _int(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least 0")
+    return value
+
+
+def positive_float(text: str) -> float:
+    """Read a finite number above 0 from the command line."""
+    value = _float(text)
+    if not (value > 0 and math.isfinite(value)):
+        raise argparse.ArgumentTypeError(f"{text} is not a number above 0")
+    return value
+
+
+def angle(text: str) -> float:
+    """Read an angle of 0 to 180 degrees from the command line."""
+    value = _float(text)
+    if not 0 <= value <= 180:
+        raise argparse.ArgumentTypeError(f"{text} is not an angle of 0 to 180 degrees")
+    return value
+
+
+def sides(text: str) -> tuple[int, int]:
+    """Read a range of polygon sides such as ``10-20``, or one number, from the command line."""
+    first, _, last = text.partition("-")
+    try:
+        low, high = int(first), int(last or first)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text} is not a range such as 10-20") from None
+    if not 3 <= low <= high:
+        raise argparse.ArgumentTypeError(f"{text}: a polygon has 3 sides or more, fewest first")
+    return low, high
+
+
+def _int(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number") from None
+
+
+def _float(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text} is not a number") from None
+
+
+def _require_file(path: str) -> None:
+    if Path(path).is_dir():
+        raise UserError(f"{path}: that is a folder, not a file")
+    if not Path(path).exists():
+        raise UserError(f"{path}: there is no such file")
+
+
+@contextmanager
+def _bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
+    from meshcore.errors import MeshError
+
+    try:
+        yield
+    except (MeshError, *more) as error:
+        sentence = str(error)
+        raise UserError(sentence if name in sentence else f"{name}: {sentence}") from error
+    except OSError as error:
+        raise UserError(f"{name}: cannot be read: {reason(error)}") from error
+    except UnicodeDecodeError as error:
+        raise UserError(f"{name}: cannot be read: it is not text as it should be") from error

@@ -1,0 +1,81 @@
+"""Files that a command writes: checked before the work begins, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from app.report import UserError
+
+
+def checked_output(path: str, endings: tuple[str, ...] = (), option: str = "-o") -> Path:
+    """Return the path if a file can be written there, or raise UserError that says why not.
+
+    ``endings`` are the allowed ones in lower case with their dot; empty allows any. Commands call
+    this before they begin to work, so that nobody waits for a result that has nowhere to go.
+    """
+    target = Path(path)
+    folder = target.parent
+    if target.is_dir():
+        raise UserError(f"{option} {path}: that is a folder; give the name of a file")
+    if not folder.exists():
+        raise UserError(f"{option} {path}: the folder {folder} does not exist")
+    if not folder.is_dir():
+        raise UserError(f"{option} {path}: {folder} is not a folder")
+    if endings and target.suffix.lower() not in endings:
+        found = f"the ending {target.suffix}" if target.suffix else "a name without an ending"
+        raise UserError(f"{option} {path}: cannot write {found}; use one of {' '.join(endings)}")
+    if not os.access(target if target.exists() else folder, os.W_OK):
+        raise UserError(f"{option} {path}: no permission to write there")
+    return target
+
+
+def checked_folder(path: str, option: str = "-o") -> Path:
+    """Return the folder, made if its parent exists, or raise UserError that says why not."""
+    folder = Path(path)
+    if folder.exists() and not folder.is_dir():
+        raise UserError(f"{option} {path}: that is a file; give the name of a folder")
+    if not folder.exists() and not folder.absolute().parent.is_dir():
+        raise UserError(f"{option} {path}: the folder {folder.parent} does not exist")
+    if not os.access(folder if folder.exists() else folder.absolute().parent, os.W_OK):
+        raise UserError(f"{option} {path}: no permission to write there")
+    return folder
+
+
+@contextmanager
+def replacing(target: Path) -> Iterator[Path]:
+    """Yield a path beside ``target`` to write to; it takes the target's place when all went well.
+
+    If the block fails, whatever stood at ``target`` is untouched and nothing is left beside it.
+    An operating system error becomes a UserError that names the target.
+    """
+    try:
+        handle, name = tempfile.mkstemp(
+            prefix=f".{target.stem}-", suffix=target.suffix, dir=target.parent
+        )
+        os.close(handle)
+        temporary = Path(name)
+        try:
+            yield temporary
+            os.chmod(temporary, 0o666 & ~_umask())
+            os.replace(temporary, target)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as error:
+        state = "the old file is as it was" if target.exists() else "nothing was written"
+        raise UserError(f"cannot write {target}: {reason(error)}; {state}") from error
+
+
+def reason(error: OSError) -> str:
+    """Return what the operating system says, without number and path, as the end of a sentence."""
+    text = error.strerror or str(error)
+    return text[:1].lower() + text[1:]
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

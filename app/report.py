@@ -1,0 +1,121 @@
+"""What a command says: its result on stdout, everything else on stderr.
+
+With ``--json`` stdout carries exactly one JSON object, the result or ``{"error": ...}``.
+Progress and remarks go to stderr, and only when that is a terminal, so that a pipe or a log
+never fills with them. An error is one line on stderr.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, TextIO
+
+
+class UserError(Exception):
+    """Wrong use or bad input: ends the command with one line on stderr and exit code 2."""
+
+
+Update = Callable[[int, str], None]
+"""Called as ``update(done, remark)`` while a long piece of work goes on."""
+
+
+class Report:
+    """The two streams that a command writes to.
+
+    ``as_json`` chooses the form of the result. The streams are looked up when they are used, so
+    that a test may replace ``sys.stdout`` and ``sys.stderr``.
+    """
+
+    def __init__(self, as_json: bool = False) -> None:
+        """Report as text, or as one JSON object."""
+        self.as_json = as_json
+
+    @property
+    def out(self) -> TextIO:
+        """Where the result goes."""
+        return sys.stdout
+
+    @property
+    def err(self) -> TextIO:
+        """Where progress, remarks and errors go."""
+        return sys.stderr
+
+    def result(self, values: Mapping[str, Any], text: str) -> None:
+        """Write the result: ``values`` as one JSON object, or ``text``, whichever is wanted."""
+        self.out.write((as_json(values) if self.as_json else text.rstrip("\n")) + "\n")
+        self.out.flush()
+
+    def say(self, sentence: str) -> None:
+        """Write a remark to stderr if a person is looking at it."""
+        if self.err.isatty():
+            self.err.write(one_line(sentence) + "\n")
+            self.err.flush()
+
+    def error(self, command: str, sentence: str) -> None:
+        """Write what went wrong as one line on stderr, and as an object where JSON is wanted."""
+        sentence = one_line(sentence)
+        self.err.write(f"{command}: {sentence}\n")
+        self.err.flush()
+        if self.as_json:
+            self.out.write(as_json({"error": sentence}) + "\n")
+            self.out.flush()
+
+    @contextmanager
+    def progress(self, title: str, total: int | None = None) -> Iterator[Update]:
+        """Show a bar on a terminal while the block runs; yield the function that moves it.
+
+        ``total`` is the number of pieces of work; None where only the remark is known.
+        """
+        if not self.err.isatty():
+            yield lambda done, remark="": None
+            return
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+        columns = [
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=30),
+            TextColumn("{task.fields[remark]}"),
+            TimeElapsedColumn(),
+        ]
+        with Progress(*columns, console=Console(file=self.err), transient=True) as bar:
+            task = bar.add_task(title, total=total, remark="")
+
+            def update(done: int, remark: str = "") -> None:
+                bar.update(task, completed=done, remark=remark)
+
+            yield update
+
+
+def one_line(text: str) -> str:
+    """Return the text with every run of white space, line ends too, made one blank."""
+    return " ".join(text.split())
+
+
+def as_json(values: Mapping[str, Any]) -> str:
+    """Return one JSON object on one line; numpy values become plain ones, NaN becomes null."""
+    return json.dumps(_plain(values), allow_nan=False, ensure_ascii=False)
+
+
+def table(rows: Sequence[tuple[str, object]], indent: str = "  ") -> str:
+    """Return rows of name and value with the values aligned."""
+    width = max((len(name) for name, _ in rows), default=0)
+    return "\n".join(f"{indent}{name:<{width}}  {value}" for name, value in rows)
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | set):
+        return [_plain(item) for item in value]
+    if value is None or isinstance(value, str | bool | int):
+        return value
+    return str(value)

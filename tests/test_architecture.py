@@ -1,0 +1,59 @@
+"""The house: arrows run one way, and what is opened often is light.
+
+What an import brings along is looked up in a fresh interpreter, since this one has seen it all.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+HEAVY = ("torch", "gymnasium", "safetensors", "matplotlib", "rich", "PIL")
+DRAWING = ("qtpy", "PySide6", "pyvista", "pyvistaqt", "vtkmodules", "vtk")
+READERS = ("meshio", "trimesh", "shapely", "triangle", "networkx")
+NUMERIC = ("numpy", "numba", "scipy")
+
+
+def brought_along(statement: str) -> set[str]:
+    """The top-level modules that are loaded once a fresh interpreter has run the statement."""
+    code = f"import sys, json; {statement}; print(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    return {name.partition(".")[0] for name in json.loads(done.stdout.splitlines()[-1])}
+
+
+@pytest.mark.parametrize(
+    ("statement", "forbidden"),
+    [
+        ("import meshcore", (*HEAVY, *DRAWING, *READERS, "scipy", "agent", "app")),
+        ("import meshcore.io, meshcore.shapes, meshcore.generate", (*HEAVY, *DRAWING)),
+        ("import agent", (*DRAWING, "app")),
+        ("import app.document", (*HEAVY, *DRAWING, "agent")),
+        ("import app.assistant", ("torch", *DRAWING)),
+        ("import app.scene", ("torch", "qtpy", "PySide6", "pyvistaqt")),
+        ("import app.desktop.window", ("torch", "agent")),
+        ("import app.cli", (*HEAVY, *DRAWING, *READERS, *NUMERIC, "agent", "meshcore")),
+    ],
+)
+def test_import_brings_along_only_what_it_needs(statement: str, forbidden: tuple[str, ...]) -> None:
+    assert not brought_along(statement) & set(forbidden)
+
+
+@pytest.mark.parametrize("words", [["--help"], ["--version"], ["improve", "--help"], ["mesh"]])
+def test_command_line_answers_without_heavy_imports(words: list[str]) -> None:
+    heavy = {*HEAVY, *DRAWING, *READERS, *NUMERIC, "agent", "meshcore"}
+    assert not brought_along(f"from app.cli import main; main({words!r})") & heavy
+
+
+def test_import_contracts() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", "from importlinter.cli import lint_imports; exit(lint_imports())"],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
