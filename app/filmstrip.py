@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from app.outputs import replacing
 
 if TYPE_CHECKING:
-    from meshcore.operations import Operation
-
-    from meshcore import HalfEdgeMesh
+    from meshcore import HalfEdgeMesh, Operation
 
 FRAME_SIZE = (800, 800)
 
@@ -24,33 +21,33 @@ def write(
     theme: str = "light",
     size: tuple[int, int] = FRAME_SIZE,
 ) -> None:
-    """Write the three states side by side as a PNG; the mesh itself is not changed.
+    """Write the three states side by side as a PNG of ``3 * size``; the mesh is not changed.
 
     Raises UserError if the file cannot be written.
     """
-    from PIL import Image
-
     from app import scene
     from meshcore import smoothing
 
-    stops = (0, len(operations) // 2, len(operations))
     work = mesh.copy()
-    done = 0
     frames = []
-    with tempfile.TemporaryDirectory() as folder:
-        for number, stop in enumerate(stops):
-            for operation, halfedge in operations[done:stop]:
-                work.apply(operation, halfedge)
-            done = stop
-            smoothing.relax(work)
-            frame = Path(folder) / f"{number}.png"
-            scene.picture(work, frame, size=size, theme=theme)
-            with Image.open(frame) as image:
-                frames.append(image.convert("RGB"))
-    strip = Image.new("RGB", (sum(f.width for f in frames), max(f.height for f in frames)))
-    left = 0
-    for image in frames:
-        strip.paste(image, (left, 0))
-        left += image.width
+    done = 0
+    for stop in (0, len(operations) // 2, len(operations)):
+        for operation, halfedge in operations[done:stop]:
+            work.apply(operation, halfedge)
+        done = stop
+        smoothing.relax(work)
+        frames.append(scene.image(work, size, theme))
     with replacing(path) as temporary:
-        strip.save(temporary, format="PNG")
+        side_by_side(frames).save(temporary, format="PNG")
+
+
+def side_by_side(images: Sequence[Any]) -> Any:
+    """Return one Pillow image with these of the same height from left to right."""
+    from PIL import Image
+
+    whole = Image.new("RGB", (sum(i.width for i in images), images[0].height))
+    left = 0
+    for image in images:
+        whole.paste(image, (left, 0))
+        left += image.width
+    return whole

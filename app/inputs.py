@@ -11,7 +11,6 @@ import argparse
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -46,16 +45,12 @@ def read_domain(shape: str) -> Domain:
     from meshcore import shapes
     from meshcore.domain import Domain
 
-    gallery = shapes.gallery()
-    if shape in gallery:
-        return gallery[shape]
-    if not Path(shape).exists() and not looks_like_path(shape):
-        close = get_close_matches(shape, gallery, n=1)
-        hint = f"did you mean {close[0]}?" if close else "see meshwright shapes"
-        raise UserError(f"{shape}: neither a shape of the gallery nor a file; {hint}")
-    _require_file(shape)
+    if looks_like_path(shape) or Path(shape).exists():
+        _require_file(shape)
+        with _bad_input(shape):
+            return Domain.from_json(shape)
     with _bad_input(shape):
-        return Domain.from_json(shape)
+        return shapes.shape(shape)
 
 
 def make_mesh(

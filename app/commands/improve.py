@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app import inputs, meshfile
@@ -77,12 +78,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     mesh.validate()
     if mesh.optimum != before["optimum"]:
         raise RuntimeError(f"s* changed from {before['optimum']} to {mesh.optimum}")
-    meshfile.write_mesh(output, mesh)
-    if png:
-        from app import scene
-
-        with replacing(png) as temporary:
-            scene.picture(mesh, temporary)
+    _write(mesh, output, png)
 
     values = {
         "command": "improve",
@@ -106,6 +102,18 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         "seconds": round(time.perf_counter() - start, 3),
     }
     report.result(values, _text(values))
+
+
+def _write(mesh: HalfEdgeMesh, output: Path, png: Path | None) -> None:
+    """Write both files or neither: the picture takes its place only once the mesh is written."""
+    if png is None:
+        meshfile.write_mesh(output, mesh)
+        return
+    from app import scene
+
+    with replacing(png) as temporary:
+        scene.picture(mesh, temporary)
+        meshfile.write_mesh(output, mesh)
 
 
 def replay(mesh: HalfEdgeMesh, solution: Solution) -> None:

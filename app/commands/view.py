@@ -57,13 +57,14 @@ def _document(arguments: argparse.Namespace) -> Document | None:
         return None
     from app.document import Document
 
-    if not inputs.looks_like_path(name) and not Path(name).exists():
+    path = Path(name)
+    is_file = path.exists() or inputs.looks_like_path(name)
+    if is_file and path.suffix.lower() != ".json":
+        return Document(inputs.read_mesh(name, arguments.corner_angle), path.name, path)
+    if not is_file:
         _refuse_near_command(name)
-    if inputs.looks_like_path(name) and Path(name).suffix.lower() != ".json":
-        mesh = inputs.read_mesh(name, arguments.corner_angle)
-        return Document(mesh, name=Path(name).name, path=Path(name))
     domain = inputs.read_domain(name)
-    return Document(inputs.make_mesh(domain, arguments.kind), name=domain.name or Path(name).stem)
+    return Document(inputs.make_mesh(domain, arguments.kind), domain.name or path.stem)
 
 
 def _refuse_near_command(word: str) -> None:
@@ -74,7 +75,7 @@ def _refuse_near_command(word: str) -> None:
     from meshcore import shapes
 
     close = get_close_matches(word, COMMANDS, n=1, cutoff=0.75)
-    if close and word not in shapes.gallery():
+    if close and word not in shapes.names():
         raise UserError(
             f"{word}: neither a command, a shape nor a file; did you mean the command {close[0]}?"
         )

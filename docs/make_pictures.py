@@ -1,0 +1,200 @@
+"""Makes every picture that README shows, from the program itself, into docs/images/.
+
+    python docs/make_pictures.py              all of them
+    python docs/make_pictures.py operations   only these: demo, operations, gallery, window
+
+No display is needed except for the window, which wants one: under a virtual screen run
+``xvfb-run -s "-screen 0 1920x1200x24" python docs/make_pictures.py window``.
+"""
+
+import argparse
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from app import scene
+from app.filmstrip import side_by_side
+from app.theme import LIGHT
+from app.viewport import Viewport
+from meshcore import HalfEdgeMesh, Operation, shapes, smoothing
+from meshcore.generate import mesh_domain
+from meshcore.operations import CATALOGUE, OperationInfo
+
+IMAGES = Path(__file__).parent / "images"
+RENDER = 1800
+"""Pixels of the square that is drawn; discs are sized for it, then the middle is cut out."""
+PANEL = (560, 460)
+GAP = 120
+
+
+def triangles(columns: int, rows: int) -> HalfEdgeMesh:
+    """Return a parallelogram of equilateral triangles; its corners are geometric."""
+    points = [
+        (i + 0.5 * j, math.sqrt(0.75) * j) for j in range(rows + 1) for i in range(columns + 1)
+    ]
+    cells = []
+    for j in range(rows):
+        for i in range(columns):
+            a = j * (columns + 1) + i
+            b, c, d = a + 1, a + columns + 1, a + columns + 2
+            cells += [(a, b, c), (b, d, c)]
+    return HalfEdgeMesh.from_elements(np.array(points), np.array(cells))
+
+
+def quads(columns: int, rows: int) -> HalfEdgeMesh:
+    """Return a grid of unit squares; its corners are geometric."""
+    points = [(i, j) for j in range(rows + 1) for i in range(columns + 1)]
+    cells = []
+    for j in range(rows):
+        for i in range(columns):
+            a = j * (columns + 1) + i
+            cells.append((a, a + 1, a + columns + 2, a + columns + 1))
+    return HalfEdgeMesh.from_elements(np.array(points, dtype=float), np.array(cells))
+
+
+def patch(info: OperationInfo) -> HalfEdgeMesh:
+    """Return the small mesh on which an operation is shown."""
+    if info.kind == "tri":
+        return triangles(4, 3)
+    if info.operation == Operation("cleanup"):
+        return quads(4, 2)
+    return quads(4, 3)
+
+
+def most_central(mesh: HalfEdgeMesh, operation: Operation) -> int:
+    """Return the half-edge nearest to the middle of the mesh where the operation is allowed."""
+    middle = mesh.points[mesh.vertices()].mean(axis=0)
+    allowed = [
+        h
+        for element in mesh.element_ids()
+        for h in range(mesh.k * element, mesh.k * (element + 1))
+        if mesh.check(operation, h)
+    ]
+    if not allowed:
+        raise ValueError(f"{operation.value} is allowed nowhere on its patch")
+
+    def distance(h: int) -> float:
+        ends = mesh.points[[mesh.origin(h), mesh.target(h)]]
+        return float(np.linalg.norm(ends.mean(axis=0) - middle))
+
+    return min(allowed, key=distance)
+
+
+def panel(mesh: HalfEdgeMesh, view: Viewport, arrow: int | None = None) -> Any:
+    """Return the picture of a patch, with an arrow on one half-edge."""
+    drawn = scene.image(mesh, (RENDER, RENDER), score=False, viewport=view)
+    if arrow is not None:
+        a, b = view.to_screen(mesh.points[[mesh.origin(arrow), mesh.target(arrow)]])
+        draw_arrow(drawn, a, b)
+    left, top = (RENDER - PANEL[0]) // 2, (RENDER - PANEL[1]) // 2
+    return drawn.crop((left, top, left + PANEL[0], top + PANEL[1]))
+
+
+def draw_arrow(image: Any, a: np.ndarray, b: np.ndarray, colour: str = LIGHT.arrow) -> None:
+    """Draw the arrow of the half-edge from a to b just inside its element, on the left of it."""
+    fine = 4
+    along = (b - a) / np.linalg.norm(b - a)
+    inward = np.array([along[1], -along[0]])  # left of the direction, y pointing down
+    length = float(np.linalg.norm(b - a))
+    tail = a + 0.17 * length * along + 0.11 * length * inward
+    tip = b - 0.17 * length * along + 0.11 * length * inward
+    neck = tip - 26.0 * along
+    overlay = Image.new("RGBA", (image.width * fine, image.height * fine), colour + "00")
+    draw = ImageDraw.Draw(overlay)
+    draw.line([tuple(fine * tail), tuple(fine * neck)], fill=colour, width=8 * fine)
+    head = [tip, neck + 13.0 * inward, neck - 13.0 * inward]
+    draw.polygon([tuple(fine * p) for p in head], fill=colour)
+    smooth = overlay.resize(image.size, Image.Resampling.LANCZOS)
+    image.paste(smooth, (0, 0), smooth)
+
+
+def gap(height: int) -> Any:
+    """Return the space between before and after: an arrow in a quiet colour."""
+    fine = 4
+    image = Image.new("RGB", (GAP * fine, height * fine), LIGHT.background)
+    draw = ImageDraw.Draw(image)
+    y, left, right = height * fine // 2, 30 * fine, (GAP - 30) * fine
+    draw.line([(left, y), (right - 14 * fine, y)], fill=LIGHT.muted, width=5 * fine)
+    head = [(right, y), (right - 18 * fine, y - 11 * fine), (right - 18 * fine, y + 11 * fine)]
+    draw.polygon(head, fill=LIGHT.muted)
+    return image.resize((GAP, height), Image.Resampling.LANCZOS)
+
+
+def operation_picture(info: OperationInfo) -> Any:
+    """Return before and after of one operation on its patch."""
+    mesh = patch(info)
+    view = Viewport(size=PANEL).fitted(mesh.points, 44.0)
+    view = Viewport(view.centre, view.pixels, (RENDER, RENDER))
+    h = most_central(mesh, info.operation)
+    before = panel(mesh, view, h)
+    mesh.apply(info.operation, h)
+    smoothing.relax(mesh)
+    return side_by_side([before, gap(PANEL[1]), panel(mesh, view)])
+
+
+def make_operations() -> None:
+    """One picture for every operation of the catalogue."""
+    folder = IMAGES / "operations"
+    folder.mkdir(exist_ok=True)
+    for info in CATALOGUE:
+        save(operation_picture(info), folder / f"{info.kind}-{info.operation.value}.png")
+
+
+def make_gallery() -> None:
+    """Every shape of the gallery as a quad mesh, as generated, in rows of six."""
+    tiles = [
+        scene.image(mesh_domain(domain, "quad"), (360, 300), score=False)
+        for domain in shapes.gallery().values()
+    ]
+    columns = 6
+    rows = math.ceil(len(tiles) / columns)
+    whole = Image.new("RGB", (columns * 360, rows * 300), LIGHT.background)
+    for number, tile in enumerate(tiles):
+        whole.paste(tile, (number % columns * 360, number // columns * 300))
+    save(whole, IMAGES / "gallery.png")
+
+
+def make_demo() -> None:
+    """The run of ``meshwright demo -o``."""
+    from app.cli import main
+
+    code = main(["demo", "-o", str(IMAGES / "demo.png")])
+    if code != 0:
+        raise RuntimeError(f"meshwright demo ended with code {code}")
+    with Image.open(IMAGES / "demo.png") as image:
+        save(image.convert("RGB"), IMAGES / "demo.png")
+
+
+def save(image: Any, path: Path) -> None:
+    """Write a PNG with a palette: these pictures have few colours, and a clone should be small."""
+    image.quantize(colors=256, dither=Image.Dither.NONE).save(path, optimize=True)
+    sys.stdout.write(f"{path}\n")
+
+
+MAKERS: dict[str, Callable[[], None]] = {
+    "demo": make_demo,
+    "operations": make_operations,
+    "gallery": make_gallery,
+}
+
+
+def main() -> None:
+    """Make the pictures that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("what", nargs="*", help=f"of {', '.join(MAKERS)}; all if none is named")
+    names = parser.parse_args().what or list(MAKERS)
+    unknown = sorted(set(names) - set(MAKERS))
+    if unknown:
+        parser.error(f"no such picture: {' '.join(unknown)}")
+    IMAGES.mkdir(exist_ok=True)
+    for name in names:
+        MAKERS[name]()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,61 @@
+"""The wheel carries the three packages and every file that travels with the program."""
+
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("meshcore", "agent", "app", "assets")
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory) -> zipfile.ZipFile:
+    folder = tmp_path_factory.mktemp("dist")
+    done = subprocess.run(
+        [sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", folder, ROOT],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    (path,) = folder.glob("*.whl")
+    with zipfile.ZipFile(path) as archive:
+        yield archive
+
+
+def source_files() -> set[str]:
+    """Everything in the packages that git would keep, by path in the repository."""
+    names = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *PACKAGES],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=ROOT,
+    ).stdout.split("\n")
+    return {name for name in names if name and (ROOT / name).is_file()}
+
+
+def test_wheel_carries_every_file_of_the_packages(wheel):
+    carried = {name for name in wheel.namelist() if ".dist-info/" not in name}
+    assert carried == source_files()
+
+
+def test_wheel_carries_a_policy_of_each_kind(wheel):
+    policies = [name for name in wheel.namelist() if name.endswith(".safetensors")]
+    assert any("tri" in name for name in policies)
+    assert any("quad" in name for name in policies)
+
+
+def test_wheel_carries_command_and_licence(wheel):
+    (info,) = {name.split("/")[0] for name in wheel.namelist() if ".dist-info/" in name}
+    assert "meshwright = app.cli:main" in wheel.read(f"{info}/entry_points.txt").decode()
+    assert f"{info}/licenses/LICENSE" in wheel.namelist()
+
+
+def test_torch_and_qt_are_held_below_the_versions_that_break():
+    requirements = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    assert "torch>=2.4,<=2.13.0" in requirements
+    assert "PySide6-Essentials>=6.8,<6.12" in requirements
