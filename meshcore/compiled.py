@@ -1,0 +1,105 @@
+"""Compiled kernels: one decorator, one cache on disk, one warm-up.
+
+Numba's own cache looks at the file of the function only, so an edit of an *imported* kernel would go
+unnoticed. Here the cache folder carries a hash of all sources of the package: an edit anywhere in it
+means a fresh folder, and stale ones are removed after a month.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import os
+import shutil
+import sys
+import time
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+import platformdirs
+from numba.core import config as numba_config
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_KEPT_SECONDS = 30 * 24 * 3600
+_WARM_MARK = "warm"
+
+
+@cache
+def _source_hash(folder: Path) -> str:
+    """Hash of the sources below `folder` that take part in kernels, and of the versions of numba and
+    Python. Constants count too, so every file that kernels import is among them."""
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
+    for path in sorted(folder.rglob("*.py")):
+        source = path.read_bytes()
+        if b"kernel" in source or path.name == "refusals.py":
+            digest.update(path.name.encode())
+            digest.update(source)
+    return digest.hexdigest()[:16]
+
+
+def cache_root() -> Path:
+    """Folder of all kernel caches; `MESHWRIGHT_CACHE_DIR` overrides the user's cache folder."""
+    chosen = os.environ.get("MESHWRIGHT_CACHE_DIR")
+    return Path(chosen) if chosen else Path(platformdirs.user_cache_dir("meshwright")) / "kernels"
+
+
+@cache
+def cache_folder(package: str = "meshcore") -> Path:
+    """Cache folder of the kernels of one package, keyed by its sources and those of meshcore."""
+    here = Path(__file__).parent
+    key = _source_hash(here)
+    if package != "meshcore":
+        module = importlib.import_module(package)
+        key += "-" + _source_hash(Path(str(module.__file__)).parent)
+    return cache_root() / key
+
+
+def kernel(function: F) -> F:
+    """Compile `function` with numba: no GIL, C division, cached on disk under :func:`cache_folder`.
+
+    Falls back to a cache in memory where no folder can be written.
+    """
+    compiled = numba.njit(nogil=True, error_model="numpy")(function)
+    before = numba_config.CACHE_DIR
+    numba_config.CACHE_DIR = str(cache_folder(function.__module__.partition(".")[0]))
+    try:
+        compiled.enable_caching()
+    except (RuntimeError, OSError):
+        pass  # numba found no folder that it may write: each process compiles for itself
+    finally:
+        numba_config.CACHE_DIR = before
+    return compiled  # type: ignore[no-any-return]
+
+
+def is_warm_on_disk() -> bool:
+    """Whether :func:`warm` has run to its end for these very sources on this machine."""
+    return (cache_folder() / _WARM_MARK).exists()
+
+
+def warm() -> None:
+    """Compile, or load from the cache, every kernel that editing needs. Blocks; thread-safe."""
+    from meshcore import warm_up
+
+    warm_up.exercise()
+    try:
+        folder = cache_folder()
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / _WARM_MARK).touch()
+        _remove_stale(cache_root())
+    except OSError:
+        return  # a read-only home: the kernels are in memory, which is what matters now
+
+
+def _remove_stale(root: Path) -> None:
+    deadline = time.time() - _KEPT_SECONDS
+    for folder in root.iterdir():
+        if folder.is_dir() and folder.stat().st_mtime < deadline:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    warm()

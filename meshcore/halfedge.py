@@ -1,0 +1,201 @@
+"""The arrays of a half-edge mesh (a DCEL), their invariants, and how to walk on them.
+
+Layout
+------
+Every element has k sides, k = 3 or 4. Element e owns the half-edges k*e ... k*e+k-1 in
+counter-clockwise order, so that *next* and *previous* are arithmetic, and the paper's *cycle* a
+reshape (section 4.2). Everything lives in nine arrays (:class:`MeshArrays`) that compiled kernels
+take as one argument; the rows of one vertex, and of one element, share a cache line.
+
+Invariants of live slots
+------------------------
+1. ``edge[h, ORIGIN]`` is a live vertex; the k origins of an element differ.
+2. ``edge[h, TWIN]`` is -1 on the boundary; else a live half-edge with the same ends, turned
+   round, and twin of twin is h.
+3. Between two vertices there is at most one edge.
+4. ``vertex[v, HALF]`` is a half-edge that leaves v. If v lies on the boundary it is the one
+   without twin, so that turning counter-clockwise from it sweeps all of v's elements once. All
+   elements at v are met by this sweep (no pinched vertices).
+5. ``vertex[v, DEGREE]`` is the number of edges at v: at least 2; an interior vertex of degree 2
+   (a doublet) exists in quad meshes only.
+6. ``irregular[:counters[IRREGULAR]]`` holds every vertex with degree != desired once, and
+   ``vertex[v, PLACE]`` is its place there, -1 for regular vertices.
+7. ``counters`` holds the counts and sums that its index names say.
+8. ``vertex[:, MARK]`` and ``element_mark`` are zero between calls (scratch of the checks).
+
+Dead slots are chained: an element through ``edge[k*e, TWIN]`` with all origins -1; a vertex v
+through ``vertex[v, HALF]`` = -2 - (next dead vertex). A dead vertex has degree and desired degree 0.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from meshcore.compiled import kernel
+
+# columns of MeshArrays.edge
+ORIGIN, TWIN = 0, 1
+# columns of MeshArrays.vertex
+HALF, DEGREE, DESIRED, FLAGS, PLACE, MARK = 0, 1, 2, 3, 4, 5
+VERTEX_COLUMNS = 8  # 32 bytes: half a cache line
+# bits of vertex[:, FLAGS]
+GEOMETRIC, LOCKED = 1, 2
+# counters that an undo restores
+VERTEX_SLOTS, ELEMENT_SLOTS, VERTICES, ELEMENTS, BOUNDARY_EDGES = 0, 1, 2, 3, 4
+FREE_VERTEX, FREE_ELEMENT, SCORE, DELTA_SUM, IRREGULAR = 5, 6, 7, 8, 9
+RESTORED = 10
+# counters of the mesh and its journal that an undo leaves alone
+SIDES, JOURNALLING, JOURNAL_TOP, STEP, STEP_END, GROUPED = 10, 11, 12, 13, 14, 15
+COUNTERS = 16
+# columns of MeshArrays.steps; the restored counters follow
+STEP_START, STEP_STOP, STEP_OPERATION, STEP_HALFEDGE, STEP_COUNTERS = 0, 1, 2, 3, 4
+STEP_COLUMNS = STEP_COUNTERS + RESTORED
+# MeshArrays.trace: what the last operation did
+NEW_COUNT, TOUCHED_COUNT, TRACE_IDS = 0, 1, 2
+
+
+class MeshArrays(NamedTuple):
+    """All data of a mesh; H half-edge, V vertex and E = H / k element slots of capacity."""
+
+    edge: np.ndarray
+    """(H, 2) int32: origin, twin."""
+    vertex: np.ndarray
+    """(V, 8) int32: a half-edge, degree, desired degree, flags, place among the irregular, mark."""
+    points: np.ndarray
+    """(V, 3) float64: coordinates."""
+    irregular: np.ndarray
+    """(V,) int32: the irregular vertices, in no order."""
+    element_mark: np.ndarray
+    """(E,) int32: scratch."""
+    trace: np.ndarray
+    """(2 V + 64,) int32: counts of new and of touched vertices, then their ids, new ones first."""
+    counters: np.ndarray
+    """(16,) int64."""
+    journal: np.ndarray
+    """(J, 2) int64: place and former value of each write."""
+    steps: np.ndarray
+    """(S, 14) int64: one row for each undoable step."""
+
+
+def allocate(
+    k: int, vertices: int, elements: int, journal: int = 1024, steps: int = 64
+) -> MeshArrays:
+    """Empty arrays with room for `vertices` and `elements` slots, journal entries and steps."""
+    arrays = MeshArrays(
+        edge=np.full((k * elements, 2), -1, np.int32),
+        vertex=np.zeros((vertices, VERTEX_COLUMNS), np.int32),
+        points=np.zeros((vertices, 3)),
+        irregular=np.full(vertices, -1, np.int32),
+        element_mark=np.zeros(elements, np.int32),
+        trace=np.zeros(2 * vertices + 64, np.int32),
+        counters=np.zeros(COUNTERS, np.int64),
+        journal=np.zeros((journal, 2), np.int64),
+        steps=np.zeros((steps, STEP_COLUMNS), np.int64),
+    )
+    arrays.vertex[:, PLACE] = -1
+    arrays.vertex[:, HALF] = -1
+    arrays.counters[FREE_VERTEX] = arrays.counters[FREE_ELEMENT] = -1
+    arrays.counters[SIDES] = k
+    arrays.counters[JOURNALLING] = 1
+    return arrays
+
+
+def copy_rows(source: np.ndarray, length: int, fill: int) -> np.ndarray:
+    """A longer copy of `source`: (length, ...) rows, the new ones set to `fill`."""
+    longer = np.full((length, *source.shape[1:]), fill, source.dtype)
+    longer[: len(source)] = source
+    return longer
+
+
+def enlarge(
+    arrays: MeshArrays, vertices: int, elements: int, journal: int, steps: int
+) -> MeshArrays:
+    """The same mesh in arrays with at least this much room; ids and history stay valid."""
+    k = int(arrays.counters[SIDES])
+    vertices = max(vertices, len(arrays.vertex))
+    elements = max(elements, len(arrays.element_mark))
+    vertex = copy_rows(arrays.vertex, vertices, 0)
+    vertex[len(arrays.vertex) :, PLACE] = -1
+    vertex[len(arrays.vertex) :, HALF] = -1
+    return MeshArrays(
+        edge=copy_rows(arrays.edge, k * elements, -1),
+        vertex=vertex,
+        points=copy_rows(arrays.points, vertices, 0),
+        irregular=copy_rows(arrays.irregular, vertices, -1),
+        element_mark=copy_rows(arrays.element_mark, elements, 0),
+        trace=copy_rows(arrays.trace, 2 * vertices + 64, 0),
+        counters=arrays.counters,
+        journal=copy_rows(arrays.journal, max(journal, len(arrays.journal)), 0),
+        steps=copy_rows(arrays.steps, max(steps, len(arrays.steps)), 0),
+    )
+
+
+@kernel
+def following(h, k):
+    """The next half-edge of h's element, counter-clockwise."""
+    return h + 1 if (h + 1) % k else h + 1 - k
+
+
+@kernel
+def preceding(h, k):
+    """The previous half-edge of h's element."""
+    return h - 1 if h % k else h + k - 1
+
+
+@kernel
+def on_boundary(m, v):
+    """Whether the live vertex v lies on the boundary (invariant 4)."""
+    return m.edge[m.vertex[v, HALF], TWIN] < 0
+
+
+@kernel
+def joined(m, a, b, k):
+    """Whether an edge joins the live vertices a and b: one sweep around a, O(degree)."""
+    start = m.vertex[a, HALF]
+    h = start
+    for _ in range(m.vertex[a, DEGREE]):
+        if m.edge[following(h, k), ORIGIN] == b:
+            return True
+        back = preceding(h, k)
+        turned = m.edge[back, TWIN]
+        if turned < 0:
+            return m.edge[back, ORIGIN] == b
+        h = turned
+        if h == start:
+            return False
+    return False
+
+
+@kernel
+def find(m, a, b, k):
+    """The half-edge from a to b, or -1: one sweep around a, O(degree)."""
+    start = m.vertex[a, HALF]
+    h = start
+    for _ in range(m.vertex[a, DEGREE]):
+        if m.edge[following(h, k), ORIGIN] == b:
+            return h
+        h = m.edge[preceding(h, k), TWIN]
+        if h < 0 or h == start:
+            return -1
+    return -1
+
+
+@kernel
+def common_neighbours(m, a, b, k):
+    """The number of vertices joined to both a and b, O(degree of a times degree of b)."""
+    count = 0
+    start = m.vertex[a, HALF]
+    h = start
+    for _ in range(m.vertex[a, DEGREE]):
+        if joined(m, b, m.edge[following(h, k), ORIGIN], k):
+            count += 1
+        back = preceding(h, k)
+        turned = m.edge[back, TWIN]
+        if turned < 0:
+            return count + (1 if joined(m, b, m.edge[back, ORIGIN], k) else 0)
+        h = turned
+        if h == start:
+            break
+    return count

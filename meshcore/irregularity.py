@@ -1,0 +1,51 @@
+"""Desired degrees and corners: what a regular vertex is (section 2.1 of the paper, equation 2)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshcore.compiled import kernel
+
+TRIANGLE_INSIDE, TRIANGLE_STRAIGHT = 6, 4
+QUAD_INSIDE, QUAD_STRAIGHT = 4, 3
+"""Desired degree inside and on a straight side, for triangles (60 degrees) and quads (90)."""
+
+CORNER_ANGLE = 0.01
+"""Degrees by which the boundary must turn at a vertex that counts as a corner by default."""
+
+
+@kernel
+def usual_desired(k, boundary):
+    """Desired degree of a new vertex, inside or on a straight side."""
+    if k == 3:
+        return TRIANGLE_STRAIGHT if boundary else TRIANGLE_INSIDE
+    return QUAD_STRAIGHT if boundary else QUAD_INSIDE
+
+
+def turning_angles(points: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Angle in degrees by which the boundary turns at each vertex, without sign.
+
+    points, before, after: (n, 3) coordinates of boundary vertices and their boundary neighbours.
+    """
+    come, go = points - before, after - points
+    cross = np.linalg.norm(np.cross(come, go), axis=1)
+    return np.degrees(np.arctan2(cross, np.einsum("ij,ij->i", come, go)))
+
+
+def planar_boundary_angles(points: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Interior angle in degrees, in (0, 360), at boundary vertices of a mesh in a plane z = const.
+
+    points, before, after: (n, 3); the domain lies to the left of before -> point -> after.
+    """
+    come, go = points - before, after - points
+    cross = come[:, 0] * go[:, 1] - come[:, 1] * go[:, 0]
+    return 180.0 - np.degrees(np.arctan2(cross, np.einsum("ij,ij->i", come, go)))
+
+
+def desired_on_boundary(angles: np.ndarray, k: int) -> np.ndarray:
+    """Equation 2 on the boundary: max(round(angle / alpha) + 1, 2), alpha = 60 or 90 degrees.
+
+    A hair is added before rounding, so that an angle of exactly 1.5 alpha always rounds up.
+    """
+    alpha = 60.0 if k == 3 else 90.0
+    return np.maximum(np.floor(angles / alpha + 0.5 + 1e-9).astype(np.int64) + 1, 2)

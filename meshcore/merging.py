@@ -1,0 +1,63 @@
+"""Which of two merging vertices survives, and what the other one must not be."""
+
+from __future__ import annotations
+
+from meshcore.compiled import kernel
+from meshcore.halfedge import (
+    DEGREE,
+    DESIRED,
+    FLAGS,
+    GEOMETRIC,
+    HALF,
+    LOCKED,
+    ORIGIN,
+    TWIN,
+    on_boundary,
+    preceding,
+)
+from meshcore.irregularity import usual_desired
+from meshcore.journal import put_edge
+from meshcore.refusals import ALLOWED, LOSER_DESIRED, LOSER_LOCKED, TWO_GEOMETRIC
+
+
+@kernel
+def _rank(m, v, k):
+    boundary = on_boundary(m, v)
+    rank = 8 if m.vertex[v, FLAGS] & GEOMETRIC else 0
+    rank += 4 if boundary else 0
+    rank += 2 if m.vertex[v, FLAGS] & LOCKED else 0
+    return rank + (1 if m.vertex[v, DESIRED] != usual_desired(k, boundary) else 0)
+
+
+@kernel
+def survivor(m, a, b, k):
+    """The one of a and b that stays: geometric before boundary before locked before a vertex with a
+    desired degree of its own; a when they are alike."""
+    return b if _rank(m, b, k) > _rank(m, a, k) else a
+
+
+@kernel
+def check_loser(m, loser, desired):
+    """Whether `loser` may vanish: not geometric, not locked, and its desired degree is `desired`.
+
+    The last keeps the sum of Delta, and with it the optimum, as it was.
+    """
+    if m.vertex[loser, FLAGS] & GEOMETRIC:
+        return TWO_GEOMETRIC
+    if m.vertex[loser, FLAGS] & LOCKED:
+        return LOSER_LOCKED
+    if m.vertex[loser, DESIRED] != desired:
+        return LOSER_DESIRED
+    return ALLOWED
+
+
+@kernel
+def hand_over(m, loser, winner, k):
+    """Give every half-edge that leaves `loser` the origin `winner`."""
+    start = m.vertex[loser, HALF]
+    h = start
+    for _ in range(m.vertex[loser, DEGREE]):
+        put_edge(m, h, ORIGIN, winner)
+        h = m.edge[preceding(h, k), TWIN]
+        if h < 0 or h == start:
+            return

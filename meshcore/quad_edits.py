@@ -1,0 +1,342 @@
+"""Local edits of quad meshes: flips, vertex split, element collapse (section 2.2 of the paper).
+
+Each edit is a pair, as in :mod:`meshcore.triangle_edits`. Letters: h runs from a to b in the quad
+(a, b, c, d), its twin t from b to a in the quad (b, a, f, g).
+
+        d ----- c
+        |       |
+        a --h-- b
+        |       |
+        f ----- g
+"""
+
+from __future__ import annotations
+
+from meshcore.compiled import kernel
+from meshcore.halfedge import (
+    DEGREE,
+    DESIRED,
+    HALF,
+    ORIGIN,
+    TWIN,
+    common_neighbours,
+    following,
+    joined,
+    on_boundary,
+    preceding,
+)
+from meshcore.irregularity import QUAD_INSIDE
+from meshcore.journal import (
+    add_degree,
+    drop_element,
+    drop_vertex,
+    has_room,
+    link,
+    midway,
+    new_element,
+    put_edge,
+    put_vertex,
+    set_degrees,
+    touch,
+    touch_new,
+)
+from meshcore.merging import check_loser, hand_over, survivor
+from meshcore.refusals import (
+    ALLOWED,
+    BOTH_ON_BOUNDARY,
+    BOUNDARY_EDGE,
+    DEGREE_CAP,
+    DEGREE_TOO_LOW,
+    ENDS_COINCIDE,
+    ENDS_JOINED,
+    GEOMETRIC_INSIDE,
+    LINK_CONDITION,
+    NEED_ROOM,
+    NO_ELEMENT_LEFT,
+)
+
+
+@kernel
+def _check_turn(m, h, x, y, cap):
+    """Whether the edge of h may be turned to join x and y."""
+    a, b = m.edge[h, ORIGIN], m.edge[following(h, 4), ORIGIN]
+    if x == y:
+        return ENDS_COINCIDE
+    if m.vertex[a, DEGREE] <= 2 or m.vertex[b, DEGREE] <= 2:
+        return DEGREE_TOO_LOW
+    if cap > 0 and (m.vertex[x, DEGREE] >= cap or m.vertex[y, DEGREE] >= cap):
+        return DEGREE_CAP
+    if joined(m, x, y, 4):
+        return ENDS_JOINED
+    return ALLOWED if has_room(m, 4, 0, 0, 80) else NEED_ROOM
+
+
+@kernel
+def check_flip_left(m, h, cap):
+    """Flip counter-clockwise: interior edge, f and c distinct and not joined."""
+    t = m.edge[h, TWIN]
+    if t < 0:
+        return BOUNDARY_EDGE
+    f, c = m.edge[t - t % 4 + (t + 2) % 4, ORIGIN], m.edge[h - h % 4 + (h + 2) % 4, ORIGIN]
+    return _check_turn(m, h, f, c, cap)
+
+
+@kernel
+def check_flip_right(m, h, cap):
+    """Flip clockwise: interior edge, d and g distinct and not joined."""
+    t = m.edge[h, TWIN]
+    if t < 0:
+        return BOUNDARY_EDGE
+    d, g = m.edge[preceding(h, 4), ORIGIN], m.edge[preceding(t, 4), ORIGIN]
+    return _check_turn(m, h, d, g, cap)
+
+
+@kernel
+def flip_left(m, h):
+    """Turn the edge a-b counter-clockwise into f-c; V, E, F stay; h runs from f to c, all ids live.
+
+    d ----- c         d ----- c
+    |       |         |     / |
+    a --h-- b    ->   a   h   b
+    |       |         | /     |
+    f ----- g         f ----- g
+    """
+    n, p, t = following(h, 4), preceding(h, 4), m.edge[h, TWIN]
+    o = following(n, 4)
+    tn, tp = following(t, 4), preceding(t, 4)
+    to = following(tn, 4)
+    a, b, c, d = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
+    f, g = m.edge[to, ORIGIN], m.edge[tp, ORIGIN]
+    bc, cd, da = m.edge[n, TWIN], m.edge[o, TWIN], m.edge[p, TWIN]
+    af, fg, gb = m.edge[tn, TWIN], m.edge[to, TWIN], m.edge[tp, TWIN]
+
+    put_edge(m, h, ORIGIN, f)  # (f, c, d, a)
+    put_edge(m, n, ORIGIN, c)
+    put_edge(m, o, ORIGIN, d)
+    put_edge(m, p, ORIGIN, a)
+    put_edge(m, t, ORIGIN, c)  # (c, f, g, b)
+    put_edge(m, tn, ORIGIN, f)
+    put_edge(m, to, ORIGIN, g)
+    put_edge(m, tp, ORIGIN, b)
+    link(m, n, cd)
+    link(m, o, da)
+    link(m, p, af)
+    link(m, tn, fg)
+    link(m, to, gb)
+    link(m, tp, bc)
+    if m.vertex[a, HALF] == h or m.vertex[a, HALF] == tn:
+        put_vertex(m, a, HALF, p)
+    if m.vertex[b, HALF] == t or m.vertex[b, HALF] == n:
+        put_vertex(m, b, HALF, tp)
+    if m.vertex[c, HALF] == o:
+        put_vertex(m, c, HALF, n)
+    if m.vertex[d, HALF] == p:
+        put_vertex(m, d, HALF, o)
+    if m.vertex[f, HALF] == to:
+        put_vertex(m, f, HALF, tn)
+    if m.vertex[g, HALF] == tp:
+        put_vertex(m, g, HALF, to)
+
+    _turned(m, a, b, c, d, f, g)
+    add_degree(m, f, 1)
+    add_degree(m, c, 1)
+
+
+@kernel
+def flip_right(m, h):
+    """Turn the edge a-b clockwise into d-g; V, E, F stay; h runs from d to g, all ids live.
+
+    d ----- c         d ----- c
+    |       |         | \\     |
+    a --h-- b    ->   a   h   b
+    |       |         |     \\ |
+    f ----- g         f ----- g
+    """
+    n, p, t = following(h, 4), preceding(h, 4), m.edge[h, TWIN]
+    o = following(n, 4)
+    tn, tp = following(t, 4), preceding(t, 4)
+    to = following(tn, 4)
+    a, b, c, d = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
+    f, g = m.edge[to, ORIGIN], m.edge[tp, ORIGIN]
+    bc, cd, da = m.edge[n, TWIN], m.edge[o, TWIN], m.edge[p, TWIN]
+    af, fg, gb = m.edge[tn, TWIN], m.edge[to, TWIN], m.edge[tp, TWIN]
+
+    put_edge(m, h, ORIGIN, d)  # (d, g, b, c)
+    put_edge(m, n, ORIGIN, g)
+    put_edge(m, o, ORIGIN, b)
+    put_edge(m, p, ORIGIN, c)
+    put_edge(m, t, ORIGIN, g)  # (g, d, a, f)
+    put_edge(m, tn, ORIGIN, d)
+    put_edge(m, to, ORIGIN, a)
+    put_edge(m, tp, ORIGIN, f)
+    link(m, n, gb)
+    link(m, o, bc)
+    link(m, p, cd)
+    link(m, tn, da)
+    link(m, to, af)
+    link(m, tp, fg)
+    if m.vertex[a, HALF] == h or m.vertex[a, HALF] == tn:
+        put_vertex(m, a, HALF, to)
+    if m.vertex[b, HALF] == t or m.vertex[b, HALF] == n:
+        put_vertex(m, b, HALF, o)
+    if m.vertex[c, HALF] == o:
+        put_vertex(m, c, HALF, p)
+    if m.vertex[d, HALF] == p:
+        put_vertex(m, d, HALF, tn)
+    if m.vertex[f, HALF] == to:
+        put_vertex(m, f, HALF, tp)
+    if m.vertex[g, HALF] == tp:
+        put_vertex(m, g, HALF, n)
+
+    _turned(m, a, b, c, d, f, g)
+    add_degree(m, d, 1)
+    add_degree(m, g, 1)
+
+
+@kernel
+def _turned(m, a, b, c, d, f, g):
+    add_degree(m, a, -1)
+    add_degree(m, b, -1)
+    touch(m, a)
+    touch(m, b)
+    touch(m, c)
+    touch(m, d)
+    touch(m, f)
+    touch(m, g)
+
+
+@kernel
+def check_split(m, h, cap):
+    """Vertex split of a along h: h inside, a keeps degree 2 or more."""
+    t = m.edge[h, TWIN]
+    if t < 0:
+        return BOUNDARY_EDGE
+    if m.vertex[m.edge[h, ORIGIN], DEGREE] <= 2:
+        return DEGREE_TOO_LOW
+    if cap > 0:
+        d, f = m.edge[preceding(h, 4), ORIGIN], m.edge[t - t % 4 + (t + 2) % 4, ORIGIN]
+        if m.vertex[d, DEGREE] >= cap or m.vertex[f, DEGREE] >= cap:
+            return DEGREE_CAP
+    return ALLOWED if has_room(m, 4, 1, 1, 80) else NEED_ROOM
+
+
+@kernel
+def split(m, h):
+    """Split a along h: a new vertex v takes over the edge to b, and a quad (v, d, a, f) opens.
+
+    V+1, E+2, F+1; h then runs from v to b; all old ids live.
+
+    d ----- c         d ----- c
+    |       |         | \\     |
+    a --h-- b    ->   a   v-h-b
+    |       |         | /     |
+    f ----- g         f ----- g
+    """
+    p, t = preceding(h, 4), m.edge[h, TWIN]
+    tn = following(t, 4)
+    a, b, d = m.edge[h, ORIGIN], m.edge[t, ORIGIN], m.edge[p, ORIGIN]
+    f = m.edge[following(tn, 4), ORIGIN]
+    da, af = m.edge[p, TWIN], m.edge[tn, TWIN]
+
+    v = midway(m, a, b, 3, QUAD_INSIDE)
+    q = new_element(m, 4)
+    put_edge(m, h, ORIGIN, v)
+    put_edge(m, tn, ORIGIN, v)
+    put_edge(m, q, ORIGIN, v)
+    put_edge(m, q + 1, ORIGIN, d)
+    put_edge(m, q + 2, ORIGIN, a)
+    put_edge(m, q + 3, ORIGIN, f)
+    link(m, p, q)
+    link(m, q + 1, da)
+    link(m, q + 2, af)
+    link(m, q + 3, tn)
+    put_vertex(m, v, HALF, h)
+    if m.vertex[a, HALF] == h or m.vertex[a, HALF] == tn:
+        put_vertex(m, a, HALF, q + 2)
+    if m.vertex[d, HALF] == p:
+        put_vertex(m, d, HALF, q + 1)
+
+    add_degree(m, a, -1)
+    add_degree(m, d, 1)
+    add_degree(m, f, 1)
+    touch_new(m, v)
+    touch(m, a)
+    touch(m, b)
+    touch(m, d)
+    touch(m, f)
+
+
+@kernel
+def check_collapse(m, h, cap):
+    """Element collapse: a and c merge. Not both on the boundary, not joined, only b and d in common;
+    b and d keep enough edges; the loser unprotected."""
+    n, p = following(h, 4), preceding(h, 4)
+    o = following(n, 4)
+    a, b, c, d = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
+    if on_boundary(m, a) and on_boundary(m, c):
+        return BOTH_ON_BOUNDARY
+    winner = survivor(m, a, c, 4)
+    loser = a + c - winner
+    if on_boundary(m, loser):
+        return GEOMETRIC_INSIDE
+    refused = check_loser(m, loser, QUAD_INSIDE)
+    if refused != ALLOWED:
+        return refused
+    if m.edge[h, TWIN] < 0 and m.edge[n, TWIN] < 0:
+        return NO_ELEMENT_LEFT
+    if m.edge[o, TWIN] < 0 and m.edge[p, TWIN] < 0:
+        return NO_ELEMENT_LEFT
+    if m.vertex[b, DEGREE] <= 2 or m.vertex[d, DEGREE] <= 2:
+        return DEGREE_TOO_LOW
+    if cap > 0 and m.vertex[a, DEGREE] + m.vertex[c, DEGREE] - 2 > cap:
+        return DEGREE_CAP
+    if joined(m, a, c, 4):
+        return ENDS_JOINED
+    if common_neighbours(m, a, c, 4) != 2:
+        return LINK_CONDITION
+    return ALLOWED if has_room(m, 4, 0, 0, 80 + 2 * m.vertex[loser, DEGREE]) else NEED_ROOM
+
+
+@kernel
+def collapse(m, h):
+    """Merge a and the opposite corner c of h's quad: V-1, E-2, F-1.
+
+    The survivor keeps its place, id, desired degree and flags; the quad dies, h with it.
+
+    d ----- c         d
+    |       |          \\
+    |       |    ->      w
+    |       |          /   \\
+    a --h-- b                b
+    """
+    n, p = following(h, 4), preceding(h, 4)
+    o = following(n, 4)
+    a, b, c, d = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
+    ab, bc, cd, da = m.edge[h, TWIN], m.edge[n, TWIN], m.edge[o, TWIN], m.edge[p, TWIN]
+    winner = survivor(m, a, c, 4)
+    loser = a + c - winner
+    degree = m.vertex[a, DEGREE] + m.vertex[c, DEGREE] - 2
+    half = m.vertex[winner, HALF]
+    if half == h:
+        half = bc
+    elif half == o:
+        half = da
+
+    hand_over(m, loser, winner, 4)
+    link(m, ab, bc)
+    link(m, cd, da)
+    if m.vertex[b, HALF] == n:
+        put_vertex(m, b, HALF, ab)
+    if m.vertex[d, HALF] == p:
+        put_vertex(m, d, HALF, cd)
+    if m.vertex[winner, HALF] != half:
+        put_vertex(m, winner, HALF, half)
+    drop_element(m, h, 4)
+    drop_vertex(m, loser)
+
+    add_degree(m, b, -1)
+    add_degree(m, d, -1)
+    set_degrees(m, winner, degree, m.vertex[winner, DESIRED])
+    touch(m, winner)
+    touch(m, b)
+    touch(m, d)

@@ -1,0 +1,56 @@
+"""Why an operation is refused: codes for compiled kernels, and the sentences behind them."""
+
+ALLOWED = 0
+DEAD_HALFEDGE = 1
+BOUNDARY_EDGE = 2
+ENDS_COINCIDE = 3
+ENDS_JOINED = 4
+DEGREE_TOO_LOW = 5
+DEGREE_CAP = 6
+BOTH_ON_BOUNDARY = 7
+TWO_GEOMETRIC = 8
+LOSER_LOCKED = 9
+LOSER_DESIRED = 10
+GEOMETRIC_INSIDE = 11
+LINK_CONDITION = 12
+NO_ELEMENT_LEFT = 13
+SPLITS_AGAIN = 14
+NEVER_ENDS = 15
+NOT_A_LINE = 16
+LINE_LOCKED = 17
+LINE_DESIRED = 18
+LINE_CROWDED = 19
+MERGED_EDGES_MEET = 20
+CHORD_CROSSES_ITSELF = 21
+CHORD_PINCHES = 22
+OTHER_KIND = 23
+
+# not a refusal: the caller enlarges the arrays and asks again
+NEED_ROOM = 99
+
+SENTENCES = {
+    DEAD_HALFEDGE: "there is no half-edge {h} in this mesh",
+    BOUNDARY_EDGE: "the edge {a}-{b} lies on the boundary",
+    ENDS_COINCIDE: "both ends of the turned edge would be the same vertex",
+    ENDS_JOINED: "the vertices that it would join are joined already",
+    DEGREE_TOO_LOW: "an interior vertex would be left with too few edges",
+    DEGREE_CAP: "a vertex would get more edges than the degree cap of {cap}",
+    BOTH_ON_BOUNDARY: "the two vertices that would merge both lie on the boundary",
+    TWO_GEOMETRIC: "the two vertices that would merge are both geometric",
+    LOSER_LOCKED: "a locked vertex would be deleted",
+    LOSER_DESIRED: "a vertex with a desired degree of its own would be deleted, and with it the optimum",
+    GEOMETRIC_INSIDE: "the boundary would be pulled to a geometric vertex inside the mesh",
+    LINK_CONDITION: "the two vertices that would merge have other neighbours in common",
+    NO_ELEMENT_LEFT: "a boundary vertex would be left without an element",
+    SPLITS_AGAIN: "the split would come back to where it began",
+    NEVER_ENDS: "the split would never reach the boundary",
+    NOT_A_LINE: "no line of regular, non-geometric vertices runs through this edge from boundary to"
+    " boundary, or round in a ring",
+    LINE_LOCKED: "a locked vertex lies on the line",
+    LINE_DESIRED: "a vertex on the line has a desired degree of its own",
+    LINE_CROWDED: "the line touches the same element twice",
+    MERGED_EDGES_MEET: "two vertices would be joined by two edges, or a vertex to itself",
+    CHORD_CROSSES_ITSELF: "the strip of quads crosses itself",
+    CHORD_PINCHES: "the two sides of the strip both lie on the boundary there",
+    OTHER_KIND: "{operation} is not an operation of {kind} meshes",
+}

@@ -1,0 +1,76 @@
+"""What `check` and `apply` answer: a verdict in words, and the trace of an edit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from meshcore import refusals
+from meshcore.operations import Operation
+
+if TYPE_CHECKING:
+    from meshcore.mesh import HalfEdgeMesh
+
+
+class Verdict:
+    """True when the operation is allowed; else `reason` says in words why not."""
+
+    __slots__ = ("code", "reason")
+
+    def __init__(self, code: int, mesh: HalfEdgeMesh, operation: Operation, h: int) -> None:
+        """From the code that a check returned; asks `mesh` for the names of the vertices."""
+        self.code = refusals.ALLOWED if code == refusals.NEED_ROOM else code
+        self.reason = "" if self.code == refusals.ALLOWED else _sentence(code, mesh, operation, h)
+
+    def __bool__(self) -> bool:
+        """Whether the operation is allowed."""
+        return self.code == refusals.ALLOWED
+
+    def __repr__(self) -> str:
+        """The verdict in words."""
+        return f"<Verdict: {self.reason or 'allowed'}>"
+
+
+def _sentence(code: int, mesh: HalfEdgeMesh, operation: Operation, h: int) -> str:
+    live = mesh.live(h)
+    return refusals.SENTENCES[code].format(
+        h=h,
+        a=mesh.origin(h) if live else -1,
+        b=mesh.target(h) if live else -1,
+        cap=mesh.degree_cap,
+        operation=str(operation),
+        kind=mesh.kind,
+    )
+
+
+class Edit:
+    """What an applied operation did."""
+
+    __slots__ = ("_new_count", "halfedge", "operation", "score_change", "touched")
+
+    def __init__(
+        self,
+        operation: Operation | str,
+        halfedge: int,
+        score_change: int,
+        new_count: int,
+        touched: tuple[int, ...],
+    ) -> None:
+        """touched: vertex ids, the `new_count` new ones first."""
+        self.operation = operation
+        """The operation, as the caller named it."""
+        self.halfedge = halfedge
+        """The half-edge that it was applied to."""
+        self.score_change = score_change
+        """Change of s."""
+        self.touched = touched
+        """Live vertices around which something changed, new ones first; may repeat."""
+        self._new_count = new_count
+
+    @property
+    def new_vertices(self) -> tuple[int, ...]:
+        """Ids of the vertices that came to be."""
+        return self.touched[: self._new_count]
+
+    def __repr__(self) -> str:
+        """Operation, half-edge and change of s."""
+        return f"<Edit {self.operation} at {self.halfedge}: s {self.score_change:+d}>"
