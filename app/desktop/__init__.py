@@ -1,0 +1,21 @@
+"""The desktop window: a view on a document. Needs Qt and a display."""
+
+from pathlib import Path
+
+from app.document import Document
+
+
+def run(source: Document | str | Path | None = None, kind: str = "quad", demo: bool = False) -> int:
+    """Open the window and return its exit code when it is closed.
+
+    ``source`` is a document, the name of a gallery shape, or a mesh file; shapes are meshed with
+    elements of ``kind`` ("tri" or "quad"). ``demo`` takes the star if there is no source, and gets
+    the agent ready. Raises MeshError or OSError for a source that cannot be had.
+    """
+    from app.desktop.application import application, open_window
+
+    app = application()
+    window = open_window(source, kind, demo)
+    code = int(app.exec())
+    window.warmup.stop()
+    return code

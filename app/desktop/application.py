@@ -1,0 +1,82 @@
+"""The application: what Qt needs to know before the first window, and that window's opening."""
+
+import sys
+from pathlib import Path
+
+from qtpy.QtCore import Qt
+from qtpy.QtGui import QFont, QFontDatabase, QSurfaceFormat
+from qtpy.QtWidgets import QApplication
+
+from app.desktop import icons
+from app.desktop.widgets import tabular
+from app.desktop.window import MainWindow
+from app.document import Document
+from app.theme import FONTS
+
+DEMO_SHAPE = "star"
+
+
+def application() -> QApplication:
+    """The QApplication, made if there is none yet."""
+    app = QApplication.instance()
+    if app is None:
+        QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
+        QSurfaceFormat.setDefaultFormat(surface_format())
+        app = QApplication(sys.argv[:1])
+    app.setApplicationName("Meshwright")
+    app.setDesktopFileName("meshwright")
+    app.setWindowIcon(icons.app_icon())
+    app.setStyle("Fusion")
+    app.setFont(font())
+    return app
+
+
+def surface_format() -> QSurfaceFormat:
+    """What the plotter asks for too, but before any window exists, as some systems need it."""
+    made = QSurfaceFormat()
+    made.setRenderableType(QSurfaceFormat.RenderableType.OpenGL)
+    made.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
+    made.setVersion(3, 2)
+    made.setSwapBehavior(QSurfaceFormat.SwapBehavior.DoubleBuffer)
+    for set_size in (made.setRedBufferSize, made.setGreenBufferSize, made.setBlueBufferSize):
+        set_size(8)
+    made.setAlphaBufferSize(8)
+    made.setDepthBufferSize(8)
+    made.setStencilBufferSize(0)
+    made.setSamples(0)
+    return made
+
+
+def font() -> QFont:
+    """The interface's font: the first of the theme's families that is installed."""
+    installed = set(QFontDatabase.families())
+    family = next((name for name in FONTS if name in installed), "")
+    made = QFont(family) if family else QFont()
+    made.setPixelSize(13)
+    return tabular(made)
+
+
+def open_window(
+    source: Document | str | Path | None = None, kind: str = "quad", demo: bool = False
+) -> MainWindow:
+    """Make and show the window on ``source``, as in :func:`app.desktop.run`."""
+    if source is None and demo:
+        source = DEMO_SHAPE
+    document = source if isinstance(source, Document) else Document()
+    window = MainWindow(document)
+    if source is not None and not isinstance(source, Document):
+        load(document, source, kind)
+    if demo:
+        window.warmup.ready.connect(window.assistant.prepare)
+    window.show()
+    return window
+
+
+def load(document: Document, source: str | Path, kind: str) -> None:
+    """Put a gallery shape or a mesh file into ``document``."""
+    from meshcore import generate, shapes
+
+    if isinstance(source, str) and source in shapes.names():
+        document.replace(generate.mesh_domain(shapes.shape(source), kind), source)
+    else:
+        document.open(source)

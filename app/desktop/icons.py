@@ -1,0 +1,74 @@
+"""The icons: strokes on a grid of 20, drawn in the colour of the theme."""
+
+from qtpy.QtCore import QByteArray, QSize, Qt
+from qtpy.QtGui import QIcon, QPainter, QPixmap
+from qtpy.QtSvg import QSvgRenderer
+
+from app.theme import Theme
+
+SIZE = 20
+
+_STROKES = {
+    "new": "M3 3h14v14H3z M10 3v14 M3 10h14",
+    "open": "M2.5 15.5v-11h5l2 2.5h8v8.5z",
+    "save": "M10 3v9 M6.5 9l3.5 3.5L13.5 9 M3.5 13v3.5h13V13",
+    "undo": "M7 4L3.5 7.5 7 11 M3.5 7.5h8a4.5 4.5 0 0 1 0 9H7",
+    "redo": "M13 4l3.5 3.5L13 11 M16.5 7.5h-8a4.5 4.5 0 0 0 0 9H13",
+    "clean": "M3 3.5h14 M3 16.5h14 M3 10h2.5 M8.75 10h2.5 M14.5 10H17",
+    "smooth": "M2.5 12.5c3-9 5.5-9 7.5-2.5s4.5 6.5 7.5-2.5",
+    "fit": "M3 7V3h4 M13 3h4v4 M17 13v4h-4 M7 17H3v-4 M7.5 7.5h5v5h-5z",
+    "theme": "M10 3a7 7 0 1 0 0 14a7 7 0 1 0 0-14z M10 3v14 M10 6.5h3.5 M10 10h4.5 M10 13.5h3.5",
+    "step": "M6 4.5v11l7-5.5z M15.5 4.5v11",
+    "play": "M6.5 4v12l9-6z",
+    "pause": "M7 4.5v11 M13 4.5v11",
+    "complete": "M3.5 5v10l6-5z M10.5 5v10l6-5z",
+    "stop": "M5.5 5.5h9v9h-9z",
+    "help": "M10 3a7 7 0 1 0 0 14a7 7 0 1 0 0-14z M8 8a2 2 0 1 1 2.8 1.85q-.8.35-.8 1.4 "
+    "M10 13.6v.1",
+    "check": "M4 10.5l4 4 8-9",
+    "close": "M5.5 5.5l9 9 M14.5 5.5l-9 9",
+}
+
+
+def pixmap(name: str, colour: str, size: int = SIZE, ratio: float = 1.0) -> QPixmap:
+    """One icon in one colour; ``size`` in logical pixels."""
+    svg = (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20" fill="none" '
+        f'stroke="{colour}" stroke-width="1.5" stroke-linecap="round" stroke-linejoin="round">'
+        f'<path d="{_STROKES[name]}"/></svg>'
+    )
+    drawn = QPixmap(QSize(size, size) * ratio)
+    drawn.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(drawn)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    QSvgRenderer(QByteArray(svg.encode())).render(painter)
+    painter.end()
+    drawn.setDevicePixelRatio(ratio)
+    return drawn
+
+
+def icon(name: str, theme: Theme) -> QIcon:
+    """The icon for buttons, paler where they are disabled."""
+    made = QIcon()
+    for ratio in (1.0, 2.0):
+        made.addPixmap(pixmap(name, theme.text, ratio=ratio), QIcon.Mode.Normal)
+        made.addPixmap(pixmap(name, theme.faint, ratio=ratio), QIcon.Mode.Disabled)
+    return made
+
+
+def app_icon() -> QIcon:
+    """The program's own icon: four quads around a vertex that is one edge short."""
+    drawn = QPixmap(64, 64)
+    drawn.fill(Qt.GlobalColor.transparent)
+    svg = (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 64 64" stroke-linejoin="round">'
+        '<path d="M8 20L34 6 58 22 50 56 14 54z" fill="#f1f2ed" stroke="#2f3b48" '
+        'stroke-width="4"/>'
+        '<path d="M30 32L34 6M30 32L54 40M30 32L11 38M30 32L32 55" stroke="#5d6b79" '
+        'stroke-width="3" fill="none"/>'
+        '<circle cx="30" cy="32" r="9" fill="#d55e00"/></svg>'
+    )
+    painter = QPainter(drawn)
+    QSvgRenderer(QByteArray(svg.encode())).render(painter)
+    painter.end()
+    return QIcon(drawn)

@@ -1,0 +1,146 @@
+"""The menu at the cursor: the operations of one half-edge, and why some are not allowed."""
+
+from qtpy.QtCore import QPoint, Qt, Signal
+from qtpy.QtGui import QCloseEvent, QKeyEvent, QMouseEvent
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from app.theme import GRID
+from meshcore import Operation, Verdict
+from meshcore.operations import OperationInfo
+
+WIDTH = 296
+
+
+class OperationMenu(QFrame):
+    """A popup with a row for each operation; a refused one is grey and tells its reason.
+
+    ``chosen(operation)`` comes with an allowed operation, by mouse, arrows and Return, or its key;
+    ``closed()`` when the menu goes away.
+    """
+
+    chosen = Signal(object)
+    closed = Signal()
+
+    def __init__(
+        self,
+        title: str,
+        offers: list[tuple[OperationInfo, Verdict]],
+        parent: QWidget,
+    ) -> None:
+        super().__init__(parent, Qt.WindowType.Popup | Qt.WindowType.FramelessWindowHint)
+        self.setObjectName("OperationMenu")
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setFixedWidth(WIDTH)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(GRID // 2, GRID // 2, GRID // 2, GRID // 2)
+        layout.setSpacing(0)
+        head = QLabel(title)
+        head.setObjectName("Hint")
+        head.setContentsMargins(GRID, GRID // 2, GRID, GRID // 2)
+        layout.addWidget(head)
+        self.rows: list[OperationRow] = []
+        for info, verdict in offers:
+            row = OperationRow(info, verdict, self)
+            row.taken.connect(self._take)
+            row.entered.connect(self._make_current)
+            layout.addWidget(row)
+            self.rows.append(row)
+        self._current: OperationRow | None = None
+
+    def popup(self, at: QPoint) -> None:
+        """Show the menu beside the point ``at`` of the screen, within the window if it can be."""
+        self.adjustSize()
+        room = self.parentWidget().window().geometry()
+        x = min(at.x() + GRID, room.right() - self.width())
+        y = min(at.y() + GRID, room.bottom() - self.height())
+        self.move(max(x, room.left()), max(y, room.top()))
+        self.show()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Arrows and Return walk and choose; a key of an operation chooses it."""
+        if event.key() in (Qt.Key.Key_Down, Qt.Key.Key_Up):
+            self._walk(1 if event.key() == Qt.Key.Key_Down else -1)
+        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self._current:
+            self._take(self._current.info.operation)
+        else:
+            for row in self.rows:
+                if event.text() and event.text().upper() == row.info.key.upper():
+                    self._make_current(row)
+                    self._take(row.info.operation)
+                    return
+            super().keyPressEvent(event)
+
+    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
+        """Say that the menu is gone."""
+        super().closeEvent(event)
+        self.closed.emit()
+
+    def _walk(self, step: int) -> None:
+        allowed = [row for row in self.rows if row.allowed]
+        if not allowed:
+            return
+        at = allowed.index(self._current) if self._current in allowed else (-1 if step > 0 else 0)
+        self._make_current(allowed[(at + step) % len(allowed)])
+
+    def _make_current(self, row: "OperationRow") -> None:
+        if self._current is not None:
+            self._current.set_current(False)
+        self._current = row
+        row.set_current(True)
+
+    def _take(self, operation: Operation) -> None:
+        row = next(row for row in self.rows if row.info.operation == operation)
+        if row.allowed:
+            self.close()
+            self.chosen.emit(operation)
+
+
+class OperationRow(QFrame):
+    """One operation: title and key, below them the reason where it is not allowed."""
+
+    taken = Signal(object)
+    entered = Signal(object)
+
+    def __init__(self, info: OperationInfo, verdict: Verdict, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setObjectName("Row")
+        self.info = info
+        self.allowed = bool(verdict)
+        self.reason = "" if verdict else verdict.reason
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(GRID, 6, GRID, 6)
+        layout.setSpacing(2)
+        line = QHBoxLayout()
+        title = QLabel(info.title)
+        title.setObjectName("RowTitle")
+        key = QLabel(info.key.upper())
+        key.setObjectName("Key")
+        line.addWidget(title)
+        line.addStretch(1)
+        line.addWidget(key)
+        layout.addLayout(line)
+        title.setEnabled(self.allowed)
+        key.setEnabled(self.allowed)
+        if self.reason:
+            reason = QLabel(self.reason)
+            reason.setObjectName("Reason")
+            reason.setWordWrap(True)
+            layout.addWidget(reason)
+        else:
+            self.setToolTip(info.summary)
+
+    def set_current(self, current: bool) -> None:
+        """Mark the row that Return would take."""
+        self.setProperty("current", current and self.allowed)
+        self.style().unpolish(self)
+        self.style().polish(self)
+
+    def enterEvent(self, event: object) -> None:  # noqa: N802
+        """The mouse makes a row the current one."""
+        self.entered.emit(self)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
+        """A click takes the row."""
+        if self.rect().contains(event.position().toPoint()):
+            self.taken.emit(self.info.operation)

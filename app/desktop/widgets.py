@@ -1,0 +1,218 @@
+"""Small widgets that the panels are made of."""
+
+from qtpy.QtCore import QRectF, QSize, Qt
+from qtpy.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+
+from app.desktop import icons
+from app.theme import GRID, Theme
+
+
+def tabular(font: QFont) -> QFont:
+    """``font`` with digits of one width, where Qt can ask for them."""
+    if hasattr(font, "setFeature") and hasattr(QFont, "Tag"):
+        font.setFeature(QFont.Tag("tnum"), 1)
+    return font
+
+
+def named(text: str, name: str) -> QLabel:
+    """A label that the style sheet knows as ``name``."""
+    made = QLabel(text)
+    made.setObjectName(name)
+    return made
+
+
+def rule() -> QFrame:
+    """A thin line between two panels."""
+    made = QFrame()
+    made.setObjectName("Rule")
+    made.setFixedHeight(1)
+    return made
+
+
+class Fact(QWidget):
+    """One line: what it is at the left, its value at the right."""
+
+    def __init__(self, title: str, tooltip: str = "") -> None:
+        super().__init__()
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        self._value = named("", "Value")
+        self._value.setFont(tabular(self._value.font()))
+        layout.addWidget(named(title, "Label"))
+        layout.addStretch(1)
+        layout.addWidget(self._value)
+        self.setToolTip(tooltip)
+
+    @property
+    def text(self) -> str:
+        """What the value says."""
+        return str(self._value.text())
+
+    @text.setter
+    def text(self, text: str) -> None:
+        self._value.setText(text)
+
+
+class Bar(QWidget):
+    """A thin bar that is filled to ``share``, from 0 to 1."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__()
+        self._theme = theme
+        self._share = 0.0
+        self.setFixedHeight(6)
+
+    @property
+    def share(self) -> float:
+        """How much is filled."""
+        return self._share
+
+    @share.setter
+    def share(self, share: float) -> None:
+        self._share = min(max(share, 0.0), 1.0)
+        self.update()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._theme = theme
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """Paint the groove and what is filled."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(self._theme.pressed))
+        whole = QRectF(self.rect())
+        painter.drawRoundedRect(whole, 3, 3)
+        if self._share > 0:
+            painter.setBrush(QColor(self._theme.accent))
+            filled = max(whole.width() * self._share, whole.height())
+            painter.drawRoundedRect(QRectF(0, 0, filled, whole.height()), 3, 3)
+        painter.end()
+
+
+class Tally(QWidget):
+    """Counts of irregular vertices by the sign of delta, each behind a disc of its colour."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__()
+        self._theme = theme
+        self._plus = self._minus = 0
+        self.setFont(tabular(self.font()))
+        self.setFixedHeight(20)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._theme = theme
+        self.update()
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Vertices above and below their desired degree."""
+        return self._plus, self._minus
+
+    def set_counts(self, plus: int, minus: int) -> None:
+        """Show these numbers."""
+        self._plus, self._minus = plus, minus
+        self.setToolTip(f"{plus:,} above their desired degree (+), {minus:,} below it (\u2212)")
+        self.updateGeometry()
+        self.update()
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """Room for both counts."""
+        metrics = QFontMetrics(self._bold())
+        width = sum(metrics.horizontalAdvance(f"{n:,}") for n in self.counts)
+        return QSize(width + 2 * 22 + 2 * GRID, 20)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """Paint two discs with a sign in them, and the counts."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        bold = self._bold()
+        x, middle = 0.0, self.height() / 2.0
+        for sign, count, colour in (
+            ("+", self._plus, self._theme.plus),
+            ("\u2212", self._minus, self._theme.minus),
+        ):
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(colour))
+            disc = QRectF(x, middle - 8, 16, 16)
+            painter.drawEllipse(disc)
+            painter.setFont(bold)
+            painter.setPen(QColor(self._theme.marker_text))
+            painter.drawText(disc, Qt.AlignmentFlag.AlignCenter, sign)
+            painter.setPen(QColor(self._theme.text))
+            width = QFontMetrics(bold).horizontalAdvance(f"{count:,}")
+            box = QRectF(x + 22, 0, width + 4, self.height())
+            painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, f"{count:,}")
+            x += 22 + width + 2 * GRID
+        painter.end()
+
+    def _bold(self) -> QFont:
+        font = tabular(QFont(self.font()))
+        font.setPixelSize(13)
+        font.setWeight(QFont.Weight.DemiBold)
+        return font
+
+
+class Notice(QFrame):
+    """A bar over the canvas with one sentence and a button that closes it."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__()
+        self.setObjectName("Notice")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(2 * GRID, GRID // 2, GRID, GRID // 2)
+        self._text = named("", "NoticeText")
+        self._text.setWordWrap(True)
+        self._close = QToolButton()
+        self._close.setObjectName("NoticeClose")
+        self._close.setToolTip("Close this message")
+        self._close.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._close.clicked.connect(self.hide)
+        layout.addWidget(self._text, 1)
+        layout.addWidget(self._close)
+        self.set_theme(theme)
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        """The sentence, empty while the bar is hidden."""
+        return str(self._text.text()) if not self.isHidden() else ""
+
+    def tell(self, sentence: str) -> None:
+        """Show the sentence until it is closed or another one comes."""
+        self._text.setText(sentence)
+        self.show()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._close.setIcon(icons.icon("close", theme))
+
+
+class Optimal(QFrame):
+    """What the score panel says when s = s*."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__()
+        self.setObjectName("Optimal")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(12, 10, 12, 10)
+        layout.setSpacing(10)
+        self._mark = QLabel()
+        self._mark.setAlignment(Qt.AlignmentFlag.AlignTop)
+        words = QVBoxLayout()
+        words.setSpacing(2)
+        words.addWidget(named("At the optimum", "OptimalTitle"))
+        proof = named("Provably no better connectivity under these desired degrees.", "OptimalText")
+        proof.setWordWrap(True)
+        words.addWidget(proof)
+        layout.addWidget(self._mark)
+        layout.addLayout(words, 1)
+        self.set_theme(theme)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._mark.setPixmap(icons.pixmap("check", theme.accent, 18))

@@ -1,0 +1,307 @@
+"""The document: the mesh, its history and its events. Views and the assistant submit to it.
+
+It knows neither Qt nor torch. One call that changes the mesh is one step of the mesh's journal and
+one row of the history, so that both undo together.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+import meshcore
+from app.history import YOU, History, Row, normalised_return
+from app.signals import Signal
+from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
+from meshcore.operations import CATALOGUE
+
+Result = TypeVar("Result")
+
+NO_MESH = "There is no mesh yet: open a file or take a shape from the gallery."
+
+
+def title_of(operation: Operation | str, kind: str) -> str:
+    """The catalogue's title of an operation on meshes of ``kind``."""
+    value = Operation(operation)
+    for info in CATALOGUE:
+        if info.operation == value and info.kind == kind:
+            return info.title
+    return value.value
+
+
+class Document:
+    """A mesh being edited, or none yet.
+
+    Events, all emitted in the caller's thread: ``replaced()`` another mesh is here;
+    ``changed()`` connectivity, positions or flags changed; ``score_changed()``;
+    ``history_changed()``; ``saved_changed()`` name, path or :attr:`modified` may differ;
+    ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others.
+    """
+
+    def __init__(
+        self, mesh: HalfEdgeMesh | None = None, name: str = "", path: str | Path | None = None
+    ) -> None:
+        self.replaced = Signal()
+        self.changed = Signal()
+        self.score_changed = Signal()
+        self.history_changed = Signal()
+        self.saved_changed = Signal()
+        self.hover_changed = Signal()
+        self.auto_smooth = True
+        self.revision = 0
+        self._adopt(mesh, name, path)
+
+    # What is here
+
+    @property
+    def mesh(self) -> HalfEdgeMesh | None:
+        """The mesh, for reading only; None while the document is empty."""
+        return self._mesh
+
+    @property
+    def empty(self) -> bool:
+        """True while there is no mesh."""
+        return self._mesh is None
+
+    @property
+    def kind(self) -> str:
+        """``"tri"`` or ``"quad"``; empty string without a mesh."""
+        return self._mesh.kind if self._mesh is not None else ""
+
+    @property
+    def name(self) -> str:
+        """What the window's title says."""
+        return self._name
+
+    @property
+    def path(self) -> Path | None:
+        """The file that *Save* writes, None if never saved."""
+        return self._path
+
+    @property
+    def modified(self) -> bool:
+        """True if the mesh differs from the file, or from the shape it began as."""
+        return self.history.mark != self._saved_mark
+
+    @property
+    def hover(self) -> int:
+        """The half-edge under the mouse, -1 for none."""
+        return self._hover
+
+    @hover.setter
+    def hover(self, halfedge: int) -> None:
+        if halfedge != self._hover:
+            self._hover = halfedge
+            self.hover_changed.emit(halfedge)
+
+    # Scores
+
+    @property
+    def score(self) -> int:
+        """s of the mesh now; 0 without a mesh."""
+        return self._mesh.score if self._mesh is not None else 0
+
+    @property
+    def optimum(self) -> int:
+        """s*, the lowest score that any connectivity can have; 0 without a mesh."""
+        return self._mesh.optimum if self._mesh is not None else 0
+
+    @property
+    def start_score(self) -> int:
+        """The score where this document began (or where desired degrees last changed)."""
+        return self.history.start_score
+
+    @property
+    def best_score(self) -> int:
+        """The lowest score on the way from the start to here."""
+        return self.history.best_score
+
+    @property
+    def normalised_return(self) -> float:
+        """(start - best) / (start - s*) so far, 1 when there was nothing to gain."""
+        return normalised_return(self.start_score, self.best_score, self.optimum)
+
+    @property
+    def at_optimum(self) -> bool:
+        """True if s = s*: no connectivity is better under these desired degrees."""
+        return self._mesh is not None and self._mesh.score == self._mesh.optimum
+
+    # Another mesh
+
+    def replace(
+        self, mesh: HalfEdgeMesh | None, name: str = "", path: str | Path | None = None
+    ) -> None:
+        """Put ``mesh`` in the place of the present one; the history starts again."""
+        self._adopt(mesh, name, path)
+        self.revision += 1
+        self.replaced.emit()
+        self._emit_all()
+
+    def open(self, path: str | Path) -> None:
+        """Read a mesh file; on MeshError or OSError the document stays as it was."""
+        path = Path(path)
+        self.replace(meshcore.read(path), path.stem, path)
+
+    def save(self, path: str | Path | None = None) -> Path:
+        """Write the mesh to ``path`` or where it came from; returns where it is now."""
+        target = Path(path) if path is not None else self._path
+        if target is None:
+            raise MeshError("This mesh has no file yet: choose a name with 'Save as'.")
+        meshcore.write(target, self._need())
+        self._path, self._name = target, target.stem
+        self._saved_mark = self.history.mark
+        self.saved_changed.emit()
+        return target
+
+    def _adopt(self, mesh: HalfEdgeMesh | None, name: str, path: str | Path | None) -> None:
+        self._mesh = mesh
+        self._name = name
+        self._path = Path(path) if path is not None else None
+        self._hover = -1
+        self.history = History(self.score, self.optimum)
+        self._saved_mark = 0
+
+    # Changing the mesh
+
+    def check(self, operation: Operation | str, halfedge: int) -> Verdict:
+        """The mesh's verdict: allowed, or the reason in words."""
+        return self._need().check(operation, halfedge)
+
+    def allowed(self, halfedge: int) -> dict[Operation, Verdict]:
+        """A verdict for every operation of the mesh's kind at one half-edge."""
+        return self._need().allowed(halfedge)
+
+    def submit(self, operation: Operation | str, halfedge: int, by: str = YOU) -> Edit:
+        """Apply one operation and smooth around it, as one step; OperationRefused if refused."""
+        mesh = self._need()
+
+        def work() -> Edit:
+            edit = mesh.apply(operation, halfedge)
+            if self.auto_smooth:
+                _relax(mesh, edit.touched)
+            return edit
+
+        action = Operation(operation)
+        return self._do(action.value, title_of(action, mesh.kind), halfedge, by, work)
+
+    def clean_all(self, by: str = YOU) -> int:
+        """Remove every cleanable global line of a quad mesh as one step; returns their number."""
+        mesh = self._need()
+
+        def work() -> int:
+            edits = mesh.clean_all()
+            if edits and self.auto_smooth:
+                _relax(mesh, None)
+            return len(edits)
+
+        return self._do("clean_all", "Clean all", -1, by, work)
+
+    def smooth(self, by: str = YOU) -> None:
+        """Smooth and untangle the whole mesh as one step."""
+        mesh = self._need()
+        self._do("smooth", "Smooth", -1, by, lambda: _relax(mesh, None))
+
+    def move(self, vertices: np.ndarray, positions: np.ndarray, by: str = YOU) -> None:
+        """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step."""
+        mesh = self._need()
+        self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions))
+
+    def set_desired(self, vertex: int, degree: int) -> None:
+        """Ask for another degree at ``vertex``; s* and the normalised return start again."""
+        mesh = self._need()
+        self._do("desired", "Desired degree", -1, YOU, lambda: mesh.set_desired(vertex, degree))
+
+    def set_geometric(self, vertex: int, flag: bool) -> None:
+        """Mark ``vertex`` as a corner that stays, or no longer."""
+        mesh = self._need()
+        title = "Make corner" if flag else "Free corner"
+        self._do("geometric", title, -1, YOU, lambda: mesh.set_geometric(vertex, flag))
+
+    def set_locked(self, vertex: int, flag: bool) -> None:
+        """Lock ``vertex``, or unlock it."""
+        mesh = self._need()
+        title = "Lock" if flag else "Unlock"
+        self._do("locked", title, -1, YOU, lambda: mesh.set_locked(vertex, flag))
+
+    # Going back and forth
+
+    @property
+    def can_undo(self) -> bool:
+        """True if there is a step to take back."""
+        return self.history.can_undo
+
+    @property
+    def can_redo(self) -> bool:
+        """True if a step has been taken back."""
+        return self.history.can_redo
+
+    def undo(self) -> Row | None:
+        """Take back the last step; returns its row, None if there is none."""
+        row = self.history.last
+        self.go_to(self.history.cursor - 1)
+        return row
+
+    def redo(self) -> Row | None:
+        """Do again what was taken back last; returns its row, None if there is none."""
+        if not self.history.can_redo:
+            return None
+        self.go_to(self.history.cursor + 1)
+        return self.history.last
+
+    def go_to(self, cursor: int) -> None:
+        """Undo or redo until ``cursor`` rows are done; beyond either end it stops there."""
+        cursor = min(max(cursor, 0), len(self.history))
+        if cursor == self.history.cursor:
+            return
+        mesh = self._need()
+        while self.history.cursor > cursor:
+            mesh.undo()
+            self.history.step_back()
+        while self.history.cursor < cursor:
+            mesh.redo()
+            self.history.step_forward()
+        self._moved_on()
+
+    # Inside
+
+    def _need(self) -> HalfEdgeMesh:
+        if self._mesh is None:
+            raise MeshError(NO_MESH)
+        return self._mesh
+
+    def _do(
+        self, action: str, title: str, halfedge: int, by: str, work: Callable[[], Result]
+    ) -> Result:
+        mesh = self._need()
+        steps, before = mesh.steps, mesh.score
+        with mesh.transaction():
+            result = work()
+        if mesh.steps == steps:
+            return result  # nothing to do was nothing done: no row, no event
+        self.history.append(action, title, halfedge, by, before, mesh.score, mesh.optimum)
+        self._moved_on()
+        return result
+
+    def _moved_on(self) -> None:
+        self.revision += 1
+        mesh = self._need()
+        if self._hover >= 0 and not mesh.live(self._hover):
+            self.hover = -1
+        self._emit_all()
+
+    def _emit_all(self) -> None:
+        self.changed.emit()
+        self.score_changed.emit()
+        self.history_changed.emit()
+        self.saved_changed.emit()
+
+
+def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None) -> None:
+    """Smooth near ``around`` (vertex ids) or everywhere; imported late, for it pulls in scipy."""
+    from meshcore.smoothing import relax
+
+    if around is None:
+        relax(mesh)
+    else:
+        relax(mesh, around=around)

@@ -1,0 +1,140 @@
+"""The history: one row per undoable step, and the scores that follow from the rows."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+YOU = "you"
+"""Author of the steps that a person takes; a policy's steps carry the policy's name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One step of the mesh.
+
+    ``action`` is an operation's value ("flip_left") or a document action ("clean_all", "smooth",
+    "desired", ...); ``halfedge`` is -1 where no half-edge was meant. ``before`` and ``after`` are
+    scores s; ``optimum`` is s* after the step. ``start`` and ``best`` are the score that the
+    normalised return counts from and the lowest score since: a step that changes desired degrees
+    changes the task, so both start again there.
+    """
+
+    serial: int
+    action: str
+    title: str
+    halfedge: int
+    by: str
+    before: int
+    after: int
+    optimum: int
+    start: int
+    best: int
+
+    @property
+    def change(self) -> int:
+        """Score after less score before; negative is better."""
+        return self.after - self.before
+
+
+class History:
+    """Rows with a cursor: rows before it are done, rows from it on are undone."""
+
+    def __init__(self, score: int, optimum: int) -> None:
+        self._rows: list[Row] = []
+        self._cursor = 0
+        self._serial = 0
+        self._score = score
+        self._optimum = optimum
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __getitem__(self, index: int) -> Row:
+        return self._rows[index]
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self._rows)
+
+    @property
+    def cursor(self) -> int:
+        """Number of rows that are done."""
+        return self._cursor
+
+    @property
+    def last(self) -> Row | None:
+        """The last row that is done, None at the start."""
+        return self._rows[self._cursor - 1] if self._cursor else None
+
+    @property
+    def mark(self) -> int:
+        """A number that names the present state: the last done row's serial, 0 at the start."""
+        return self.last.serial if self.last else 0
+
+    @property
+    def start_score(self) -> int:
+        """The score that the normalised return counts from."""
+        return self.last.start if self.last else self._score
+
+    @property
+    def best_score(self) -> int:
+        """The lowest score on the way from the start to the cursor."""
+        return self.last.best if self.last else self._score
+
+    @property
+    def can_undo(self) -> bool:
+        """True if a row is done."""
+        return self._cursor > 0
+
+    @property
+    def can_redo(self) -> bool:
+        """True if a row is undone."""
+        return self._cursor < len(self._rows)
+
+    def append(
+        self,
+        action: str,
+        title: str,
+        halfedge: int,
+        by: str,
+        before: int,
+        after: int,
+        optimum: int,
+    ) -> Row:
+        """Add a done row at the cursor; rows that were undone are dropped."""
+        last = self.last
+        same_task = optimum == (last.optimum if last else self._optimum) and action != "desired"
+        self._serial += 1
+        row = Row(
+            serial=self._serial,
+            action=action,
+            title=title,
+            halfedge=halfedge,
+            by=by,
+            before=before,
+            after=after,
+            optimum=optimum,
+            start=self.start_score if same_task else after,
+            best=min(self.best_score, after) if same_task else after,
+        )
+        del self._rows[self._cursor :]
+        self._rows.append(row)
+        self._cursor += 1
+        return row
+
+    def step_back(self) -> None:
+        """Move the cursor over one row towards the start; the caller has undone the mesh."""
+        self._cursor -= 1
+
+    def step_forward(self) -> None:
+        """Move the cursor over one row towards the end; the caller has redone the mesh."""
+        self._cursor += 1
+
+    def best_index(self, first: int) -> int:
+        """Cursor of the earliest state with the lowest score from cursor ``first`` to here."""
+        scores = [self._rows[first].before] if first < self._cursor else []
+        scores += [row.after for row in self._rows[first : self._cursor]]
+        return first + scores.index(min(scores)) if scores else self._cursor
+
+
+def normalised_return(start: int, best: int, optimum: int) -> float:
+    """Share of the way from ``start`` to ``optimum`` that ``best`` has gone; 1 if no way to go."""
+    return 1.0 if start == optimum else (start - best) / (start - optimum)

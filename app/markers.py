@@ -1,0 +1,76 @@
+"""Markers: what is drawn at vertices, the same in the window, in pictures and in films."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.viewport import Viewport
+from meshcore import HalfEdgeMesh
+
+BASE_RADIUS = 8.5
+"""Pixels of the disc of a vertex with |delta| = 1, where the mesh leaves room."""
+GROWTH = 2.5
+"""Pixels that each further degree adds."""
+LARGEST = 16.0
+SMALLEST = 2.5
+CROWDED = 0.36
+"""A disc takes no more than this share of the shortest edge at its vertex."""
+READABLE = 6.0
+"""Discs smaller than this radius in pixels carry no number."""
+
+
+@dataclass(frozen=True)
+class Markers:
+    """Irregular vertices (n,), their delta (n,), places (n, 2) and shortest edges (n,) in lengths;
+    corners and locked vertices as ids with places.
+    """
+
+    vertices: np.ndarray
+    delta: np.ndarray
+    places: np.ndarray
+    reach: np.ndarray
+    corner_places: np.ndarray
+    locked_vertices: np.ndarray
+    locked_places: np.ndarray
+
+    def radii(self, viewport: Viewport) -> np.ndarray:
+        """Radius in pixels of every disc (n,): larger with |delta|, smaller where crowded."""
+        wanted = np.minimum(BASE_RADIUS + GROWTH * (np.abs(self.delta) - 1), LARGEST)
+        room = CROWDED * self.reach * viewport.pixels
+        return np.maximum(np.minimum(wanted, room), SMALLEST)
+
+
+def markers(mesh: HalfEdgeMesh) -> Markers:
+    """The markers of ``mesh`` in its present state."""
+    delta = mesh.irregularity()
+    points = mesh.points[:, :2]
+    vertices = np.flatnonzero(delta)
+    corners = mesh.vertices()[mesh.geometric()[mesh.vertices()]]
+    locked = mesh.vertices()[mesh.locked()[mesh.vertices()]]
+    return Markers(
+        vertices=vertices,
+        delta=delta[vertices],
+        places=points[vertices],
+        reach=_shortest_edges(mesh.elements(), points, vertices),
+        corner_places=points[corners],
+        locked_vertices=locked,
+        locked_places=points[locked],
+    )
+
+
+def label(delta: int) -> str:
+    """``+1``, with a true minus sign for negative numbers."""
+    return f"+{delta}" if delta > 0 else f"\u2212{-delta}" if delta < 0 else "0"
+
+
+def _shortest_edges(elements: np.ndarray, points: np.ndarray, vertices: np.ndarray) -> np.ndarray:
+    """Length of the shortest edge at each of ``vertices`` (n,)."""
+    shortest = np.full(len(points), np.inf)
+    wanted = np.zeros(len(points), dtype=bool)
+    wanted[vertices] = True
+    near = elements[wanted[elements].any(axis=1)]
+    ends = np.roll(near, -1, axis=1)
+    lengths = np.hypot(*np.moveaxis(points[near] - points[ends], -1, 0))
+    np.minimum.at(shortest, near, lengths)
+    np.minimum.at(shortest, ends, lengths)
+    return shortest[vertices]

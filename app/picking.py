@@ -1,0 +1,80 @@
+"""Picking: which half-edge or vertex of the mesh lies at a point of the plane."""
+
+import numpy as np
+
+from meshcore import HalfEdgeMesh
+
+_NEAR = (8, 32, 128)
+
+
+class Picker:
+    """A search tree over the element centres of one state of a mesh; make a new one after edits.
+
+    Source of the idea: the elements whose centres are nearest are the candidates, and a point in
+    polygon test decides; candidates are widened where elements differ much in size.
+    """
+
+    def __init__(self, mesh: HalfEdgeMesh) -> None:
+        from scipy.spatial import cKDTree  # only the first hover needs scipy
+
+        self._mesh = mesh
+        self._elements = mesh.elements()
+        self._ids = mesh.element_ids()
+        self._corners = mesh.points[:, :2][self._elements]  # (m, k, 2)
+        centres = self._corners.mean(axis=1)
+        self._tree = cKDTree(centres, balanced_tree=False, compact_nodes=False)
+
+    def element_row(self, x: float, y: float) -> int:
+        """Row of ``mesh.elements()`` that contains (x, y), -1 if none does."""
+        count = len(self._ids)
+        for near in _NEAR:
+            if count == 0:
+                break
+            rows = np.atleast_1d(self._tree.query((x, y), k=min(near, count))[1])
+            inside = _contain(self._corners[rows], x, y)
+            if inside.any():
+                return int(rows[np.argmax(inside)])
+            if near >= count:
+                break
+        return -1
+
+    def halfedge(self, x: float, y: float) -> int:
+        """The half-edge of the element at (x, y) whose edge is nearest, -1 outside the mesh."""
+        row = self.element_row(x, y)
+        if row < 0:
+            return -1
+        start = self._corners[row]
+        side = int(np.argmin(_distances(start, np.roll(start, -1, axis=0), x, y)))
+        return self._mesh.k * int(self._ids[row]) + side
+
+    def vertex(self, x: float, y: float, reach: float) -> int:
+        """The vertex nearest to (x, y) within ``reach`` units of length, -1 if none is."""
+        count = len(self._ids)
+        if count == 0:
+            return -1
+        rows = np.atleast_1d(self._tree.query((x, y), k=min(_NEAR[1], count))[1])
+        corners = self._corners[rows].reshape(-1, 2)
+        squared = ((corners - (x, y)) ** 2).sum(axis=1)
+        nearest = int(np.argmin(squared))
+        if squared[nearest] > reach * reach:
+            return -1
+        return int(self._elements[rows].reshape(-1)[nearest])
+
+
+def _contain(polygons: np.ndarray, x: float, y: float) -> np.ndarray:
+    """For ``polygons`` (m, k, 2): does each contain (x, y)? By crossings; any orientation."""
+    ax, ay = polygons[..., 0], polygons[..., 1]
+    bx, by = np.roll(ax, -1, axis=1), np.roll(ay, -1, axis=1)
+    straddles = (ay > y) != (by > y)
+    rise = np.where(straddles, by - ay, 1.0)
+    crossing = ax + (y - ay) * (bx - ax) / rise
+    return ((straddles & (x < crossing)).sum(axis=1) % 2).astype(bool)
+
+
+def _distances(start: np.ndarray, end: np.ndarray, x: float, y: float) -> np.ndarray:
+    """Distances from (x, y) to the segments ``start``-``end``, both (k, 2)."""
+    along = end - start
+    length = np.maximum((along**2).sum(axis=1), 1e-300)
+    share = np.clip(((np.array((x, y)) - start) * along).sum(axis=1) / length, 0.0, 1.0)
+    foot = start + share[:, None] * along
+    return np.hypot(foot[:, 0] - x, foot[:, 1] - y)

@@ -1,0 +1,207 @@
+"""The two themes: colours of the scene and of the controls, and the style sheet made of them.
+
+Irregular vertices are the only loud thing (vermilion and blue that colour-blind people can tell
+apart); controls have one accent. All distances are multiples of :data:`GRID`.
+"""
+
+from dataclasses import dataclass
+
+GRID = 8
+"""Pixels: margins and gaps are multiples of this, or half of it inside small controls."""
+
+FONTS = ("Inter", "Segoe UI", "SF Pro Text", "Helvetica Neue", "Noto Sans", "Nimbus Sans", "Arial")
+"""Families for the interface, best first."""
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours as six hexadecimal digits. ``plus`` and ``minus`` are for degrees above and below."""
+
+    name: str
+    background: str
+    fill: str
+    edge: str
+    boundary: str
+    plus: str
+    minus: str
+    marker_text: str
+    corner: str
+    arrow: str
+    panel: str
+    raised: str
+    line: str
+    text: str
+    muted: str
+    faint: str
+    accent: str
+    accent_hover: str
+    accent_text: str
+    accent_soft: str
+    hover: str
+    pressed: str
+    warning: str
+    warning_soft: str
+
+
+LIGHT = Theme(
+    name="light",
+    background="#fafaf8",
+    fill="#f1f2ed",
+    edge="#8d99a6",
+    boundary="#2f3b48",
+    plus="#d55e00",
+    minus="#0072b2",
+    marker_text="#ffffff",
+    corner="#2f3b48",
+    arrow="#0f766e",
+    panel="#f3f3ef",
+    raised="#ffffff",
+    line="#deded7",
+    text="#1e2329",
+    muted="#5d656e",
+    faint="#9aa1a8",
+    accent="#0f766e",
+    accent_hover="#0c635c",
+    accent_text="#ffffff",
+    accent_soft="#dcebe8",
+    hover="#e8e8e2",
+    pressed="#dcdcd5",
+    warning="#8a5a00",
+    warning_soft="#fbf1d9",
+)
+
+DARK = Theme(
+    name="dark",
+    background="#121416",
+    fill="#1b1f23",
+    edge="#596572",
+    boundary="#c3ccd5",
+    plus="#d55e00",
+    minus="#0072b2",
+    marker_text="#ffffff",
+    corner="#c3ccd5",
+    arrow="#4cc2b4",
+    panel="#1a1d20",
+    raised="#23272b",
+    line="#31363b",
+    text="#e8eaec",
+    muted="#a0a8b0",
+    faint="#6c747c",
+    accent="#3fb3a6",
+    accent_hover="#56c4b7",
+    accent_text="#0b1413",
+    accent_soft="#1d3a38",
+    hover="#2a2f34",
+    pressed="#343a40",
+    warning="#e8b750",
+    warning_soft="#352c17",
+)
+
+THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
+
+
+def theme(name: str) -> Theme:
+    """The theme called ``name``: ``"light"`` or ``"dark"``."""
+    if name not in THEMES:
+        raise ValueError(f"There is no theme '{name}'; choose one of {', '.join(THEMES)}.")
+    return THEMES[name]
+
+
+def style_sheet(theme: Theme) -> str:
+    """The Qt style sheet of the whole window."""
+    t = theme
+    return f"""
+* {{ color: {t.text}; font-size: 13px; outline: 0; }}
+QMainWindow, QDialog {{ background: {t.panel}; }}
+QToolTip {{ background: {t.text}; color: {t.panel}; border: 0; padding: 4px 8px; }}
+
+QMenuBar {{ background: {t.panel}; padding: 2px 8px; }}
+QMenuBar::item {{ padding: 4px 8px; border-radius: 4px; background: transparent; }}
+QMenuBar::item:selected {{ background: {t.hover}; }}
+QMenu {{ background: {t.raised}; border: 1px solid {t.line}; padding: 4px; }}
+QMenu::item {{ padding: 6px 24px 6px 12px; border-radius: 4px; }}
+QMenu::item:selected {{ background: {t.accent_soft}; }}
+QMenu::item:disabled {{ color: {t.faint}; }}
+QMenu::separator {{ height: 1px; background: {t.line}; margin: 4px 8px; }}
+
+QToolBar {{ background: {t.panel}; border: 0; border-bottom: 1px solid {t.line};
+           padding: 4px 8px; spacing: 2px; }}
+QToolBar::separator {{ width: 1px; background: {t.line}; margin: 6px 6px; }}
+QToolButton {{ border: 0; border-radius: 6px; padding: 6px 8px; background: transparent; }}
+QToolButton:hover {{ background: {t.hover}; }}
+QToolButton:pressed {{ background: {t.pressed}; }}
+QToolButton:checked {{ background: {t.accent_soft}; }}
+QToolButton:disabled {{ color: {t.faint}; }}
+
+#Sidebar, #SidebarBody {{ background: {t.panel}; border: 0; }}
+#Sidebar {{ border-left: 1px solid {t.line}; }}
+#Heading {{ color: {t.muted}; font-size: 11px; font-weight: 600; letter-spacing: 1px; }}
+#Rule {{ background: {t.line}; border: 0; }}
+#Big {{ font-size: 40px; font-weight: 600; }}
+#Label, #Hint {{ color: {t.muted}; }}
+#Hint {{ font-size: 12px; }}
+#Value {{ font-weight: 600; }}
+#Optimal {{ background: {t.accent_soft}; border-radius: 8px; }}
+#OptimalTitle {{ color: {t.accent}; font-weight: 600; }}
+#OptimalText {{ color: {t.text}; font-size: 12px; }}
+#Key {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 4px;
+       padding: 1px 6px; font-size: 11px; color: {t.muted}; }}
+
+QPushButton {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 6px;
+              padding: 7px 12px; }}
+QPushButton:hover {{ background: {t.hover}; }}
+QPushButton:pressed {{ background: {t.pressed}; }}
+QPushButton:focus {{ border-color: {t.accent}; }}
+QPushButton:disabled {{ color: {t.faint}; background: transparent; }}
+QPushButton#Primary {{ background: {t.accent}; color: {t.accent_text}; border-color: {t.accent};
+                      font-weight: 600; }}
+QPushButton#Primary:hover {{ background: {t.accent_hover}; border-color: {t.accent_hover}; }}
+QPushButton#Primary:disabled {{ background: {t.pressed}; border-color: {t.pressed};
+                               color: {t.faint}; }}
+QPushButton#Link {{ background: transparent; border: 0; color: {t.accent}; padding: 4px; }}
+QPushButton#Segment {{ border-radius: 0; padding: 6px 16px; }}
+QPushButton#Segment:checked {{ background: {t.accent_soft}; border-color: {t.accent};
+                              color: {t.accent}; font-weight: 600; }}
+
+QComboBox {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 6px;
+            padding: 6px 10px; }}
+QComboBox:focus {{ border-color: {t.accent}; }}
+QComboBox:disabled {{ color: {t.faint}; }}
+QComboBox::drop-down {{ border: 0; width: 24px; }}
+QComboBox QAbstractItemView {{ background: {t.raised}; border: 1px solid {t.line}; padding: 4px;
+    selection-background-color: {t.accent_soft}; selection-color: {t.text}; }}
+QSlider {{ min-height: 20px; }}
+QSlider::groove:horizontal {{ height: 4px; border-radius: 2px; background: {t.pressed}; }}
+QSlider::sub-page:horizontal {{ height: 4px; border-radius: 2px; background: {t.accent}; }}
+QSlider::handle:horizontal {{ width: 14px; height: 14px; margin: -5px 0; border-radius: 7px;
+    background: {t.accent}; }}
+QSlider::handle:horizontal:hover {{ background: {t.accent_hover}; }}
+QSlider::sub-page:horizontal:disabled, QSlider::handle:horizontal:disabled {{
+    background: {t.faint}; }}
+
+QStatusBar {{ background: {t.panel}; border-top: 1px solid {t.line}; min-height: 28px; }}
+QStatusBar::item {{ border: 0; }}
+QStatusBar QLabel {{ color: {t.muted}; font-size: 12px; padding: 0 8px; }}
+#Notice {{ background: {t.warning_soft}; border: 0; border-bottom: 1px solid {t.line}; }}
+#NoticeText {{ color: {t.warning}; }}
+#NoticeClose {{ color: {t.warning}; padding: 2px 8px; }}
+
+#OperationMenu {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 8px; }}
+#Empty {{ background: {t.background}; }}
+#EmptyTitle {{ font-size: 22px; font-weight: 600; }}
+#EmptyText {{ color: {t.muted}; font-size: 14px; }}
+
+QListWidget {{ background: {t.background}; border: 1px solid {t.line}; border-radius: 8px;
+              padding: 8px; }}
+QListWidget::item {{ border-radius: 6px; padding: 8px; color: {t.text}; }}
+QListWidget::item:hover {{ background: {t.hover}; }}
+QListWidget::item:selected {{ background: {t.accent_soft}; color: {t.text}; }}
+QScrollArea {{ background: transparent; border: 0; }}
+QScrollBar:vertical {{ background: transparent; width: 10px; margin: 0; }}
+QScrollBar::handle:vertical {{ background: {t.pressed}; border-radius: 4px; min-height: 24px;
+                              margin: 1px; }}
+QScrollBar::add-line, QScrollBar::sub-line {{ height: 0; width: 0; }}
+QScrollBar::add-page, QScrollBar::sub-page {{ background: transparent; }}
+QLineEdit, QSpinBox {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 6px;
+                      padding: 6px 8px; }}
+"""
