@@ -113,6 +113,7 @@ class Scene:
         camera.SetPosition(x, y, distance)
         camera.SetParallelScale(viewport.parallel_scale)
         camera.SetClippingRange(1e-3 * distance, 2.0 * distance)
+        camera.is_set = True  # else PyVista turns it to an oblique view at the first frame
 
     def show_crowd(self, mesh: HalfEdgeMesh, crowd: bool) -> None:
         """Let VTK draw the discs of irregular vertices (``crowd``), or the caller."""
