@@ -32,17 +32,22 @@ PANEL = (560, 460)
 GAP = 120
 
 
-def triangles(columns: int, rows: int) -> HalfEdgeMesh:
-    """Return a parallelogram of equilateral triangles; its corners are geometric."""
-    points = [
-        (i + 0.5 * j, math.sqrt(0.75) * j) for j in range(rows + 1) for i in range(columns + 1)
+def triangles(rings: int) -> HalfEdgeMesh:
+    """Return a hexagon of equilateral triangles; its six corners are geometric."""
+    places = [
+        (i, j)
+        for j in range(-rings, rings + 1)
+        for i in range(-rings, rings + 1)
+        if abs(i + j) <= rings
     ]
+    number = {place: n for n, place in enumerate(places)}
     cells = []
-    for j in range(rows):
-        for i in range(columns):
-            a = j * (columns + 1) + i
-            b, c, d = a + 1, a + columns + 1, a + columns + 2
-            cells += [(a, b, c), (b, d, c)]
+    for i, j in places:
+        right, up, left = (i + 1, j), (i, j + 1), (i - 1, j + 1)
+        for corners in ([(i, j), right, up], [(i, j), up, left]):
+            if all(corner in number for corner in corners):
+                cells.append([number[corner] for corner in corners])
+    points = [(i + 0.5 * j, math.sqrt(0.75) * j) for i, j in places]
     return HalfEdgeMesh.from_elements(np.array(points), np.array(cells))
 
 
@@ -60,8 +65,8 @@ def quads(columns: int, rows: int) -> HalfEdgeMesh:
 def patch(info: OperationInfo) -> HalfEdgeMesh:
     """Return the small mesh on which an operation is shown."""
     if info.kind == "tri":
-        return triangles(4, 3)
-    if info.operation == Operation("cleanup"):
+        return triangles(2)
+    if info.operation is Operation.CLEANUP:
         return quads(4, 2)
     return quads(4, 3)
 
@@ -146,12 +151,12 @@ def make_operations() -> None:
 
 
 def make_gallery() -> None:
-    """Every shape of the gallery as a quad mesh, as generated, in rows of six."""
+    """Every shape of the gallery as a quad mesh, as generated, in rows of five."""
     tiles = [
         scene.image(mesh_domain(domain, "quad"), (360, 300), score=False)
         for domain in shapes.gallery().values()
     ]
-    columns = 6
+    columns = 5
     rows = math.ceil(len(tiles) / columns)
     whole = Image.new("RGB", (columns * 360, rows * 300), LIGHT.background)
     for number, tile in enumerate(tiles):
