@@ -175,6 +175,29 @@ def make_demo() -> None:
         save(image.convert("RGB"), IMAGES / "demo.png")
 
 
+def make_window() -> None:
+    """The window on the star, with the mouse over a half-edge."""
+    from qtpy.QtCore import QEventLoop, QTimer
+
+    from app.desktop.application import application, open_window
+
+    app = application()
+    window = open_window("star", "quad")
+    window.resize(1360, 860)
+    mesh = window.document.mesh
+    pause = QEventLoop()
+    QTimer.singleShot(8000, pause.quit)  # until the kernels are loaded
+    pause.exec()
+    window.document.hover = most_central(mesh, Operation.FLIP_LEFT)
+    app.processEvents()
+    path = IMAGES / "window.png"
+    if not window.grab().save(str(path)):
+        raise OSError(f"cannot write {path}")
+    window.close()
+    with Image.open(path) as image:
+        save(image.convert("RGB"), path)
+
+
 def save(image: Any, path: Path) -> None:
     """Write a PNG with a palette: these pictures have few colours, and a clone should be small."""
     image.quantize(colors=256, dither=Image.Dither.NONE).save(path, optimize=True)
@@ -185,6 +208,7 @@ MAKERS: dict[str, Callable[[], None]] = {
     "demo": make_demo,
     "operations": make_operations,
     "gallery": make_gallery,
+    "window": make_window,
 }
 
 

@@ -20,13 +20,16 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
     rows = []
     for name, domain in shapes.gallery().items():
-        points = len(domain.outline) + sum(len(hole) for hole in domain.holes)
-        rows.append({"name": name, "points": points, "holes": len(domain.holes)})
-    text = table([(row["name"], _words(row["points"], row["holes"])) for row in rows], indent="")
+        corners = sum(int(flags.sum()) for flags in domain.loop_corners)
+        rows.append({"name": name, "corners": corners, "holes": len(domain.holes)})
+    text = table([(row["name"], _words(row["corners"], row["holes"])) for row in rows], indent="")
     report.result({"command": "shapes", "shapes": rows}, text)
 
 
-def _words(points: int, holes: int) -> str:
-    if not holes:
-        return f"{points} points"
-    return f"{points} points, {holes} hole{'s' if holes > 1 else ''}"
+def _words(corners: int, holes: int) -> str:
+    words = _count(corners, "corner") if corners else "round"
+    return words + (f", {_count(holes, 'hole')}" if holes else "")
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -82,7 +82,7 @@ def test_mesh_takes_a_polygon_file(run, tmp_path):
 
 def test_same_seed_same_mesh(run, tmp_path):
     for name in ("a.obj", "b.obj"):
-        run("mesh", "L", "-o", name, "--kind", "tri", "--seed", "5")
+        run("mesh", "l-shape", "-o", name, "--kind", "tri", "--seed", "5")
     assert (tmp_path / "a.obj").read_bytes() == (tmp_path / "b.obj").read_bytes()
 
 
@@ -107,7 +107,7 @@ def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
 
 
 def test_improve_in_place_with_a_budget_and_the_same_seed(run, tmp_path):
-    run("mesh", "L", "-o", "a.obj", "--kind", "quad")
+    run("mesh", "l-shape", "-o", "a.obj", "--kind", "quad")
     original = (tmp_path / "a.obj").read_bytes()
     written = set()
     for _ in range(2):
@@ -120,7 +120,7 @@ def test_improve_in_place_with_a_budget_and_the_same_seed(run, tmp_path):
 
 
 def test_improve_for_some_seconds_says_so_in_words(tmp_path, capsys, run):
-    run("mesh", "L", "-o", "a.vtk", "--kind", "quad")
+    run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
     assert cli.main(["improve", "a.vtk", "-o", "b.vtk", "--search", "0.5"]) == 0
     said = capsys.readouterr()
     assert said.err == ""
@@ -153,7 +153,7 @@ def test_demo_without_a_display_writes_a_picture_and_says_so(tmp_path, capfd):
 
 def test_demo_with_a_display_that_does_not_answer(run, monkeypatch):
     monkeypatch.setenv("DISPLAY", ":931")
-    said = run("demo", "--shape", "L", "--kind", "tri")
+    said = run("demo", "--shape", "l-shape", "--kind", "tri")
     assert said["window"] is False
     assert "Qt cannot open the display" in said["reason"]
 
@@ -173,7 +173,7 @@ def test_window_without_a_display_is_refused(words, capfd):
 
 
 def test_ctrl_c_leaves_the_old_file(run, tmp_path):
-    run("mesh", "L", "-o", "a.vtk", "--kind", "quad")
+    run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
     (tmp_path / "b.vtk").write_text("old")
     code = (
         "import os, signal, sys, threading; from app.cli import main; "
