@@ -119,30 +119,48 @@ def _unmark_strip(m, start, length):
 
 
 @kernel
-def _harmless(m, u, partner, i, sign, rungs, ring):
-    """Whether u, a neighbour of a vertex of rung i, would be joined to the merged vertex once only."""
+def _across_rung(m, u):
+    """The other end of the rung of the rail vertex u."""
+    wanted = -m.vertex[u, MARK]
+    h = m.vertex[u, HALF]
+    for _ in range(m.vertex[u, DEGREE]):
+        w = m.edge[following(h, 4), ORIGIN]
+        if m.vertex[w, MARK] == wanted:
+            return w
+        back = preceding(h, 4)
+        h = m.edge[back, TWIN]
+        if h < 0:
+            return m.edge[back, ORIGIN]
+    return -1
+
+
+@kernel
+def _harmless(m, v, u, partner, i, sign, rungs, ring):
+    """Whether u, a neighbour of v, would be joined only once to what v and its partner become."""
     mark = m.vertex[u, MARK]
+    if u == partner:
+        return True
     if mark == 0:
         return not joined(m, u, partner, 4)
-    gap = abs(i - (mark * sign - 1))
-    return u == partner or (mark * sign > 0 and (gap == 1 or (ring and gap == rungs - 1)))
+    gap = abs(i - (abs(mark) - 1))
+    if gap == 1 or (ring and gap == rungs - 1):
+        return mark * sign > 0 and not (ring and rungs == 2)
+    other = _across_rung(m, u)
+    return not (joined(m, v, other, 4) or joined(m, partner, u, 4) or joined(m, partner, other, 4))
 
 
 @kernel
 def _rails_apart(m, v, partner, i, sign, rungs, ring):
-    """Whether no neighbour of v would be joined twice to the vertex that v and partner become.
-
-    A neighbour on the rails counts as harmless only as the next one on v's own rail.
-    """
+    """Whether no neighbour of v would be joined twice to the vertex that v and partner become."""
     h = m.vertex[v, HALF]
     start = h
     for _ in range(m.vertex[v, DEGREE]):
-        if not _harmless(m, m.edge[following(h, 4), ORIGIN], partner, i, sign, rungs, ring):
+        if not _harmless(m, v, m.edge[following(h, 4), ORIGIN], partner, i, sign, rungs, ring):
             return False
         back = preceding(h, 4)
         h = m.edge[back, TWIN]
         if h < 0:
-            return _harmless(m, m.edge[back, ORIGIN], partner, i, sign, rungs, ring)
+            return _harmless(m, v, m.edge[back, ORIGIN], partner, i, sign, rungs, ring)
         if h == start:
             return True
     return True

@@ -228,18 +228,19 @@ def drop_element(m, h, k):
 def has_room(m, k, vertices, elements, entries):
     """Whether the arrays can take so many new vertices, elements and journal entries.
 
-    Slots on the free lists are not counted on: it only costs an early enlargement.
+    Slots on the free lists are not counted on: it only costs an early enlargement. Where room is
+    missing, the trace says what was wanted.
     """
-    if m.counters[VERTEX_SLOTS] + vertices > m.vertex.shape[0]:
-        return False
-    if m.counters[ELEMENT_SLOTS] + elements > m.element_mark.shape[0]:
-        return False
+    short = m.counters[VERTEX_SLOTS] + vertices > m.vertex.shape[0]
+    short = short or m.counters[ELEMENT_SLOTS] + elements > m.element_mark.shape[0]
     if m.counters[JOURNALLING]:
-        if m.counters[JOURNAL_TOP] + entries > m.journal.shape[0]:
-            return False
-        if m.counters[STEP] + 1 > m.steps.shape[0]:
-            return False
-    return True
+        short = short or m.counters[JOURNAL_TOP] + entries > m.journal.shape[0]
+        short = short or m.counters[STEP] + 1 > m.steps.shape[0]
+    if short:
+        m.trace[TRACE_IDS] = vertices
+        m.trace[TRACE_IDS + 1] = elements
+        m.trace[TRACE_IDS + 2] = entries
+    return not short
 
 
 @kernel

@@ -305,17 +305,20 @@ class HalfEdgeMesh:
         return edits
 
     def _enlarge(self) -> None:
-        """Double whatever is more than half full."""
+        """Double whatever is too small for what the last check wanted."""
         arrays = self._arrays
         counters = arrays.counters
-        vertices, elements = len(arrays.vertex), len(arrays.element_mark)
-        entries, steps = len(arrays.journal), len(arrays.steps)
+        wanted = arrays.trace[TRACE_IDS : TRACE_IDS + 3].tolist()
+
+        def enough(capacity: int, needed: int) -> int:
+            return max(2 * capacity, needed) if needed > capacity else capacity
+
         self._arrays = enlarge(
             arrays,
-            vertices * 2 if counters[VERTEX_SLOTS] * 2 > vertices else vertices,
-            elements * 2 if counters[ELEMENT_SLOTS] * 2 > elements else elements,
-            entries * 2 if counters[STEP] < steps else entries,
-            steps * 2 if counters[STEP] >= steps else steps,
+            enough(len(arrays.vertex), int(counters[VERTEX_SLOTS]) + wanted[0]),
+            enough(len(arrays.element_mark), int(counters[ELEMENT_SLOTS]) + wanted[1]),
+            enough(len(arrays.journal), int(counters[JOURNAL_TOP]) + wanted[2]),
+            enough(len(arrays.steps), int(counters[STEP]) + 1),
         )
 
     # -- other journalled changes ----------------------------------------------------------------

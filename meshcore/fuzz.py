@@ -1,0 +1,194 @@
+"""Random operations on random meshes, checked one by one against the naive face list.
+
+The hypothesis tests run it for a while; `meshwright bench --suite fuzz` for a million operations.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from meshcore.errors import MeshError
+from meshcore.halfedge import DEGREE, DESIRED, JOURNAL_TOP, RESTORED
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import Operation
+from meshcore.oracle import FaceList, Refused
+
+_LARGEST = 60  # elements; beyond it a run starts afresh, since the face list is slow
+_RUN = 150  # operations before a run is undone to its beginning and a new one starts
+_STUCK = 100  # refusals in a row after which a mesh counts as used up, a single quad for instance
+
+
+def face_list(mesh: HalfEdgeMesh) -> FaceList:
+    """The mesh as the oracle sees it."""
+    live = mesh.vertices().tolist()
+    desired, geometric, locked = mesh.desired(), mesh.geometric(), mesh.locked()
+    return FaceList(
+        [tuple(row) for row in mesh.elements().tolist()],
+        {v: int(desired[v]) for v in live},
+        {v for v in live if geometric[v]},
+        {v for v in live if locked[v]},
+    )
+
+
+def snapshot(mesh: HalfEdgeMesh) -> tuple[np.ndarray, ...]:
+    """Copies of all arrays of the mesh that an undo must restore, whole capacity included."""
+    m = mesh.arrays
+    return (
+        m.edge.copy(),
+        m.vertex.copy(),
+        m.points.copy(),
+        m.irregular.copy(),
+        m.element_mark.copy(),
+        m.counters[:RESTORED].copy(),
+    )
+
+
+def agree(first: tuple[np.ndarray, ...], second: tuple[np.ndarray, ...]) -> bool:
+    """Whether two snapshots are equal to the bit where both have slots (arrays may have grown)."""
+    for a, b in zip(first, second, strict=True):
+        shared = min(len(a), len(b))
+        if a[:shared].tobytes() != b[:shared].tobytes():
+            return False
+    return True
+
+
+def start_mesh(kind: str, size: int, rng: np.random.Generator) -> HalfEdgeMesh:
+    """A small grid with random corners, holes and flags, of `kind`, some size x size quads at most.
+
+    Coordinates are random too: the rules of connectivity do not look at them.
+    """
+    width, height = int(rng.integers(2, size + 1)), int(rng.integers(1, max(2, size // 2) + 1))
+    corners = np.array([i + j * (width + 1) for j in range(height) for i in range(width)])
+    quads = np.column_stack([corners, corners + 1, corners + width + 2, corners + width + 1])
+    inner = [q for q in range(len(quads)) if 0 < q % width < width - 1 and width <= q]
+    inner = [q for q in inner if q < len(quads) - width]
+    if inner and rng.random() < 0.5:
+        quads = np.delete(quads, int(rng.choice(inner)), axis=0)
+    elements = quads
+    if kind == "tri":
+        turned = rng.random(len(quads)) < 0.5
+        first = np.where(turned[:, None], quads[:, [0, 1, 3]], quads[:, [0, 1, 2]])
+        second = np.where(turned[:, None], quads[:, [1, 2, 3]], quads[:, [0, 2, 3]])
+        elements = np.concatenate([first, second])
+    n = (width + 1) * (height + 1)
+    points = rng.random((n, 2))
+    geometric = rng.random(n) < rng.choice([0.0, 0.15, 0.4])
+    mesh = HalfEdgeMesh.from_elements(points, elements, geometric)
+    # the heuristic on random coordinates is random; these are the degrees of straight sides
+    boundary = mesh.boundary()
+    usual = np.where(boundary, 4 if kind == "tri" else 3, 6 if kind == "tri" else 4)
+    own = (rng.random(n) < 0.1) & mesh.geometric()
+    mesh = HalfEdgeMesh.from_elements(points, elements, geometric, usual + own)
+    for v in np.flatnonzero(rng.random(n) < 0.03):
+        mesh.set_locked(int(v))
+    return mesh.copy()
+
+
+def fuzz(
+    kind: str,
+    operations: int,
+    seed: int = 0,
+    progress: Callable[[int], None] | None = None,
+    validate_every: int = 10,
+) -> dict[str, float | int | str]:
+    """Apply so many random operations of `kind`; MeshError at the first disagreement.
+
+    Each attempt asks the engine and the oracle for their verdicts, which must be the same; each applied
+    operation must give the same faces, the same sum of Delta and Euler characteristic. The exhaustive
+    validator runs on every `validate_every`-th; at the end of each run of some 150 operations all of
+    them are undone to the first bit, redone to the last, and the run's end state is compared.
+    """
+    rng = np.random.default_rng(seed)
+    applied = attempts = undone = 0
+    began = time.perf_counter()
+    while applied < operations:
+        mesh = start_mesh(kind, 7, rng)
+        names = [str(name) for name in mesh.allowed(-1)]
+        oracle = face_list(mesh)
+        first = snapshot(mesh)
+        delta_sum, euler = oracle.delta_sum(), oracle.euler()
+        done = refused = 0
+        while done < _RUN and applied < operations and mesh.n_elements <= _LARGEST:
+            if refused > _STUCK:
+                break
+            attempts += 1
+            operation = names[int(rng.integers(len(names)))]
+            ids = mesh.element_ids()
+            h = int(ids[rng.integers(len(ids))]) * mesh.k + int(rng.integers(mesh.k))
+            oracle, changed = _attempt(mesh, oracle, operation, h, seed, attempts)
+            if not changed:
+                refused += 1
+                continue
+            refused = 0
+            applied += 1
+            done += 1
+            if oracle.delta_sum() != delta_sum or mesh.optimum != abs(delta_sum):
+                raise MeshError(f"seed {seed}, attempt {attempts}: {operation} changed sum Delta")
+            if mesh.euler != euler:
+                raise MeshError(f"seed {seed}, attempt {attempts}: {operation} changed V - E + F")
+            if applied % validate_every == 0:
+                mesh.validate()
+            if progress is not None and applied % 1000 == 0:
+                progress(applied)
+        mesh.validate()
+        undone += _there_and_back(mesh, first, seed, attempts)
+    return {
+        "kind": kind,
+        "operations": applied,
+        "attempts": attempts,
+        "undone": undone,
+        "violations": 0,
+        "seconds": time.perf_counter() - began,
+    }
+
+
+def _attempt(
+    mesh: HalfEdgeMesh, oracle: FaceList, operation: str, h: int, seed: int, attempt: int
+) -> tuple[FaceList, bool]:
+    """One operation on both; the oracle's mesh after it and whether it was allowed."""
+    a, b = mesh.origin(h), mesh.target(h)
+    where = f"seed {seed}, attempt {attempt}: {operation} on {a}-{b}"
+    verdict = mesh.check(operation, h)
+    new: list[int] = []
+    if verdict:
+        score = mesh.score
+        edit = mesh.apply(Operation(operation), h)
+        new = list(edit.new_vertices)
+        if mesh.score != score + edit.score_change:
+            raise MeshError(f"{where} reported a wrong change of s")
+    try:
+        after = oracle.after(operation, a, b, new)
+    except Refused as refusal:
+        if verdict:
+            raise MeshError(f"{where} was allowed, though: {refusal}") from None
+        return oracle, False
+    if not verdict:
+        raise MeshError(f"{where} was refused ({verdict.reason}), without need")
+    if after.faces != face_list(mesh).faces:
+        raise MeshError(f"{where} gave other faces than it should")
+    degrees = after.degrees()
+    if any(mesh.arrays.vertex[v, DEGREE] != d for v, d in degrees.items()):
+        raise MeshError(f"{where} left a wrong degree")
+    if any(mesh.arrays.vertex[v, DESIRED] != after.desired[v] for v in degrees):
+        raise MeshError(f"{where} left a wrong desired degree")
+    return after, True
+
+
+def _there_and_back(
+    mesh: HalfEdgeMesh, first: tuple[np.ndarray, ...], seed: int, attempt: int
+) -> int:
+    """Undo everything, compare with the first bit, redo everything, compare with the last."""
+    last, top = snapshot(mesh), int(mesh.arrays.counters[JOURNAL_TOP])
+    count = mesh.steps
+    while mesh.undo():
+        continue
+    if not agree(first, snapshot(mesh)):
+        raise MeshError(f"seed {seed}, attempt {attempt}: undo did not restore the first bit")
+    while mesh.redo():
+        continue
+    if not agree(last, snapshot(mesh)) or int(mesh.arrays.counters[JOURNAL_TOP]) != top:
+        raise MeshError(f"seed {seed}, attempt {attempt}: redo did not restore the last bit")
+    return count

@@ -1,0 +1,95 @@
+"""A hypothesis state machine: random operations on random meshes against the naive face list."""
+
+import numpy as np
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
+
+from meshcore import HalfEdgeMesh, OperationRefused
+from meshcore.fuzz import agree, face_list, snapshot, start_mesh
+from meshcore.oracle import Refused
+
+
+class _Machine(RuleBasedStateMachine):
+    kind = "tri"
+
+    @initialize(seed=st.integers(0, 2**32 - 1), size=st.integers(3, 9), cap=st.sampled_from([0, 7]))
+    def begin(self, seed, size, cap):
+        self.rng = np.random.default_rng(seed)
+        self.mesh: HalfEdgeMesh = start_mesh(self.kind, size, self.rng)
+        self.oracle = face_list(self.mesh)
+        self.delta_sum, self.euler = self.oracle.delta_sum(), self.mesh.euler
+        self.history = [snapshot(self.mesh)]
+        self.redone = []
+
+    @rule(pick=st.integers(0, 10**6), name=st.integers(0, 6))
+    def operate(self, pick, name):
+        names = list(self.mesh.allowed(-1))
+        operation = names[name % len(names)]
+        ids = self.mesh.element_ids()
+        h = int(ids[pick % len(ids)]) * self.mesh.k + (pick // 7919) % self.mesh.k
+        a, b = self.mesh.origin(h), self.mesh.target(h)
+        before = snapshot(self.mesh)
+        verdict = self.mesh.check(operation, h)
+        assert agree(before, snapshot(self.mesh)), "check had a side effect"
+        if not verdict:
+            try:
+                self.oracle.after(str(operation), a, b, [])
+            except Refused:
+                pass
+            else:
+                raise AssertionError(f"{operation} {a}-{b} was refused: {verdict.reason}")
+            try:
+                self.mesh.apply(operation, h)
+            except OperationRefused as error:
+                assert verdict.reason in str(error)
+            assert agree(before, snapshot(self.mesh)), "a refused edit left a trace"
+            return
+        score = self.mesh.score
+        edit = self.mesh.apply(operation, h)
+        assert self.mesh.score == score + edit.score_change
+        self.oracle = self.oracle.after(str(operation), a, b, list(edit.new_vertices))
+        self.history.append(snapshot(self.mesh))
+        self.redone.clear()
+
+    @rule(count=st.integers(1, 5))
+    def undo(self, count):
+        for _ in range(min(count, len(self.history) - 1)):
+            assert self.mesh.undo()
+            self.redone.append(self.history.pop())
+            assert agree(self.history[-1], snapshot(self.mesh)), "undo is not exact"
+        self.oracle = face_list(self.mesh)
+
+    @rule()
+    def redo(self):
+        assert self.mesh.can_redo == bool(self.redone)
+        if self.redone:
+            assert self.mesh.redo()
+            self.history.append(self.redone.pop())
+            assert agree(self.history[-1], snapshot(self.mesh)), "redo is not exact"
+            self.oracle = face_list(self.mesh)
+
+    @invariant()
+    def holds(self):
+        if hasattr(self, "mesh"):
+            self.mesh.validate()
+            assert face_list(self.mesh).faces == self.oracle.faces
+            assert self.oracle.delta_sum() == self.delta_sum
+            assert self.mesh.optimum == abs(self.delta_sum)
+            assert self.mesh.euler == self.euler == self.oracle.euler()
+
+
+class _Quads(_Machine):
+    kind = "quad"
+
+
+_SETTINGS = settings(
+    max_examples=60,
+    stateful_step_count=40,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+)
+TestTriangles = _Machine.TestCase
+TestTriangles.settings = _SETTINGS
+TestQuads = _Quads.TestCase
+TestQuads.settings = _SETTINGS
