@@ -10,7 +10,7 @@ rung) shrinks to a vertex, and the two rails of the strip merge into one chain o
 
 from __future__ import annotations
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 from meshcore.halfedge import (
     BOUNDARY_EDGES,
     DEGREE,
@@ -48,12 +48,12 @@ from meshcore.refusals import (
 )
 
 
-@kernel
+@bare_kernel
 def _opposite_edge(h):
     return h - h % 4 + (h + 2) % 4
 
 
-@kernel
+@bare_kernel
 def chord_start(m, h):
     """The half-edge through which the strip of h's quad and edge begins; h itself for a ring."""
     entry = h
@@ -67,7 +67,7 @@ def chord_start(m, h):
     return h
 
 
-@kernel
+@bare_kernel
 def _chord_length(m, start):
     """Quads of the strip that begins at `start`, at most twice the number of elements."""
     entry = start
@@ -78,7 +78,7 @@ def _chord_length(m, start):
     return 0
 
 
-@kernel
+@bare_kernel
 def _rung(m, start, i, entry, ring, length):
     """The ends x, y of rung i; `entry` is the entry of quad i, or of the last quad for i = length."""
     if i < length:
@@ -87,7 +87,7 @@ def _rung(m, start, i, entry, ring, length):
     return m.edge[following(o, 4), ORIGIN], m.edge[o, ORIGIN]
 
 
-@kernel
+@bare_kernel
 def _mark_strip(m, start, length, ring):
     """Mark quads and rails, x of rung i by i + 1 and y by -(i + 1); False if any is met twice."""
     entry = start
@@ -107,7 +107,7 @@ def _mark_strip(m, start, length, ring):
     return once
 
 
-@kernel
+@bare_kernel
 def _unmark_strip(m, start, length):
     entry = start
     for i in range(length):
@@ -118,7 +118,7 @@ def _unmark_strip(m, start, length):
             m.vertex[m.edge[entry - entry % 4 + corner, ORIGIN], MARK] = 0
 
 
-@kernel
+@bare_kernel
 def _across_rung(m, u):
     """The other end of the rung of the rail vertex u."""
     wanted = -m.vertex[u, MARK]
@@ -134,7 +134,7 @@ def _across_rung(m, u):
     return -1
 
 
-@kernel
+@bare_kernel
 def _harmless(m, v, u, partner, i, sign, rungs, ring):
     """Whether u, a neighbour of v, would be joined only once to what v and its partner become."""
     mark = m.vertex[u, MARK]
@@ -149,7 +149,7 @@ def _harmless(m, v, u, partner, i, sign, rungs, ring):
     return not (joined(m, v, other, 4) or joined(m, partner, u, 4) or joined(m, partner, other, 4))
 
 
-@kernel
+@bare_kernel
 def _rails_apart(m, v, partner, i, sign, rungs, ring):
     """Whether no neighbour of v would be joined twice to the vertex that v and partner become."""
     h = m.vertex[v, HALF]
@@ -166,7 +166,7 @@ def _rails_apart(m, v, partner, i, sign, rungs, ring):
     return True
 
 
-@kernel
+@bare_kernel
 def _check_rungs(m, start, length, ring, cap):
     entry = start
     rungs = length if ring else length + 1
@@ -200,7 +200,7 @@ def _check_rungs(m, start, length, ring, cap):
     return ALLOWED
 
 
-@kernel
+@bare_kernel
 def check_chord_collapse(m, h, cap):
     """The strip meets no quad and no vertex twice, every rung may shrink, and no edge is doubled."""
     start = chord_start(m, h)
@@ -222,7 +222,7 @@ def check_chord_collapse(m, h, cap):
     return ALLOWED if has_room(m, 4, 0, 0, entries) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def settle(m, v, h):
     """Make HALF of v the half-edge that invariant 4 wants; h is any half-edge that leaves v."""
     half = h
@@ -237,7 +237,7 @@ def settle(m, v, h):
         put_vertex(m, v, HALF, half)
 
 
-@kernel
+@bare_kernel
 def chord_collapse(m, h):
     """Collapse the strip of h: open, of L quads: V-(L+1), E-(2L+1), F-L; a ring: V-L, E-2L, F-L.
 

@@ -63,7 +63,20 @@ def kernel(function: F) -> F:
 
     Falls back to a cache in memory where no folder can be written.
     """
-    compiled = numba.njit(nogil=True, error_model="numpy")(function)
+    return _compiled(function, counts_references=True)
+
+
+def bare_kernel(function: F) -> F:
+    """A kernel that allocates nothing and so counts no references; numba refuses others.
+
+    Counting them takes several times as long as the work itself where small functions over
+    :class:`~meshcore.halfedge.MeshArrays` call each other, as all rewrites do.
+    """
+    return _compiled(function, counts_references=False)
+
+
+def _compiled(function: F, counts_references: bool) -> F:
+    compiled = numba.njit(nogil=True, error_model="numpy", _nrt=counts_references)(function)
     before = numba_config.CACHE_DIR
     numba_config.CACHE_DIR = str(cache_folder(function.__module__.partition(".")[0]))
     try:

@@ -13,7 +13,7 @@ which the paper leaves open. Deleting it merges the elements on its two sides pa
 
 from __future__ import annotations
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 from meshcore.halfedge import (
     BOUNDARY_EDGES,
     DEGREE,
@@ -52,13 +52,13 @@ from meshcore.refusals import (
 )
 
 
-@kernel
+@bare_kernel
 def _straight_on(m, h):
     """The half-edge that continues h beyond its end, an interior vertex of degree 4."""
     return following(m.edge[following(h, 4), TWIN], 4)
 
 
-@kernel
+@bare_kernel
 def line_start(m, h):
     """The first half-edge of the line through h, on the boundary; h itself on a ring; -1 if h lies on
     no line."""
@@ -80,7 +80,7 @@ def line_start(m, h):
     return -1
 
 
-@kernel
+@bare_kernel
 def _length(m, start):
     """Edges of the line that begins with `start`; 0 if it ends elsewhere than on the boundary or at its
     own start."""
@@ -99,7 +99,7 @@ def _length(m, start):
     return 0
 
 
-@kernel
+@bare_kernel
 def _across(m, h, at_end):
     """The neighbours p and q left and right of the origin of h, or of its end."""
     t = m.edge[h, TWIN]
@@ -111,7 +111,7 @@ def _across(m, h, at_end):
     return m.edge[preceding(h, 4), ORIGIN], m.edge[t - t % 4 + (t + 2) % 4, ORIGIN]
 
 
-@kernel
+@bare_kernel
 def _doubled_edge(m, v, p, q):
     """Whether joining p and q over the line vertex v would make a second edge between them."""
     if p == q:
@@ -135,7 +135,7 @@ def _doubled_edge(m, v, p, q):
     return False
 
 
-@kernel
+@bare_kernel
 def _opposite(m, w, p):
     """The vertex straight across the line vertex w, seen from its neighbour p; -1 if there is none.
 
@@ -159,7 +159,7 @@ def _opposite(m, w, p):
     return -1
 
 
-@kernel
+@bare_kernel
 def _check_vertex(m, h, at_end):
     v = m.edge[m.edge[h, TWIN], ORIGIN] if at_end else m.edge[h, ORIGIN]
     if m.vertex[v, FLAGS] & LOCKED:
@@ -171,7 +171,7 @@ def _check_vertex(m, h, at_end):
     return MERGED_EDGES_MEET if _doubled_edge(m, v, p, q) else ALLOWED
 
 
-@kernel
+@bare_kernel
 def _mark_line(m, start, length, sign):
     """Mark (sign 1) or unmark (sign -1) the line's vertices and flanking elements; the largest mark."""
     h = start
@@ -188,7 +188,7 @@ def _mark_line(m, start, length, sign):
     return most
 
 
-@kernel
+@bare_kernel
 def _check_marked(m, start, length, ring):
     h = start
     for i in range(length):
@@ -204,7 +204,7 @@ def _check_marked(m, start, length, ring):
     return ALLOWED if ring else _check_vertex(m, h, True)
 
 
-@kernel
+@bare_kernel
 def check_cleanup(m, h, cap):
     """A line through h whose flanking elements differ, and whose deletion doubles no edge."""
     if m.edge[h, TWIN] < 0:
@@ -225,7 +225,7 @@ def check_cleanup(m, h, cap):
     return ALLOWED if has_room(m, 4, 0, 0, 64 * (length + 1)) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def cleanup(m, h):
     """Delete the line through h. Open line of L edges: V-(L+1), E-(2L+1), F-L; ring: V-L, E-2L, F-L.
 
@@ -244,7 +244,7 @@ def cleanup(m, h):
         step = onward
 
 
-@kernel
+@bare_kernel
 def _merge_across(m, h):
     """Merge the quads left and right of the line's edge v-w into the left one; v dies. Returns w.
 

@@ -10,7 +10,7 @@ way: the two cuts then cross in a new regular vertex.
 
 from __future__ import annotations
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 from meshcore.halfedge import (
     BOUNDARY_EDGES,
     DEGREE,
@@ -45,23 +45,23 @@ from meshcore.refusals import (
 )
 
 
-@kernel
-def _crossings(m, entry, h):
+@bare_kernel
+def crossings(m, entry, h, limit):
     """How many quads a walk crosses that enters through `entry`; -1 if it meets a quad beside h, -2 if
-    it does not end."""
+    they are more than `limit`."""
     e, f = h // 4, m.edge[h, TWIN] // 4
     count = 0
     while entry >= 0:
         if entry // 4 == e or entry // 4 == f:
             return -1
         count += 1
-        if count > 2 * m.counters[ELEMENTS]:
+        if count > limit:
             return -2
         entry = m.edge[entry - entry % 4 + (entry + 2) % 4, TWIN]
     return count
 
 
-@kernel
+@bare_kernel
 def check_global_split(m, h, cap):
     """Interior edge, b keeps enough edges, and both hanging vertices reach the boundary."""
     t = m.edge[h, TWIN]
@@ -71,8 +71,9 @@ def check_global_split(m, h, cap):
         return DEGREE_TOO_LOW
     if cap > 0 and m.vertex[m.edge[h, ORIGIN], DEGREE] >= cap:
         return DEGREE_CAP
-    first = _crossings(m, m.edge[following(h, 4), TWIN], h)
-    second = _crossings(m, m.edge[preceding(t, 4), TWIN], h)
+    limit = 2 * m.counters[ELEMENTS]
+    first = crossings(m, m.edge[following(h, 4), TWIN], h, limit)
+    second = crossings(m, m.edge[preceding(t, 4), TWIN], h, limit)
     if first == -1 or second == -1:
         return SPLITS_AGAIN
     if first == -2 or second == -2:
@@ -82,7 +83,7 @@ def check_global_split(m, h, cap):
     return ALLOWED if has_room(m, 4, cuts, cuts, 80 * cuts) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def _cut(m, entry, v, before, after):
     """Cut the quad entered through `entry`, whose edge x-y the vertex v halves, and go on.
 
@@ -126,14 +127,14 @@ def _cut(m, entry, v, before, after):
     return zw, far, q + 2, o
 
 
-@kernel
+@bare_kernel
 def _carry(m, entry, v, before, after):
     """Carry the hanging vertex v straight on until the boundary."""
     while entry >= 0:
         entry, v, before, after = _cut(m, entry, v, before, after)
 
 
-@kernel
+@bare_kernel
 def global_split(m, h):
     """Open the edge a-b into the quad (a, n2, b, n1) and carry n1 and n2 to the boundary.
 

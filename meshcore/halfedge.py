@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 
 # columns of MeshArrays.edge
 ORIGIN, TWIN = 0, 1
@@ -132,25 +132,25 @@ def enlarge(
     )
 
 
-@kernel
+@bare_kernel
 def following(h, k):
     """The next half-edge of h's element, counter-clockwise."""
     return h + 1 if (h + 1) % k else h + 1 - k
 
 
-@kernel
+@bare_kernel
 def preceding(h, k):
     """The previous half-edge of h's element."""
     return h - 1 if h % k else h + k - 1
 
 
-@kernel
+@bare_kernel
 def on_boundary(m, v):
     """Whether the live vertex v lies on the boundary (invariant 4)."""
     return m.edge[m.vertex[v, HALF], TWIN] < 0
 
 
-@kernel
+@bare_kernel
 def joined(m, a, b, k):
     """Whether an edge joins the live vertices a and b: one sweep around a, O(degree)."""
     start = m.vertex[a, HALF]
@@ -168,7 +168,7 @@ def joined(m, a, b, k):
     return False
 
 
-@kernel
+@bare_kernel
 def find(m, a, b, k):
     """The half-edge from a to b, or -1: one sweep around a, O(degree)."""
     start = m.vertex[a, HALF]
@@ -182,7 +182,7 @@ def find(m, a, b, k):
     return -1
 
 
-@kernel
+@bare_kernel
 def common_neighbours(m, a, b, k):
     """The number of vertices joined to both a and b, O(degree of a times degree of b)."""
     count = 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 
 TRIANGLE_INSIDE, TRIANGLE_STRAIGHT = 6, 4
 QUAD_INSIDE, QUAD_STRAIGHT = 4, 3
@@ -14,7 +14,7 @@ CORNER_ANGLE = 0.01
 """Degrees by which the boundary must turn at a vertex that counts as a corner by default."""
 
 
-@kernel
+@bare_kernel
 def usual_desired(k, boundary):
     """Desired degree of a new vertex, inside or on a straight side."""
     if k == 3:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from numba import types
 from numba.extending import intrinsic
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 from meshcore.halfedge import (
     DEGREE,
     DELTA_SUM,
@@ -70,7 +70,7 @@ def _float_of(typingctx, value):
     return types.float64(types.int64), codegen
 
 
-@kernel
+@bare_kernel
 def _note(m, kind, index, former):
     top = m.counters[JOURNAL_TOP]
     m.journal[top, 0] = index * _WRITE_KINDS + kind
@@ -78,7 +78,7 @@ def _note(m, kind, index, former):
     m.counters[JOURNAL_TOP] = top + 1
 
 
-@kernel
+@bare_kernel
 def put_edge(m, h, column, value):
     """Write origin or twin of h."""
     if m.counters[JOURNALLING]:
@@ -86,7 +86,7 @@ def put_edge(m, h, column, value):
     m.edge[h, column] = value
 
 
-@kernel
+@bare_kernel
 def put_vertex(m, v, column, value):
     """Write one column of vertex v."""
     if m.counters[JOURNALLING]:
@@ -94,7 +94,7 @@ def put_vertex(m, v, column, value):
     m.vertex[v, column] = value
 
 
-@kernel
+@bare_kernel
 def put_point(m, v, x, y, z):
     """Write the coordinates of vertex v."""
     if m.counters[JOURNALLING]:
@@ -105,7 +105,7 @@ def put_point(m, v, x, y, z):
     m.points[v, 2] = z
 
 
-@kernel
+@bare_kernel
 def put_listed(m, place, v):
     """Write one entry of the list of irregular vertices."""
     if m.counters[JOURNALLING]:
@@ -113,7 +113,7 @@ def put_listed(m, place, v):
     m.irregular[place] = v
 
 
-@kernel
+@bare_kernel
 def link(m, h, t):
     """Make h and t twins; either may be -1."""
     if h >= 0:
@@ -122,7 +122,7 @@ def link(m, h, t):
         put_edge(m, t, TWIN, h)
 
 
-@kernel
+@bare_kernel
 def set_degrees(m, v, degree, desired):
     """Set degree and desired degree of v; keeps s, the sum of Delta and the irregular list true."""
     before = m.vertex[v, DEGREE] - m.vertex[v, DESIRED]
@@ -151,13 +151,13 @@ def set_degrees(m, v, degree, desired):
         m.counters[IRREGULAR] = last
 
 
-@kernel
+@bare_kernel
 def add_degree(m, v, change):
     """Add `change` to the degree of v."""
     set_degrees(m, v, m.vertex[v, DEGREE] + change, m.vertex[v, DESIRED])
 
 
-@kernel
+@bare_kernel
 def new_vertex(m, degree, desired, x, y, z):
     """Take a vertex slot: the last one freed, else the next unused one. Its HALF is for the caller."""
     v = m.counters[FREE_VERTEX]
@@ -174,7 +174,7 @@ def new_vertex(m, degree, desired, x, y, z):
     return v
 
 
-@kernel
+@bare_kernel
 def midway(m, a, b, degree, desired):
     """A new vertex in the middle of a and b."""
     p = m.points
@@ -188,7 +188,7 @@ def midway(m, a, b, degree, desired):
     )
 
 
-@kernel
+@bare_kernel
 def drop_vertex(m, v):
     """Free the slot of v; its coordinates stay until the slot is taken again."""
     set_degrees(m, v, 0, 0)
@@ -199,7 +199,7 @@ def drop_vertex(m, v):
     m.counters[VERTICES] -= 1
 
 
-@kernel
+@bare_kernel
 def new_element(m, k):
     """Take an element slot and return its first half-edge; origins and twins are for the caller."""
     e = m.counters[FREE_ELEMENT]
@@ -212,7 +212,7 @@ def new_element(m, k):
     return e * k
 
 
-@kernel
+@bare_kernel
 def drop_element(m, h, k):
     """Free the slot of the element of h."""
     first = h - h % k
@@ -224,7 +224,7 @@ def drop_element(m, h, k):
     m.counters[ELEMENTS] -= 1
 
 
-@kernel
+@bare_kernel
 def has_room(m, k, vertices, elements, entries):
     """Whether the arrays can take so many new vertices, elements and journal entries.
 
@@ -243,7 +243,7 @@ def has_room(m, k, vertices, elements, entries):
     return not short
 
 
-@kernel
+@bare_kernel
 def begin_step(m, operation, h):
     """Open a step unless one is open; what could be redone is gone from here on."""
     m.trace[NEW_COUNT] = 0
@@ -260,7 +260,7 @@ def begin_step(m, operation, h):
         m.steps[row, STEP_COUNTERS + i] = m.counters[i]
 
 
-@kernel
+@bare_kernel
 def end_step(m):
     """Close the step that :func:`begin_step` opened."""
     if m.counters[GROUPED] or not m.counters[JOURNALLING]:
@@ -271,7 +271,7 @@ def end_step(m):
     m.counters[STEP_END] = row + 1
 
 
-@kernel
+@bare_kernel
 def _swap_entry(m, j):
     index = m.journal[j, 0] // _WRITE_KINDS
     kind = m.journal[j, 0] % _WRITE_KINDS
@@ -291,7 +291,7 @@ def _swap_entry(m, j):
         m.irregular[index] = stored
 
 
-@kernel
+@bare_kernel
 def _swap_counters(m, row):
     for i in range(RESTORED):
         stored = m.steps[row, STEP_COUNTERS + i]
@@ -299,7 +299,7 @@ def _swap_counters(m, row):
         m.counters[i] = stored
 
 
-@kernel
+@bare_kernel
 def undo(m):
     """Take back the last step; False if there is none."""
     row = m.counters[STEP] - 1
@@ -313,7 +313,7 @@ def undo(m):
     return True
 
 
-@kernel
+@bare_kernel
 def redo(m):
     """Do the step again that was undone last; False if there is none."""
     row = m.counters[STEP]
@@ -327,7 +327,7 @@ def redo(m):
     return True
 
 
-@kernel
+@bare_kernel
 def touch(m, v):
     """Add v to the trace of vertices around which the last operation changed something."""
     count = m.trace[TOUCHED_COUNT]
@@ -335,7 +335,7 @@ def touch(m, v):
     m.trace[TOUCHED_COUNT] = count + 1
 
 
-@kernel
+@bare_kernel
 def touch_new(m, v):
     """Add a new vertex to the trace; to be called before any :func:`touch`."""
     touch(m, v)

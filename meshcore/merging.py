@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 from meshcore.halfedge import (
     DEGREE,
     DESIRED,
@@ -20,7 +20,7 @@ from meshcore.journal import put_edge
 from meshcore.refusals import ALLOWED, LOSER_DESIRED, LOSER_LOCKED, TWO_GEOMETRIC
 
 
-@kernel
+@bare_kernel
 def _rank(m, v, k):
     boundary = on_boundary(m, v)
     rank = 8 if m.vertex[v, FLAGS] & GEOMETRIC else 0
@@ -29,14 +29,14 @@ def _rank(m, v, k):
     return rank + (1 if m.vertex[v, DESIRED] != usual_desired(k, boundary) else 0)
 
 
-@kernel
+@bare_kernel
 def survivor(m, a, b, k):
     """The one of a and b that stays: geometric before boundary before locked before a vertex with a
     desired degree of its own; a when they are alike."""
     return b if _rank(m, b, k) > _rank(m, a, k) else a
 
 
-@kernel
+@bare_kernel
 def check_loser(m, loser, desired):
     """Whether `loser` may vanish: not geometric, not locked, and its desired degree is `desired`.
 
@@ -51,7 +51,7 @@ def check_loser(m, loser, desired):
     return ALLOWED
 
 
-@kernel
+@bare_kernel
 def hand_over(m, loser, winner, k):
     """Give every half-edge that leaves `loser` the origin `winner`."""
     start = m.vertex[loser, HALF]

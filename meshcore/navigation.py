@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel, kernel
 from meshcore.global_lines import check_cleanup
 from meshcore.halfedge import (
     DEGREE,
@@ -50,7 +50,7 @@ def neighbours(m: MeshArrays, v: int) -> list[int]:
     return found
 
 
-@kernel
+@bare_kernel
 def move(m, vertices, positions):
     """Write positions (n, 3) of vertices (n,) as one step."""
     begin_step(m, -1, -1)
@@ -59,7 +59,7 @@ def move(m, vertices, positions):
     end_step(m)
 
 
-@kernel
+@bare_kernel
 def set_vertex(m, v, column, value):
     """Write the desired degree or the flags of v as one step."""
     begin_step(m, -1, -1)
@@ -70,7 +70,7 @@ def set_vertex(m, v, column, value):
     end_step(m)
 
 
-@kernel
+@bare_kernel
 def cleanable_at(m, v, cap):
     """A half-edge that leaves v on a line that may be cleaned up, or -1."""
     start = m.vertex[v, HALF]
@@ -85,7 +85,7 @@ def cleanable_at(m, v, cap):
     return -1
 
 
-@kernel
+@bare_kernel
 def cleanable(m, first, cap):
     """A half-edge on an open global line that may be cleaned up, or -1.
 

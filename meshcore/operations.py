@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from meshcore import chords, global_lines, global_split, quad_edits, triangle_edits
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 from meshcore.halfedge import (
     DEGREE,
     DESIRED,
@@ -167,7 +167,7 @@ def of_kind(kind: str) -> tuple[OperationInfo, ...]:
     return tuple(info for info in CATALOGUE if info.kind == kind)
 
 
-@kernel
+@bare_kernel
 def check(m, operation, h, cap):
     """A code of :mod:`meshcore.refusals`: may `operation` be applied to h? No side effect.
 
@@ -196,7 +196,7 @@ def check(m, operation, h, cap):
     return chords.check_chord_collapse(m, h, cap)
 
 
-@kernel
+@bare_kernel
 def rewrite(m, operation, h):
     """Apply an operation that :func:`check` allowed, as one step of the journal."""
     begin_step(m, operation, h)
@@ -223,7 +223,7 @@ def rewrite(m, operation, h):
     end_step(m)
 
 
-@kernel
+@bare_kernel
 def apply(m, operation, h, cap):
     """Check, then rewrite. Returns the code, the change of s, and what the trace says: the number of
     new and of touched vertices and the first six of their ids."""
@@ -247,14 +247,14 @@ def apply(m, operation, h, cap):
     )
 
 
-@kernel
+@bare_kernel
 def _step(m, v, change):
     """The change of |Delta| at v when its degree changes."""
     delta = m.vertex[v, DEGREE] - m.vertex[v, DESIRED]
     return abs(delta + change) - abs(delta)
 
 
-@kernel
+@bare_kernel
 def _merge(m, v, w, lost, k):
     """The change of |Delta| when v and w become one vertex whose degree is the sum less `lost`."""
     winner = survivor(m, v, w, k)
@@ -264,7 +264,7 @@ def _merge(m, v, w, lost, k):
     return abs(degree - m.vertex[winner, DESIRED]) - before
 
 
-@kernel
+@bare_kernel
 def score_change(m, operation, h):
     """The exact change of s that an allowed operation makes, without doing it, in O(1).
 

@@ -12,7 +12,7 @@ Each edit is a pair, as in :mod:`meshcore.triangle_edits`. Letters: h runs from 
 
 from __future__ import annotations
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 from meshcore.halfedge import (
     DEGREE,
     DESIRED,
@@ -56,7 +56,7 @@ from meshcore.refusals import (
 )
 
 
-@kernel
+@bare_kernel
 def _check_turn(m, h, x, y, cap):
     """Whether the edge of h may be turned to join x and y."""
     a, b = m.edge[h, ORIGIN], m.edge[following(h, 4), ORIGIN]
@@ -71,7 +71,7 @@ def _check_turn(m, h, x, y, cap):
     return ALLOWED if has_room(m, 4, 0, 0, 80) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def check_flip_left(m, h, cap):
     """Flip counter-clockwise: interior edge, f and c distinct and not joined."""
     t = m.edge[h, TWIN]
@@ -81,7 +81,7 @@ def check_flip_left(m, h, cap):
     return _check_turn(m, h, f, c, cap)
 
 
-@kernel
+@bare_kernel
 def check_flip_right(m, h, cap):
     """Flip clockwise: interior edge, d and g distinct and not joined."""
     t = m.edge[h, TWIN]
@@ -91,7 +91,7 @@ def check_flip_right(m, h, cap):
     return _check_turn(m, h, d, g, cap)
 
 
-@kernel
+@bare_kernel
 def flip_left(m, h):
     """Turn the edge a-b counter-clockwise into f-c; V, E, F stay; h runs from f to c, all ids live.
 
@@ -142,7 +142,7 @@ def flip_left(m, h):
     add_degree(m, c, 1)
 
 
-@kernel
+@bare_kernel
 def flip_right(m, h):
     """Turn the edge a-b clockwise into d-g; V, E, F stay; h runs from d to g, all ids live.
 
@@ -193,7 +193,7 @@ def flip_right(m, h):
     add_degree(m, g, 1)
 
 
-@kernel
+@bare_kernel
 def _turned(m, a, b, c, d, f, g):
     add_degree(m, a, -1)
     add_degree(m, b, -1)
@@ -205,7 +205,7 @@ def _turned(m, a, b, c, d, f, g):
     touch(m, g)
 
 
-@kernel
+@bare_kernel
 def check_split(m, h, cap):
     """Vertex split of a along h: h inside, a keeps degree 2 or more."""
     t = m.edge[h, TWIN]
@@ -220,7 +220,7 @@ def check_split(m, h, cap):
     return ALLOWED if has_room(m, 4, 1, 1, 80) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def split(m, h):
     """Split a along h: a new vertex v takes over the edge to b, and a quad (v, d, a, f) opens.
 
@@ -266,7 +266,7 @@ def split(m, h):
     touch(m, f)
 
 
-@kernel
+@bare_kernel
 def check_collapse(m, h, cap):
     """Element collapse: a and c merge. Not both on the boundary, not joined, only b and d in common;
     b and d keep enough edges; the loser unprotected."""
@@ -297,7 +297,7 @@ def check_collapse(m, h, cap):
     return ALLOWED if has_room(m, 4, 0, 0, 80 + 2 * m.vertex[loser, DEGREE]) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def collapse(m, h):
     """Merge a and the opposite corner c of h's quad: V-1, E-2, F-1.
 

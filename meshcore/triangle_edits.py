@@ -13,7 +13,7 @@ twin t from b to a in the triangle (b, a, d).
 
 from __future__ import annotations
 
-from meshcore.compiled import kernel
+from meshcore.compiled import bare_kernel
 from meshcore.halfedge import (
     BOUNDARY_EDGES,
     DEGREE,
@@ -57,7 +57,7 @@ from meshcore.refusals import (
     NO_ELEMENT_LEFT,
 )
 
-@kernel
+@bare_kernel
 def check_flip(m, h, cap):
     """Edge flip: interior edge, its new ends distinct and not joined, ends keep degree 3 inside."""
     t = m.edge[h, TWIN]
@@ -78,7 +78,7 @@ def check_flip(m, h, cap):
     return ALLOWED if has_room(m, 3, 0, 0, 64) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def flip(m, h):
     """Turn the edge a-b counter-clockwise into d-c; V, E, F stay; h runs from d to c, all ids live.
 
@@ -122,7 +122,7 @@ def flip(m, h):
     touch(m, d)
 
 
-@kernel
+@bare_kernel
 def check_split(m, h, cap):
     """Edge split: always possible, on the boundary too."""
     if cap > 0:
@@ -134,7 +134,7 @@ def check_split(m, h, cap):
     return ALLOWED if has_room(m, 3, 1, 2, 96) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def split(m, h):
     """Put a vertex v on the edge a-b. Inside: V+1, E+3, F+2; on the boundary: V+1, E+2, F+1.
 
@@ -193,7 +193,7 @@ def split(m, h):
     touch(m, d)
 
 
-@kernel
+@bare_kernel
 def check_collapse(m, h, cap):
     """Edge collapse: the link condition, one end at most on the boundary, the loser unprotected.
 
@@ -233,7 +233,7 @@ def check_collapse(m, h, cap):
     return ALLOWED if has_room(m, 3, 0, 0, 96 + 2 * m.vertex[loser, DEGREE]) else NEED_ROOM
 
 
-@kernel
+@bare_kernel
 def collapse(m, h):
     """Merge a and b. Inside: V-1, E-3, F-2; a boundary edge: V-1, E-2, F-1.
 
