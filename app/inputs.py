@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -81,6 +81,13 @@ def read_policy(name: str | None, kind: str) -> Policy:
             f"{name}: this policy is for {KIND_NOUN[policy.kind]}, the mesh is of {KIND_NOUN[kind]}"
         )
     return policy
+
+
+def one_of(word: str, known: Sequence[str], option: str) -> str:
+    """Return the word if it is a known one, or raise UserError with those that are."""
+    if word not in known:
+        raise UserError(f"{option} {word}: there is no such one; choose from {', '.join(known)}")
+    return word
 
 
 def looks_like_path(text: str) -> bool:

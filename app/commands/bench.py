@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import os
+import platform
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from typing import Any
 
-from app.report import Report
+from app import inputs
+from app.report import Report, table
 
 SUMMARY = "measure the program itself on this machine"
 DESCRIPTION = "Run a suite of measurements and report the numbers."
@@ -12,8 +19,65 @@ DESCRIPTION = "Run a suite of measurements and report the numbers."
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Describe the suite."""
+    parser.add_argument("--suite", metavar="SUITE", help="what to measure; left out: list them")
+    parser.add_argument(
+        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help="a small share of the work, to see that it runs"
+    )
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """Run."""
-    raise NotImplementedError
+    """Run the suite, or list the suites."""
+    from app import benchmarks
+
+    names = benchmarks.names()
+    if arguments.suite is None:
+        summaries = {name: benchmarks.load(name).SUMMARY for name in names}
+        text = table(list(summaries.items()), indent="")
+        report.result({"command": "bench", "suites": summaries}, text)
+        return
+    suite = benchmarks.load(inputs.one_of(arguments.suite, names, "--suite"))
+    start = time.perf_counter()
+    with report.progress(arguments.suite) as update:
+        results = suite.run(arguments.seed, arguments.quick, update)
+    values = {
+        "command": "bench",
+        "suite": arguments.suite,
+        "quick": arguments.quick,
+        "seed": arguments.seed,
+        "machine": machine(),
+        "results": results,
+        "seconds": round(time.perf_counter() - start, 3),
+    }
+    rows = [(name, _shown(value)) for name, value in flat(results)]
+    head = f"{arguments.suite}: {suite.SUMMARY}\n{', '.join(machine().values())}\n"
+    report.result(values, head + table(rows))
+
+
+def machine() -> dict[str, str]:
+    """Return what the numbers depend on."""
+    import numba
+
+    return {
+        "system": f"{platform.system()} {platform.machine()}",
+        "cores": f"{os.cpu_count()} cores",
+        "python": f"Python {sys.version.split()[0]}",
+        "numba": f"numba {numba.__version__}",
+    }
+
+
+def flat(values: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the numbers of nested results with the names on the way joined."""
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            yield from flat(value, f"{before}{name}: ")
+        else:
+            yield before + name, value
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.4g}"
+    return f"{value:,}" if isinstance(value, int) and not isinstance(value, bool) else str(value)

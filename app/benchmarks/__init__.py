@@ -1,0 +1,34 @@
+"""The suites of ``meshwright bench``, one module each; a new module here is a new suite.
+
+A suite has a ``SUMMARY`` and ``run(seed, quick, update)``, which returns the numbers by name.
+``quick`` asks for a small share of the work, to see that the suite runs; ``update`` is called as
+``update(done, remark)`` and may be ignored.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from typing import Any, Protocol
+
+from app.report import Update
+
+
+class Suite(Protocol):
+    """What a module of a suite offers."""
+
+    SUMMARY: str
+
+    def run(self, seed: int, quick: bool, update: Update) -> dict[str, Any]:
+        """Measure; return numbers by name, which may be nested."""
+
+
+def names() -> list[str]:
+    """Return the names of the suites without importing them."""
+    return sorted(module.name for module in pkgutil.iter_modules(__path__))
+
+
+def load(name: str) -> Suite:
+    """Import one suite."""
+    suite: Suite = importlib.import_module(f"{__name__}.{name}")
+    return suite
