@@ -61,13 +61,15 @@ def test_import_contracts() -> None:
 
 
 def unannotated(path: Path) -> list[str]:
-    """Functions of a file that leave out a type, but for compiled kernels, which have none."""
+    """Functions and methods that leave out a type, but for compiled kernels, which have none."""
     found = []
-    for node in ast.walk(ast.parse(path.read_text())):
+    module = ast.parse(path.read_text())
+    classes = [node for node in ast.walk(module) if isinstance(node, ast.ClassDef)]
+    for node in [child for owner in (module, *classes) for child in owner.body]:
         if not isinstance(node, ast.FunctionDef):
             continue
         decorators = [ast.unparse(decorator) for decorator in node.decorator_list]
-        if any(name.split("(")[0].endswith(("kernel", "jit")) for name in decorators):
+        if any(name.split("(")[0].endswith(("kernel", "intrinsic")) for name in decorators):
             continue
         arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
         named = [a for a in arguments if a.arg not in ("self", "cls")]

@@ -1,0 +1,35 @@
+"""The suites of ``meshwright bench`` run, and report numbers by name."""
+
+import json
+
+import pytest
+
+from app import benchmarks, cli
+
+
+def test_suites_are_listed(capsys):
+    assert cli.main(["bench"]) == 0
+    listed = capsys.readouterr().out
+    assert all(name in listed for name in benchmarks.names())
+
+
+def test_unknown_suite_is_refused(capsys):
+    assert cli.main(["bench", "--suite", "speed"]) == 2
+    assert "choose from" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["core", "fuzz"])
+def test_suite_runs(name, capsys):
+    assert cli.main(["bench", "--suite", name, "--quick", "--json"]) == 0
+    said = capsys.readouterr()
+    assert said.err == ""
+    values = json.loads(said.out)
+    assert values["suite"] == name
+    assert values["results"]
+    assert values["machine"]["cores"]
+
+
+def test_fuzz_finds_no_violation(capsys):
+    assert cli.main(["bench", "--suite", "fuzz", "--quick", "--json", "--seed", "3"]) == 0
+    results = json.loads(capsys.readouterr().out)["results"]
+    assert results["tri"]["violations"] == results["quad"]["violations"] == 0
