@@ -7,7 +7,7 @@ import numpy as np
 from app.viewport import Viewport
 from meshcore import HalfEdgeMesh
 
-BASE_RADIUS = 8.5
+BASE_RADIUS = 10.0
 """Pixels of the disc of a vertex with |delta| = 1, where the mesh leaves room."""
 GROWTH = 2.5
 """Pixels that each further degree adds."""
@@ -22,7 +22,7 @@ READABLE = 6.0
 @dataclass(frozen=True)
 class Markers:
     """Irregular vertices (n,), their delta (n,), places (n, 2) and shortest edges (n,) in lengths;
-    corners and locked vertices as ids with places.
+    places of corners and of locked vertices; boundary loops (m, 2), each closed by its first point.
     """
 
     vertices: np.ndarray
@@ -30,8 +30,8 @@ class Markers:
     places: np.ndarray
     reach: np.ndarray
     corner_places: np.ndarray
-    locked_vertices: np.ndarray
     locked_places: np.ndarray
+    loops: tuple[np.ndarray, ...]
 
     def radii(self, viewport: Viewport) -> np.ndarray:
         """Radius in pixels of every disc (n,): larger with |delta|, smaller where crowded."""
@@ -53,8 +53,8 @@ def markers(mesh: HalfEdgeMesh) -> Markers:
         places=points[vertices],
         reach=_shortest_edges(mesh.elements(), points, vertices),
         corner_places=points[corners],
-        locked_vertices=locked,
         locked_places=points[locked],
+        loops=tuple(points[np.append(loop, loop[0])] for loop in mesh.boundary_loops()),
     )
 
 

@@ -21,6 +21,8 @@ from meshcore import HalfEdgeMesh
 
 CROWD = 1200
 """With more visible irregular vertices than this VTK draws their discs, without numbers."""
+LONG = 4000
+"""A boundary of more vertices than this is VTK's to draw, also where the caller could."""
 CLASSES = 4
 """Discs of VTK come in one size for each |delta| from 1 to here; larger ones share the last."""
 SAMPLES = 2
@@ -31,13 +33,18 @@ OFF_SCREEN = "vtkEGLRenderWindow"
 class Scene:
     """The actors of one mesh in ``plotter`` (a ``pyvista.Plotter`` or a ``QtInteractor``).
 
-    Nothing here renders: the caller does, when it wants a frame. ``width`` scales lines.
+    Nothing here renders: the caller does, when it wants a frame. ``width`` scales lines. The
+    boundary is VTK's unless the caller says that it draws ``short_outlines`` itself, which looks
+    better; :attr:`outlined` tells whose it is.
     """
 
-    def __init__(self, plotter: Any, theme: Theme, width: float = 1.0) -> None:
+    def __init__(
+        self, plotter: Any, theme: Theme, width: float = 1.0, short_outlines: bool = False
+    ) -> None:
         self._plotter = plotter
         self._theme = theme
         self._width = width
+        self._short_outlines = short_outlines
         self._surface: Any = None
         self._outline: Any = None
         self._discs: list[Any] = []
@@ -51,6 +58,11 @@ class Scene:
     def theme(self) -> Theme:
         """The colours in use."""
         return self._theme
+
+    @property
+    def outlined(self) -> bool:
+        """True if VTK draws the boundary, False if the caller does."""
+        return self._outline is not None
 
     def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None) -> None:
         """Change all colours."""
@@ -67,9 +79,9 @@ class Scene:
         self._discs = []
         if mesh is None:
             return
-        surface, outline = _surface(mesh), _outline(mesh)
+        self.markers = markers(mesh)
         self._surface = self._plotter.add_mesh(
-            surface,
+            _surface(mesh),
             color=self._theme.fill,
             show_edges=True,
             edge_color=self._theme.edge,
@@ -79,9 +91,9 @@ class Scene:
             render=False,
             pickable=False,
         )
-        if len(outline.lines):
+        if self._draws_outline(self.markers):
             self._outline = self._plotter.add_mesh(
-                outline,
+                _outline(self.markers),
                 color=self._theme.boundary,
                 line_width=2.0 * self._width,
                 lighting=False,
@@ -90,18 +102,18 @@ class Scene:
                 pickable=False,
             )
         self._measure(mesh)
-        self._mark(mesh)
+        self._mark_crowd(mesh)
 
     def update(self, mesh: HalfEdgeMesh) -> None:
         """Show the present state of the mesh that is shown already."""
-        outline = _outline(mesh)
-        if self._surface is None or (self._outline is None) != (len(outline.lines) == 0):
+        self.markers = markers(mesh)
+        if self._surface is None or self.outlined != self._draws_outline(self.markers):
             self.show(mesh)
             return
         self._surface.mapper.dataset = _surface(mesh)
         if self._outline is not None:
-            self._outline.mapper.dataset = outline
-        self._mark(mesh)
+            self._outline.mapper.dataset = _outline(self.markers)
+        self._mark_crowd(mesh)
 
     def look(self, viewport: Viewport) -> None:
         """Point the camera so that the plane is seen as ``viewport`` says."""
@@ -125,11 +137,11 @@ class Scene:
         heights = np.abs(mesh.points[mesh.vertices()])
         self._depth = float(heights.max()) if heights.size else 1.0
         if self._outline is not None:
-            self._outline.SetPosition(0.0, 0.0, 1e-3 * self._depth)
+            self._outline.SetPosition(0.0, 0.0, 1.5 * self._depth)
 
-    def _mark(self, mesh: HalfEdgeMesh) -> None:
-        self.markers = markers(mesh)
-        self._mark_crowd(mesh)
+    def _draws_outline(self, marks: Markers) -> bool:
+        length = sum(len(loop) for loop in marks.loops)
+        return length > (LONG if self._short_outlines else 0)
 
     def _mark_crowd(self, mesh: HalfEdgeMesh) -> None:
         for actor in self._discs:
@@ -141,7 +153,7 @@ class Scene:
         for value in np.unique(size):
             points = mesh.points[self.markers.vertices[size == value]]
             actor = self._plotter.add_points(
-                points + (0.0, 0.0, 2e-3 * self._depth),
+                points * (1.0, 1.0, 0.0) + (0.0, 0.0, 2.0 * self._depth),
                 color=self._theme.plus if value > 0 else self._theme.minus,
                 point_size=self._width * (3.0 + 2.0 * abs(int(value))),
                 render_points_as_spheres=True,
@@ -217,14 +229,17 @@ def _surface(mesh: HalfEdgeMesh) -> Any:
     return pyvista.PolyData.from_regular_faces(mesh.points, mesh.elements())
 
 
-def _outline(mesh: HalfEdgeMesh) -> Any:
+def _outline(marks: Markers) -> Any:
     import pyvista
 
-    lines = []
-    for loop in mesh.boundary_loops():
-        lines.append(np.concatenate(([len(loop) + 1], loop, loop[:1])))
-    cells = np.concatenate(lines) if lines else np.empty(0, dtype=int)
-    return pyvista.PolyData(mesh.points, lines=cells)
+    points = np.concatenate(marks.loops)
+    cells, first = [], 0
+    for loop in marks.loops:
+        cells.append(np.concatenate(([len(loop)], np.arange(first, first + len(loop)))))
+        first += len(loop)
+    return pyvista.PolyData(
+        np.column_stack((points, np.zeros(len(points)))), lines=np.concatenate(cells)
+    )
 
 
 def _draw_markers(

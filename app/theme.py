@@ -144,6 +144,11 @@ QToolButton:disabled {{ color: {t.faint}; }}
 #Optimal {{ background: {t.accent_soft}; border-radius: 8px; }}
 #OptimalTitle {{ color: {t.accent}; font-weight: 600; }}
 #OptimalText {{ color: {t.text}; font-size: 12px; }}
+#Operation {{ font-size: 12px; }}
+#Operation:disabled, #Key:disabled, #RowTitle:disabled {{ color: {t.faint}; }}
+#Reason {{ color: {t.muted}; font-size: 11px; }}
+#Row {{ border-radius: 4px; }}
+#Row[current="true"] {{ background: {t.accent_soft}; }}
 #Key {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 4px;
        padding: 1px 6px; font-size: 11px; color: {t.muted}; }}
 

@@ -273,7 +273,7 @@ class ActionSet(QObject):
 
     def _make(self, action: Action) -> QAction:
         made = QAction(action.title, self._window)
-        made.setIconText(action.word or action.title.rstrip("\u2026"))
+        made.setIconText(f" {action.word}" if action.word else action.title.rstrip("\u2026"))
         made.setShortcuts([QKeySequence(keys) for keys in action.shortcuts])
         made.setToolTip(tooltip(action))
         made.setIconVisibleInMenu(False)

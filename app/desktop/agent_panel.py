@@ -12,6 +12,7 @@ from app.document import Document
 from app.policy_files import shipped
 from app.theme import GRID, Theme
 
+NO_POLICY = {"tri": "No policy for triangle meshes", "quad": "No policy for quad meshes"}
 SPEEDS = (0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60)
 """What the slider offers, in decisions per second."""
 
@@ -98,7 +99,7 @@ class AgentPanel(QWidget):
             for name in names:
                 self.policy.addItem(name)
             if not names:
-                self.policy.addItem("No policy yet" if not kind else f"No policy for {kind} meshes")
+                self.policy.addItem("No policy yet" if not kind else NO_POLICY[kind])
             if self._assistant.policy in names:
                 self.policy.setCurrentText(self._assistant.policy)
         self.policy.setEnabled(bool(names))

@@ -49,8 +49,8 @@ def surface_format() -> QSurfaceFormat:
 
 def font() -> QFont:
     """The interface's font: the first of the theme's families that is installed."""
-    installed = set(QFontDatabase.families())
-    family = next((name for name in FONTS if name in installed), "")
+    installed = {name.partition(" [")[0] for name in QFontDatabase.families()}
+    family = next((name for name in FONTS if name in installed), "")  # "Name [foundry]" counts too
     made = QFont(family) if family else QFont()
     made.setPixelSize(13)
     return tabular(made)

@@ -70,8 +70,7 @@ class Canvas(QWidget):
         self.plotter.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.plotter.installEventFilter(self)
         self.layout().addWidget(self.plotter)
-        self.plotter.ren_win.SetLineSmoothing(True)
-        self.scene = Scene(self.plotter, self._theme)
+        self.scene = Scene(self.plotter, self._theme, short_outlines=True)
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())
         self._on_replaced()
@@ -119,7 +118,7 @@ class Canvas(QWidget):
             at = self.viewport.to_screen(marks.places)
             seen = ((at > 0) & (at < self.viewport.size)).all(axis=1).sum() if len(at) else 0
             self.scene.show_crowd(mesh, bool(seen > CROWD))
-        self.overlay.set_markers(marks, self.viewport, self.scene.crowd)
+        self.overlay.set_markers(marks, self.viewport, self.scene.crowd, self.scene.outlined)
         self._show_hover()
         self.plotter.update()
 

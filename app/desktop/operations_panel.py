@@ -39,7 +39,7 @@ class OperationsPanel(QWidget):
     def _on_replaced(self) -> None:
         kind = self._document.kind
         self._hint.setText(
-            "Point at a half-edge and press a key, or click it."
+            "Point at a half-edge, press a key or click."
             if kind
             else "Operations appear here when there is a mesh."
         )
@@ -49,18 +49,20 @@ class OperationsPanel(QWidget):
         body = QWidget()
         grid = QGridLayout(body)
         grid.setContentsMargins(0, 0, 0, 0)
-        grid.setHorizontalSpacing(12)
-        grid.setVerticalSpacing(6)
+        grid.setHorizontalSpacing(GRID)
+        grid.setVerticalSpacing(GRID)
         grid.setColumnStretch(1, 1)
+        grid.setColumnStretch(3, 1)
         self._labels = {}
-        for row, info in enumerate(of_kind(kind)):
+        for number, info in enumerate(of_kind(kind)):
+            row, column = number // 2, 2 * (number % 2)
             key, title = named(info.key.upper(), "Key"), named(info.title, "Operation")
             key.setAlignment(Qt.AlignmentFlag.AlignCenter)
             key.setMinimumWidth(24)
             sentence = info.summary[:1].upper() + info.summary[1:]
             title.setToolTip(sentence + ".")
-            grid.addWidget(key, row, 0)
-            grid.addWidget(title, row, 1)
+            grid.addWidget(key, row, column)
+            grid.addWidget(title, row, column + 1)
             self._labels[info.operation] = (key, title)
         self.layout().replaceWidget(self._body, body)
         self._body.deleteLater()

@@ -45,6 +45,7 @@ class Overlay(QWidget):
         self._discs = np.empty((0, 4))  # x, y, radius, delta of the visible irregular vertices
         self._corners = np.empty((0, 2))
         self._rings = np.empty((0, 2))
+        self._outline = QPainterPath()
         self._element: QPolygonF | None = None
         self._side = 0
         self._card = ""
@@ -61,12 +62,22 @@ class Overlay(QWidget):
         self._theme = theme
         self.update()
 
-    def set_markers(self, marks: Markers | None, viewport: Viewport, crowd: bool) -> None:
-        """Draw these markers as seen through ``viewport``; discs are VTK's where ``crowd``."""
+    def set_markers(
+        self, marks: Markers | None, viewport: Viewport, crowd: bool, outlined: bool
+    ) -> None:
+        """Draw these markers as seen through ``viewport``.
+
+        Discs are VTK's where ``crowd``, the boundary is where ``outlined``.
+        """
         self._marks, self._viewport = marks, viewport
         self._discs = np.empty((0, 4))
         self._corners = self._rings = np.empty((0, 2))
+        self._outline = QPainterPath()
         if marks is not None:
+            if not outlined:
+                for loop in marks.loops:
+                    points = viewport.to_screen(loop).tolist()
+                    self._outline.addPolygon(QPolygonF([QPointF(x, y) for x, y in points]))
             self._rings = _inside(viewport.to_screen(marks.locked_places), viewport)
             if not crowd:
                 corners = _inside(viewport.to_screen(marks.corner_places), viewport)
@@ -122,6 +133,9 @@ class Overlay(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_element(painter)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(_pen(self._theme.boundary, 1.75))
+        painter.drawPath(self._outline)
         self._paint_markers(painter, event.rect())
         self._paint_arrow(painter)
         self._paint_card(painter)
@@ -141,7 +155,7 @@ class Overlay(QWidget):
         painter.setBrush(QColor(self._theme.corner))
         for x, y in self._corners.tolist():
             if near.contains(x, y):
-                painter.drawRect(QRectF(x - 3.5, y - 3.5, 7.0, 7.0))
+                painter.drawRect(QRectF(x - 4.0, y - 4.0, 8.0, 8.0))
         plus, minus = QColor(self._theme.plus), QColor(self._theme.minus)
         halo = QPen(QColor(self._theme.background), 1.25)
         font = QFont(self.font())
@@ -179,14 +193,10 @@ class Overlay(QWidget):
         path.lineTo(head - along * (0.72 * size))
         path.lineTo(head - along * size - normal * (0.5 * size))
         path.closeSubpath()
-        halo = QPen(QColor(self._theme.background), 5.0)
-        halo.setCapStyle(Qt.PenCapStyle.RoundCap)
-        shaft = QPen(QColor(self._theme.arrow), 2.25)
-        shaft.setCapStyle(Qt.PenCapStyle.RoundCap)
         end = head - along * (0.8 * size)
-        painter.setPen(halo)
+        painter.setPen(_pen(self._theme.background, 5.0))
         painter.drawLine(tail, end)
-        painter.setPen(shaft)
+        painter.setPen(_pen(self._theme.arrow, 2.25))
         painter.drawLine(tail, end)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(self._theme.arrow))
@@ -247,6 +257,16 @@ def arrow(element: QPolygonF, side: int) -> tuple[QPointF, QPointF]:
     a, b = a + (centre - a) * share, b + (centre - b) * share
     trim = 0.12
     return a + (b - a) * trim, b - (b - a) * trim
+
+
+def _pen(colour: str, width: float) -> QPen:
+    return QPen(
+        QColor(colour),
+        width,
+        Qt.PenStyle.SolidLine,
+        Qt.PenCapStyle.RoundCap,
+        Qt.PenJoinStyle.RoundJoin,
+    )
 
 
 def _inside(rows: np.ndarray, viewport: Viewport) -> np.ndarray:

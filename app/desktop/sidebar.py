@@ -6,7 +6,7 @@ from qtpy.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 from app.desktop.widgets import rule
 from app.theme import GRID
 
-WIDTH = 304
+WIDTH = 312
 
 
 def sidebar(*panels: QWidget) -> QWidget:

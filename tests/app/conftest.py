@@ -1,0 +1,111 @@
+"""A mesh and a policy for the tests of document, assistant and window; no torch needed."""
+
+import threading
+from collections.abc import Callable
+from queue import Empty, Queue
+
+import numpy as np
+import pytest
+
+from meshcore import HalfEdgeMesh, Operation, generate, shapes
+from meshcore.operations import of_kind
+
+LOCAL = ("flip", "flip_left", "flip_right", "split", "collapse")
+
+
+class Greedy:
+    """Stands in for ``agent.rollout.Runner``: the best single operation; sometimes a bad one."""
+
+    def __init__(self, mesh: HalfEdgeMesh, bad_steps: int = 0, longest: int = 60) -> None:
+        self.mesh = mesh.copy()
+        self.bad_steps = bad_steps
+        self.longest = longest
+        self.steps = 0
+        self.rng = np.random.default_rng(4)
+        self.finished = False
+        self.reason = ""
+
+    def step(self) -> list[tuple[Operation, int]]:
+        if self.mesh.score == self.mesh.optimum and not self.bad_steps:
+            return self._finish("the optimum is reached")
+        if self.steps == self.longest:
+            return self._finish("out of steps")
+        changes = []
+        for halfedge in (self.mesh.element_ids()[:, None] * self.mesh.k + range(self.mesh.k)).flat:
+            for info in of_kind(self.mesh.kind):
+                if info.operation.value in LOCAL and self.mesh.check(info.operation, halfedge):
+                    edit = self.mesh.apply(info.operation, int(halfedge))
+                    self.mesh.undo()
+                    changes.append((edit.score_change, info.operation, int(halfedge)))
+        wanted = (max if self.steps < self.bad_steps else min)(change[0] for change in changes)
+        changes = [change for change in changes if change[0] == wanted]
+        _, operation, halfedge = changes[self.rng.integers(len(changes))]
+        self.mesh.apply(operation, halfedge)
+        self.steps += 1
+        if self.mesh.score == self.mesh.optimum:
+            self._finish("the optimum is reached")
+        elif self.steps == self.longest:
+            self._finish("out of steps")
+        return [(operation, halfedge)]
+
+    def _finish(self, reason: str) -> list[tuple[Operation, int]]:
+        self.finished, self.reason = True, reason
+        return []
+
+
+class Desk:
+    """The document's thread in tests without Qt: a queue of calls, worked off on demand."""
+
+    def __init__(self) -> None:
+        self.calls: Queue[Callable[[], None]] = Queue()
+        self.thread = threading.current_thread()
+
+    def dispatch(self, call: Callable[[], None]) -> None:
+        self.calls.put(call)
+
+    def until(self, condition: Callable[[], bool], seconds: float = 20.0) -> None:
+        """Work off calls until ``condition()``; fails after ``seconds`` without a call."""
+        while not condition():
+            try:
+                self.calls.get(timeout=seconds)()
+            except Empty:
+                pytest.fail("the assistant fell silent")
+
+    def work(self) -> None:
+        """Work off what is there."""
+        while not self.calls.empty():
+            self.calls.get()()
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+@pytest.fixture
+def greedy() -> type[Greedy]:
+    return Greedy
+
+
+@pytest.fixture(scope="session")
+def _star() -> dict[str, HalfEdgeMesh]:
+    return {kind: generate.mesh_domain(shapes.shape("star"), kind) for kind in ("quad", "tri")}
+
+
+@pytest.fixture
+def star(_star: dict[str, HalfEdgeMesh]) -> HalfEdgeMesh:
+    """The star in quads: s 12, optimum 4."""
+    return _star["quad"].copy()
+
+
+@pytest.fixture
+def triangles(_star: dict[str, HalfEdgeMesh]) -> HalfEdgeMesh:
+    """The star in triangles."""
+    return _star["tri"].copy()
+
+
+@pytest.fixture
+def strip() -> HalfEdgeMesh:
+    """Two quads side by side on the rectangle from (0, 0) to (2, 1); four corners."""
+    points = np.array([(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)], dtype=float)
+    return HalfEdgeMesh.from_elements(points, np.array([(0, 1, 4, 3), (1, 2, 5, 4)]))

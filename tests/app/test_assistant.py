@@ -1,0 +1,204 @@
+"""The assistant with a scripted policy: no Qt, no torch."""
+
+import threading
+
+import pytest
+
+from app.assistant import Assistant, State
+from app.document import Document
+
+
+@pytest.fixture
+def make(desk, greedy):
+    made = []
+
+    def build(document, load=lambda name: name, **options):
+        assistant = Assistant(
+            document,
+            desk.dispatch,
+            load=load,
+            make_runner=lambda mesh, policy, seed: greedy(mesh, **options),
+        )
+        assistant.policy = "greedy"
+        assistant.heard = []
+        assistant.said.connect(assistant.heard.append)
+        assistant.failed.connect(assistant.heard.append)
+        made.append(assistant)
+        return assistant
+
+    yield build
+    for assistant in made:
+        assistant.close()
+    threads = [t for t in threading.enumerate() if t.name.startswith("assistant")]
+    for thread in threads:
+        thread.join(10)
+        assert not thread.is_alive()
+
+
+def test_step_takes_one_operation_in_the_name_of_the_policy(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    assistant.step()
+    assert assistant.state is State.STEPPING
+    assert document.history.cursor == 0  # nothing happens before the document's thread has time
+    desk.until(lambda: not assistant.running)
+    assert document.history.cursor == 1
+    assert document.history.last.by == "greedy"
+    assert assistant.decisions == 1
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert assistant.decisions == document.history.cursor == 2
+
+
+def test_the_runner_goes_on_from_where_it_was_unless_a_person_edited(make, desk, star, greedy):
+    document = Document(star)
+    assistant = make(document)
+    runners = []
+    assistant._make_runner = lambda mesh, policy, seed: runners.append(greedy(mesh)) or runners[-1]
+    for _ in range(2):
+        assistant.step()
+        desk.until(lambda: not assistant.running)
+    assert len(runners) == 1
+    document.undo()
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert len(runners) == 2
+    assert document.history.cursor == 2
+
+
+def test_complete_reaches_the_optimum(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    assistant.complete()
+    assert assistant.state is State.COMPLETING
+    desk.until(lambda: not assistant.running)
+    assert assistant.state is State.IDLE
+    assert document.at_optimum
+    assert document.normalised_return == 1.0
+    assert "At the optimum after" in assistant.heard[-1]
+    star.validate()
+
+
+def test_complete_goes_back_to_the_best_state(make, desk, star):
+    document = Document(star)
+    assistant = make(document, bad_steps=3, longest=3)
+    assistant.complete()
+    desk.until(lambda: not assistant.running)
+    assert document.score == 12
+    assert document.history.cursor == 0
+    assert document.can_redo
+    assert "back to the best" in assistant.heard[-1]
+
+
+def test_play_pause_and_go_on(make, desk, star):
+    document = Document(star)
+    assistant = make(document, longest=100, bad_steps=100)
+    assistant.speed = 60
+    assistant.play()
+    desk.until(lambda: document.history.cursor >= 3)
+    assistant.pause()
+    assert assistant.state is State.PAUSED
+    kept = document.history.cursor
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert document.history.cursor == kept + 1
+    assistant.play()
+    desk.until(lambda: document.history.cursor >= kept + 3)
+    assert assistant.decisions == document.history.cursor
+    assistant.cancel()
+    assert assistant.state is State.IDLE
+
+
+def test_a_slow_play_is_cancelled_at_once(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    assistant.speed = 0.5
+    assistant.play()
+    desk.until(lambda: document.history.cursor == 1)
+    assistant.cancel()
+    assistant.step()  # does not wait for the two seconds of the run before
+    desk.until(lambda: document.history.cursor == 2, seconds=1.5)
+
+
+def test_a_person_takes_over_in_mid_run(make, desk, star):
+    document = Document(star)
+    assistant = make(document, longest=100, bad_steps=100)
+    assistant.speed = 60
+    assistant.play()
+    desk.until(lambda: document.history.cursor >= 2)
+    document.set_locked(0, True)
+    assert assistant.state is State.IDLE
+    kept = document.history.cursor
+    desk.work()
+    assert document.history.cursor == kept  # late decisions are dropped, what was done stays
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert document.history.cursor == kept + 1
+    star.validate()
+
+
+def test_another_mesh_ends_the_run(make, desk, star, triangles):
+    document = Document(star)
+    assistant = make(document, longest=100, bad_steps=100)
+    assistant.complete()
+    document.replace(triangles, "star")
+    assert not assistant.running
+    desk.work()
+    assert document.history.cursor == 0
+
+
+def test_nothing_to_do(make, desk, strip, star):
+    assistant = make(Document(strip))
+    assistant.complete()
+    assert not assistant.running
+    assert "optimum" in assistant.heard[-1]
+    assistant = make(Document())
+    assistant.step()
+    assert not assistant.running
+    assert assistant.heard == ["There is no mesh to work on."]
+    assistant = make(Document(star))
+    assistant.policy = ""
+    assistant.step()
+    assert assistant.heard == ["Choose a policy."]
+
+
+def test_a_policy_that_cannot_be_loaded_is_one_sentence(make, desk, star):
+    def load(name):
+        raise ValueError("greedy.safetensors is cut off.")
+
+    assistant = make(Document(star), load=load)
+    assistant.complete()
+    assert assistant.loading
+    desk.until(lambda: not assistant.running)
+    assert assistant.heard == ["greedy.safetensors is cut off."]
+    assert assistant.state is State.IDLE
+    assert not assistant.loading
+
+
+def test_a_bug_in_a_runner_is_told_too(make, desk, star, monkeypatch, greedy):
+    monkeypatch.setattr(greedy, "step", lambda self: 1 / 0)
+    assistant = make(Document(star))
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert "ZeroDivisionError" in assistant.heard[-1]
+
+
+def test_a_runner_that_left_the_mesh_is_found_out(make, desk, star, greedy, monkeypatch):
+    monkeypatch.setattr(greedy, "step", lambda self: [("flip_left", 10**6)])
+    document = Document(star)
+    assistant = make(document)
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert "refused" in assistant.heard[-1]
+    assert document.history.cursor == 0
+
+
+def test_prepare_loads_without_running(make, desk, star):
+    loaded = []
+    assistant = make(Document(star), load=lambda name: loaded.append(name) or name)
+    assistant.prepare()
+    assert assistant.loading
+    desk.until(lambda: not assistant.loading)
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert loaded == ["greedy"]
