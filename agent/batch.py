@@ -1,0 +1,250 @@
+"""Many runs at once, in compiled code: the self-play of section 4.2.2.
+
+The meshes of B runs lie in arrays with one more axis in front. A pool of start meshes is made once;
+each run that ends is followed by another from the pool.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from agent.patch import LARGEST, Patches
+from agent.selection import masks
+from agent.task import Observation, Scratch, Task, choose_candidates, look, transition
+from meshcore.compiled import kernel
+from meshcore.generate import benchmark_mesh
+from meshcore.halfedge import (
+    DELTA_SUM,
+    ELEMENTS,
+    JOURNALLING,
+    SCORE,
+    MeshArrays,
+    allocate,
+    enlarge,
+)
+from meshcore.mesh import HalfEdgeMesh
+
+_ROOM = 2.5  # slots of a run, relative to the largest start mesh; a run that needs more is masked
+
+
+def start_meshes(
+    kind: str, sides: tuple[int, int], count: int, rng: np.random.Generator
+) -> list[HalfEdgeMesh]:
+    """So many meshes of the benchmark distribution, the number of sides drawn from a closed range."""
+    return [
+        benchmark_mesh(kind, int(rng.integers(sides[0], sides[1] + 1)), rng) for _ in range(count)
+    ]
+
+
+def stack(meshes: list[HalfEdgeMesh], task: Task) -> MeshArrays:
+    """Meshes as arrays with one more axis in front, with room to grow and without a journal."""
+    vertices = int(_ROOM * max(mesh.slots for mesh in meshes)) + 16
+    elements = int(_ROOM * max(mesh.n_elements for mesh in meshes)) + 16
+    fields: list[list[np.ndarray]] = [[] for _ in MeshArrays._fields]
+    for mesh in meshes:
+        room = enlarge(_trimmed(mesh.arrays), vertices, elements, 1, 1)
+        room.counters[JOURNALLING] = 0
+        for field, array in zip(fields, room, strict=True):
+            field.append(array)
+    return MeshArrays(*(np.stack(field) for field in fields))
+
+
+def _trimmed(arrays: MeshArrays) -> MeshArrays:
+    """The same mesh in arrays without spare room and without history."""
+    slots, elements = int(arrays.counters[0]), int(arrays.counters[1])
+    k = int(arrays.counters[10])
+    empty = allocate(k, slots, elements, 1, 1)
+    for name in ("edge", "vertex", "points", "irregular", "element_mark"):
+        getattr(empty, name)[:] = getattr(arrays, name)[: len(getattr(empty, name))]
+    empty.counters[:11] = arrays.counters[:11]
+    return empty
+
+
+@kernel
+def member(meshes, b):
+    """Mesh b of stacked arrays. Views leave this function, so it must count references."""
+    return MeshArrays(
+        meshes.edge[b],
+        meshes.vertex[b],
+        meshes.points[b],
+        meshes.irregular[b],
+        meshes.element_mark[b],
+        meshes.trace[b],
+        meshes.counters[b],
+        meshes.journal[b],
+        meshes.steps[b],
+    )
+
+
+@kernel
+def _reset(meshes, pool, b, p):
+    """Start run b afresh from mesh p of the pool."""
+    meshes.edge[b] = pool.edge[p]
+    meshes.vertex[b] = pool.vertex[p]
+    meshes.points[b] = pool.points[p]
+    meshes.irregular[b] = pool.irregular[p]
+    meshes.element_mark[b] = pool.element_mark[p]
+    meshes.counters[b] = pool.counters[p]
+
+
+@kernel
+def _observe_all(
+    meshes, active, k, first, count, cap, floors, ceilings, extended, listed_up, noise, source, turn,
+    rng, found, keys, slots, listed, reads, slot_of, chosen, mask, changes, sizes, features, all_reads,
+):  # fmt: skip
+    """Candidates, masks and patches of every active run; rows of features and reads in use."""
+    rows = read_rows = 0
+    for b in range(len(chosen)):
+        sizes[b] = 0
+        mask[b] = False
+        chosen[b] = -1
+        if not active[b]:
+            continue
+        m = member(meshes, b)
+        choose_candidates(
+            m, k, first, count, cap, floors[b], ceilings[b], extended, listed_up, noise, source,
+            turn, rng, found, keys, slots, chosen[b],
+        )  # fmt: skip
+        if not masks(
+            m, chosen[b], first, count, cap, floors[b], ceilings[b], extended, mask[b], changes[b]
+        ):
+            chosen[b] = -1
+            continue
+        look(m, chosen[b], k, sizes[b], listed, reads, slot_of, features[rows:])
+        all_reads[read_rows : read_rows + sizes[b, 1]] = reads[: sizes[b, 1]]
+        rows += sizes[b, 0]
+        read_rows += sizes[b, 1]
+    return rows, read_rows
+
+
+@kernel
+def _act_all(meshes, first, actions, count, cap, chosen, touched, cleaned):
+    """Apply action = candidate * count + operation to every run; -1 leaves a run as it is."""
+    for b in range(len(actions)):
+        if actions[b] < 0:
+            continue
+        h = chosen[b, actions[b] // count]
+        transition(member(meshes, b), first + actions[b] % count, h, cap, touched, cleaned)
+
+
+@dataclass
+class Outcome:
+    """What one step of all runs brought."""
+
+    rewards: np.ndarray
+    """(B,) s before - s after."""
+    ended: np.ndarray
+    """(B,) bool: at the optimum, out of steps, or nothing left to do."""
+    returns: np.ndarray
+    """(B,) normalised return, best state, of the runs that ended; NaN elsewhere and where it has no
+    meaning because a run started at the optimum."""
+
+
+class Batch:
+    """B runs side by side."""
+
+    def __init__(
+        self,
+        task: Task,
+        meshes: list[HalfEdgeMesh],
+        size: int,
+        rng: np.random.Generator,
+        *,
+        endless: bool = True,
+    ) -> None:
+        """Runs from `meshes`; endless: a run that ends is followed by another, drawn at random.
+
+        Otherwise run b starts from mesh b, and stands still when it has ended.
+        """
+        self.task, self.rng, self.endless = task, rng, endless
+        self.pool = stack(meshes, task)
+        self.start_scores = self.pool.counters[:, SCORE].astype(int)
+        self.optima = np.abs(self.pool.counters[:, DELTA_SUM]).astype(int)
+        self.start_elements = self.pool.counters[:, ELEMENTS].astype(int)
+        # a mesh that starts at its optimum teaches nothing
+        self.useful = np.flatnonzero(self.start_scores > self.optima)
+        if not len(self.useful):
+            raise ValueError("every start mesh is at its optimum already: there is nothing to do")
+        self.source = np.zeros(size, int)
+        self.steps = np.zeros(size, int)
+        self.best = np.zeros(size, int)
+        self.best_step = np.zeros(size, int)
+        self.active = np.ones(size, np.bool_)
+        self.scratch = Scratch(task, self.pool.edge.shape[1])
+        self.meshes = MeshArrays(*(array[np.zeros(size, int)].copy() for array in self.pool))
+        rows = min(LARGEST, self.pool.edge.shape[1])
+        self._features = np.zeros((size * rows, task.channels), np.int8)
+        self._reads = np.zeros((size * rows, task.k + 1), np.int16)
+        limits = [task.step_limit(int(n)) for n in self.start_elements]
+        bounds = [task.bounds(int(n)) for n in self.start_elements]
+        self._limits, self._bounds = np.array(limits), np.array(bounds)
+        for b in range(size):
+            self._begin(b, int(rng.choice(self.useful)) if endless else b % len(meshes))
+
+    def _begin(self, b: int, p: int) -> None:
+        _reset(self.meshes, self.pool, b, p)
+        self.source[b], self.steps[b], self.best_step[b] = p, 0, 0
+        self.best[b] = self.start_scores[p]
+        self.active[b] = self.best[b] > self.optima[p]
+
+    @property
+    def scores(self) -> np.ndarray:
+        """(B,) s of each run now."""
+        return self.meshes.counters[:, SCORE].astype(int)
+
+    @property
+    def gaps(self) -> np.ndarray:
+        """(B,) s - s* of each run now."""
+        return self.scores - self.optima[self.source]
+
+    def observe(self) -> Observation:
+        """Look at all runs. What a run that has ended shows is all masked."""
+        task, scratch = self.task, self.scratch
+        size = len(self.active)
+        chosen = np.empty((size, task.rows), np.int64)
+        mask = np.empty((size, task.rows, task.operations), np.bool_)
+        changes = np.zeros((size, task.rows, task.operations), np.int8)
+        sizes = np.empty((size, task.blocks + 1), np.int32)
+        bounds = self._bounds[self.source]
+        source, turn = task.template
+        rows, read_rows = _observe_all(
+            self.meshes, self.active, task.k, task.first_operation, task.operations, task.cap,
+            np.ascontiguousarray(bounds[:, 0]), np.ascontiguousarray(bounds[:, 1]), task.extended,
+            task.selection == "shortlist", task.noise, source, turn, self.rng, scratch.found,
+            scratch.keys, scratch.slots, scratch.listed, scratch.reads, scratch.slot_of, chosen,
+            mask, changes, sizes, self._features, self._reads,
+        )  # fmt: skip
+        left = 1.0 - self.steps / self._limits[self.source]
+        growth = self.meshes.counters[:, ELEMENTS] / self.start_elements[self.source]
+        state = np.column_stack([self.gaps / 10.0, left, growth]).astype(np.float32)
+        patches = Patches(self._features[:rows].copy(), self._reads[:read_rows].copy(), sizes)
+        return Observation(chosen, mask, changes, state, patches)
+
+    def step(self, observation: Observation, actions: np.ndarray) -> Outcome:
+        """Apply one action (B,) int64 to every run, -1 where nothing is permitted."""
+        before = self.scores
+        scratch, task = self.scratch, self.task
+        _act_all(
+            self.meshes, task.first_operation, actions, task.operations, task.cap,
+            observation.chosen, scratch.touched, scratch.cleaned,
+        )  # fmt: skip
+        after = self.scores
+        acted = actions >= 0
+        self.steps += acted
+        better = after < self.best
+        self.best[better] = after[better]
+        self.best_step[better] = self.steps[better]
+        optima, starts = self.optima[self.source], self.start_scores[self.source]
+        ended = self.active & (
+            ~acted | (after <= optima) | (self.steps >= self._limits[self.source])
+        )
+        returns = np.full(len(actions), np.nan)
+        returns[ended] = ((starts - self.best) / np.maximum(starts - optima, 1))[ended]
+        if self.endless:
+            for b in np.flatnonzero(ended):
+                self._begin(int(b), int(self.rng.choice(self.useful)))
+        else:
+            self.active &= ~ended
+        return Outcome((before - after).astype(np.float32), ended, returns)

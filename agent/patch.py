@@ -1,0 +1,149 @@
+"""The local patch of a decision: all that the DCEL convolution can see of its candidates (section 4.2).
+
+One block of the convolution gives a half-edge what the half-edges of its element and its twin held. The
+embedding of the candidates after B blocks therefore needs the half-edges within B such steps of them,
+and no others: that is the patch. It is listed so that what block b must compute is always the front
+part of the list; a half-edge that several candidates need is listed once. A decision costs the same on
+a mesh of any size.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshcore.compiled import bare_kernel, kernel
+from meshcore.halfedge import DEGREE, DESIRED, FLAGS, GEOMETRIC, ORIGIN, TWIN, on_boundary, preceding
+
+CHANNELS = ("degree", "irregularity", "boundary", "geometric")
+"""What is known of the vertex of a half-edge; the paper uses the first two."""
+
+LARGEST = 8192
+"""Half-edges that a patch may hold; candidates far apart need more than such that lie together."""
+
+
+@bare_kernel
+def seen_vertex(m, h, k):
+    """The vertex of a half-edge: opposite in a triangle, origin in a quad (section 4.1)."""
+    return m.edge[preceding(h, k) if k == 3 else h, ORIGIN]
+
+
+@bare_kernel
+def _list_up(h, listed, count, slot_of):
+    """List h unless it is listed already; returns the new count."""
+    if h < 0 or slot_of[h] or count >= len(listed):
+        return count
+    listed[count] = h
+    slot_of[h] = count + 1
+    return count + 1
+
+
+@bare_kernel
+def list_patch(m, chosen, k, sizes, listed, reads, slot_of):
+    """List the patch of the candidates `chosen` (K,), -1 for none.
+
+    sizes (B+1,) receives how many half-edges hold values before block 1, 2, ... B and after it, the
+    list's length first; listed (N,) the half-edges; reads (N, k+1) the places in the list of h, next,
+    ..., previous, twin (-1 beyond the boundary) for all but the outermost. slot_of: zeros, one for each
+    half-edge of the mesh; zero again afterwards.
+    """
+    blocks = len(sizes) - 1
+    count = 0
+    for h in chosen:
+        count = _list_up(h, listed, count, slot_of)
+    sizes[blocks] = count
+    done = 0
+    for block in range(blocks - 1, -1, -1):
+        inner = count
+        for i in range(done, inner):
+            first = listed[i] - listed[i] % k
+            for h in range(first, first + k):
+                count = _list_up(h, listed, count, slot_of)
+            count = _list_up(m.edge[listed[i], TWIN], listed, count, slot_of)
+        done = inner
+        sizes[block] = count
+    for i in range(done):
+        h = listed[i]
+        for j in range(k):
+            reads[i, j] = slot_of[h - h % k + (h + j) % k] - 1
+        t = m.edge[h, TWIN]
+        reads[i, k] = slot_of[t] - 1 if t >= 0 else -1
+    for i in range(count):
+        slot_of[listed[i]] = 0
+
+
+@bare_kernel
+def describe(m, h, k, row):
+    """Write what is known of the vertex of h into `row`, as many of CHANNELS as it has room for."""
+    v = seen_vertex(m, h, k)
+    row[0] = m.vertex[v, DEGREE]
+    row[1] = m.vertex[v, DEGREE] - m.vertex[v, DESIRED]
+    if len(row) > 2:
+        row[2] = 1 if on_boundary(m, v) else 0
+        row[3] = 1 if m.vertex[v, FLAGS] & GEOMETRIC else 0
+
+
+@dataclass
+class Patches:
+    """The patches of D decisions, one behind the other."""
+
+    features: np.ndarray
+    """(N, C) int8: the channels of each listed half-edge."""
+    reads: np.ndarray
+    """(M, k+1) int16: for all but the outermost half-edges, places within the decision's own list."""
+    sizes: np.ndarray
+    """(D, B+1) int32, see :func:`list_patch`."""
+
+    @classmethod
+    def join(cls, parts: list[Patches]) -> Patches:
+        """The decisions of all parts, in order."""
+        return cls(
+            np.concatenate([part.features for part in parts]),
+            np.concatenate([part.reads for part in parts]),
+            np.concatenate([part.sizes for part in parts]),
+        )
+
+
+@kernel
+def _assemble(reads, sizes, read_starts, picked, level, beyond, out):
+    """Global reads of one block: places in the joined array of what the block before it computed."""
+    at = 0
+    base = 0
+    for d in picked:
+        for i in range(sizes[d, level]):
+            for j in range(reads.shape[1]):
+                place = reads[read_starts[d] + i, j]
+                out[at, j] = base + place if place >= 0 else beyond
+            at += 1
+        base += sizes[d, level - 1]
+
+
+@kernel
+def _copy_rows(features, sizes, starts, picked, out):
+    at = 0
+    for d in picked:
+        for i in range(sizes[d, 0]):
+            out[at] = features[starts[d] + i]
+            at += 1
+
+
+def assemble(patches: Patches, picked: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Features and reads of the decisions `picked`, ready for the network.
+
+    Returns (N, C) int8 features and, for each block, (Q, k+1) int64 places among the rows that the
+    block before computed; the place behind the last row stands for "beyond the boundary".
+    """
+    sizes = patches.sizes
+    starts = np.concatenate([[0], np.cumsum(sizes[:, 0])])
+    read_starts = np.concatenate([[0], np.cumsum(sizes[:, 1])])
+    totals = sizes[picked].sum(axis=0)
+    features = np.empty((int(totals[0]), patches.features.shape[1]), np.int8)
+    _copy_rows(patches.features, sizes, starts, picked, features)
+    tables = []
+    for level in range(1, sizes.shape[1]):
+        table = np.empty((int(totals[level]), patches.reads.shape[1]), np.int64)
+        beyond = int(totals[level - 1])
+        _assemble(patches.reads, sizes, read_starts, picked, level, beyond, table)
+        tables.append(table)
+    return features, tables

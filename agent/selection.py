@@ -1,0 +1,245 @@
+"""Which half-edges the policy chooses among: the paper's template, or a shortlist over the mesh.
+
+Template (section 4.2.1): around every half-edge lies a template; the half-edges of the one with the
+largest sum of |Delta| are the candidates, ties broken at random. Shortlist: the paper's candidate
+retrieval made wider; those half-edges near irregular vertices whose best operation lowers s most,
+perturbed by Gumbel noise. On large meshes both look at a bounded number of irregular vertices, drawn at
+random, so that the cost of a decision does not grow with the mesh.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from agent.patch import seen_vertex
+from meshcore.compiled import bare_kernel, kernel
+from meshcore.global_split import crossings
+from meshcore.halfedge import (
+    DEGREE,
+    DESIRED,
+    ELEMENTS,
+    HALF,
+    IRREGULAR,
+    TWIN,
+    following,
+    preceding,
+)
+from meshcore.operations import (
+    GLOBAL_SPLIT,
+    QUAD_COLLAPSE,
+    TRI_COLLAPSE,
+    check,
+    score_change,
+)
+from meshcore.refusals import ALLOWED
+
+LOOKED_AT = 64
+"""Irregular vertices that one decision looks at, at most."""
+LONGEST_CUT = 200
+"""Quads that one half of a global split may cut, at most, when an agent asks for it."""
+
+
+@bare_kernel
+def gather(m, h, k, source, turn, slots):
+    """Write the half-edges of the template of h into `slots` (N,); -1 beyond the boundary."""
+    slots[0] = h
+    for i in range(1, len(source)):
+        came = slots[source[i]]
+        if came < 0:
+            slots[i] = -1
+        elif turn[i] < 0:
+            slots[i] = m.edge[came, TWIN]
+        else:
+            slots[i] = came - came % k + (came + turn[i]) % k
+
+
+@cache
+def template_plan(k: int, levels: int) -> tuple[np.ndarray, np.ndarray]:
+    """The template: the half-edges of all elements within `levels` steps of the first, as a program.
+
+    source (N,) int32: the slot from which a slot's half-edge is reached, slot 0 being the half-edge
+    itself; turn (N,) int32: -1 if it is the twin of the source, else how far it is turned on in its
+    element.
+    """
+    paths: list[tuple[int, ...]] = [()]
+    ring: list[tuple[int, ...]] = [()]
+    for _ in range(levels):
+        ring = [(*path, i) for path in ring for i in range(1 if path else 0, k)]
+        paths += ring
+    slot = {(path, i): n for n, (path, i) in enumerate((p, i) for p in paths for i in range(k))}
+    source, turn = np.zeros(len(slot), np.int32), np.zeros(len(slot), np.int32)
+    for (path, i), n in slot.items():
+        if i == 0 and path:
+            source[n], turn[n] = slot[path[:-1], path[-1]], -1
+        else:
+            source[n], turn[n] = slot[path, 0], i
+    return source, turn
+
+
+@bare_kernel
+def permitted(m, operation, h, cap, floor, ceiling, extended):
+    """Whether the agent may apply `operation` to h: :func:`meshcore.operations.check`, the action set,
+    and a number of elements that stays within floor and ceiling."""
+    elements = m.counters[ELEMENTS]
+    if operation == TRI_COLLAPSE:
+        inside = m.edge[h, TWIN] >= 0
+        if not inside and not extended:
+            return False
+        if elements - (2 if inside else 1) < floor:
+            return False
+    elif operation == QUAD_COLLAPSE:
+        if elements - 1 < floor:
+            return False
+    elif elements + 2 > ceiling:
+        return False
+    if operation == GLOBAL_SPLIT:
+        t = m.edge[h, TWIN]
+        if t < 0:
+            return False
+        first = crossings(m, m.edge[following(h, 4), TWIN], h, LONGEST_CUT)
+        second = crossings(m, m.edge[preceding(t, 4), TWIN], h, LONGEST_CUT)
+        if first < 0 or second < 0 or elements + first + second + 1 > ceiling:
+            return False
+    return check(m, operation, h, cap) == ALLOWED
+
+
+@bare_kernel
+def best_change(m, h, first, count, cap, floor, ceiling, extended):
+    """The lowest change of s among the permitted operations first ... first + count - 1 at h; 99 if
+    there is none. A global split is not walked out here: its change alone is looked at."""
+    best = 99
+    for operation in range(first, first + count):
+        if operation == GLOBAL_SPLIT:
+            if m.edge[h, TWIN] >= 0:
+                best = min(best, score_change(m, operation, h))
+        elif permitted(m, operation, h, cap, floor, ceiling, extended):
+            best = min(best, score_change(m, operation, h))
+    return best
+
+
+@bare_kernel
+def _collect(m, e, found, count):
+    """Add element e to `found` unless it is marked; returns the new count."""
+    if m.element_mark[e] or count >= len(found):
+        return count
+    m.element_mark[e] = 1
+    found[count] = e
+    return count + 1
+
+
+@kernel
+def near_irregular(m, k, rng, found):
+    """Elements with an irregular vertex, and their neighbours, into `found`; returns their number.
+
+    Of more than LOOKED_AT irregular vertices so many are drawn at random.
+    """
+    total = m.counters[IRREGULAR]
+    count = 0
+    for i in range(min(total, LOOKED_AT)):
+        place = i if total <= LOOKED_AT else int(rng.random() * total)
+        v = m.irregular[place]
+        start = m.vertex[v, HALF]
+        h = start
+        for _ in range(m.vertex[v, DEGREE]):
+            count = _collect(m, h // k, found, count)
+            first = h - h % k
+            for side in range(first, first + k):
+                if m.edge[side, TWIN] >= 0:
+                    count = _collect(m, m.edge[side, TWIN] // k, found, count)
+            h = m.edge[preceding(h, k), TWIN]
+            if h < 0 or h == start:
+                break
+    for i in range(count):
+        m.element_mark[found[i]] = 0
+    return count
+
+
+@kernel
+def shortlist(m, k, first, count, cap, floor, ceiling, extended, noise, rng, found, keys, chosen):
+    """Fill `chosen` (K,) with half-edges, -1 where there are fewer; returns how many.
+
+    found, keys: scratch for element ids (N,) and for k N float keys.
+    """
+    elements = near_irregular(m, k, rng, found)
+    for i in range(elements):
+        for j in range(k):
+            h = found[i] * k + j
+            change = best_change(m, h, first, count, cap, floor, ceiling, extended)
+            if change == 99:
+                keys[i * k + j] = -np.inf
+            else:
+                keys[i * k + j] = -change - noise * np.log(-np.log(1e-12 + rng.random()))
+    total = elements * k
+    wanted = min(len(chosen), total)
+    taken = 0
+    if total > 0:
+        least = np.sort(keys[:total])[total - wanted]
+        for i in range(total):
+            if keys[i] >= least and keys[i] > -np.inf and taken < wanted:
+                chosen[taken] = found[i // k] * k + i % k
+                taken += 1
+    for i in range(taken, len(chosen)):
+        chosen[i] = -1
+    return taken
+
+
+@bare_kernel
+def local_score(m, h, k, source, turn, slots):
+    """Sum of |Delta| over the template of h: of the vertices that its half-edges see."""
+    gather(m, h, k, source, turn, slots)
+    total = 0
+    for i in range(len(source)):
+        if slots[i] >= 0:
+            v = seen_vertex(m, slots[i], k)
+            total += abs(m.vertex[v, DEGREE] - m.vertex[v, DESIRED])
+    return total
+
+
+@kernel
+def best_template(m, k, source, turn, rng, found, slots, chosen):
+    """Fill `chosen` (K,) with the half-edges of the template of highest local score, -1 beyond the
+    boundary; returns how many are real. Half-edges far from irregular vertices need no look."""
+    elements = near_irregular(m, k, rng, found)
+    best, tied, at = -1, 0, -1
+    for i in range(elements):
+        for j in range(k):
+            h = found[i] * k + j
+            score = local_score(m, h, k, source, turn, slots)
+            if score > best:
+                best, tied, at = score, 1, h
+            elif score == best:
+                tied += 1
+                if rng.random() * tied < 1.0:
+                    at = h
+    if at < 0:
+        chosen[:] = -1
+        return 0
+    gather(m, at, k, source, turn, chosen)
+    real = 0
+    for i in range(len(chosen)):
+        # the same half-edge may stand in the template twice, around a vertex of low degree
+        for j in range(i):
+            if chosen[i] == chosen[j]:
+                chosen[i] = -1
+        if chosen[i] >= 0:
+            real += 1
+    return real
+
+
+@bare_kernel
+def masks(m, chosen, first, count, cap, floor, ceiling, extended, mask, changes):
+    """For each candidate (K,) and operation (A,) whether it is permitted, and its change of s; returns
+    whether any is."""
+    some = False
+    for i in range(len(chosen)):
+        h = chosen[i]
+        for j in range(count):
+            mask[i, j] = False
+            changes[i, j] = 0
+            if h >= 0 and permitted(m, first + j, h, cap, floor, ceiling, extended):
+                mask[i, j] = True
+                changes[i, j] = score_change(m, first + j, h)
+                some = True
+    return some
