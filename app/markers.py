@@ -21,14 +21,16 @@ READABLE = 6.0
 
 @dataclass(frozen=True)
 class Markers:
-    """Irregular vertices (n,), their delta (n,), places (n, 2) and shortest edges (n,) in lengths;
-    places of corners and of locked vertices; boundary loops (m, 2), each closed by its first point.
+    """Irregular vertices (n,), their delta (n,), places (n, 2), shortest edges (n,) in lengths, and
+    whether they are corners (n,); places of all corners and of locked vertices; boundary loops
+    (m, 2), each closed by its first point.
     """
 
     vertices: np.ndarray
     delta: np.ndarray
     places: np.ndarray
     reach: np.ndarray
+    corners: np.ndarray
     corner_places: np.ndarray
     locked_places: np.ndarray
     loops: tuple[np.ndarray, ...]
@@ -52,6 +54,7 @@ def markers(mesh: HalfEdgeMesh) -> Markers:
         delta=delta[vertices],
         places=points[vertices],
         reach=_shortest_edges(mesh.elements(), points, vertices),
+        corners=mesh.geometric()[vertices],
         corner_places=points[corners],
         locked_places=points[locked],
         loops=tuple(points[np.append(loop, loop[0])] for loop in mesh.boundary_loops()),

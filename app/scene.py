@@ -256,8 +256,11 @@ def _draw_markers(
     # radii are meant for a screen of 900 pixels' height: larger pictures get larger discs
     small = Viewport(viewport.centre, viewport.pixels / scale, viewport.size)
     radii = marks.radii(small) * scale
-    for (x, y), delta, r in zip(viewport.to_screen(marks.places), marks.delta, radii, strict=True):
+    places = viewport.to_screen(marks.places)
+    for (x, y), delta, r, corner in zip(places, marks.delta, radii, marks.corners, strict=True):
         colour = colours.plus if delta > 0 else colours.minus
+        if corner:
+            draw.rectangle((x - r, y - r, x + r, y + r), fill=colours.corner)
         rim = r + 1.2 * scale
         draw.ellipse((x - rim, y - rim, x + rim, y + rim), fill=colours.background)
         draw.ellipse((x - r, y - r, x + r, y + r), fill=colour)

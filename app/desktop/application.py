@@ -3,7 +3,6 @@
 import sys
 from pathlib import Path
 
-from qtpy.QtCore import Qt
 from qtpy.QtGui import QFont, QFontDatabase, QSurfaceFormat
 from qtpy.QtWidgets import QApplication
 
@@ -20,7 +19,6 @@ def application() -> QApplication:
     """The QApplication, made if there is none yet."""
     app = QApplication.instance()
     if app is None:
-        QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
         QSurfaceFormat.setDefaultFormat(surface_format())
         app = QApplication(sys.argv[:1])
     app.setApplicationName("Meshwright")

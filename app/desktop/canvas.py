@@ -70,6 +70,7 @@ class Canvas(QWidget):
         self.plotter.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.plotter.installEventFilter(self)
         self.layout().addWidget(self.plotter)
+        self.plotter.show()  # at once, so that it can take the keyboard
         self.scene = Scene(self.plotter, self._theme, short_outlines=True)
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())

@@ -30,15 +30,16 @@ class Gallery(QDialog):
     def __init__(self, kind: str, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setWindowTitle("New from shape")
-        self.resize(720, 560)
+        self.resize(832, 584)
         self._kind = kind or "quad"
         self.shapes = QListWidget()
         self.shapes.setViewMode(QListView.ViewMode.IconMode)
         self.shapes.setResizeMode(QListView.ResizeMode.Adjust)
         self.shapes.setMovement(QListView.Movement.Static)
         self.shapes.setIconSize(THUMBNAIL)
-        self.shapes.setGridSize(QSize(THUMBNAIL.width() + 3 * GRID, THUMBNAIL.height() + 5 * GRID))
+        self.shapes.setGridSize(QSize(THUMBNAIL.width() + 4 * GRID, THUMBNAIL.height() + 5 * GRID))
         self.shapes.setUniformItemSizes(True)
+        self.shapes.setWordWrap(True)
         for name, domain in shapes.gallery().items():
             item = QListWidgetItem(thumbnail(domain, theme, self.devicePixelRatioF()), _title(name))
             item.setData(Qt.ItemDataRole.UserRole, name)

@@ -4,6 +4,7 @@ from qtpy.QtCore import QPoint, Qt, Signal
 from qtpy.QtGui import QCloseEvent, QKeyEvent, QMouseEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from app.desktop.widgets import sentence
 from app.theme import GRID
 from meshcore import Operation, Verdict
 from meshcore.operations import OperationInfo
@@ -51,8 +52,8 @@ class OperationMenu(QFrame):
         """Show the menu beside the point ``at`` of the screen, within the window if it can be."""
         self.adjustSize()
         room = self.parentWidget().window().geometry()
-        x = min(at.x() + GRID, room.right() - self.width())
-        y = min(at.y() + GRID, room.bottom() - self.height())
+        x = min(at.x() + 3 * GRID, room.right() - self.width())
+        y = min(at.y() - GRID, room.bottom() - self.height())
         self.move(max(x, room.left()), max(y, room.top()))
         self.show()
 
@@ -123,12 +124,12 @@ class OperationRow(QFrame):
         title.setEnabled(self.allowed)
         key.setEnabled(self.allowed)
         if self.reason:
-            reason = QLabel(self.reason)
+            reason = QLabel(sentence(self.reason))
             reason.setObjectName("Reason")
             reason.setWordWrap(True)
             layout.addWidget(reason)
         else:
-            self.setToolTip(info.summary)
+            self.setToolTip(sentence(info.summary))
 
     def set_current(self, current: bool) -> None:
         """Mark the row that Return would take."""

@@ -3,7 +3,7 @@
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
-from app.desktop.widgets import named
+from app.desktop.widgets import named, sentence
 from app.document import Document
 from app.theme import GRID
 from meshcore.operations import Operation, of_kind
@@ -59,8 +59,7 @@ class OperationsPanel(QWidget):
             key, title = named(info.key.upper(), "Key"), named(info.title, "Operation")
             key.setAlignment(Qt.AlignmentFlag.AlignCenter)
             key.setMinimumWidth(24)
-            sentence = info.summary[:1].upper() + info.summary[1:]
-            title.setToolTip(sentence + ".")
+            title.setToolTip(sentence(info.summary))
             grid.addWidget(key, row, column)
             grid.addWidget(title, row, column + 1)
             self._labels[info.operation] = (key, title)

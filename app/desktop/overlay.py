@@ -42,7 +42,7 @@ class Overlay(QWidget):
         self._theme = theme
         self._marks: Markers | None = None
         self._viewport = Viewport()
-        self._discs = np.empty((0, 4))  # x, y, radius, delta of the visible irregular vertices
+        self._discs = np.empty((0, 5))  # x, y, radius, delta, corner? of visible irregular vertices
         self._corners = np.empty((0, 2))
         self._rings = np.empty((0, 2))
         self._outline = QPainterPath()
@@ -70,7 +70,7 @@ class Overlay(QWidget):
         Discs are VTK's where ``crowd``, the boundary is where ``outlined``.
         """
         self._marks, self._viewport = marks, viewport
-        self._discs = np.empty((0, 4))
+        self._discs = np.empty((0, 5))
         self._corners = self._rings = np.empty((0, 2))
         self._outline = QPainterPath()
         if marks is not None:
@@ -83,7 +83,12 @@ class Overlay(QWidget):
                 corners = _inside(viewport.to_screen(marks.corner_places), viewport)
                 self._corners = corners if len(corners) < 5000 else self._corners
                 discs = np.column_stack(
-                    (viewport.to_screen(marks.places), marks.radii(viewport), marks.delta)
+                    (
+                        viewport.to_screen(marks.places),
+                        marks.radii(viewport),
+                        marks.delta,
+                        marks.corners,
+                    )
                 )
                 self._discs = _inside(discs, viewport)
         self.update()
@@ -160,9 +165,13 @@ class Overlay(QWidget):
         halo = QPen(QColor(self._theme.background), 1.25)
         font = QFont(self.font())
         font.setWeight(QFont.Weight.DemiBold)
-        for x, y, r, delta in self._discs.tolist():
+        for x, y, r, delta, corner in self._discs.tolist():
             if not near.contains(x, y):
                 continue
+            if corner:
+                painter.setPen(Qt.PenStyle.NoPen)
+                painter.setBrush(QColor(self._theme.corner))
+                painter.drawRect(QRectF(x - r, y - r, 2 * r, 2 * r))
             painter.setPen(halo if r > 4 else Qt.PenStyle.NoPen)
             painter.setBrush(plus if delta > 0 else minus)
             painter.drawEllipse(QPointF(x, y), r, r)

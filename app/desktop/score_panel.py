@@ -25,8 +25,7 @@ class ScorePanel(QWidget):
         self.gained = Fact("Normalised return", "(start \u2212 best) / (start \u2212 optimum)")
         self.way = Fact("Start and best", "Score at the start, and the lowest one since")
         self.irregular = Tally(theme)
-        self.elements = Fact("Elements")
-        self.vertices = Fact("Vertices")
+        self.counts = Fact("Mesh")
         self._arrange()
         document.score_changed.connect(self._on_score_changed)
         self._on_score_changed()
@@ -47,17 +46,19 @@ class ScorePanel(QWidget):
         layout.addWidget(named("SCORE", "Heading"))
         line = QHBoxLayout()
         line.setSpacing(2 * GRID)
-        words = QVBoxLayout()
+        self.words = QWidget()
+        words = QVBoxLayout(self.words)
+        words.setContentsMargins(0, 0, 0, 0)
         words.setSpacing(2)
         words.addStretch(1)
         words.addWidget(self.goal)
         words.addWidget(self.gap)
         words.addStretch(1)
         line.addWidget(self.score)
-        line.addLayout(words, 1)
+        line.addWidget(self.words, 1)
+        line.addWidget(self.optimal, 1)
         layout.addLayout(line)
         layout.addWidget(self.bar)
-        layout.addWidget(self.optimal)
         layout.addSpacing(GRID // 2)
         layout.addWidget(self.gained)
         layout.addWidget(self.way)
@@ -66,17 +67,18 @@ class ScorePanel(QWidget):
         tally.addStretch(1)
         tally.addWidget(self.irregular, 0, Qt.AlignmentFlag.AlignRight)
         layout.addLayout(tally)
-        layout.addWidget(self.elements)
-        layout.addWidget(self.vertices)
+        layout.addWidget(self.counts)
 
     def _on_score_changed(self) -> None:
         document, mesh = self._document, self._document.mesh
         self.optimal.setVisible(document.at_optimum)
+        for part in (self.words, self.bar):
+            part.setVisible(not document.at_optimum)
+        self.score.setVisible(mesh is not None)
         if mesh is None:
-            self.score.setText("\u2013")
             self.goal.setText("No mesh")
             self.gap.setText("")
-            for fact in (self.gained, self.way, self.elements, self.vertices):
+            for fact in (self.gained, self.way, self.counts):
                 fact.text = "\u2013"
             self.irregular.set_counts(0, 0)
             self.bar.share = 0.0
@@ -85,11 +87,10 @@ class ScorePanel(QWidget):
         self.score.setText(f"{mesh.score:,}")
         self.goal.setText(f"Optimum {mesh.optimum:,}")
         gap = mesh.score - mesh.optimum
-        self.gap.setText(f"{gap:,} above it" if gap else "Reached")
+        self.gap.setText(f"{gap:,} above it")
         self.bar.share = document.normalised_return
         self.gained.text = f"{document.normalised_return:.2f}"
         self.way.text = f"{document.start_score:,} \u2192 {document.best_score:,}"
         self.irregular.set_counts(int((delta > 0).sum()), int((delta < 0).sum()))
         noun = "quads" if mesh.k == 4 else "triangles"
-        self.elements.text = f"{mesh.n_elements:,} {noun}"
-        self.vertices.text = f"{mesh.n_vertices:,}"
+        self.counts.text = f"{mesh.n_elements:,} {noun}, {mesh.n_vertices:,} vertices"

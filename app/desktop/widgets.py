@@ -22,6 +22,12 @@ def named(text: str, name: str) -> QLabel:
     return made
 
 
+def sentence(text: str) -> str:
+    """``text`` with a capital and a full stop, as it stands alone."""
+    text = text[:1].upper() + text[1:]
+    return text if text.endswith((".", "\u2026", "!", "?")) else text + "."
+
+
 def rule() -> QFrame:
     """A thin line between two panels."""
     made = QFrame()
@@ -198,21 +204,20 @@ class Optimal(QFrame):
     def __init__(self, theme: Theme) -> None:
         super().__init__()
         self.setObjectName("Optimal")
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(12, 10, 12, 10)
-        layout.setSpacing(10)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(12, GRID, 12, GRID)
+        layout.setSpacing(2)
+        head = QHBoxLayout()
+        head.setSpacing(6)
         self._mark = QLabel()
-        self._mark.setAlignment(Qt.AlignmentFlag.AlignTop)
-        words = QVBoxLayout()
-        words.setSpacing(2)
-        words.addWidget(named("At the optimum", "OptimalTitle"))
+        head.addWidget(self._mark)
+        head.addWidget(named("At the optimum", "OptimalTitle"), 1)
         proof = named("Provably no better connectivity under these desired degrees.", "OptimalText")
         proof.setWordWrap(True)
-        words.addWidget(proof)
-        layout.addWidget(self._mark)
-        layout.addLayout(words, 1)
+        layout.addLayout(head)
+        layout.addWidget(proof)
         self.set_theme(theme)
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in other colours."""
-        self._mark.setPixmap(icons.pixmap("check", theme.accent, 18))
+        self._mark.setPixmap(icons.pixmap("check", theme.accent, 16, self.devicePixelRatioF()))

@@ -29,7 +29,7 @@ from app.desktop.score_panel import ScorePanel
 from app.desktop.sidebar import sidebar
 from app.desktop.vertex_menu import vertex_menu
 from app.desktop.warmup import Warmup
-from app.desktop.widgets import Notice
+from app.desktop.widgets import Notice, sentence
 from app.document import Document
 from app.history import YOU, Row
 from app.markers import label
@@ -292,8 +292,8 @@ class MainWindow(QMainWindow):
     def _submit(self, operation: Operation, halfedge: int) -> None:
         verdict = self.document.check(operation, halfedge)
         if not verdict:
-            self.say(verdict.reason)
-            self.canvas.refuse(verdict.reason)
+            self.say(sentence(verdict.reason))
+            self.canvas.refuse(sentence(verdict.reason))
             return
         self.document.submit(operation, halfedge)
         self.say(told(self.document.history.last))
@@ -432,4 +432,4 @@ def _one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror:
         name = Path(error.filename).name if error.filename else "The file"
         return f"{name}: {error.strerror}."
-    return " ".join(str(error).split())
+    return sentence(" ".join(str(error).split()))

@@ -152,8 +152,8 @@ def test_a_refused_key_shows_the_reason(qtbot, open_window, star):
     point_at(qtbot, window, halfedge)
     press(qtbot, window, Qt.Key.Key_F)
     reason = star.check("flip_left", halfedge).reason
-    assert window.said.text() == reason
-    assert window.canvas.overlay.card == reason
+    assert window.said.text().lower() == f"{reason.lower()}."
+    assert window.canvas.overlay.card == window.said.text()
     assert window.document.history.cursor == 0
 
 

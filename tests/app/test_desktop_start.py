@@ -1,0 +1,13 @@
+"""What the window needs before it is there, measured in a process of its own."""
+
+from app.benchmarks import desktop
+
+
+def test_the_window_is_there_before_torch_and_kernels():
+    with desktop._display() as environment:
+        started = desktop._probe("start", environment)
+    assert not started["torch_at_first_paint"]
+    assert not started["torch_at_the_end"]
+    assert not started["compiled_at_first_paint"]
+    assert started["first_paint_s"] < started["mesh_drawn_s"] < started["kernels_ready_s"]
+    assert started["first_paint_s"] < 15  # 0.6 here; a loaded machine is no failure
