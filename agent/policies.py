@@ -1,0 +1,123 @@
+"""Saved policies: safetensors with a JSON header, never pickle.
+
+The header holds kind, task, architecture, training configuration, evaluation and the version of this
+layout, so that a file says what it is and how well it does.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import asdict, dataclass, field
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save
+
+from agent.network import Architecture, PolicyNetwork
+from agent.task import Task
+from meshcore.atomic import replacing
+
+FORMAT = 1
+_ENDING = ".safetensors"
+
+
+class PolicyError(ValueError):
+    """A policy that cannot be had; the message says which and why."""
+
+
+@dataclass
+class Policy:
+    """A network, the task that it was trained for, and where it came from."""
+
+    name: str
+    network: PolicyNetwork
+    header: dict[str, Any] = field(default_factory=dict)
+    """training, evaluation: plain values."""
+
+    @property
+    def task(self) -> Task:
+        """What it may do and what it sees."""
+        return self.network.task
+
+    @property
+    def kind(self) -> str:
+        """ "tri" or "quad"."""
+        return self.task.kind
+
+
+def _shipped_folder() -> Path:
+    return Path(str(files("assets") / "policies"))
+
+
+def shipped(kind: str | None = None) -> list[str]:
+    """Names of the policies that travel with the program, of one kind or of both, in order.
+
+    A name begins with the kind; the one that is just the kind is the default, and the first.
+    """
+    names = sorted(path.name[: -len(_ENDING)] for path in _shipped_folder().glob(f"*{_ENDING}"))
+    return [name for name in names if kind is None or name.split("-")[0] == kind]
+
+
+def load(name_or_path: str | os.PathLike[str]) -> Policy:
+    """A shipped policy by name, or one from a file. Raises PolicyError with one sentence."""
+    text = os.fspath(name_or_path)
+    path = Path(text)
+    if text in shipped():
+        path = _shipped_folder() / f"{text}{_ENDING}"
+    elif not path.exists():
+        known = ", ".join(shipped()) or "none"
+        raise PolicyError(f"{text}: there is no such policy file, nor a shipped policy ({known})")
+    elif path.is_dir():
+        raise PolicyError(f"{text}: this is a folder, not a policy file")
+    try:
+        with safe_open(path, framework="pt") as file:
+            metadata = file.metadata() or {}
+            weights = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118
+    except (SafetensorError, OSError) as error:
+        raise PolicyError(f"{text}: this is no policy file, or only part of one ({error})") from None
+    return _rebuild(text, path.name.removesuffix(_ENDING), metadata, weights)
+
+
+def _rebuild(
+    text: str, name: str, metadata: dict[str, str], weights: dict[str, torch.Tensor]
+) -> Policy:
+    try:
+        header = json.loads(metadata["meshwright"])
+        if header["format"] != FORMAT:
+            raise PolicyError(f"{text}: policy format {header['format']}, this program reads {FORMAT}")
+        task, architecture = Task(**header["task"]), Architecture(**header["architecture"])
+    except PolicyError:
+        raise
+    except (KeyError, TypeError, ValueError) as error:
+        raise PolicyError(f"{text}: its header is not that of a Meshwright policy ({error})") from None
+    network = PolicyNetwork(task, architecture)
+    try:
+        network.load_state_dict(weights)
+    except RuntimeError:
+        raise PolicyError(f"{text}: its weights do not fit its header") from None
+    if not all(bool(torch.isfinite(value).all()) for value in weights.values()):
+        raise PolicyError(f"{text}: it holds weights that are no numbers")
+    network.eval()
+    return Policy(name, network, {k: v for k, v in header.items() if k not in _OWN})
+
+
+_OWN = ("format", "kind", "task", "architecture")
+
+
+def save_policy(policy: Policy, path: str | os.PathLike[str]) -> None:
+    """Write the policy. An older file of that name stays whole if this fails, with MeshError."""
+    header = {
+        "format": FORMAT,
+        "kind": policy.kind,
+        "task": policy.task.to_dict(),
+        "architecture": asdict(policy.network.architecture),
+        **policy.header,
+    }
+    weights = {key: value.contiguous() for key, value in policy.network.state_dict().items()}
+    metadata = {"kind": policy.kind, "meshwright": json.dumps(header)}
+    with replacing(path) as temporary:
+        temporary.write_bytes(save(weights, metadata=metadata))
