@@ -10,12 +10,15 @@ def run(source: Document | str | Path | None = None, kind: str = "quad", demo: b
 
     ``source`` is a document, the name of a gallery shape, or a mesh file; shapes are meshed with
     elements of ``kind`` ("tri" or "quad"). ``demo`` takes the star if there is no source, and gets
-    the agent ready. Raises MeshError or OSError for a source that cannot be had.
+    the agent ready. Raises MeshError or OSError for a source that cannot be had, and
+    KeyboardInterrupt after the window was closed by Ctrl-C in the terminal.
     """
     from app.desktop.application import application, open_window
+    from app.desktop.interrupt import on_interrupt
 
     app = application()
     window = open_window(source, kind, demo)
-    code = int(app.exec())
+    with on_interrupt(window.close):
+        code = int(app.exec())
     window.warmup.stop()
     return code
