@@ -30,9 +30,9 @@ class Settings:
     """Steps of every run between updates."""
     epochs: int = 2
     """Passes over the collected decisions in one update."""
-    minibatch: int = 1024
+    minibatch: int = 256
     """Decisions per gradient step."""
-    learning_rate: float = 7e-4
+    learning_rate: float = 1.5e-3
     """Of Adam, at the beginning; it falls linearly to a tenth over the training."""
     gamma: float = 0.99
     """Discount (equation 4)."""

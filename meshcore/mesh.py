@@ -321,6 +321,17 @@ class HalfEdgeMesh:
             enough(len(arrays.steps), int(counters[STEP]) + 1),
         )
 
+    def reserve(self, vertices: int, elements: int) -> None:
+        """Make room for so many more vertices and elements at once, so that later edits need none."""
+        counters = self._arrays.counters
+        self._arrays = enlarge(
+            self._arrays,
+            int(counters[VERTEX_SLOTS]) + vertices,
+            int(counters[ELEMENT_SLOTS]) + elements,
+            0,
+            0,
+        )
+
     # -- other journalled changes ----------------------------------------------------------------
 
     def move(self, vertices: np.ndarray | Sequence[int], positions: np.ndarray) -> None:

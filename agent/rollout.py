@@ -1,0 +1,104 @@
+"""One run of a policy on one mesh, step by step: what editors and searches watch and replay."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+
+from agent.policies import Policy, PolicyError
+from agent.ppo import decide
+from agent.selection import LONGEST_CUT
+from agent.task import Observation, Scratch, observe, transition
+from meshcore.halfedge import JOURNALLING
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import NAMES, Operation
+
+Step = list[tuple[Operation, int]]
+
+_SPARE = 4 * LONGEST_CUT + 64  # slots that the longest global split may take
+
+
+class Runner:
+    """Plays a policy on a copy of a mesh; each step replays on the mesh that was given."""
+
+    def __init__(
+        self, mesh: HalfEdgeMesh, policy: Policy, seed: int, max_steps: int | None = None
+    ) -> None:
+        """max_steps: default is what the policy was trained with, relative to the size of the mesh.
+
+        Raises PolicyError if the policy is for the other kind of mesh.
+        """
+        if mesh.kind != policy.kind:
+            raise PolicyError(f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}")
+        self.mesh = mesh.copy()
+        self.mesh.arrays.counters[JOURNALLING] = 0
+        self.policy, self._task = policy, policy.task
+        self.steps = 0
+        self.max_steps = (
+            self._task.step_limit(mesh.n_elements) if max_steps is None else max_steps
+        )
+        self._bounds = self._task.bounds(mesh.n_elements)
+        self._rng = np.random.default_rng(seed)
+        self._generator = torch.Generator().manual_seed(seed)
+        self._scratch = Scratch(self._task, 0)
+        self.best_score = mesh.score
+        self.reason = ""
+        """Why the run is over, in words; empty while it goes on."""
+        self.last: Observation | None = None
+        """What the last decision looked at."""
+
+    @property
+    def score(self) -> int:
+        """s now."""
+        return self.mesh.score
+
+    @property
+    def finished(self) -> bool:
+        """Whether there is nothing more to do."""
+        return bool(self.reason)
+
+    def step(self) -> Step:
+        """Decide and do the next operation; returns it and the clean-ups that follow, or [] at the end."""
+        if self._ended():
+            return []
+        self._make_room()
+        arrays, task = self.mesh.arrays, self._task
+        seen = observe(arrays, task, self._bounds, self._rng, self._scratch)
+        self.last = seen
+        if seen is None:
+            self.reason = "no operation that the policy may use is allowed here"
+            return []
+        seen.state[0] = (
+            (self.mesh.score - self.mesh.optimum) / 10.0,
+            1.0 - self.steps / max(self.max_steps, 1),
+            1.0,
+        )
+        action = int(decide(self.policy.network, seen, self._generator)[0][0])
+        h = int(seen.chosen[0, action // task.operations])
+        code = task.first_operation + action % task.operations
+        scratch = self._scratch
+        count = transition(arrays, code, h, task.cap, scratch.touched, scratch.cleaned)
+        self.steps += 1
+        self.best_score = min(self.best_score, self.mesh.score)
+        cleaned = scratch.cleaned[:count].tolist()
+        self._ended()
+        return [(NAMES[code], h)] + [(Operation.CLEANUP, line) for line in cleaned]
+
+    def _ended(self) -> bool:
+        if not self.reason and self.mesh.score == self.mesh.optimum:
+            self.reason = "at the optimum"
+        if not self.reason and self.steps >= self.max_steps:
+            self.reason = f"its {self.max_steps} steps are used up"
+        return self.finished
+
+    def _make_room(self) -> None:
+        """Have slots enough for any operation, so that none is left out for want of them."""
+        arrays = self.mesh.arrays
+        if self.mesh.slots + _SPARE > len(arrays.vertex) or (
+            len(self.mesh.arrays.element_mark) < int(arrays.counters[1]) + _SPARE
+        ):
+            size = self.mesh.n_elements
+            self.mesh.reserve(2 * _SPARE + size // 4, 2 * _SPARE + size // 4)
+        halfedges = len(self.mesh.arrays.edge)
+        if len(self._scratch.slot_of) < halfedges:
+            self._scratch.slot_of = np.zeros(halfedges, np.int32)
