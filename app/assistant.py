@@ -36,8 +36,15 @@ _log = logging.getLogger(__name__)
 class Runner(Protocol):
     """What the assistant needs of ``agent.rollout.Runner``."""
 
-    finished: bool
-    reason: str
+    @property
+    def finished(self) -> bool:
+        """True once there is nothing more to decide."""
+        ...
+
+    @property
+    def reason(self) -> str:
+        """Why it is finished, in words; empty before."""
+        ...
 
     def step(self) -> Step:
         """The next operation and the clean-ups that follow it; empty when finished."""
@@ -336,10 +343,10 @@ class Assistant:
     def _work(self, run: _Run) -> None:
         try:
             policy = self._policy_of(run.policy)
-            if run.runner is None:
+            if run.mesh is not None:
                 run.runner = self._make_runner(run.mesh, policy, run.seed)
                 run.mesh = None
-            while self._decide(run, run.runner):
+            while run.runner is not None and self._decide(run, run.runner):
                 pass
         except Exception as error:  # a thread's boundary: whatever broke is told to the person
             self._dispatch(partial(self._break_off, run, _sentence(error)))

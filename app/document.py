@@ -10,10 +10,9 @@ from typing import TypeVar
 
 import numpy as np
 
-import meshcore
 from app.history import YOU, History, Row, normalised_return
 from app.signals import Signal
-from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
+from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict, io
 from meshcore.operations import CATALOGUE
 
 Result = TypeVar("Result")
@@ -38,6 +37,13 @@ class Document:
     ``history_changed()``; ``saved_changed()`` name, path or :attr:`modified` may differ;
     ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others.
     """
+
+    history: History
+    _mesh: HalfEdgeMesh | None
+    _name: str
+    _path: Path | None
+    _hover: int
+    _saved_mark: int
 
     def __init__(
         self, mesh: HalfEdgeMesh | None = None, name: str = "", path: str | Path | None = None
@@ -141,14 +147,14 @@ class Document:
     def open(self, path: str | Path) -> None:
         """Read a mesh file; on MeshError or OSError the document stays as it was."""
         path = Path(path)
-        self.replace(meshcore.read(path), path.stem, path)
+        self.replace(io.read(path), path.stem, path)
 
     def save(self, path: str | Path | None = None) -> Path:
         """Write the mesh to ``path`` or where it came from; returns where it is now."""
         target = Path(path) if path is not None else self._path
         if target is None:
             raise MeshError("This mesh has no file yet: choose a name with 'Save as'.")
-        meshcore.write(target, self._need())
+        io.write(target, self._need())
         self._path, self._name = target, target.stem
         self._saved_mark = self.history.mark
         self.saved_changed.emit()

@@ -14,6 +14,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -108,7 +109,6 @@ def _start(began: float, sizes: list[int]) -> dict[str, Any]:
     window = open_window("star", demo=False)
     window.installEventFilter(watch)
     _spin(app, lambda: window.canvas.plotter is not None)
-    window.canvas.plotter.installEventFilter(watch)
     _frame(app, window)
     result["mesh_drawn_s"] = time.time() - began
     _spin(app, lambda: window.ready)
@@ -134,7 +134,7 @@ def _answer(began: float, sizes: list[int]) -> dict[str, Any]:
         window = MainWindow(Document(HalfEdgeMesh.from_elements(points, quads)), ready=True)
         window.resize(1280, 800)
         window.show()
-        _spin(app, lambda window=window: window.canvas.plotter is not None)
+        _spin(app, partial(_is_built, window))
         window.activateWindow()
         _frame(app, window)
         result["hover_ms"][str(side * side)] = _hover(app, window)
@@ -160,7 +160,7 @@ def _hover(app: Any, window: Any) -> float:
     for i in range(REPEATS):
         count, at = painted[0], time.perf_counter()
         QTest.mouseMove(plotter, QPoint(200 + 17 * i, 200 + 11 * i))
-        _spin(app, lambda count=count: painted[0] > count)
+        _spin(app, partial(_exceeds, painted, count))
         times.append(time.perf_counter() - at)
     window.canvas.overlay.removeEventFilter(watch)
     return 1000.0 * median(times[1:])  # the first move builds the search tree
@@ -180,6 +180,14 @@ def _operation(app: Any, window: Any) -> float:
             _frame(app, window)
             times.append(time.perf_counter() - at)
     return 1000.0 * median(times)
+
+
+def _exceeds(counter: list[int], count: int) -> bool:
+    return counter[0] > count
+
+
+def _is_built(window: Any) -> bool:
+    return window.canvas.plotter is not None
 
 
 def _grid(side: int) -> tuple[np.ndarray, np.ndarray]:

@@ -67,6 +67,7 @@ def open_window(
     if demo:
         window.warmup.ready.connect(window.assistant.prepare)
     window.show()
+    window.activateWindow()
     return window
 
 

@@ -34,14 +34,11 @@ from app.document import Document
 from app.history import YOU, Row
 from app.markers import label
 from app.theme import THEMES, style_sheet, theme
-from meshcore import Operation
+from meshcore import Operation, io
 from meshcore.operations import of_kind
 
 PREPARING = "Still preparing the operations: a moment, please."
 POINT_FIRST = "Point at a half-edge first, then press the key."
-FILES = (
-    "Meshes (*.msh *.vtk *.vtu *.inp *.su2 *.obj *.ply *.stl *.off *.mesh *.xdmf);;All files (*)"
-)
 
 
 class MainWindow(QMainWindow):
@@ -350,7 +347,7 @@ class MainWindow(QMainWindow):
     def choose_file(self) -> None:
         """Ask for a file and open it."""
         folder = str(self.document.path.parent) if self.document.path else ""
-        path, _ = QFileDialog.getOpenFileName(self, "Open a mesh", folder, FILES)
+        path, _ = QFileDialog.getOpenFileName(self, "Open a mesh", folder, _files())
         if path:
             self.open(path)
 
@@ -373,7 +370,7 @@ class MainWindow(QMainWindow):
     def save_as(self) -> None:
         """Ask for a file and write the mesh to it."""
         start = str(self.document.path or f"{self.document.name or 'mesh'}.vtk")
-        path, _ = QFileDialog.getSaveFileName(self, "Save the mesh as", start, FILES)
+        path, _ = QFileDialog.getSaveFileName(self, "Save the mesh as", start, _files())
         if path:
             self._save(path)
 
@@ -426,6 +423,11 @@ def told(row: Row | None) -> str:
         return ""
     who = "" if row.by == YOU else f" by {row.by}"
     return f"{row.title}{who}:  s {row.before} \u2192 {row.after}  ({label(row.change)})"
+
+
+def _files() -> str:
+    endings = " ".join(f"*{ending}" for ending in io.endings())
+    return f"Meshes ({endings});;All files (*)"
 
 
 def _one_line(error: Exception) -> str:
