@@ -1,0 +1,178 @@
+"""From the raw content of a mesh file to points and elements that make a half-edge mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshcore.errors import MeshError
+from meshcore.textfiles import Cells, Content
+
+_IGNORED = frozenset({"vertex", "line", "line3", "line4"})
+_MOST_DEGREE = 10_000
+_FARTHEST = 1e100
+"""Coordinates beyond this would overflow in areas."""
+
+Elements = NDArray[np.int64]
+
+
+def single_kind(content: Content) -> Elements:
+    """Return the (m, 3 or 4) elements of a file that holds triangles or quads only.
+
+    Points and lines among the cells are left aside.
+
+    Raises:
+        MeshError: other cells, both kinds, or none.
+    """
+    cells = {kind: block for kind, block in content.cells.items() if kind not in _IGNORED}
+    others = sorted(cells.keys() - {"triangle", "quad"})
+    if others:
+        listed = " and ".join(f"{len(cells[kind])} of type {kind}" for kind in others)
+        raise MeshError(f"only triangles or quads can be edited, but it has cells: {listed}")
+    if len(cells) == 2:
+        raise MeshError(_mixed(content.points, cells))
+    if not cells:
+        raise MeshError("it holds no triangles and no quads")
+    ((_, elements),) = cells.items()
+    return np.asarray(elements, dtype=np.int64)
+
+
+def _mixed(points: NDArray[np.float64], cells: Cells) -> str:
+    few = min(cells, key=lambda kind: len(cells[kind]))
+    message = (
+        f"it mixes {_count(cells, 'triangle')} and {_count(cells, 'quad')}, "
+        "but a mesh here has one kind of element"
+    )
+    corners = cells[few][0]
+    if corners.min() >= 0 and corners.max() < len(points):
+        x, y = points[corners].mean(axis=0)[:2]
+        message += f"; the first {few} lies at ({x:.4g}, {y:.4g})"
+    return message
+
+
+def _count(cells: Cells, kind: str) -> str:
+    number = len(cells[kind])
+    return f"{number} {kind}" + ("" if number == 1 else "s")
+
+
+def refuse_strays(points: NDArray[np.float64], elements: Elements) -> None:
+    """Raise if an element has a point that the file does not hold, or one at no finite place."""
+    count = len(points)
+    stray = ((elements < 0) | (elements >= count)).any(axis=1)
+    if stray.any():
+        raise MeshError(
+            f"element {int(np.argmax(stray))} names a point that is not among the {count} of "
+            "the file"
+        )
+    far = np.logical_not((np.abs(points) < _FARTHEST).all(axis=1))[elements]
+    if far.any():
+        row = int(np.argmax(far.any(axis=1)))
+        point = int(elements[row][np.argmax(far[row])])
+        shown = ", ".join(f"{value:g}" for value in points[point])
+        raise MeshError(f"point {point}, of element {row}, is at ({shown}), not a finite place")
+
+
+def compacted(content: Content, elements: Elements) -> tuple[Content, Elements]:
+    """Drop the points that no element uses; their order stays. The cells are not kept."""
+    used = np.zeros(len(content.points), dtype=bool)
+    used[elements] = True
+    number = np.cumsum(used) - 1
+    data = {
+        name: np.asarray(values)[used]
+        for name, values in content.data.items()
+        if len(values) == len(used)
+    }
+    return Content(content.points[used], {}, data), number[elements]
+
+
+def merged(content: Content, elements: Elements) -> tuple[Content, Elements]:
+    """Merge points at exactly the same place; the first one stays, cells and data are dropped."""
+    points = content.points + 0.0  # so that -0.0 is 0.0
+    _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), dtype=np.int64)
+    rank[np.argsort(first)] = np.arange(len(first))
+    return Content(content.points[np.sort(first)], {}, {}), rank[inverse.ravel()][elements]
+
+
+def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:
+    """Turn elements round so that neighbours agree, and planar meshes run counter-clockwise.
+
+    In each connected part neighbours are made to agree first, across edges of two elements. A
+    part that lies in a plane z = const is then turned so that its signed area is positive; any
+    other keeps the orientation of most of its elements. Elements that need no turn are returned
+    as they are.
+
+    Raises:
+        MeshError: a part cannot be oriented (a Moebius strip).
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    m = len(elements)
+    one, other, agree = _neighbours(elements, len(points))
+    # node e stands for element e as it is, node m + e for e turned round
+    cross = np.where(agree, 0, m)
+    start = np.concatenate([one, one + m])
+    end = np.concatenate([other + cross, other + m - cross])
+    links = coo_array((np.ones(len(start), dtype=np.int8), (start, end)), shape=(2 * m, 2 * m))
+    _, label = connected_components(links, directed=False)
+    same = np.flatnonzero(label[:m] == label[m:])
+    if same.size:
+        raise MeshError(
+            f"its elements cannot be oriented alike (as on a Moebius strip), element {same[0]} "
+            "among them"
+        )
+    # each part appears twice, once turned; the smaller label of the two names the part
+    part = np.minimum(label[:m], label[m:])
+    turned = label[:m] != part
+    weight = np.ones(m)
+    if np.ptp(points[:, 2]) <= 1e-12 * max(1.0, float(np.abs(points).max())):
+        x, y = points[elements][..., 0], points[elements][..., 1]
+        weight = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1)
+    total = np.bincount(part, np.where(turned, -weight, weight), minlength=2 * m)
+    turned ^= total[part] < 0
+    result = elements.copy()
+    result[turned] = elements[turned][:, ::-1]
+    return result
+
+
+def _neighbours(elements: Elements, count: int) -> tuple[Elements, Elements, NDArray[np.bool_]]:
+    """Return pairs of elements with a common edge, and whether they run along it both ways.
+
+    Edges of three elements and more are left out; the mesh will be refused for them.
+    """
+    k = elements.shape[1]
+    start, end = elements.ravel(), np.roll(elements, -1, axis=1).ravel()
+    key = np.minimum(start, end) * count + np.maximum(start, end)
+    order = np.argsort(key, kind="stable")
+    _, first, times = np.unique(key[order], return_index=True, return_counts=True)
+    h, g = order[first[times == 2]], order[first[times == 2] + 1]
+    return h // k, g // k, start[h] != start[g]
+
+
+def flags(data: dict[str, NDArray[np.generic]], count: int) -> NDArray[np.bool_] | None:
+    """Return the geometric flags among a file's data, None if there are none or they make none."""
+    values = _numbers(data, "geometric", count)
+    if values is None or not np.isin(values, (0.0, 1.0)).all():
+        return None
+    return values == 1.0
+
+
+def desired(data: dict[str, NDArray[np.generic]], count: int) -> NDArray[np.int64] | None:
+    """Return the desired degrees among a file's data, None if there are none or they make none."""
+    values = _numbers(data, "desired_degree", count)
+    if values is None or not ((values >= 1) & (values <= _MOST_DEGREE)).all():
+        return None
+    whole = np.rint(values)
+    return whole.astype(np.int64) if (whole == values).all() else None
+
+
+def _numbers(
+    data: dict[str, NDArray[np.generic]], name: str, count: int
+) -> NDArray[np.float64] | None:
+    if name not in data:
+        return None
+    values = np.asarray(data[name])
+    if values.size != count or values.dtype.kind not in "biuf":
+        return None
+    return values.reshape(count).astype(float)

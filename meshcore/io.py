@@ -1,0 +1,151 @@
+"""Mesh files: read and write, the format chosen by the ending."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+import numpy as np
+
+from meshcore import assemble, formats, textfiles
+from meshcore.atomic import reason, replacing
+from meshcore.errors import MeshError
+from meshcore.irregularity import CORNER_ANGLE
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.textfiles import Content
+
+
+def endings() -> tuple[str, ...]:
+    """Return the endings that `read` and `write` know, with their dots."""
+    return tuple(formats.FORMATS)
+
+
+def read(path: str | os.PathLike[str], corner_angle: float = CORNER_ANGLE) -> HalfEdgeMesh:
+    """Read a mesh file.
+
+    Points that no element uses are dropped and the rest renumbered in order; plane formats get
+    z = 0. In formats without shared points (STL, glTF, 3MF) points at the same place are merged.
+    Where neighbouring elements run against each other they are turned to agree, and meshes in
+    a plane z = const run counter-clockwise afterwards.
+
+    Args:
+        path: a file whose ending `endings` lists.
+        corner_angle: degrees by which the boundary must turn at a geometric vertex. A file that
+            carries our own point data "geometric" and "desired_degree" (VTK, VTU, Gmsh, PLY,
+            AVS-UCD, Tecplot, XDMF, MED, Exodus) keeps its corners and desired degrees instead.
+
+    Raises:
+        MeshError: one sentence that begins with the path: the file is missing, a folder, empty,
+            cut off or in another format; it mixes triangles and quads or holds other cells; a
+            coordinate is not a finite number; the mesh is not manifold.
+    """
+    place = Path(path)
+    try:
+        head = _head(place)
+        form = formats.of(place)
+        with formats.contained():
+            content = form.read(place)
+        return _mesh(content, form, head, corner_angle)
+    except MeshError as error:
+        raise MeshError(f"{place}: {str(error).rstrip('.')}.") from error
+    except FileNotFoundError as error:
+        raise MeshError(f"{place}: there is no such file.") from error
+    except OSError as error:
+        raise MeshError(f"{place}: it cannot be read ({reason(error)}).") from error
+    except ValueError as error:
+        raise MeshError(f"{str(place)!r} is no name for a file.") from error
+
+
+def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
+    """Write a mesh to a file, whole or not at all.
+
+    Only live vertices and elements are written, renumbered in order. Coordinates are exact but
+    in Nastran (at least nine digits), glTF and 3MF (single precision) files. Geometric flags and
+    desired degrees go along as point data where the format has it; elsewhere `read` finds the
+    corners by angle.
+
+    Raises:
+        MeshError: one sentence that begins with the path: the ending is unknown, the format does
+            not hold this kind of mesh, the folder does not exist, the disk is full, and so on.
+            An old file is then as it was.
+    """
+    place = Path(path)
+    try:
+        form = formats.of(place)
+        kind = "triangle" if mesh.k == 3 else "quad"
+        if kind not in form.kinds:
+            raise MeshError(f"{form.title} files hold no {kind}s")
+        content = _live(mesh, kind, form.data)
+    except MeshError as error:
+        raise MeshError(f"{place}: {error}.") from error
+    with replacing(path) as temporary:
+        try:
+            with formats.contained():
+                form.write(temporary, content)
+        except MeshError as error:
+            raise MeshError(f"{place}: it cannot be written: {error}.") from error
+        _refuse_incomplete(form, temporary, content)
+
+
+def _refuse_incomplete(form: formats.Format, path: Path, content: Content) -> None:
+    """Read a file back; numpy's tofile does not notice when its last buffer meets a full disk."""
+    try:
+        with formats.contained():
+            there = form.read(path)
+        elements = assemble.single_kind(there)
+    except MeshError as error:
+        raise OSError("it did not arrive whole") from error
+    (block,) = content.cells.values()
+    if len(elements) != len(block) or not (form.merge or len(there.points) == len(content.points)):
+        raise OSError("it did not arrive whole")
+
+
+def _head(path: Path) -> bytes:
+    status = path.stat()
+    if stat.S_ISDIR(status.st_mode):
+        raise MeshError("this is a folder, not a file")
+    if not stat.S_ISREG(status.st_mode):
+        raise MeshError("this is not an ordinary file")
+    if status.st_size == 0:
+        raise MeshError("the file is empty")
+    with path.open("rb") as file:
+        return file.read(1024)
+
+
+def _mesh(content: Content, form: formats.Format, head: bytes, corner_angle: float) -> HalfEdgeMesh:
+    elements = assemble.single_kind(content)
+    promise = textfiles.promised(head)
+    if promise and promise != (len(content.points), len(elements)):
+        raise MeshError(
+            f"it is cut off: {promise[0]} points and {promise[1]} elements are announced, "
+            f"but {len(content.points)} and {len(elements)} are there"
+        )
+    assemble.refuse_strays(content.points, elements)
+    if form.merge:
+        content, elements = assemble.merged(content, elements)
+    content, elements = assemble.compacted(content, elements)
+    points = content.points
+    if points.shape[1] < 3:
+        points = np.column_stack([points, np.zeros((len(points), 3 - points.shape[1]))])
+    elements = assemble.oriented(points, elements)
+    return HalfEdgeMesh.from_elements(
+        points,
+        elements,
+        assemble.flags(content.data, len(points)),
+        assemble.desired(content.data, len(points)),
+        corner_angle,
+    )
+
+
+def _live(mesh: HalfEdgeMesh, kind: str, data: bool) -> Content:
+    vertices = mesh.vertices()
+    number = np.full(len(mesh.points), -1, dtype=np.int64)
+    number[vertices] = np.arange(len(vertices))
+    marks = {
+        "geometric": mesh.geometric()[vertices].astype(np.int32),
+        "desired_degree": mesh.desired()[vertices].astype(np.int32),
+    }
+    return Content(
+        mesh.points[vertices].copy(), {kind: number[mesh.elements()]}, marks if data else {}
+    )
