@@ -241,7 +241,6 @@ _SU2 = Format("SU2", _meshio_text("su2")[0], _own_write(textfiles.write_su2))
 _BDF = Format("Nastran", _meshio_text("nastran")[0], _own_write(textfiles.write_bdf))
 _DAT = Format("Tecplot", *_meshio_text("tecplot"), data=True)
 _XDMF = Format("XDMF", *_meshio_path("xdmf", data_format="XML"), data=True, needs=("h5py",))
-_EXO = Format("Exodus", *_meshio_path("exodus"), data=True, needs=("netCDF4",))
 
 FORMATS: dict[str, Format] = {
     ".msh": _MSH,
@@ -267,8 +266,9 @@ FORMATS: dict[str, Format] = {
     ".3mf": Format("3MF", *_trimesh("3mf"), kinds=_TRIANGLES, merge=True, needs=("lxml",)),
     ".xdmf": _XDMF,
     ".xmf": _XDMF,
-    ".med": Format("MED", *_meshio_path("med"), data=True, needs=("h5py",)),
-    ".e": _EXO,
-    ".exo": _EXO,
 }
-"""Every ending that is read and written."""
+"""Every ending that is read and written.
+
+MED, Exodus, CGNS and the like are left out: their HDF5 library kills the process when the disk
+is full. XDMF is written as plain XML.
+"""

@@ -33,7 +33,7 @@ def read(path: str | os.PathLike[str], corner_angle: float = CORNER_ANGLE) -> Ha
         path: a file whose ending `endings` lists.
         corner_angle: degrees by which the boundary must turn at a geometric vertex. A file that
             carries our own point data "geometric" and "desired_degree" (VTK, VTU, Gmsh, PLY,
-            AVS-UCD, Tecplot, XDMF, MED, Exodus) keeps its corners and desired degrees instead.
+            AVS-UCD, Tecplot, XDMF) keeps its corners and desired degrees instead.
 
     Raises:
         MeshError: one sentence that begins with the path: the file is missing, a folder, empty,
