@@ -30,7 +30,7 @@ class Gallery(QDialog):
     def __init__(self, kind: str, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setWindowTitle("New from shape")
-        self.resize(832, 584)
+        self.resize(832, 640)
         self._kind = kind or "quad"
         self.shapes = QListWidget()
         self.shapes.setViewMode(QListView.ViewMode.IconMode)

@@ -1,0 +1,123 @@
+"""Viewport, picking, markers, and pictures without a display."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from app import scene
+from app.markers import label, markers
+from app.picking import Picker
+from app.policy_files import shipped
+from app.theme import THEMES, style_sheet, theme
+from app.viewport import Viewport
+from meshcore import HalfEdgeMesh
+
+
+def test_viewport_goes_there_and_back():
+    view = Viewport(centre=(3.0, -2.0), pixels=37.0, size=(640, 480))
+    assert view.to_plane(*view.to_screen(np.array([4.0, 1.5]))) == pytest.approx((4.0, 1.5))
+    assert view.to_screen(np.array([3.0, -2.0])).tolist() == [320.0, 240.0]
+    closer = view.zoomed(2.5, 100, 50)
+    assert closer.to_plane(100, 50) == pytest.approx(view.to_plane(100, 50))
+    assert view.panned(10, -5).to_screen(np.array([3.0, -2.0])).tolist() == [330.0, 235.0]
+    corners = np.array([[0.0, 0.0], [10.0, 1.0]])
+    seen = view.fitted(corners, margin=40).to_screen(corners)
+    assert seen[:, 0].tolist() == pytest.approx([40.0, 600.0])
+
+
+@pytest.mark.parametrize("points", [np.empty((0, 2)), np.zeros((1, 2)), np.full((3, 2), 1e9)])
+def test_viewport_of_almost_nothing(points):
+    view = Viewport().fitted(points)
+    assert np.isfinite([*view.centre, view.pixels]).all()
+
+
+def test_picking_agrees_with_every_element(star):
+    picker = Picker(star)
+    rng = np.random.default_rng(1)
+    for row, corners in enumerate(star.points[star.elements()][:, :, :2]):
+        weights = rng.dirichlet(np.ones(4) * 4)
+        x, y = weights @ corners
+        if picker.element_row(x, y) != row:  # a dented quad need not hold its mixtures
+            continue
+        h = picker.halfedge(x, y)
+        assert h // 4 == star.element_ids()[row]
+    middle = star.points[star.elements()[3]].mean(axis=0)
+    assert picker.element_row(middle[0], middle[1]) == 3
+    assert picker.halfedge(50.0, 50.0) == -1
+    assert picker.vertex(*star.points[7][:2] + 1e-6, reach=1e-3) == 7
+    assert picker.vertex(50.0, 50.0, reach=1.0) == -1
+
+
+def test_picking_a_long_thin_element_among_small_ones():
+    columns = np.linspace(0, 1, 200)
+    points = [(x, y) for y in (0.0, 0.005) for x in columns] + [(0.0, 8.0), (1.0, 8.0)]
+    quads = [(i, i + 1, 201 + i, 200 + i) for i in range(199)]
+    thin = HalfEdgeMesh.from_elements(
+        np.array(points), np.array([*quads[:1], (200, 201, 401, 400)])
+    )
+    assert Picker(thin).element_row(0.003, 0.02) == 1
+
+
+def test_markers(star):
+    marks = markers(star)
+    assert np.abs(marks.delta).sum() == star.score
+    radii = marks.radii(Viewport(pixels=1000.0))
+    assert radii[np.argmax(np.abs(marks.delta))] == radii.max()
+    assert (marks.radii(Viewport(pixels=5.0)) < radii).all()
+    assert len(marks.loops) == 1
+    assert (marks.loops[0][0] == marks.loops[0][-1]).all()
+    assert [label(2), label(-1), label(0)] == ["+2", "\u22121", "0"]
+
+
+def test_themes_are_readable():
+    def light(colour):
+        parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    def contrast(a, b):
+        high, low = sorted((light(a), light(b)), reverse=True)
+        return (high + 0.05) / (low + 0.05)
+
+    for colours in THEMES.values():
+        assert contrast(colours.text, colours.panel) > 7
+        assert contrast(colours.muted, colours.panel) > 4.5
+        assert contrast(colours.accent_text, colours.accent) > 4.5
+        assert contrast(colours.marker_text, colours.plus) > 3
+        assert contrast(colours.marker_text, colours.minus) > 3
+        assert contrast(colours.warning, colours.warning_soft) > 4.5
+        assert "{t." not in style_sheet(colours)
+    with pytest.raises(ValueError, match="light, dark"):
+        theme("pink")
+
+
+def test_a_picture_needs_no_display(tmp_path):
+    code = (
+        "from app import scene; from meshcore import generate, shapes; "
+        "m = generate.mesh_domain(shapes.shape('star'), 'quad'); "
+        f"scene.picture(m, r'{tmp_path / 'star.png'}', size=(300, 200), theme='dark')"
+    )
+    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, timeout=100, check=False)
+    assert done.returncode == 0
+    from PIL import Image
+
+    with Image.open(tmp_path / "star.png") as image:
+        assert image.size == (300, 200)
+        pixels = np.asarray(image.convert("RGB")).reshape(-1, 3).astype(int)
+    for name in (THEMES["dark"].background, THEMES["dark"].fill, THEMES["dark"].minus):
+        wanted = [int(name[i : i + 2], 16) for i in (1, 3, 5)]
+        assert np.abs(pixels - wanted).max(axis=1).min() <= 8
+
+
+def test_summary(star, triangles):
+    assert scene.summary(star) == "s 12, optimum 4, 24 quads"
+    assert scene.summary(triangles).endswith("triangles")
+
+
+def test_shipped_policies_agree_with_their_names():
+    for kind in ("tri", "quad"):
+        assert all(name.split("-")[0] == kind for name in shipped(kind))
