@@ -14,12 +14,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.outputs import reason
 from app.report import UserError
 
 if TYPE_CHECKING:
     from agent.policies import Policy
-
+    from agent.training import Training
     from meshcore import HalfEdgeMesh
     from meshcore.domain import Domain
 
@@ -81,6 +80,21 @@ def read_policy(name: str | None, kind: str) -> Policy:
             f"{name}: this policy is for {KIND_NOUN[policy.kind]}, the mesh is of {KIND_NOUN[kind]}"
         )
     return policy
+
+
+def read_configuration(path: str | None, kind: str) -> Training:
+    """Return a training configuration, the shipped one if no path is given."""
+    from agent import training
+
+    if path is not None:
+        _require_file(path)
+    source = path or str(training.shipped_configuration(kind))
+    with _bad_input(source, training.ConfigurationError):
+        configuration = training.read_configuration(source)
+    found = configuration.task.kind
+    if found != kind:
+        raise UserError(f"{source}: this configuration is for --kind {found}, not {kind}")
+    return configuration
 
 
 def one_of(word: str, known: Sequence[str], option: str) -> str:
@@ -162,6 +176,7 @@ def _require_file(path: str) -> None:
 
 @contextmanager
 def _bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
+    """Turn a MeshError, or one of ``more``, into a UserError whose sentence names the input."""
     from meshcore.errors import MeshError
 
     try:
@@ -169,7 +184,3 @@ def _bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
     except (MeshError, *more) as error:
         sentence = str(error)
         raise UserError(sentence if name in sentence else f"{name}: {sentence}") from error
-    except OSError as error:
-        raise UserError(f"{name}: cannot be read: {reason(error)}") from error
-    except UnicodeDecodeError as error:
-        raise UserError(f"{name}: cannot be read: it is not text as it should be") from error

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.outputs import checked_output, reason
+from app.outputs import checked_output
 from app.report import UserError
 
 if TYPE_CHECKING:
@@ -16,10 +16,12 @@ SHOWN_IDS = 20
 
 
 def checked_mesh_output(path: str, kind: str | None = None) -> Path:
-    """Return the path if a mesh of this kind can be written there, or raise UserError."""
-    from meshcore import io
+    """Return the path if a mesh of this kind, or of any, can be written there; else UserError."""
+    from meshcore import formats
 
-    return checked_output(path, tuple(io.writable_endings(kind)))
+    noun = {"tri": "triangle", "quad": "quad"}.get(kind or "")
+    fit = [ending for ending, form in formats.FORMATS.items() if not noun or noun in form.kinds]
+    return checked_output(path, tuple(fit))
 
 
 def settle(mesh: HalfEdgeMesh) -> list[int]:
@@ -37,14 +39,14 @@ def settle(mesh: HalfEdgeMesh) -> list[int]:
 
 
 def write_mesh(path: Path, mesh: HalfEdgeMesh) -> None:
-    """Write the mesh whole or not at all; an operating system error becomes a UserError."""
+    """Write the mesh whole or not at all; what the system refuses becomes a UserError."""
     import meshcore
+    from meshcore.errors import MeshError
 
     try:
         meshcore.write(path, mesh)
-    except OSError as error:
-        state = "the old file is as it was" if path.exists() else "nothing was written"
-        raise UserError(f"cannot write {path}: {reason(error)}; {state}") from error
+    except MeshError as error:
+        raise UserError(str(error)) from error
 
 
 def inverted_words(rows: Sequence[int], lead: str = "") -> str:

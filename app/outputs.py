@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -52,30 +51,11 @@ def replacing(target: Path) -> Iterator[Path]:
     If the block fails, whatever stood at ``target`` is untouched and nothing is left beside it.
     An operating system error becomes a UserError that names the target.
     """
+    from meshcore import atomic
+    from meshcore.errors import MeshError
+
     try:
-        handle, name = tempfile.mkstemp(
-            prefix=f".{target.stem}-", suffix=target.suffix, dir=target.parent
-        )
-        os.close(handle)
-        temporary = Path(name)
-        try:
+        with atomic.replacing(target) as temporary:
             yield temporary
-            os.chmod(temporary, 0o666 & ~_umask())
-            os.replace(temporary, target)
-        finally:
-            temporary.unlink(missing_ok=True)
-    except OSError as error:
-        state = "the old file is as it was" if target.exists() else "nothing was written"
-        raise UserError(f"cannot write {target}: {reason(error)}; {state}") from error
-
-
-def reason(error: OSError) -> str:
-    """Return what the operating system says, without number and path, as the end of a sentence."""
-    text = error.strerror or str(error)
-    return text[:1].lower() + text[1:]
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    except MeshError as error:
+        raise UserError(str(error)) from error

@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
             rollouts=arguments.rollouts,
             seed=arguments.seed,
             policy=policy,
-            progress=update,
+            progress=lambda done: update(done, ""),
         )
     given = {
         "command": "evaluate",

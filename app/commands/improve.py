@@ -13,7 +13,6 @@ from app.report import Report, table
 
 if TYPE_CHECKING:
     from agent.search import Solution
-
     from meshcore import HalfEdgeMesh
 
 SUMMARY = "let a trained policy improve the connectivity of a mesh file"
@@ -64,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Check everything that can be checked, then search, replay, settle and write."""
-    checked_output(arguments.output)
+    meshfile.checked_mesh_output(arguments.output)
     png = checked_output(arguments.png, (".png",), "--png") if arguments.png else None
     mesh = inputs.read_mesh(arguments.input, arguments.corner_angle)
     output = meshfile.checked_mesh_output(arguments.output, mesh.kind)
