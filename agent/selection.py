@@ -3,7 +3,7 @@
 Template (section 4.2.1): around every half-edge lies a template; the half-edges of the one with the
 largest sum of |Delta| are the candidates, ties broken at random. Shortlist: the paper's candidate
 retrieval made wider; those half-edges near irregular vertices whose best operation lowers s most,
-perturbed by Gumbel noise. On large meshes both look at a bounded number of irregular vertices, drawn at
+perturbed by Gumbel noise. On large meshes both look at one region around an irregular vertex drawn at
 random, so that the cost of a decision does not grow with the mesh.
 """
 
@@ -36,7 +36,9 @@ from meshcore.operations import (
 from meshcore.refusals import ALLOWED
 
 LOOKED_AT = 64
-"""Irregular vertices that one decision looks at, at most."""
+"""Irregular vertices up to which a decision looks at all of them."""
+REGION = 256
+"""Elements that a decision looks at on a mesh with more."""
 LONGEST_CUT = 200
 """Quads that one half of a global split may cut, at most, when an agent asks for it."""
 
@@ -99,8 +101,10 @@ def permitted(m, operation, h, cap, floor, ceiling, extended):
         if t < 0:
             return False
         first = crossings(m, m.edge[following(h, 4), TWIN], h, LONGEST_CUT)
+        if first < 0:
+            return False
         second = crossings(m, m.edge[preceding(t, 4), TWIN], h, LONGEST_CUT)
-        if first < 0 or second < 0 or elements + first + second + 1 > ceiling:
+        if second < 0 or elements + first + second + 1 > ceiling:
             return False
     return check(m, operation, h, cap) == ALLOWED
 
@@ -131,28 +135,45 @@ def _collect(m, e, found, count):
 
 @kernel
 def near_irregular(m, k, rng, found):
-    """Elements with an irregular vertex, and their neighbours, into `found`; returns their number.
+    """Elements that one decision looks at, into `found`; returns their number.
 
-    Of more than LOOKED_AT irregular vertices so many are drawn at random.
+    With up to LOOKED_AT irregular vertices: the elements at each of them, and their neighbours. With
+    more: REGION elements that lie together around one of them, drawn at random, so that a decision
+    costs the same on a mesh of any size.
     """
     total = m.counters[IRREGULAR]
     count = 0
-    for i in range(min(total, LOOKED_AT)):
-        place = i if total <= LOOKED_AT else int(rng.random() * total)
-        v = m.irregular[place]
-        start = m.vertex[v, HALF]
-        h = start
-        for _ in range(m.vertex[v, DEGREE]):
-            count = _collect(m, h // k, found, count)
-            first = h - h % k
-            for side in range(first, first + k):
+    if total <= LOOKED_AT:
+        for i in range(total):
+            count = _collect_around(m, m.irregular[i], k, found, count)
+    else:
+        v = m.irregular[int(rng.random() * total)]
+        count = _collect_around(m, v, k, found, count)
+        at = 0
+        while at < count and count < REGION:
+            for side in range(found[at] * k, found[at] * k + k):
                 if m.edge[side, TWIN] >= 0:
                     count = _collect(m, m.edge[side, TWIN] // k, found, count)
-            h = m.edge[preceding(h, k), TWIN]
-            if h < 0 or h == start:
-                break
+            at += 1
     for i in range(count):
         m.element_mark[found[i]] = 0
+    return count
+
+
+@bare_kernel
+def _collect_around(m, v, k, found, count):
+    """Collect the elements at v and their neighbours."""
+    start = m.vertex[v, HALF]
+    h = start
+    for _ in range(m.vertex[v, DEGREE]):
+        count = _collect(m, h // k, found, count)
+        first = h - h % k
+        for side in range(first, first + k):
+            if m.edge[side, TWIN] >= 0:
+                count = _collect(m, m.edge[side, TWIN] // k, found, count)
+        h = m.edge[preceding(h, k), TWIN]
+        if h < 0 or h == start:
+            break
     return count
 
 

@@ -144,12 +144,12 @@ def flip_left(m, h):
 
 @bare_kernel
 def flip_right(m, h):
-    """Turn the edge a-b clockwise into d-g; V, E, F stay; h runs from d to g, all ids live.
+    r"""Turn the edge a-b clockwise into d-g; V, E, F stay; h runs from d to g, all ids live.
 
     d ----- c         d ----- c
-    |       |         | \\     |
+    |       |         | \     |
     a --h-- b    ->   a   h   b
-    |       |         |     \\ |
+    |       |         |     \ |
     f ----- g         f ----- g
     """
     n, p, t = following(h, 4), preceding(h, 4), m.edge[h, TWIN]
@@ -222,12 +222,12 @@ def check_split(m, h, cap):
 
 @bare_kernel
 def split(m, h):
-    """Split a along h: a new vertex v takes over the edge to b, and a quad (v, d, a, f) opens.
+    r"""Split a along h: a new vertex v takes over the edge to b, and a quad (v, d, a, f) opens.
 
     V+1, E+2, F+1; h then runs from v to b; all old ids live.
 
     d ----- c         d ----- c
-    |       |         | \\     |
+    |       |         | \     |
     a --h-- b    ->   a   v-h-b
     |       |         | /     |
     f ----- g         f ----- g
@@ -299,14 +299,14 @@ def check_collapse(m, h, cap):
 
 @bare_kernel
 def collapse(m, h):
-    """Merge a and the opposite corner c of h's quad: V-1, E-2, F-1.
+    r"""Merge a and the opposite corner c of h's quad: V-1, E-2, F-1.
 
     The survivor keeps its place, id, desired degree and flags; the quad dies, h with it.
 
     d ----- c         d
-    |       |          \\
+    |       |          \
     |       |    ->      w
-    |       |          /   \\
+    |       |          /   \
     a --h-- b                b
     """
     n, p = following(h, 4), preceding(h, 4)

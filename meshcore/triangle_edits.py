@@ -1,4 +1,4 @@
-"""Local edits of triangle meshes: flip, split, collapse (section 2.2 of the paper).
+r"""Local edits of triangle meshes: flip, split, collapse (section 2.2 of the paper).
 
 Each edit is a pair: ``check_*`` has no side effect and returns a code of :mod:`meshcore.refusals`;
 the rewrite trusts that check said ALLOWED. Letters: h runs from a to b in the triangle (a, b, c), its
@@ -80,7 +80,7 @@ def check_flip(m, h, cap):
 
 @bare_kernel
 def flip(m, h):
-    """Turn the edge a-b counter-clockwise into d-c; V, E, F stay; h runs from d to c, all ids live.
+    r"""Turn the edge a-b counter-clockwise into d-c; V, E, F stay; h runs from d to c, all ids live.
 
             c                 c
           /   \             / | \
@@ -136,7 +136,7 @@ def check_split(m, h, cap):
 
 @bare_kernel
 def split(m, h):
-    """Put a vertex v on the edge a-b. Inside: V+1, E+3, F+2; on the boundary: V+1, E+2, F+1.
+    r"""Put a vertex v on the edge a-b. Inside: V+1, E+3, F+2; on the boundary: V+1, E+2, F+1.
 
             c                 c
           /   \             / | \
@@ -235,7 +235,7 @@ def check_collapse(m, h, cap):
 
 @bare_kernel
 def collapse(m, h):
-    """Merge a and b. Inside: V-1, E-3, F-2; a boundary edge: V-1, E-2, F-1.
+    r"""Merge a and b. Inside: V-1, E-3, F-2; a boundary edge: V-1, E-2, F-1.
 
     The survivor (see :func:`survivor`) keeps its place, id, desired degree and flags. The elements at
     the edge die with their half-edges, h among them.

@@ -1,0 +1,164 @@
+"""The task as a Gymnasium environment: one mesh, one operation a step."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from agent.patch import describe
+from agent.selection import gather, masks
+from agent.task import Scratch, Task, choose_candidates, transition
+from meshcore.compiled import bare_kernel
+from meshcore.generate import benchmark_mesh
+from meshcore.halfedge import JOURNALLING
+from meshcore.mesh import HalfEdgeMesh
+
+
+@bare_kernel
+def _describe_templates(m, chosen, k, source, turn, slots, out):
+    """Channels (K, T, C) of the templates of the candidates (K,), zero beyond the boundary."""
+    for i in range(len(chosen)):
+        if chosen[i] < 0:
+            out[i] = 0
+            continue
+        gather(m, chosen[i], k, source, turn, slots)
+        for j in range(len(slots)):
+            if slots[j] < 0:
+                out[i, j] = 0
+            else:
+                describe(m, slots[j], k, out[i, j])
+
+
+class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
+    """Bring the vertices of a random polygon's mesh to their desired degrees.
+
+    Actions: ``Discrete(K * A)``: operation a of candidate half-edge i is i * A + a. The K candidates are
+    chosen anew in each step (:mod:`agent.selection`). An action that the mask forbids changes nothing
+    and costs a step.
+
+    Observation: ``template`` (K, T, C) int8, the channels (:data:`agent.patch.CHANNELS`) of the T
+    half-edges of each candidate's template; ``mask`` (K, A), which operations are permitted; ``changes``
+    (K, A) int8, the exact change of s that each would make; ``state`` (3,) float32, a tenth of s - s*,
+    the share of steps left, and elements relative to the start.
+
+    Reward: s before less s after (equation 3).
+
+    End: terminated at the optimum, s = s*; truncated after a number of steps proportional to the
+    elements at the start, or when no operation is permitted.
+
+    Reset options: ``mesh``, a HalfEdgeMesh to start from in place of a random polygon.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
+
+    def __init__(
+        self,
+        kind: str = "quad",
+        sides: tuple[int, int] = (10, 30),
+        task: Task | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        """For polygons with so many sides (a closed range); `task` overrides `kind`."""
+        if render_mode is not None:
+            raise ValueError(f"there is no render mode {render_mode}; see app.scene for pictures")
+        self.render_mode = None
+        self.task = task or Task(kind)
+        self.sides = sides
+        task = self.task
+        source, _ = task.template
+        shape = (task.rows, task.operations)
+        self.action_space = spaces.Discrete(task.rows * task.operations)
+        self.observation_space = spaces.Dict(
+            {
+                "template": spaces.Box(-128, 127, (task.rows, len(source), task.channels), np.int8),
+                "mask": spaces.MultiBinary(shape),
+                "changes": spaces.Box(-128, 127, shape, np.int8),
+                "state": spaces.Box(
+                    np.array([0, -1, 0], np.float32), np.array([1e6, 1, 1e3], np.float32)
+                ),
+            }
+        )
+        self._chosen = np.full(task.rows, -1, np.int64)
+        self._mask = np.zeros(shape, np.bool_)
+        self.mesh: HalfEdgeMesh | None = None
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+        """Start from a random polygon that is not at its optimum, or from ``options["mesh"]``."""
+        super().reset(seed=seed)
+        given = (options or {}).get("mesh")
+        mesh = given.copy() if given is not None else self._draw()
+        mesh.arrays.counters[JOURNALLING] = 0
+        size = mesh.n_elements
+        mesh.reserve(2 * size + 64, 2 * size + 64)
+        self.mesh, self._steps = mesh, 0
+        self._start_elements, self._start_score = size, mesh.score
+        self._limit, self._bounds = self.task.step_limit(size), self.task.bounds(size)
+        self._scratch = Scratch(self.task, len(mesh.arrays.edge))
+        return self._observe(), self._info()
+
+    def _draw(self) -> HalfEdgeMesh:
+        low, high = self.sides
+        while True:
+            sides = int(self.np_random.integers(low, high + 1))
+            mesh = benchmark_mesh(self.task.kind, sides, self.np_random)
+            if mesh.score > mesh.optimum:
+                return mesh
+
+    def _observe(self) -> dict[str, np.ndarray]:
+        assert self.mesh is not None
+        task, arrays, scratch = self.task, self.mesh.arrays, self._scratch
+        source, turn = task.template
+        settings = (task.first_operation, task.operations, task.cap, *self._bounds, task.extended)
+        choose_candidates(
+            arrays, task.k, *settings, task.selection == "shortlist", task.noise, source, turn,
+            self.np_random, scratch.found, scratch.keys, scratch.slots, self._chosen,
+        )  # fmt: skip
+        changes = np.zeros(self._mask.shape, np.int8)
+        masks(arrays, self._chosen, *settings, self._mask, changes)
+        template = np.empty((task.rows, len(source), task.channels), np.int8)
+        _describe_templates(arrays, self._chosen, task.k, source, turn, scratch.slots, template)
+        state = (
+            (self.mesh.score - self.mesh.optimum) / 10.0,
+            1.0 - self._steps / self._limit,
+            self.mesh.n_elements / self._start_elements,
+        )
+        return {
+            "template": template,
+            "mask": self._mask.astype(np.int8),
+            "changes": changes,
+            "state": np.array(state, np.float32),
+        }
+
+    def _info(self) -> dict[str, Any]:
+        assert self.mesh is not None
+        return {
+            "score": self.mesh.score,
+            "optimum": self.mesh.optimum,
+            "elements": self.mesh.n_elements,
+            "action_mask": self._mask.ravel().astype(np.int8),
+        }
+
+    def step(
+        self, action: np.int64
+    ) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
+        """Do one operation and the clean-ups that it makes possible."""
+        if self.mesh is None:
+            raise gymnasium.error.ResetNeeded("reset the environment before the first step")
+        before = self.mesh.score
+        candidate, operation = divmod(int(action), self.task.operations)
+        if self._mask[candidate, operation]:
+            scratch = self._scratch
+            transition(
+                self.mesh.arrays, self.task.first_operation + operation, self._chosen[candidate],
+                self.task.cap, scratch.touched, scratch.cleaned,
+            )  # fmt: skip
+        self._steps += 1
+        observation = self._observe()
+        terminated = self.mesh.score == self.mesh.optimum
+        truncated = not terminated and (self._steps >= self._limit or not self._mask.any())
+        return observation, float(before - self.mesh.score), terminated, truncated, self._info()

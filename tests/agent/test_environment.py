@@ -1,0 +1,64 @@
+"""The Gymnasium environment."""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+from agent.registration import QUADS, TRIANGLES, register_environments
+from meshcore.generate import benchmark_mesh
+
+register_environments()
+
+
+@pytest.mark.parametrize("name", [TRIANGLES, QUADS])
+@pytest.mark.filterwarnings("error")
+def test_passes_the_checker(name):
+    check_env(gymnasium.make(name).unwrapped, skip_render_check=True)
+
+
+@pytest.mark.parametrize("name", [TRIANGLES, QUADS])
+def test_rewards_add_up_to_the_change_of_score(name):
+    env = gymnasium.make(name, sides=(10, 12))
+    rng = np.random.default_rng(0)
+    _, info = env.reset(seed=3)
+    start, total, over = info["score"], 0.0, False
+    while not over:
+        action = rng.choice(np.flatnonzero(info["action_mask"]))
+        observation, reward, terminated, truncated, info = env.step(action)
+        total += reward
+        over = terminated or truncated
+        assert terminated == (info["score"] == info["optimum"])
+    assert total == start - info["score"]
+    assert env.observation_space.contains(observation)
+    env.unwrapped.mesh.validate()
+
+
+def test_a_forbidden_action_changes_nothing():
+    env = gymnasium.make(QUADS)
+    _, info = env.reset(seed=1)
+    forbidden = np.flatnonzero(info["action_mask"] == 0)[0]
+    _, reward, _, _, after = env.step(forbidden)
+    assert reward == 0 and after["score"] == info["score"]
+
+
+def test_starts_from_a_given_mesh():
+    mesh = benchmark_mesh("quad", 12, np.random.default_rng(8))
+    env = gymnasium.make(QUADS)
+    _, info = env.reset(options={"mesh": mesh})
+    assert info["score"] == mesh.score
+    env.step(np.flatnonzero(info["action_mask"])[0])
+    assert mesh.steps == 0
+
+
+def test_the_same_seed_gives_the_same_run():
+    runs = []
+    for _ in range(2):
+        env = gymnasium.make(TRIANGLES)
+        _, info = env.reset(seed=11)
+        scores = []
+        for _ in range(20):
+            _, _, _, _, info = env.step(np.flatnonzero(info["action_mask"])[-1])
+            scores.append(info["score"])
+        runs.append(scores)
+    assert runs[0] == runs[1]

@@ -1,0 +1,146 @@
+"""Masks, one-step changes, runs in batches and alone."""
+
+import numpy as np
+import pytest
+import torch
+
+from agent.batch import Batch, start_meshes
+from agent.network import Architecture, PolicyNetwork
+from agent.policies import Policy, PolicyError
+from agent.ppo import decide, normalised_advantages
+from agent.rollout import Runner
+from agent.selection import permitted, template_plan
+from agent.task import Task
+from meshcore import HalfEdgeMesh
+from meshcore.generate import benchmark_mesh
+from meshcore.halfedge import JOURNALLING, MeshArrays
+from meshcore.operations import NAMES, score_change
+
+
+def _policy(kind, **settings):
+    torch.manual_seed(1)
+    return Policy(kind, PolicyNetwork(Task(kind, blocks=2, **settings), Architecture()))
+
+
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+def test_score_change_is_exact(kind):
+    rng = np.random.default_rng(5)
+    task = Task(kind, extended=True)
+    seen = set()
+    for _ in range(6):
+        mesh = benchmark_mesh(kind, 12, rng)
+        for h in range(mesh.k * mesh.n_elements):
+            for code in range(task.first_operation, task.first_operation + task.operations):
+                if not permitted(mesh.arrays, code, h, 0, 0, 10**6, True):
+                    continue
+                said = score_change(mesh.arrays, code, h)
+                assert mesh.apply(NAMES[code], h).score_change == said
+                seen.add((code, said))
+                mesh.undo()
+    assert len(seen) > 8
+
+
+def test_the_element_floor_and_the_action_set_are_kept():
+    mesh = benchmark_mesh("tri", 12, np.random.default_rng(0))
+    n = mesh.n_elements
+    boundary = [h for h in range(3 * n) if mesh.twin(h) < 0]
+    assert not any(permitted(mesh.arrays, 2, h, 0, 0, 10**6, False) for h in boundary)
+    assert not any(permitted(mesh.arrays, 2, h, 0, n, 10**6, True) for h in range(3 * n))
+    assert any(permitted(mesh.arrays, 2, h, 0, n - 2, 10**6, True) for h in range(3 * n))
+
+
+@pytest.mark.parametrize(("k", "levels", "size"), [(3, 1, 12), (4, 1, 20), (4, 2, 68)])
+def test_template_sizes(k, levels, size):
+    source, turn = template_plan(k, levels)
+    assert len(source) == len(turn) == size
+
+
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+@pytest.mark.parametrize("selection", ["shortlist", "template"])
+def test_runs_in_a_batch_leave_valid_meshes(kind, selection):
+    rng = np.random.default_rng(2)
+    policy = _policy(kind, selection=selection, extended=True)
+    meshes = [m for m in start_meshes(kind, (8, 14), 6, rng) if m.score > m.optimum]
+    batch = Batch(policy.task, meshes, len(meshes), rng, endless=False)
+    generator = torch.Generator().manual_seed(0)
+    while batch.active.any():
+        observation = batch.observe()
+        before = batch.scores
+        outcome = batch.step(observation, decide(policy.network, observation, generator)[0])
+        assert (before - batch.scores == outcome.rewards).all()
+    assert (batch.best >= batch.optima).all()
+    for b, mesh in enumerate(meshes):
+        arrays = MeshArrays(*(array[b] for array in batch.meshes))
+        arrays.counters[JOURNALLING] = 0
+        run = HalfEdgeMesh(arrays, mesh.outline)
+        run.validate()
+        assert run.optimum == mesh.optimum and run.score == batch.scores[b]
+
+
+def test_an_endless_batch_begins_again():
+    rng = np.random.default_rng(2)
+    policy = _policy("quad")
+    batch = Batch(policy.task, start_meshes("quad", (8, 10), 5, rng), 8, rng)
+    generator = torch.Generator().manual_seed(0)
+    ended = 0
+    for _ in range(60):
+        observation = batch.observe()
+        outcome = batch.step(observation, decide(policy.network, observation, generator)[0])
+        ended += int(outcome.ended.sum())
+        assert np.isfinite(outcome.returns[outcome.ended]).all()
+    assert ended > 8 and batch.active.all()
+
+
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+def test_a_run_replays_on_the_mesh_it_was_made_for(kind):
+    mesh = benchmark_mesh(kind, 14, np.random.default_rng(3))
+    replayed = mesh.copy()
+    runner = Runner(mesh, _policy(kind, extended=True), seed=4)
+    scores = []
+    while step := runner.step():
+        for operation, h in step:
+            replayed.apply(operation, h)
+        scores.append(runner.score)
+        assert replayed.score == runner.score
+    assert (replayed.elements() == runner.mesh.elements()).all()
+    assert runner.finished and runner.reason and runner.best_score == min(scores)
+    replayed.validate()
+    assert runner.step() == []
+    again = Runner(mesh, _policy(kind, extended=True), seed=4)
+    while again.step():
+        continue
+    assert (again.mesh.elements() == runner.mesh.elements()).all()
+
+
+def test_a_run_refuses_the_other_kind():
+    mesh = benchmark_mesh("tri", 9, np.random.default_rng(3))
+    with pytest.raises(PolicyError, match="quad"):
+        Runner(mesh, _policy("quad"), seed=0)
+
+
+def test_advantages_agree_with_the_slow_sum():
+    rng = np.random.default_rng(0)
+    steps, runs, gamma = 9, 4, 0.9
+    rewards = rng.integers(-2, 3, (steps, runs)).astype(np.float32)
+    ended = rng.random((steps, runs)) < 0.2
+    gaps = rng.integers(1, 9, (steps + 1, runs)).astype(np.float32)
+    ended[-1] = True
+    advantages, targets = normalised_advantages(
+        rewards, gaps, np.zeros_like(gaps), ended.astype(np.float32), gamma, 1.0
+    )
+    for b in range(runs):
+        for t in range(steps):
+            total, factor = 0.0, 1.0
+            for later in range(t, steps):
+                total += factor * rewards[later, b]
+                factor *= gamma
+                if ended[later, b]:
+                    break
+            assert advantages[t, b] == pytest.approx(total / gaps[t, b], rel=1e-5)
+            assert targets[t, b] == pytest.approx(total / gaps[t, b], rel=1e-5)
+    # a baseline that knows the return leaves no advantage
+    values = np.concatenate([targets, np.zeros((1, runs), np.float32)])
+    advantages, _ = normalised_advantages(
+        rewards, gaps, values, ended.astype(np.float32), gamma, 0.7
+    )
+    assert np.abs(advantages).max() < 1e-5
