@@ -41,6 +41,7 @@ class Canvas(QWidget):
         self.overlay = Overlay(self, theme)
         self._theme = theme
         self._picker: Picker | None = None
+        self._delta = np.empty(0, dtype=int)  # of the mesh that the picker was made for
         self._fitted = True
         self._stale = False
         self._mouse: QPointF | None = None
@@ -175,6 +176,7 @@ class Canvas(QWidget):
         mesh = self.document.mesh
         if self._picker is None and mesh is not None:
             self._picker = Picker(mesh)
+            self._delta = mesh.irregularity()
         return self._picker
 
     def _halfedge_at(self, at: QPointF) -> int:
@@ -205,7 +207,7 @@ class Canvas(QWidget):
     def _tell_vertex(self, at: QPointF) -> None:
         mesh = self.document.mesh
         vertex = self._vertex_at(at)
-        if mesh is None or vertex < 0 or mesh.irregularity()[vertex] == 0:
+        if mesh is None or vertex < 0 or self._delta[vertex] == 0:
             if not self.overlay.warning:
                 self.overlay.hide_card()
             return
