@@ -1,0 +1,244 @@
+"""The foldover-free energy of a plane mesh and its minimiser, compiled.
+
+Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov: "Foldover-free maps in 50 lines of code",
+ACM Transactions on Graphics 40 (4), 2021. Every corner of an element gives a map from its ideal
+corner (a square's, an equilateral triangle's) to the plane, with Jacobian J. Its energy
+
+    f = (tr J'J + lambda (det J^2 + 1)) / chi(eps, det J),   chi = (det + sqrt(eps^2 + det^2)) / 2
+
+is finite for folded corners as long as eps > 0; as eps falls to zero it turns into a barrier that
+no corner crosses. Vertices inside have two variables, a vertex that slides along a side one, the
+arc length. The gaps between neighbours on a side carry a barrier of their own, so that the order
+along a side holds at every step.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from meshcore.compiled import kernel
+from meshcore.sides import Polylines, place_on
+
+MEMORY = 10
+"""Pairs that L-BFGS remembers."""
+SUFFICIENT, CURVATURE = 1e-4, 0.9
+"""Constants of the weak Wolfe conditions."""
+SHARPEST = 1e-9
+"""The smallest regularisation: a barrier for all practical purposes."""
+GAP_WEIGHT = 0.01
+"""Weight of the gap barrier: enough to keep the order, too little to shape the mesh."""
+
+
+class Problem(NamedTuple):
+    """A mesh to untangle, in units of its mean element size."""
+
+    points: np.ndarray
+    """(n, 2) positions, written when variables are placed."""
+    tangent: np.ndarray
+    """(n, 2) directions of the side at sliding vertices, written likewise."""
+    variable: np.ndarray
+    """(n,) a vertex's first variable, -1 when it stays."""
+    side: np.ndarray
+    """(n,) the side that a vertex slides on, -1 for none."""
+    sides: Polylines
+    corners: np.ndarray
+    """(c, 3) the vertex of each corner, the next one and the previous one of its element."""
+    scale: np.ndarray
+    """(c,) one over the squared target size of the corner's element."""
+    shape: np.ndarray
+    """(3,) alpha, beta, delta: tr J'J = alpha (|p|^2 + |q|^2) - beta p.q, det J = delta p x q."""
+    gaps: np.ndarray
+    """(g, 2) variables of neighbours on a side, -1 for one that stays."""
+    offset: np.ndarray
+    """(g,) what the gap has besides the difference of its variables."""
+    gap_scale: np.ndarray
+    """(g,) one over the target of the gap."""
+
+
+@kernel
+def place(problem, x):
+    """Write the positions that the variables `x` stand for."""
+    for v in range(len(problem.variable)):
+        i = problem.variable[v]
+        if i < 0:
+            continue
+        if problem.side[v] < 0:
+            problem.points[v, 0] = x[i]
+            problem.points[v, 1] = x[i + 1]
+        else:
+            place_on(problem.sides, problem.side[v], x[i], problem.points[v], problem.tangent[v])
+
+
+@kernel
+def energy(problem, x, gradient, eps, weight):
+    """Energy, smallest determinant; `gradient` is overwritten. Infinite where a gap closes."""
+    place(problem, x)
+    gradient[:] = 0.0
+    total = 0.0
+    for i in range(len(problem.gaps)):
+        a, b = problem.gaps[i, 0], problem.gaps[i, 1]
+        gap = problem.offset[i]
+        if a >= 0:
+            gap -= x[a]
+        if b >= 0:
+            gap += x[b]
+        gap *= problem.gap_scale[i]
+        if not gap > 0.0:
+            return np.inf, -np.inf
+        total += GAP_WEIGHT / gap
+        slope = GAP_WEIGHT / (gap * gap) * problem.gap_scale[i]
+        if a >= 0:
+            gradient[a] += slope
+        if b >= 0:
+            gradient[b] -= slope
+    alpha, beta, delta = problem.shape
+    smallest = np.inf
+    points = problem.points
+    for c in range(len(problem.corners)):
+        o, s, t = problem.corners[c]
+        scale = problem.scale[c]
+        px, py = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
+        qx, qy = points[t, 0] - points[o, 0], points[t, 1] - points[o, 1]
+        trace = scale * (
+            alpha * (px * px + py * py + qx * qx + qy * qy) - beta * (px * qx + py * qy)
+        )
+        det = scale * delta * (px * qy - py * qx)
+        smallest = min(smallest, det)
+        root = np.sqrt(eps * eps + det * det)
+        # the second form has no cancellation where det is negative
+        chi = 0.5 * (det + root) if det > 0.0 else 0.5 * eps * eps / (root - det)
+        numerator = trace + weight * (det * det + 1.0)
+        total += numerator / chi
+        by_trace = scale / chi
+        by_det = scale * delta * (2.0 * weight * det - numerator / root) / chi
+        gpx = by_trace * (2.0 * alpha * px - beta * qx) + by_det * qy
+        gpy = by_trace * (2.0 * alpha * py - beta * qy) - by_det * qx
+        gqx = by_trace * (2.0 * alpha * qx - beta * px) - by_det * py
+        gqy = by_trace * (2.0 * alpha * qy - beta * py) + by_det * px
+        _pull(problem, gradient, s, gpx, gpy)
+        _pull(problem, gradient, t, gqx, gqy)
+        _pull(problem, gradient, o, -gpx - gqx, -gpy - gqy)
+    return total, smallest
+
+
+@kernel
+def _pull(problem, gradient, v, gx, gy):
+    """Add the derivative (gx, gy) by the position of v to that by its variables."""
+    i = problem.variable[v]
+    if i < 0:
+        return
+    if problem.side[v] < 0:
+        gradient[i] += gx
+        gradient[i + 1] += gy
+    else:
+        gradient[i] += gx * problem.tangent[v, 0] + gy * problem.tangent[v, 1]
+
+
+@kernel
+def _direction(gradient, steps, changes, rho, count, newest, direction):
+    """Two-loop recursion of L-BFGS: `direction` = -H gradient."""
+    memory = len(steps)
+    alphas = np.zeros(memory)
+    direction[:] = -gradient
+    for j in range(count):
+        i = (newest - j) % memory
+        alphas[i] = rho[i] * np.dot(steps[i], direction)
+        direction -= alphas[i] * changes[i]
+    if count:
+        direction *= 1.0 / (rho[newest] * np.dot(changes[newest], changes[newest]))
+    for j in range(count - 1, -1, -1):
+        i = (newest - j) % memory
+        direction += (alphas[i] - rho[i] * np.dot(changes[i], direction)) * steps[i]
+
+
+@kernel
+def descend(problem, x, eps, weight, iterations, precision):
+    """Minimise over `x` in place by L-BFGS at a fixed `eps`.
+
+    The line search is Lewis and Overton's bisection for the weak Wolfe conditions, which does not
+    mind the kinks of polylines. Ends after `iterations` steps or when one gains less than
+    `precision` of the energy. Returns energy, smallest determinant and evaluations.
+    """
+    n = len(x)
+    gradient, trial, slope = np.zeros(n), np.zeros(n), np.zeros(n)
+    direction = np.zeros(n)
+    steps, changes = np.zeros((MEMORY, n)), np.zeros((MEMORY, n))
+    rho = np.zeros(MEMORY)
+    count, newest, evaluations = 0, -1, 1
+    value, smallest = energy(problem, x, gradient, eps, weight)
+    for _ in range(iterations):
+        _direction(gradient, steps, changes, rho, count, newest, direction)
+        descent = np.dot(gradient, direction)
+        if not descent < 0.0:
+            break
+        # without curvature a first step moves no vertex by more than a tenth of an element
+        step = 1.0 if count else 0.1 / (1e-300 + np.abs(direction).max())
+        low, high = 0.0, np.inf
+        found, found_smallest = np.inf, -np.inf
+        for _ in range(40):
+            trial[:] = x + step * direction
+            found, found_smallest = energy(problem, trial, slope, eps, weight)
+            evaluations += 1
+            if not found <= value + SUFFICIENT * step * descent:
+                high = step
+            elif np.dot(slope, direction) < CURVATURE * descent:
+                low = step
+            else:
+                break
+            step = 0.5 * (low + high) if high < np.inf else 2.0 * step
+        if not found < value:
+            break
+        newest = (newest + 1) % MEMORY
+        steps[newest] = trial - x
+        changes[newest] = slope - gradient
+        curvature = np.dot(steps[newest], changes[newest])
+        if curvature > 1e-14 * np.dot(changes[newest], changes[newest]):
+            rho[newest] = 1.0 / curvature
+            count = min(count + 1, MEMORY)
+        else:
+            count, newest = 0, -1
+        gain = value - found
+        x[:] = trial
+        gradient[:] = slope
+        value, smallest = found, found_smallest
+        if gain <= precision * value:
+            break
+    return value, smallest, evaluations
+
+
+@kernel
+def chi(eps, det):
+    """The positive stand-in for a determinant: tends to max(det, 0) as eps tends to 0."""
+    root = np.sqrt(eps * eps + det * det)
+    return 0.5 * (det + root) if det > 0.0 else 0.5 * eps * eps / (root - det)
+
+
+@kernel
+def unfold(problem, x, weight, rounds, inner, polish, polish_weight):
+    """Untangle over `x` in place; then `polish` steps for shape if no corner is left folded.
+
+    The regularisation falls by the rule of the paper (section 3.1, its algorithm 1), which makes
+    the smallest determinant positive after finitely many rounds if each round lowers the energy
+    enough. Returns the smallest determinant and the number of energy evaluations.
+    """
+    gradient = np.zeros(len(x))
+    value, smallest = energy(problem, x, gradient, 1.0, weight)
+    evaluations = 1
+    eps = 1.0 if smallest <= 1e-3 else SHARPEST
+    for _ in range(rounds):
+        if eps <= SHARPEST:
+            break
+        before, _ = energy(problem, x, gradient, eps, weight)
+        value, smallest, used = descend(problem, x, eps, weight, inner, 1e-5)
+        evaluations += used + 1
+        sigma = max(1.0 - value / before, 0.1)
+        goal = (1.0 - sigma) * chi(eps, smallest)
+        eps = 2.0 * np.sqrt(goal * (goal - smallest)) if smallest < goal else SHARPEST
+        eps = max(eps, SHARPEST)
+    if smallest > 0.0:
+        value, smallest, used = descend(problem, x, SHARPEST, polish_weight, polish, 1e-6)
+        evaluations += used
+    place(problem, x)
+    return smallest, evaluations

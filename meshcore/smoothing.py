@@ -1,0 +1,272 @@
+"""Smoothing: better positions for the vertices of a mesh; its connectivity stays as it is.
+
+Vertices inside move towards the mean of their neighbours, boundary vertices slide along their own
+side towards it, geometric and locked vertices stay. A move is made only if it leaves the worst of
+the elements around no worse, and inverts none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from meshcore import region as regions
+from meshcore.compiled import kernel
+from meshcore.halfedge import ORIGIN
+from meshcore.hopeless import mendable
+from meshcore.quality import TOLERANCE
+from meshcore.region import Region
+from meshcore.sides import place_on
+from meshcore.untangle import untangle_region
+
+if TYPE_CHECKING:
+    from meshcore.mesh import HalfEdgeMesh
+
+GAP = 0.1
+"""Share of the room between its neighbours that a sliding vertex keeps to either of them."""
+RINGS = 2
+"""Rings of elements around an edit in which vertices move."""
+SWEEPS = 20
+"""The most sweeps of averaging after an edit."""
+LARGEST = 2000
+"""Elements up to which the region around an edit grows while something stays inverted."""
+WHOLE = 20000
+"""Elements up to which a mesh is untangled as a whole, beyond that around inverted elements."""
+
+
+@kernel
+def element_shape(points, elements, e, reference):
+    """Shape of element e from its worst corner: 1 for the ideal, 0 or less for an inverted one.
+
+    For triangles the mean ratio 2 sqrt(3) det / (sum of squared sides); for quads 2 det / (sum of
+    the two squared sides) at the worst corner, so that long rectangles are worse than squares.
+    """
+    k = elements.shape[1]
+    worst = np.inf
+    for i in range(k if k == 4 else 1):
+        o, s, t = elements[e, i], elements[e, (i + 1) % k], elements[e, (i + k - 1) % k]
+        ox, oy, oz = points[o, 0], points[o, 1], points[o, 2]
+        px, py, pz = points[s, 0] - ox, points[s, 1] - oy, points[s, 2] - oz
+        qx, qy, qz = points[t, 0] - ox, points[t, 1] - oy, points[t, 2] - oz
+        det = (
+            reference[e, 0] * (py * qz - pz * qy)
+            + reference[e, 1] * (pz * qx - px * qz)
+            + reference[e, 2] * (px * qy - py * qx)
+        )
+        squares = px * px + py * py + pz * pz + qx * qx + qy * qy + qz * qz
+        if k == 3:
+            squares += (px - qx) ** 2 + (py - qy) ** 2 + (pz - qz) ** 2
+            det *= np.sqrt(3.0)
+        worst = min(worst, 2.0 * det / squares if squares > 0.0 else 0.0)
+    return worst
+
+
+@kernel
+def move_to_means(points, elements, first, incident, order, seats, sides, reference, guarded):
+    """One sweep over the vertices `order`, in place. Returns how far the farthest one moved,
+    relative to the distance of its neighbours.
+
+    `incident[first[v]:first[v + 1]]` are the elements of v, each with v's corner: k * e + corner.
+    Without `guarded` every vertex goes to its mean whatever becomes of the elements.
+    """
+    k = elements.shape[1]
+    farthest = 0.0
+    mean, normal, old = np.zeros(3), np.zeros(3), np.zeros(3)
+    tangent = np.zeros(3)
+    before = np.zeros(64)
+    for v in order:
+        begin, end = first[v], first[v + 1]
+        mean[:] = 0.0
+        normal[:] = 0.0
+        size = 0.0
+        for i in range(begin, end):
+            e, corner = incident[i] // k, incident[i] % k
+            a, b = elements[e, (corner + 1) % k], elements[e, (corner + k - 1) % k]
+            for c in range(3):
+                mean[c] += points[a, c] + points[b, c]
+                normal[c] += reference[e, c]
+                size += abs(points[a, c] - points[v, c]) + abs(points[b, c] - points[v, c])
+        size /= 2.0 * (end - begin)
+        for c in range(3):
+            mean[c] = mean[c] / (2.0 * (end - begin)) - points[v, c]
+        old[:] = points[v]
+        slides = seats.side[v] >= 0
+        start = seats.parameter[v]
+        shift = 0.0
+        if slides:
+            place_on(sides, seats.side[v], start, points[v], tangent)
+            shift = np.dot(tangent, mean)
+            low, high = seats.low[v], seats.high[v]
+            if seats.before[v] >= 0:
+                low += seats.parameter[seats.before[v]]
+            if seats.after[v] >= 0:
+                high += seats.parameter[seats.after[v]]
+            margin = GAP * (high - low)
+            shift = min(max(start + shift, low + margin), high - margin) - start
+        else:
+            square = np.dot(normal, normal)
+            if square > 0.0:
+                along = np.dot(mean, normal) / square
+                for c in range(3):
+                    mean[c] -= along * normal[c]
+        worst = np.inf
+        for i in range(begin, end):
+            shape = element_shape(points, elements, incident[i] // k, reference)
+            worst = min(worst, shape)
+            if i - begin < 64:
+                before[i - begin] = shape
+        step = 1.0
+        for _ in range(4):
+            if slides:
+                seats.parameter[v] = start + step * shift
+                place_on(sides, seats.side[v], seats.parameter[v], points[v], tangent)
+            else:
+                for c in range(3):
+                    points[v, c] = old[c] + step * mean[c]
+            fine = True
+            if guarded:
+                for i in range(begin, end):
+                    shape = element_shape(points, elements, incident[i] // k, reference)
+                    was = before[i - begin] if i - begin < 64 else np.inf
+                    if shape < worst or (was > TOLERANCE and shape <= TOLERANCE):
+                        fine = False
+                        break
+            if fine:
+                break
+            step *= 0.5
+        if not fine:
+            points[v, :] = old
+            if slides:
+                seats.parameter[v] = start
+        elif size > 0.0:
+            moved = 0.0
+            for c in range(3):
+                moved += abs(points[v, c] - old[c])
+            farthest = max(farthest, moved / size)
+    return farthest
+
+
+def sweep(region: Region, iterations: int, guarded: bool = True) -> None:
+    """Move the vertices of `region` in place by up to `iterations` sweeps."""
+    order = np.flatnonzero(region.movable)
+    if not len(order):
+        return
+    corners = region.elements.ravel()
+    incident = np.argsort(corners, kind="stable")
+    first = np.searchsorted(corners[incident], np.arange(len(region.vertices) + 1))
+    reference = region.references()
+    for _ in range(iterations):
+        moved = move_to_means(
+            region.points,
+            region.elements,
+            first,
+            incident,
+            order,
+            region.seats,
+            region.sides,
+            reference,
+            guarded,
+        )
+        if moved < 1e-4:
+            break
+
+
+def smooth(
+    mesh: HalfEdgeMesh, vertices: Iterable[int] | None = None, iterations: int = 20
+) -> tuple[np.ndarray, np.ndarray]:
+    """Positions nearer to the means of the neighbours; the mesh itself is not changed.
+
+    Args:
+        mesh: the mesh.
+        vertices: ids of the vertices that may move; None: all.
+        iterations: the most sweeps over these vertices; fewer when they come to rest.
+
+    Returns:
+        ids (n,) of the vertices that have moved, and their new positions (n, 3). On a surface that
+        is not plane vertices move along their tangent plane.
+    """
+    region = regions.chosen(mesh, vertices)
+    region.settle()
+    sweep(region, iterations)
+    return region.changed(mesh)
+
+
+def average(
+    mesh: HalfEdgeMesh, vertices: Iterable[int] | None = None, iterations: int = 100
+) -> tuple[np.ndarray, np.ndarray]:
+    """Plain averaging, for comparison: as :func:`smooth`, but elements may fold."""
+    region = regions.chosen(mesh, vertices)
+    region.settle()
+    sweep(region, iterations, guarded=False)
+    return region.changed(mesh)
+
+
+def relax(mesh: HalfEdgeMesh, around: Iterable[int] | None = None) -> np.ndarray:
+    """Smooth after an edit, and untangle where something is inverted; one undo step.
+
+    Args:
+        mesh: the mesh; positions are written through :meth:`HalfEdgeMesh.move`.
+        around: ids of the vertices that an edit touched; only vertices within two rings of elements
+            around them move, and if these do not suffice to untangle, more and more rings, up to
+            some thousand elements. None: the whole mesh.
+
+    Returns:
+        Ids, ascending, of the elements that stay inverted, of those looked at.
+    """
+    if around is None:
+        return _relax_whole(mesh)
+    seeds = regions.live(mesh, around)
+    return _relax_near(mesh, seeds).inverted() if len(seeds) else seeds
+
+
+def _relax_near(mesh: HalfEdgeMesh, seeds: np.ndarray) -> Region:
+    """Relax around `seeds`, with more and more rings as long as something stays inverted."""
+    reach = RINGS
+    while True:
+        region = regions.around(mesh, regions.rings(mesh, seeds, reach))
+        mended = _relax_region(region)
+        if mended or len(region.elements) >= min(LARGEST, mesh.n_elements):
+            _write(mesh, region)
+            return region
+        reach *= 2
+
+
+def _relax_region(region: Region) -> bool:
+    """Smooth and, where needed, untangle in place; false if elements stay inverted needlessly."""
+    region.settle()
+    sweep(region, SWEEPS)
+    if region.folded().any():
+        untangle_region(region)
+    return not mendable(region).any()
+
+
+def _write(mesh: HalfEdgeMesh, region: Region) -> None:
+    vertices, positions = region.changed(mesh)
+    if len(vertices):
+        mesh.move(vertices, positions)
+
+
+def _relax_whole(mesh: HalfEdgeMesh) -> np.ndarray:
+    region = regions.whole(mesh)
+    if mesh.n_elements <= WHOLE:
+        _relax_region(region)
+        _write(mesh, region)
+        return region.inverted()
+    # large meshes are tangled in few places: mend these one by one
+    region.settle()
+    sweep(region, SWEEPS)
+    pending = dict.fromkeys(region.inverted().tolist())
+    stuck: set[int] = set()
+    with mesh.transaction():
+        _write(mesh, region)
+        while pending:
+            element = next(iter(pending))
+            seeds = mesh.arrays.edge[mesh.k * element : mesh.k * (element + 1), ORIGIN]
+            patch = _relax_near(mesh, seeds.astype(np.int64))
+            for seen in patch.element_ids.tolist():
+                pending.pop(seen, None)
+                stuck.discard(seen)
+            stuck.update(patch.inverted().tolist())
+    return np.array(sorted(stuck), np.int64)
