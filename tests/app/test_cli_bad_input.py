@@ -56,7 +56,7 @@ BAD_POLYGONS = {
     "nan.json": ({"outline": [[0, 0], [1, 0], [float("nan"), 1]]}, "NaN|nan|finite|number"),
     "flat.json": ({"outline": [[0, 0], [1, 0], [2, 0]]}, ""),
     "hole.json": ({"outline": SQUARE, "holes": [[[5, 5], [6, 5], [6, 6]]]}, "hole"),
-    "over.json": ({"outline": SQUARE, "holes": [[[3, 3], [6, 3], [3, 3.5]]]}, "hole"),
+    "over.json": ({"outline": SQUARE, "holes": [[[3, 3], [6, 3], [3, 3.5]]]}, "Hole 0 crosses"),
     "key.json": ({"points": SQUARE}, "outline"),
     "list.json": ([1, 2, 3], ""),
     "words.json": ("a letter", ""),

@@ -43,11 +43,11 @@ def corners(mesh) -> set[tuple[float, ...]]:
     return {tuple(np.round(p, 9)) for p in mesh.points[ids[mesh.geometric()[ids]]]}
 
 
-def test_shapes_lists_the_gallery(run, capsys):
+def test_shapes_lists_the_gallery(run, capfd):
     listed = run("shapes")["shapes"]
     assert [row["name"] for row in listed] == list(shapes.names())
     assert cli.main(["shapes"]) == 0
-    assert "star" in capsys.readouterr().out
+    assert "star" in capfd.readouterr().out
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -99,7 +99,7 @@ def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
     assert said["optimum"] == after.optimum == before.optimum
     assert said["elements"] == after.n_elements
     assert said["inverted_elements"] == len(said["inverted_ids"]) == len(quality.inverted(after))
-    assert said["rollouts"] == 3
+    assert 1 <= said["rollouts"] <= 3  # it stops at the optimum
     assert said["operations"] > 0
     assert 0 < said["normalised_return"] <= 1
     with Image.open(tmp_path / "out.png") as picture:
@@ -119,10 +119,10 @@ def test_improve_in_place_with_a_budget_and_the_same_seed(run, tmp_path):
     assert len(written) == 1
 
 
-def test_improve_for_some_seconds_says_so_in_words(tmp_path, capsys, run):
+def test_improve_for_some_seconds_says_so_in_words(run, capfd):
     run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
     assert cli.main(["improve", "a.vtk", "-o", "b.vtk", "--search", "0.5"]) == 0
-    said = capsys.readouterr()
+    said = capfd.readouterr()
     assert said.err == ""
     assert said.out.startswith("a.vtk -> b.vtk\n")
     for word in ("s* = ", "elements", "inverted", "operations", "seconds"):
@@ -173,11 +173,11 @@ def test_window_without_a_display_is_refused(words, capfd):
 
 
 def test_ctrl_c_leaves_the_old_file(run, tmp_path):
-    run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
+    run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad", "--max-edge", "0.04")
     (tmp_path / "b.vtk").write_text("old")
     code = (
         "import os, signal, sys, threading; from app.cli import main; "
-        "threading.Timer(4, os.kill, (os.getpid(), signal.SIGINT)).start(); "
+        "threading.Timer(5, os.kill, (os.getpid(), signal.SIGINT)).start(); "
         "sys.exit(main(['improve', 'a.vtk', '-o', 'b.vtk', '--search', '60']))"
     )
     done = subprocess.run(
