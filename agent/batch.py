@@ -32,7 +32,9 @@ _ROOM = 2.5  # slots of a run, relative to the largest start mesh; a run that ne
 def start_meshes(
     kind: str, sides: tuple[int, int], count: int, rng: np.random.Generator
 ) -> list[HalfEdgeMesh]:
-    """So many meshes of the benchmark distribution, the number of sides drawn from a closed range."""
+    """So many meshes of the benchmark distribution, the number of sides drawn from a closed
+    range.
+    """
     return [
         benchmark_mesh(kind, int(rng.integers(sides[0], sides[1] + 1)), rng) for _ in range(count)
     ]
@@ -91,8 +93,9 @@ def _reset(meshes, pool, b, p):
 
 @kernel
 def _observe_all(
-    meshes, active, k, first, count, cap, floors, ceilings, extended, listed_up, noise, source, turn,
-    rng, found, keys, slots, listed, reads, slot_of, chosen, mask, changes, sizes, features, all_reads,
+    meshes, active, k, first, count, cap, floors, ceilings, extended, listed_up, noise, source,
+    turn, rng, found, keys, slots, listed, reads, slot_of, chosen, mask, changes, sizes, features,
+    all_reads,
 ):  # fmt: skip
     """Candidates, masks and patches of every active run; rows of features and reads in use."""
     rows = read_rows = 0

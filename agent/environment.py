@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -35,14 +35,14 @@ def _describe_templates(m, chosen, k, source, turn, slots, out):
 class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
     """Bring the vertices of a random polygon's mesh to their desired degrees.
 
-    Actions: ``Discrete(K * A)``: operation a of candidate half-edge i is i * A + a. The K candidates are
-    chosen anew in each step (:mod:`agent.selection`). An action that the mask forbids changes nothing
-    and costs a step.
+    Actions: ``Discrete(K * A)``: operation a of candidate half-edge i is i * A + a. The K
+    candidates are chosen anew in each step (:mod:`agent.selection`). An action that the mask
+    forbids changes nothing and costs a step.
 
     Observation: ``template`` (K, T, C) int8, the channels (:data:`agent.patch.CHANNELS`) of the T
-    half-edges of each candidate's template; ``mask`` (K, A), which operations are permitted; ``changes``
-    (K, A) int8, the exact change of s that each would make; ``state`` (3,) float32, a tenth of s - s*,
-    the share of steps left, and elements relative to the start.
+    half-edges of each candidate's template; ``mask`` (K, A), which operations are permitted;
+    ``changes`` (K, A) int8, the exact change of s that each would make; ``state`` (3,) float32, a
+    tenth of s - s*, the share of steps left, and elements relative to the start.
 
     Reward: s before less s after (equation 3).
 
@@ -52,7 +52,7 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
     Reset options: ``mesh``, a HalfEdgeMesh to start from in place of a random polygon.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - as Gymnasium declares it
 
     def __init__(
         self,
@@ -71,7 +71,7 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
         source, _ = task.template
         shape = (task.rows, task.operations)
         self.action_space = spaces.Discrete(task.rows * task.operations)
-        self.observation_space = spaces.Dict(
+        self.observation_space = spaces.Dict(  # type: ignore[assignment]
             {
                 "template": spaces.Box(-128, 127, (task.rows, len(source), task.channels), np.int8),
                 "mask": spaces.MultiBinary(shape),

@@ -35,7 +35,8 @@ def roll_out(
     progress: Callable[[int], None] | None = None,
 ) -> Rollouts:
     """Run the policy so often from each mesh, all meshes side by side. Every mesh must start above
-    its optimum. `progress` is called with the number of rollouts done on all meshes."""
+    its optimum. `progress` is called with the number of rollouts done on all meshes.
+    """
     rng = np.random.default_rng(seed)
     generator = torch.Generator().manual_seed(seed)
     shape = (len(meshes), rollouts)
@@ -67,8 +68,8 @@ def evaluate(
     """One row of the paper's tables on so many unseen polygons of the benchmark distribution.
 
     single: the first rollout on each mesh; best: the best of `rollouts`. Meshes that are at their
-    optimum from the start are left out and counted. `operations_median`: operations to the best state
-    of the best rollout, the shortest among equals.
+    optimum from the start are left out and counted. `operations_median`: operations to the best
+    state of the best rollout, the shortest among equals.
     """
     began = time.perf_counter()
     chosen = policy if policy is not None else load(shipped(kind)[0])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import torch
 from torch import Tensor, nn
@@ -66,9 +67,7 @@ class PolicyNetwork(nn.Module):
         width = architecture.width
         self.embed = nn.Linear(task.channels, architecture.embedding)
         widths = [architecture.embedding, *[width] * task.blocks]
-        self.blocks = nn.ModuleList(
-            Block(task.k, a, b) for a, b in zip(widths[:-1], widths[1:], strict=True)
-        )
+        self.blocks = nn.ModuleList(Block(task.k, a, b) for a, b in pairwise(widths))
         self.head = nn.Linear(width, task.operations)
         nn.init.normal_(self.head.weight, std=0.01)
         nn.init.zeros_(self.head.bias)
@@ -82,6 +81,7 @@ class PolicyNetwork(nn.Module):
             nn.ReLU(),
             nn.Linear(architecture.value_width, 1),
         )
+        self.scales: Tensor
         self.register_buffer("scales", torch.tensor(SCALES[: task.channels]), persistent=False)
 
     def convolve(self, features: Tensor, tables: list[Tensor]) -> Tensor:
@@ -92,8 +92,9 @@ class PolicyNetwork(nn.Module):
         return x
 
     def convolve_mesh(self, features: Tensor, twins: Tensor) -> Tensor:
-        """The same embeddings of all half-edges of a whole mesh: features (H, C), twins (H,), -1 on the
-        boundary; half-edges in element order, so that the cycle is a reshape."""
+        """The same embeddings of all half-edges of a whole mesh: features (H, C), twins (H,), -1 on
+        the boundary; half-edges in element order, so that the cycle is a reshape.
+        """
         k = self.task.k
         index = torch.arange(len(twins))
         cycle = [index - index % k + (index + i) % k for i in range(k)]
@@ -118,8 +119,8 @@ class PolicyNetwork(nn.Module):
     ) -> tuple[Tensor, Tensor]:
         """Logits (B, K A), NEVER where not permitted, and values (B,).
 
-        features, tables: from :func:`agent.patch.assemble`; real (B, K): which candidates there are;
-        mask, changes (B, K, A) and state (B, 3) from an Observation.
+        features, tables: from :func:`agent.patch.assemble`; real (B, K): which candidates there
+        are; mask, changes (B, K, A) and state (B, 3) from an Observation.
         """
         width = self.architecture.width
         embedding = torch.zeros((*real.shape, width)).masked_scatter(

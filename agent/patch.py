@@ -1,10 +1,11 @@
-"""The local patch of a decision: all that the DCEL convolution can see of its candidates (section 4.2).
+"""The local patch of a decision: all that the DCEL convolution can see of its candidates (section
+4.2).
 
-One block of the convolution gives a half-edge what the half-edges of its element and its twin held. The
-embedding of the candidates after B blocks therefore needs the half-edges within B such steps of them,
-and no others: that is the patch. It is listed so that what block b must compute is always the front
-part of the list; a half-edge that several candidates need is listed once. A decision costs the same on
-a mesh of any size.
+One block of the convolution gives a half-edge what the half-edges of its element and its twin held.
+The embedding of the candidates after B blocks therefore needs the half-edges within B such steps of
+them, and no others: that is the patch. It is listed so that what block b must compute is always the
+front part of the list; a half-edge that several candidates need is listed once. A decision costs
+the same on a mesh of any size.
 """
 
 from __future__ import annotations
@@ -14,7 +15,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshcore.compiled import bare_kernel, kernel
-from meshcore.halfedge import DEGREE, DESIRED, FLAGS, GEOMETRIC, ORIGIN, TWIN, on_boundary, preceding
+from meshcore.halfedge import (
+    DEGREE,
+    DESIRED,
+    FLAGS,
+    GEOMETRIC,
+    ORIGIN,
+    TWIN,
+    on_boundary,
+    preceding,
+)
 
 CHANNELS = ("degree", "irregularity", "boundary", "geometric")
 """What is known of the vertex of a half-edge; the paper uses the first two."""
@@ -44,9 +54,9 @@ def list_patch(m, chosen, k, sizes, listed, reads, slot_of):
     """List the patch of the candidates `chosen` (K,), -1 for none.
 
     sizes (B+1,) receives how many half-edges hold values before block 1, 2, ... B and after it, the
-    list's length first; listed (N,) the half-edges; reads (N, k+1) the places in the list of h, next,
-    ..., previous, twin (-1 beyond the boundary) for all but the outermost. slot_of: zeros, one for each
-    half-edge of the mesh; zero again afterwards.
+    list's length first; listed (N,) the half-edges; reads (N, k+1) the places in the list of h,
+    next, ..., previous, twin (-1 beyond the boundary) for all but the outermost. slot_of: zeros,
+    one for each half-edge of the mesh; zero again afterwards.
     """
     blocks = len(sizes) - 1
     count = 0
@@ -91,7 +101,8 @@ class Patches:
     features: np.ndarray
     """(N, C) int8: the channels of each listed half-edge."""
     reads: np.ndarray
-    """(M, k+1) int16: for all but the outermost half-edges, places within the decision's own list."""
+    """(M, k+1) int16: for all but the outermost half-edges, places within the decision's own
+    list."""
     sizes: np.ndarray
     """(D, B+1) int32, see :func:`list_patch`."""
 
@@ -107,7 +118,9 @@ class Patches:
 
 @kernel
 def _assemble(reads, sizes, read_starts, picked, level, beyond, out):
-    """Global reads of one block: places in the joined array of what the block before it computed."""
+    """Global reads of one block: places in the joined array of what the block before it
+    computed.
+    """
     at = 0
     base = 0
     for d in picked:

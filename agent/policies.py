@@ -1,7 +1,7 @@
 """Saved policies: safetensors with a JSON header, never pickle.
 
-The header holds kind, task, architecture, training configuration, evaluation and the version of this
-layout, so that a file says what it is and how well it does.
+The header holds kind, task, architecture, training configuration, evaluation and the version of
+this layout, so that a file says what it is and how well it does.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Policy:
 
     @property
     def kind(self) -> str:
-        """ "tri" or "quad"."""
+        """The kind of mesh it is for, "tri" or "quad"."""
         return self.task.kind
 
 
@@ -78,7 +78,9 @@ def load(name_or_path: str | os.PathLike[str]) -> Policy:
             metadata = file.metadata() or {}
             weights = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118
     except (SafetensorError, OSError) as error:
-        raise PolicyError(f"{text}: this is no policy file, or only part of one ({error})") from None
+        raise PolicyError(
+            f"{text}: this is no policy file, or only part of one ({error})"
+        ) from None
     return _rebuild(text, path.name.removesuffix(_ENDING), metadata, weights)
 
 
@@ -88,12 +90,16 @@ def _rebuild(
     try:
         header = json.loads(metadata["meshwright"])
         if header["format"] != FORMAT:
-            raise PolicyError(f"{text}: policy format {header['format']}, this program reads {FORMAT}")
+            raise PolicyError(
+                f"{text}: policy format {header['format']}, this program reads {FORMAT}"
+            )
         task, architecture = Task(**header["task"]), Architecture(**header["architecture"])
     except PolicyError:
         raise
     except (KeyError, TypeError, ValueError) as error:
-        raise PolicyError(f"{text}: its header is not that of a Meshwright policy ({error})") from None
+        raise PolicyError(
+            f"{text}: its header is not that of a Meshwright policy ({error})"
+        ) from None
     network = PolicyNetwork(task, architecture)
     try:
         network.load_state_dict(weights)

@@ -1,9 +1,10 @@
 """Proximal policy optimisation in the paper's order (section 4.2.2): self-play, advantages, update.
 
-The advantage is the paper's normalised return (equation 5), G_t / (s_t - s*). With a baseline, which the
-paper does without, a learned value of the same quantity is subtracted, and G_t is a lambda-return. A run
-ends at the optimum or after a number of steps proportional to its size; that number is part of the task,
-and the value sees how many steps are left, so that nothing is bootstrapped at the end of a run.
+The advantage is the paper's normalised return (equation 5), G_t / (s_t - s*). With a baseline,
+which the paper does without, a learned value of the same quantity is subtracted, and G_t is a
+lambda-return. A run ends at the optimum or after a number of steps proportional to its size; that
+number is part of the task, and the value sees how many steps are left, so that nothing is
+bootstrapped at the end of a run.
 """
 
 from __future__ import annotations
@@ -66,7 +67,9 @@ class Collected:
     """Normalised returns of the runs that ended meanwhile."""
 
 
-def tensors(observation: Observation) -> tuple[Tensor, list[Tensor], Tensor, Tensor, Tensor, Tensor]:
+def tensors(
+    observation: Observation,
+) -> tuple[Tensor, list[Tensor], Tensor, Tensor, Tensor, Tensor]:
     """The arguments of :meth:`PolicyNetwork.forward` for all decisions of an observation."""
     features, tables = assemble(observation.patches, np.arange(len(observation.mask)))
     return (
@@ -84,7 +87,8 @@ def decide(
     network: PolicyNetwork, observation: Observation, generator: torch.Generator
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sample an action (B,) for each decision, -1 where nothing is permitted; log-probabilities and
-    values (B,)."""
+    values (B,).
+    """
     logits, values = network(*tensors(observation))
     log_probabilities = torch.log_softmax(logits, dim=1)
     actions = torch.multinomial(log_probabilities.exp(), 1, generator=generator)
@@ -103,8 +107,9 @@ def normalised_advantages(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Normalised lambda-returns less the values, and those returns themselves, both (T, B).
 
-    rewards, ended (T, B); gaps s - s* and values of the normalised return (T+1, B). With values of zero
-    and lambda 1 the first is equation 5. Values are of G / gap; the recursion runs on G itself.
+    rewards, ended (T, B); gaps s - s* and values of the normalised return (T+1, B). With values of
+    zero and lambda 1 the first is equation 5. Values are of G / gap; the recursion runs on G
+    itself.
     """
     raw = values * gaps
     advantages = np.zeros_like(rewards)
@@ -200,7 +205,7 @@ def update(
             if settings.baseline:
                 loss = loss + settings.value * error
             optimiser.zero_grad()
-            loss.backward()  # type: ignore[no-untyped-call]
+            loss.backward()
             torch.nn.utils.clip_grad_norm_(network.parameters(), settings.gradient_norm)
             optimiser.step()
             steps += 1

@@ -29,14 +29,14 @@ class Runner:
         Raises PolicyError if the policy is for the other kind of mesh.
         """
         if mesh.kind != policy.kind:
-            raise PolicyError(f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}")
+            raise PolicyError(
+                f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
+            )
         self.mesh = mesh.copy()
         self.mesh.arrays.counters[JOURNALLING] = 0
         self.policy, self._task = policy, policy.task
         self.steps = 0
-        self.max_steps = (
-            self._task.step_limit(mesh.n_elements) if max_steps is None else max_steps
-        )
+        self.max_steps = self._task.step_limit(mesh.n_elements) if max_steps is None else max_steps
         self._bounds = self._task.bounds(mesh.n_elements)
         self._rng = np.random.default_rng(seed)
         self._generator = torch.Generator().manual_seed(seed)
@@ -58,7 +58,9 @@ class Runner:
         return bool(self.reason)
 
     def step(self) -> Step:
-        """Decide and do the next operation; returns it and the clean-ups that follow, or [] at the end."""
+        """Decide and do the next operation; returns it and the clean-ups that follow, or [] at the
+        end.
+        """
         if self._ended():
             return []
         self._make_room()

@@ -55,8 +55,8 @@ def improve(
     """The best state that rollouts of the policy reach from `mesh`, which is not changed.
 
     Stops after `rollouts` runs or `seconds` (None: no such limit; with neither, one run), when
-    `cancelled()` says so, or at a solution that is perfect. `progress(done, best score)` is called after
-    each run. Doing nothing is the solution to beat.
+    `cancelled()` says so, or at a solution that is perfect. `progress(done, best score)` is called
+    after each run. Doing nothing is the solution to beat.
     """
     began = time.perf_counter()
     if rollouts is None and seconds is None:

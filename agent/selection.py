@@ -3,8 +3,8 @@
 Template (section 4.2.1): around every half-edge lies a template; the half-edges of the one with the
 largest sum of |Delta| are the candidates, ties broken at random. Shortlist: the paper's candidate
 retrieval made wider; those half-edges near irregular vertices whose best operation lowers s most,
-perturbed by Gumbel noise. On large meshes both look at one region around an irregular vertex drawn at
-random, so that the cost of a decision does not grow with the mesh.
+perturbed by Gumbel noise. On large meshes both look at one region around an irregular vertex drawn
+at random, so that the cost of a decision does not grow with the mesh.
 """
 
 from __future__ import annotations
@@ -59,7 +59,8 @@ def gather(m, h, k, source, turn, slots):
 
 @cache
 def template_plan(k: int, levels: int) -> tuple[np.ndarray, np.ndarray]:
-    """The template: the half-edges of all elements within `levels` steps of the first, as a program.
+    """The template: the half-edges of all elements within `levels` steps of the first, as a
+    program.
 
     source (N,) int32: the slot from which a slot's half-edge is reached, slot 0 being the half-edge
     itself; turn (N,) int32: -1 if it is the twin of the source, else how far it is turned on in its
@@ -82,8 +83,9 @@ def template_plan(k: int, levels: int) -> tuple[np.ndarray, np.ndarray]:
 
 @bare_kernel
 def permitted(m, operation, h, cap, floor, ceiling, extended):
-    """Whether the agent may apply `operation` to h: :func:`meshcore.operations.check`, the action set,
-    and a number of elements that stays within floor and ceiling."""
+    """Whether the agent may apply `operation` to h: :func:`meshcore.operations.check`, the action
+    set, and a number of elements that stays within floor and ceiling.
+    """
     elements = m.counters[ELEMENTS]
     if operation == TRI_COLLAPSE:
         inside = m.edge[h, TWIN] >= 0
@@ -112,7 +114,8 @@ def permitted(m, operation, h, cap, floor, ceiling, extended):
 @bare_kernel
 def best_change(m, h, first, count, cap, floor, ceiling, extended):
     """The lowest change of s among the permitted operations first ... first + count - 1 at h; 99 if
-    there is none. A global split is not walked out here: its change alone is looked at."""
+    there is none. A global split is not walked out here: its change alone is looked at.
+    """
     best = 99
     for operation in range(first, first + count):
         if operation == GLOBAL_SPLIT:
@@ -137,9 +140,9 @@ def _collect(m, e, found, count):
 def near_irregular(m, k, rng, found):
     """Elements that one decision looks at, into `found`; returns their number.
 
-    With up to LOOKED_AT irregular vertices: the elements at each of them, and their neighbours. With
-    more: REGION elements that lie together around one of them, drawn at random, so that a decision
-    costs the same on a mesh of any size.
+    With up to LOOKED_AT irregular vertices: the elements at each of them, and their neighbours.
+    With more: REGION elements that lie together around one of them, drawn at random, so that a
+    decision costs the same on a mesh of any size.
     """
     total = m.counters[IRREGULAR]
     count = 0
@@ -221,7 +224,8 @@ def local_score(m, h, k, source, turn, slots):
 @kernel
 def best_template(m, k, source, turn, rng, found, slots, chosen):
     """Fill `chosen` (K,) with the half-edges of the template of highest local score, -1 beyond the
-    boundary; returns how many are real. Half-edges far from irregular vertices need no look."""
+    boundary; returns how many are real. Half-edges far from irregular vertices need no look.
+    """
     elements = near_irregular(m, k, rng, found)
     best, tied, at = -1, 0, -1
     for i in range(elements):
@@ -251,8 +255,9 @@ def best_template(m, k, source, turn, rng, found, slots, chosen):
 
 @bare_kernel
 def masks(m, chosen, first, count, cap, floor, ceiling, extended, mask, changes):
-    """For each candidate (K,) and operation (A,) whether it is permitted, and its change of s; returns
-    whether any is."""
+    """For each candidate (K,) and operation (A,) whether it is permitted, and its change of s;
+    returns whether any is.
+    """
     some = False
     for i in range(len(chosen)):
         h = chosen[i]

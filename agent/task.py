@@ -12,7 +12,6 @@ from meshcore.compiled import bare_kernel, kernel
 from meshcore.halfedge import (
     HALF,
     NEW_COUNT,
-    SCORE,
     TOUCHED_COUNT,
     TRACE_IDS,
     MeshArrays,
@@ -134,7 +133,8 @@ class Scratch:
 def transition(m, operation, h, cap, touched, cleaned):
     """One step of the run: the operation, then every clean-up that it makes possible (section 4.1).
 
-    touched (N,): scratch; cleaned (N,): receives the half-edges of the clean-ups. Returns their number.
+    touched (N,): scratch; cleaned (N,): receives the half-edges of the clean-ups. Returns their
+    number.
     """
     rewrite(m, operation, h)
     if operation < FLIP_LEFT:
@@ -176,7 +176,9 @@ def choose_candidates(
 
 @bare_kernel
 def look(m, chosen, k, sizes, listed, reads, slot_of, features):
-    """List the patch of the candidates and describe its half-edges: rows of `features` (N, C) int8."""
+    """List the patch of the candidates and describe its half-edges: rows of `features` (N, C)
+    int8.
+    """
     list_patch(m, chosen, k, sizes, listed, reads, slot_of)
     for i in range(sizes[0]):
         describe(m, listed[i], k, features[i])
@@ -193,8 +195,8 @@ class Observation:
     changes: np.ndarray
     """(B, K, A) int8: exact change of s of each permitted operation."""
     state: np.ndarray
-    """(B, 3) float32: a tenth of the gap to the optimum, share of steps left, elements relative to the
-    start; for the value baseline only."""
+    """(B, 3) float32: a tenth of the gap to the optimum, share of steps left, elements relative to
+    the start; for the value baseline only."""
     patches: Patches
     """The patches of the candidates of each decision; the first rows belong to the real ones."""
 
@@ -221,7 +223,14 @@ def observe(
     sizes = np.zeros((1, task.blocks + 1), np.int32)
     features = np.zeros((LARGEST, task.channels), np.int8)
     look(
-        arrays, chosen[0], task.k, sizes[0], scratch.listed, scratch.reads, scratch.slot_of, features
+        arrays,
+        chosen[0],
+        task.k,
+        sizes[0],
+        scratch.listed,
+        scratch.reads,
+        scratch.slot_of,
+        features,
     )
     patches = Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]].copy(), sizes)
     return Observation(chosen, mask, changes, np.zeros((1, 3), np.float32), patches)

@@ -216,8 +216,8 @@ def train(
     """Train until the configured number of updates, or for so many minutes; returns the results.
 
     Writes policy.safetensors, configuration.json, curve.json and, for a later call to resume,
-    checkpoint.safetensors into `folder`. `report(done, total, numbers)` is called after each update.
-    Ctrl-C leaves the last checkpoint.
+    checkpoint.safetensors into `folder`. `report(done, total, numbers)` is called after each
+    update. Ctrl-C leaves the last checkpoint.
     """
     training = read_configuration(configuration)
     if seed is not None:

@@ -1,7 +1,7 @@
 """The collapse of a chord, the strip of quads that a walk across opposite edges crosses.
 
-Beyond the paper: it undoes the growth that a global split brings. Every edge that the walk crosses (a
-rung) shrinks to a vertex, and the two rails of the strip merge into one chain of edges.
+Beyond the paper: it undoes the growth that a global split brings. Every edge that the walk crosses
+(a rung) shrinks to a vertex, and the two rails of the strip merge into one chain of edges.
 
     x0 -- x1 -- x2
     |     |     |          rungs x0-y0, x1-y1, x2-y2    ->    m0 -- m1 -- m2
@@ -80,7 +80,9 @@ def _chord_length(m, start):
 
 @bare_kernel
 def _rung(m, start, i, entry, ring, length):
-    """The ends x, y of rung i; `entry` is the entry of quad i, or of the last quad for i = length."""
+    """The ends x, y of rung i; `entry` is the entry of quad i, or of the last quad for i =
+    length.
+    """
     if i < length:
         return m.edge[entry, ORIGIN], m.edge[following(entry, 4), ORIGIN]
     o = _opposite_edge(entry)
@@ -202,7 +204,9 @@ def _check_rungs(m, start, length, ring, cap):
 
 @bare_kernel
 def check_chord_collapse(m, h, cap):
-    """The strip meets no quad and no vertex twice, every rung may shrink, and no edge is doubled."""
+    """The strip meets no quad and no vertex twice, every rung may shrink, and no edge is
+    doubled.
+    """
     start = chord_start(m, h)
     ring = m.edge[start, TWIN] >= 0
     length = _chord_length(m, start)
@@ -268,8 +272,8 @@ def chord_collapse(m, h):
         near, far = m.edge[entry, ORIGIN], m.edge[p, ORIGIN]
         link(m, right, left)
         drop_element(m, entry, 4)
-        # left runs from near to far, right from far to near; each vertex is settled for good when the
-        # second of its two quads has gone
+        # left runs from near to far, right from far to near; each vertex is settled for good when
+        # the second of its two quads has gone
         settle(m, near, left if left >= 0 else following(right, 4))
         settle(m, far, right if right >= 0 else following(left, 4))
         touch(m, near)

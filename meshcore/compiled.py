@@ -1,8 +1,8 @@
 """Compiled kernels: one decorator, one cache on disk, one warm-up.
 
-Numba's own cache looks at the file of the function only, so an edit of an *imported* kernel would go
-unnoticed. Here the cache folder carries a hash of all sources of the package: an edit anywhere in it
-means a fresh folder, and stale ones are removed after a month.
+Numba's own cache looks at the file of the function only, so an edit of an *imported* kernel would
+go unnoticed. Here the cache folder carries a hash of all sources of the package: an edit anywhere
+in it means a fresh folder, and stale ones are removed after a month.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 import platformdirs
@@ -30,8 +30,9 @@ _WARM_MARK = "warm"
 
 @cache
 def _source_hash(folder: Path) -> str:
-    """Hash of the sources below `folder` that take part in kernels, and of the versions of numba and
-    Python. Constants count too, so every file that kernels import is among them."""
+    """Hash of the sources below `folder` that take part in kernels, and of the versions of numba
+    and Python. Constants count too, so every file that kernels import is among them.
+    """
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     for path in sorted(folder.rglob("*.py")):
         source = path.read_bytes()
@@ -76,16 +77,19 @@ def bare_kernel(function: F) -> F:
 
 
 def _compiled(function: F, counts_references: bool) -> F:
-    compiled = numba.njit(nogil=True, error_model="numpy", _nrt=counts_references)(function)
-    before = numba_config.CACHE_DIR
-    numba_config.CACHE_DIR = str(cache_folder(function.__module__.partition(".")[0]))
+    # numba's types know neither this option nor its configuration
+    options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": counts_references}
+    configuration: Any = numba_config
+    compiled = numba.njit(**options)(function)
+    before = configuration.CACHE_DIR
+    configuration.CACHE_DIR = str(cache_folder(function.__module__.partition(".")[0]))
     try:
         compiled.enable_caching()
     except (RuntimeError, OSError):
         pass  # numba found no folder that it may write: each process compiles for itself
     finally:
-        numba_config.CACHE_DIR = before
-    return compiled  # type: ignore[no-any-return]
+        configuration.CACHE_DIR = before
+    return cast(F, compiled)
 
 
 def is_warm_on_disk() -> bool:
@@ -112,7 +116,3 @@ def _remove_stale(root: Path) -> None:
     for folder in root.iterdir():
         if folder.is_dir() and folder.stat().st_mtime < deadline:
             shutil.rmtree(folder, ignore_errors=True)
-
-
-if __name__ == "__main__":
-    warm()

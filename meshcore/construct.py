@@ -46,9 +46,9 @@ def checked_input(points: np.ndarray, elements: np.ndarray) -> tuple[np.ndarray,
         raise MeshError(f"elements must be an (m, 3) or (m, 4) array, not {elements.shape}")
     if len(elements) == 0:
         raise MeshError("the mesh has no elements")
-    if not np.issubdtype(elements.dtype, np.integer):
-        if not (elements == np.floor(elements)).all():
-            raise MeshError("elements must hold whole numbers")
+    whole = np.issubdtype(elements.dtype, np.integer)
+    if not whole and not (elements == np.floor(elements)).all():
+        raise MeshError("elements must hold whole numbers")
     elements = elements.astype(np.int64)
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
@@ -154,7 +154,8 @@ def boundary_angles(
     after: np.ndarray,
 ) -> np.ndarray:
     """Angle in degrees of the domain at boundary vertices: by the boundary's directions in a plane
-    z = const, else the sum of the elements' angles there."""
+    z = const, else the sum of the elements' angles there.
+    """
     z = points[elements.ravel(), 2]
     if z.max() - z.min() <= 1e-12 * max(1.0, float(np.abs(points[elements.ravel()]).max())):
         return planar_boundary_angles(points[vertices], points[before], points[after])
@@ -226,7 +227,9 @@ def build(
 
 
 def trace_loops(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
-    """Closed loops of vertex ids from boundary edges (start[i], end[i]), each begun at its least id."""
+    """Closed loops of vertex ids from boundary edges (start[i], end[i]), each begun at its least
+    id.
+    """
     onward = dict(zip(start.tolist(), end.tolist(), strict=True))
     loops = []
     for first in sorted(onward):

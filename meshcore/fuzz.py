@@ -96,10 +96,11 @@ def fuzz(
 ) -> dict[str, float | int | str]:
     """Apply so many random operations of `kind`; MeshError at the first disagreement.
 
-    Each attempt asks the engine and the oracle for their verdicts, which must be the same; each applied
-    operation must give the same faces, the same sum of Delta and Euler characteristic. The exhaustive
-    validator runs on every `validate_every`-th; at the end of each run of some 150 operations all of
-    them are undone to the first bit, redone to the last, and the run's end state is compared.
+    Each attempt asks the engine and the oracle for their verdicts, which must be the same; each
+    applied operation must give the same faces, the same sum of Delta and Euler characteristic. The
+    exhaustive validator runs on every `validate_every`-th; at the end of each run of some 150
+    operations all of them are undone to the first bit, redone to the last, and the run's end state
+    is compared.
     """
     rng = np.random.default_rng(seed)
     applied = attempts = undone = 0

@@ -1,8 +1,8 @@
 """The clean-up of quad meshes: deleting a global line (sections 2.2 and 4.1 of the paper).
 
 A global line is a chain of edges that goes straight through interior vertices of degree 4, none
-geometric, from one non-geometric boundary vertex of degree 3 to another; or the same in a closed ring,
-which the paper leaves open. Deleting it merges the elements on its two sides pairwise.
+geometric, from one non-geometric boundary vertex of degree 3 to another; or the same in a closed
+ring, which the paper leaves open. Deleting it merges the elements on its two sides pairwise.
 
     p0 --- p1 --- p2 --- p3           p0 --- p1 --- p2 --- p3
     |      |      |      |            |      |      |      |
@@ -60,8 +60,9 @@ def _straight_on(m, h):
 
 @bare_kernel
 def line_start(m, h):
-    """The first half-edge of the line through h, on the boundary; h itself on a ring; -1 if h lies on
-    no line."""
+    """The first half-edge of the line through h, on the boundary; h itself on a ring; -1 if h lies
+    on no line.
+    """
     if m.edge[h, TWIN] < 0:
         return -1
     # walk backward: along the twin, whose end is the origin of h
@@ -82,8 +83,9 @@ def line_start(m, h):
 
 @bare_kernel
 def _length(m, start):
-    """Edges of the line that begins with `start`; 0 if it ends elsewhere than on the boundary or at its
-    own start."""
+    """Edges of the line that begins with `start`; 0 if it ends elsewhere than on the boundary or at
+    its own start.
+    """
     h = start
     for count in range(1, m.counters[ELEMENTS] + 2):
         v = m.edge[m.edge[h, TWIN], ORIGIN]
@@ -173,7 +175,9 @@ def _check_vertex(m, h, at_end):
 
 @bare_kernel
 def _mark_line(m, start, length, sign):
-    """Mark (sign 1) or unmark (sign -1) the line's vertices and flanking elements; the largest mark."""
+    """Mark (sign 1) or unmark (sign -1) the line's vertices and flanking elements; the largest
+    mark.
+    """
     h = start
     most = 0
     for i in range(length):
@@ -227,10 +231,11 @@ def check_cleanup(m, h, cap):
 
 @bare_kernel
 def cleanup(m, h):
-    """Delete the line through h. Open line of L edges: V-(L+1), E-(2L+1), F-L; ring: V-L, E-2L, F-L.
+    """Delete the line through h. Open line of L edges: V-(L+1), E-(2L+1), F-L; ring: V-L, E-2L,
+    F-L.
 
-    The quads on the left of the line, seen along its first half-edge, live on with their ids; those on
-    its right die. No other vertex changes its degree.
+    The quads on the left of the line, seen along its first half-edge, live on with their ids; those
+    on its right die. No other vertex changes its degree.
     """
     step = line_start(m, h)
     length = _length(m, step)

@@ -1,11 +1,11 @@
 """The global split of quad meshes (sections 2.2 and 4.1 of the paper).
 
-The edge a-b opens into a quad; the two hanging vertices that this leaves are carried straight through
-quad after quad, each cut in two, until the boundary.
+The edge a-b opens into a quad; the two hanging vertices that this leaves are carried straight
+through quad after quad, each cut in two, until the boundary.
 
 A walk straight through quads is reversible, so it can meet an edge that was split already only by
-coming back into one of the two quads beside the edge a-b. It may cross a quad a second time, the other
-way: the two cuts then cross in a new regular vertex.
+coming back into one of the two quads beside the edge a-b. It may cross a quad a second time, the
+other way: the two cuts then cross in a new regular vertex.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from meshcore.journal import (
     new_element,
     put_edge,
     put_vertex,
-    set_degrees,
     touch,
     touch_new,
 )
@@ -47,8 +46,9 @@ from meshcore.refusals import (
 
 @bare_kernel
 def crossings(m, entry, h, limit):
-    """How many quads a walk crosses that enters through `entry`; -1 if it meets a quad beside h, -2 if
-    they are more than `limit`."""
+    """How many quads a walk crosses that enters through `entry`; -1 if it meets a quad beside h, -2
+    if they are more than `limit`.
+    """
     e, f = h // 4, m.edge[h, TWIN] // 4
     count = 0
     while entry >= 0:
@@ -88,8 +88,8 @@ def _cut(m, entry, v, before, after):
     """Cut the quad entered through `entry`, whose edge x-y the vertex v halves, and go on.
 
     before, after: the half-edges y-v and v-x on the other side of that edge. Returns the half-edge
-    through which the cut enters the next quad (-1 on the boundary), the vertex put on the far edge and
-    the two halves of that edge on this side.
+    through which the cut enters the next quad (-1 on the boundary), the vertex put on the far edge
+    and the two halves of that edge on this side.
 
     w --m-- z
     |   |   |
@@ -138,8 +138,8 @@ def _carry(m, entry, v, before, after):
 def global_split(m, h):
     """Open the edge a-b into the quad (a, n2, b, n1) and carry n1 and n2 to the boundary.
 
-    a gains an edge, b loses one; all new vertices are regular; V+L, E+2L-1, F+L-1 for L new vertices.
-    All old ids live; h then runs from a to n1.
+    a gains an edge, b loses one; all new vertices are regular; V+L, E+2L-1, F+L-1 for L new
+    vertices. All old ids live; h then runs from a to n1.
 
     d ----- c         d ----- c
     |       |         |     n1  ...

@@ -24,7 +24,8 @@ Invariants of live slots
 8. ``vertex[:, MARK]`` and ``element_mark`` are zero between calls (scratch of the checks).
 
 Dead slots are chained: an element through ``edge[k*e, TWIN]`` with all origins -1; a vertex v
-through ``vertex[v, HALF]`` = -2 - (next dead vertex). A dead vertex has degree and desired degree 0.
+through ``vertex[v, HALF]`` = -2 - (next dead vertex). A dead vertex has degree and desired degree
+0.
 """
 
 from __future__ import annotations

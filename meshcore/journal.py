@@ -2,8 +2,8 @@
 
 A step is one row of ``steps``: where its journal entries start and stop, the operation and
 half-edge that made it, and the counters before it. Undoing swaps the entries with the arrays, last
-one first; what is swapped out is what redo swaps in again. One journal serves the window's undo, the
-rollback of a failed transaction and backtracking in a search.
+one first; what is swapped out is what redo swaps in again. One journal serves the window's undo,
+the rollback of a failed transaction and backtracking in a search.
 """
 
 from __future__ import annotations
@@ -159,7 +159,9 @@ def add_degree(m, v, change):
 
 @bare_kernel
 def new_vertex(m, degree, desired, x, y, z):
-    """Take a vertex slot: the last one freed, else the next unused one. Its HALF is for the caller."""
+    """Take a vertex slot: the last one freed, else the next unused one. Its HALF is for the
+    caller.
+    """
     v = m.counters[FREE_VERTEX]
     if v >= 0:
         m.counters[FREE_VERTEX] = -2 - m.vertex[v, HALF]

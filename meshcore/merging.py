@@ -32,7 +32,8 @@ def _rank(m, v, k):
 @bare_kernel
 def survivor(m, a, b, k):
     """The one of a and b that stays: geometric before boundary before locked before a vertex with a
-    desired degree of its own; a when they are alike."""
+    desired degree of its own; a when they are alike.
+    """
     return b if _rank(m, b, k) > _rank(m, a, k) else a
 
 

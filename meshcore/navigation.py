@@ -103,7 +103,9 @@ def cleanable(m, first, cap):
 
 @kernel
 def cleanable_ring(m, cap):
-    """A half-edge on a closed line that may be cleaned up, or -1. Every edge is walked over once."""
+    """A half-edge on a closed line that may be cleaned up, or -1. Every edge is walked over
+    once.
+    """
     seen = np.zeros(m.counters[ELEMENT_SLOTS] * 4, np.uint8)
     for start in range(len(seen)):
         h = start

@@ -1,4 +1,5 @@
-"""The catalogue of operations, and one compiled `check`, `rewrite` and `score_change` over all of them.
+"""The catalogue of operations, and one compiled `check`, `rewrite` and `score_change` over all of
+them.
 
 Every change of connectivity, by a person or by the agent, is one operation on one half-edge.
 """
@@ -6,7 +7,7 @@ Every change of connectivity, by a person or by the agent, is one operation on o
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
 
 from meshcore import chords, global_lines, global_split, quad_edits, triangle_edits
 from meshcore.compiled import bare_kernel
@@ -29,7 +30,7 @@ from meshcore.merging import survivor
 from meshcore.refusals import ALLOWED, DEAD_HALFEDGE
 
 
-class Operation(str, Enum):
+class Operation(StrEnum):
     """The names of the operations; a plain string of the same value serves as well."""
 
     FLIP = "flip"
@@ -40,9 +41,6 @@ class Operation(str, Enum):
     GLOBAL_SPLIT = "global_split"
     CLEANUP = "cleanup"
     CHORD_COLLAPSE = "chord_collapse"
-
-    def __str__(self) -> str:
-        return self.value
 
 
 # codes for compiled kernels; triangles and quads do not share codes
@@ -225,8 +223,9 @@ def rewrite(m, operation, h):
 
 @bare_kernel
 def apply(m, operation, h, cap):
-    """Check, then rewrite. Returns the code, the change of s, and what the trace says: the number of
-    new and of touched vertices and the first six of their ids."""
+    """Check, then rewrite. Returns the code, the change of s, and what the trace says: the number
+    of new and of touched vertices and the first six of their ids.
+    """
     code = check(m, operation, h, cap)
     if code != ALLOWED:
         return code, 0, 0, 0, 0, 0, 0, 0, 0, 0

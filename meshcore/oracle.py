@@ -7,6 +7,8 @@ whole. It shares no code with the engine, and knows no half-edge: a half-edge is
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
+from itertools import pairwise
 
 Face = tuple[int, ...]
 
@@ -62,7 +64,8 @@ class FaceList:
     def after(self, operation: str, a: int, b: int, fresh: list[int]) -> FaceList:
         """The mesh after `operation` on the half-edge a-b; Refused where it is not allowed.
 
-        fresh: ids for new vertices in the order in which they come to be; made up where it is short.
+        fresh: ids for new vertices in the order in which they come to be; made up where it is
+        short.
         """
         result = FaceList([*self.faces], self.desired, self.geometric, self.locked)
         getattr(_Rewrite(result, fresh), operation)(a, b)
@@ -70,7 +73,9 @@ class FaceList:
         return result
 
     def _judge(self, before: FaceList) -> None:
-        """Refuse unless this is a simple oriented manifold mesh of the same topology as `before`."""
+        """Refuse unless this is a simple oriented manifold mesh of the same topology as
+        `before`.
+        """
         seen: set[tuple[int, int]] = set()
         links: dict[int, dict[int, int]] = defaultdict(dict)
         for f in self.faces:
@@ -145,7 +150,7 @@ class _Rewrite:
             raise Refused("the edge lies on the boundary")
         return self._left(b, a)
 
-    def _swap(self, old: list[Face], new: list[Face]) -> None:
+    def _swap(self, old: Sequence[Face], new: Sequence[Face]) -> None:
         self.mesh.faces -= set(map(_turned, old))
         for face in map(_turned, new):
             if face in self.mesh.faces:
@@ -276,7 +281,7 @@ class _Rewrite:
             if len(line) > 2 * len(degrees):
                 raise Refused("the line crosses itself")
         old, new = [], []
-        for u, v in zip(line[:-1], line[1:], strict=True):
+        for u, v in pairwise(line):
             left, right = self._left(u, v), self._right(u, v)
             old += [left, right]
             new.append((right[2], right[3], left[2], left[3]))

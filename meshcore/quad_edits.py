@@ -268,8 +268,9 @@ def split(m, h):
 
 @bare_kernel
 def check_collapse(m, h, cap):
-    """Element collapse: a and c merge. Not both on the boundary, not joined, only b and d in common;
-    b and d keep enough edges; the loser unprotected."""
+    """Element collapse: a and c merge. Not both on the boundary, not joined, only b and d in
+    common; b and d keep enough edges; the loser unprotected.
+    """
     n, p = following(h, 4), preceding(h, 4)
     o = following(n, 4)
     a, b, c, d = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]

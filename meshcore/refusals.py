@@ -38,7 +38,8 @@ SENTENCES = {
     BOTH_ON_BOUNDARY: "the two vertices that would merge both lie on the boundary",
     TWO_GEOMETRIC: "the two vertices that would merge are both geometric",
     LOSER_LOCKED: "a locked vertex would be deleted",
-    LOSER_DESIRED: "a vertex with a desired degree of its own would be deleted, and with it the optimum",
+    LOSER_DESIRED: "a vertex with a desired degree of its own would be deleted, which would change"
+    " the optimum",
     GEOMETRIC_INSIDE: "the boundary would be pulled to a geometric vertex inside the mesh",
     LINK_CONDITION: "the two vertices that would merge have other neighbours in common",
     NO_ELEMENT_LEFT: "a boundary vertex would be left without an element",

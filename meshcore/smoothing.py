@@ -19,7 +19,7 @@ from meshcore.hopeless import mendable
 from meshcore.quality import TOLERANCE
 from meshcore.region import Region
 from meshcore.sides import place_on
-from meshcore.untangle import untangle_region
+from meshcore.untangle import ALL, untangle_region
 
 if TYPE_CHECKING:
     from meshcore.mesh import HalfEdgeMesh
@@ -226,19 +226,23 @@ def _relax_near(mesh: HalfEdgeMesh, seeds: np.ndarray) -> Region:
     reach = RINGS
     while True:
         region = regions.around(mesh, regions.rings(mesh, seeds, reach))
-        mended = _relax_region(region)
-        if mended or len(region.elements) >= min(LARGEST, mesh.n_elements):
+        last = len(region.elements) >= min(LARGEST, mesh.n_elements)
+        if _relax_region(region, tries=3 if last else 1) or last:
             _write(mesh, region)
             return region
         reach *= 2
 
 
-def _relax_region(region: Region) -> bool:
-    """Smooth and, where needed, untangle in place; false if elements stay inverted needlessly."""
+def _relax_region(region: Region, tries: int = ALL) -> bool:
+    """Give the elements better shapes in place; false if some stay inverted without need.
+
+    Averaging unfolds most of what an edit has folded, and is what there is for surfaces that are
+    not plane; the energy, which weighs shapes against each other, gives the better positions.
+    """
     region.settle()
-    sweep(region, SWEEPS)
-    if region.folded().any():
-        untangle_region(region)
+    if region.frame is None or region.folded().any():
+        sweep(region, SWEEPS)
+    untangle_region(region, tries=tries)
     return not mendable(region).any()
 
 

@@ -1,8 +1,8 @@
 r"""Local edits of triangle meshes: flip, split, collapse (section 2.2 of the paper).
 
 Each edit is a pair: ``check_*`` has no side effect and returns a code of :mod:`meshcore.refusals`;
-the rewrite trusts that check said ALLOWED. Letters: h runs from a to b in the triangle (a, b, c), its
-twin t from b to a in the triangle (b, a, d).
+the rewrite trusts that check said ALLOWED. Letters: h runs from a to b in the triangle (a, b, c),
+its twin t from b to a in the triangle (b, a, d).
 
             c
           /   \
@@ -57,6 +57,7 @@ from meshcore.refusals import (
     NO_ELEMENT_LEFT,
 )
 
+
 @bare_kernel
 def check_flip(m, h, cap):
     """Edge flip: interior edge, its new ends distinct and not joined, ends keep degree 3 inside."""
@@ -80,7 +81,8 @@ def check_flip(m, h, cap):
 
 @bare_kernel
 def flip(m, h):
-    r"""Turn the edge a-b counter-clockwise into d-c; V, E, F stay; h runs from d to c, all ids live.
+    r"""Turn the edge a-b counter-clockwise into d-c; V, E, F stay; h runs from d to c, all ids
+    live.
 
             c                 c
           /   \             / | \
@@ -237,8 +239,8 @@ def check_collapse(m, h, cap):
 def collapse(m, h):
     r"""Merge a and b. Inside: V-1, E-3, F-2; a boundary edge: V-1, E-2, F-1.
 
-    The survivor (see :func:`survivor`) keeps its place, id, desired degree and flags. The elements at
-    the edge die with their half-edges, h among them.
+    The survivor (see :func:`survivor`) keeps its place, id, desired degree and flags. The elements
+    at the edge die with their half-edges, h among them.
 
             c                 c
           /   \               |

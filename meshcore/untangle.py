@@ -29,6 +29,8 @@ UNFOLDING, SHAPING = 1.0, 0.1
 corner is unfolded: equal areas keep room for what is folded, equal angles look better."""
 ROUNDS, INNER = 40, 60
 """The most values of the regularisation, and the most L-BFGS steps at each."""
+ALL = 100
+"""More starts than there are."""
 POLISH = 60
 """Steps for shape once nothing is folded."""
 
@@ -84,15 +86,20 @@ def untangle(
     )
 
 
-def untangle_region(region: Region, polish: int = POLISH, seed: int = 0) -> tuple[int, int]:
-    """Untangle `region` in place. Returns the number of starts and of energy evaluations."""
+def untangle_region(
+    region: Region, polish: int = POLISH, seed: int = 0, tries: int = ALL
+) -> tuple[int, int]:
+    """Untangle `region` in place, from at most `tries` starts.
+
+    Returns the number of starts and of energy evaluations.
+    """
     if region.frame is None or not region.movable.any():
         return 0, 0
     region.settle()
     lost = hopeless_corners(region)
     best, present = _State(region, lost), _State(region, lost)
     tried = evaluations = 0
-    for start in starts(region, np.random.default_rng(seed)):
+    for start in starts(region, np.random.default_rng(seed))[:tries]:
         present.restore(region)
         start(region)
         tried += 1

@@ -1,4 +1,5 @@
-"""The exhaustive validator: every invariant of :mod:`meshcore.halfedge`, checked slowly and clearly.
+"""The exhaustive validator: every invariant of :mod:`meshcore.halfedge`, checked slowly and
+clearly.
 
 It reads the raw arrays and avoids the walks that it is meant to check.
 """
@@ -101,9 +102,7 @@ def _check_vertices(
         half, degree = int(m.vertex[v, HALF]), int(m.vertex[v, DEGREE])
         if half < 0:
             _require(v not in joined, f"the dead vertex {v} is part of an element")
-            _require(
-                degree == 0 and m.vertex[v, DESIRED] == 0, f"the dead vertex {v} has a degree"
-            )
+            _require(degree == 0 and m.vertex[v, DESIRED] == 0, f"the dead vertex {v} has a degree")
             continue
         _require(v in joined, f"vertex {v} belongs to no element")
         _require(int(m.edge[half, ORIGIN]) == v, f"the half-edge of vertex {v} starts elsewhere")
@@ -158,13 +157,15 @@ def _check_counters(m: MeshArrays, directed: dict[tuple[int, int], int]) -> None
 def _check_free_slots(m: MeshArrays) -> None:
     """The chains of dead slots hold every dead slot once."""
     k = int(m.counters[SIDES])
-    chain, v = [], int(m.counters[FREE_VERTEX])
+    chain: list[int] = []
+    v = int(m.counters[FREE_VERTEX])
     while v >= 0 and len(chain) <= len(m.vertex):
         chain.append(v)
         v = -2 - int(m.vertex[v, HALF])
     dead = np.flatnonzero(m.vertex[: int(m.counters[VERTEX_SLOTS]), HALF] < 0).tolist()
     _require(sorted(chain) == dead, "the chain of dead vertices misses some or repeats one")
-    chain, e = [], int(m.counters[FREE_ELEMENT])
+    chain = []
+    e = int(m.counters[FREE_ELEMENT])
     while e >= 0 and len(chain) <= len(m.element_mark):
         chain.append(e)
         e = int(m.edge[e * k, TWIN])

@@ -1,9 +1,13 @@
-"""Runs every kernel of the editor once, so that they are compiled, or loaded from the cache."""
+"""Runs every kernel of the editor once, so that they are compiled, or loaded from the cache.
+
+`python -m meshcore.warm_up` does so in a process of its own, whose cache others then load.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from meshcore.compiled import warm
 from meshcore.mesh import HalfEdgeMesh
 
 
@@ -24,3 +28,7 @@ def exercise() -> None:
         continue
     quads.redo()
     quads.clean_all()
+
+
+if __name__ == "__main__":
+    warm()

@@ -42,7 +42,7 @@ def run(
     """
     with _display() as environment:
         update(0, "kernels")
-        subprocess.run([sys.executable, "-m", "meshcore.compiled"], check=True, capture_output=True)
+        subprocess.run([sys.executable, "-m", "meshcore.warm_up"], check=True, capture_output=True)
         update(1, "start")
         _probe("start", environment)  # warm: the second start is the one that counts
         started = _probe("start", environment)

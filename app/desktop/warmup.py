@@ -41,7 +41,7 @@ class Warmup(QObject):
         self._process = QProcess(self)
         self._process.finished.connect(self._on_compiled)
         self._process.errorOccurred.connect(self._on_error)
-        self._process.start(sys.executable, ["-m", "meshcore.compiled"])
+        self._process.start(sys.executable, ["-m", "meshcore.warm_up"])
 
     def stop(self) -> None:
         """End what is under way; loading that has begun is waited for."""

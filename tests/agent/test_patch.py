@@ -27,7 +27,14 @@ def _local(network, mesh, chosen):
     sizes = np.zeros((1, task.blocks + 1), np.int32)
     features = np.zeros((LARGEST, task.channels), np.int8)
     look(
-        mesh.arrays, chosen, task.k, sizes[0], scratch.listed, scratch.reads, scratch.slot_of, features
+        mesh.arrays,
+        chosen,
+        task.k,
+        sizes[0],
+        scratch.listed,
+        scratch.reads,
+        scratch.slot_of,
+        features,
     )
     assert not scratch.slot_of.any()
     patches = Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]], sizes)
@@ -85,7 +92,14 @@ def test_several_decisions_assemble_as_each_alone():
         sizes = np.zeros((1, task.blocks + 1), np.int32)
         features = np.zeros((LARGEST, task.channels), np.int8)
         look(
-            mesh.arrays, chosen, 3, sizes[0], scratch.listed, scratch.reads, scratch.slot_of, features
+            mesh.arrays,
+            chosen,
+            3,
+            sizes[0],
+            scratch.listed,
+            scratch.reads,
+            scratch.slot_of,
+            features,
         )
         parts.append(Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]].copy(), sizes))
         alone.append(_local(network, mesh, chosen)[0])
