@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshcore.compiled import kernel
-from meshcore.sides import Polylines, place_on
+from meshcore.outline import Polylines, place_on
 
 MEMORY = 10
 """Pairs that L-BFGS remembers."""

@@ -22,17 +22,15 @@ PLACES = 20000
 
 
 def hopeless(mesh: HalfEdgeMesh) -> np.ndarray:
-    """Ids, ascending, of the elements of `mesh` that no position can mend, as found beforehand."""
+    """Ids, ascending, of the elements of `mesh` that no position can mend, as far as is known."""
     region = regions.whole(mesh)
-    if region.frame is None:
-        return np.zeros(0, np.int64)
     return np.sort(region.element_ids[hopeless_corners(region).any(axis=1)])
 
 
 def mendable(region: Region) -> np.ndarray:
     """(m,) bool: the inverted elements of the region that are not known to be hopeless."""
     bad = region.inverted_rows()
-    if bad.any() and region.frame is not None:
+    if bad.any():
         bad &= ~hopeless_corners(region).any(axis=1)
     return bad
 
@@ -42,13 +40,15 @@ def hopeless_corners(region: Region) -> np.ndarray:
 
     These are corners of doublets, and corners none of whose three vertices is free. There the
     determinant is affine in each of the three on each straight piece of its side, so that its
-    maximum is taken at ends of pieces, in the order that the vertices have on a side.
+    maximum is taken at ends of pieces, in the order that the vertices have on a side. Of surfaces
+    that are not plane none is known.
     """
-    assert region.frame is not None
     elements = region.elements
     k = elements.shape[1]
-    uses = np.bincount(elements.ravel(), minlength=len(region.vertices))
     found = np.zeros(elements.shape, bool)
+    if region.frame is None:
+        return found
+    uses = np.bincount(elements.ravel(), minlength=len(region.vertices))
     if k == 4:
         found |= (region.free & (uses == 2))[elements]
     flat = region.points @ region.frame[:2].T

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore.sides import Outline
+from meshcore.outline import Outline
 
 if TYPE_CHECKING:
     from meshcore.mesh import HalfEdgeMesh

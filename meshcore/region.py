@@ -15,8 +15,9 @@ import numpy as np
 
 from meshcore.errors import MeshError
 from meshcore.halfedge import FLAGS, GEOMETRIC, HALF, LOCKED, ORIGIN, TWIN
+from meshcore.outline import Outline, Polylines, place_all
 from meshcore.quality import TOLERANCE, corner_sines, reference_normals
-from meshcore.sides import Outline, Polylines, Sides, place_all
+from meshcore.sides import Sides
 
 if TYPE_CHECKING:
     from meshcore.mesh import HalfEdgeMesh

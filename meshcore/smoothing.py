@@ -16,9 +16,9 @@ from meshcore import region as regions
 from meshcore.compiled import kernel
 from meshcore.halfedge import ORIGIN
 from meshcore.hopeless import mendable
+from meshcore.outline import place_on
 from meshcore.quality import TOLERANCE
 from meshcore.region import Region
-from meshcore.sides import place_on
 from meshcore.untangle import ALL, untangle_region
 
 if TYPE_CHECKING:

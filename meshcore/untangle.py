@@ -17,8 +17,8 @@ import numpy as np
 from meshcore import region as regions
 from meshcore.foldover import Problem, unfold
 from meshcore.hopeless import hopeless_corners
+from meshcore.outline import Polylines
 from meshcore.region import Region
-from meshcore.sides import Polylines
 from meshcore.starts import hold_single_quads, starts
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ def _run(region: Region, dropped: np.ndarray, polish: int) -> int:
     targets = _target_areas(region.elements, areas) / ideal
     unit = float(np.sqrt(targets.mean()))
     centre = flat.mean(axis=0)
-    problem, x = _problem(region, dropped, (flat - centre) / unit, centre, unit, targets)
+    problem, x = energy_problem(region, dropped, (flat - centre) / unit, centre, unit, targets)
     if not len(problem.corners) or not len(x):
         return 0
     _, evaluations = unfold(problem, x, UNFOLDING, ROUNDS, INNER, polish, SHAPING)
@@ -172,7 +172,7 @@ def _run(region: Region, dropped: np.ndarray, polish: int) -> int:
     return int(evaluations)
 
 
-def _problem(
+def energy_problem(
     region: Region,
     dropped: np.ndarray,
     points: np.ndarray,

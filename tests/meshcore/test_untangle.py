@@ -1,0 +1,200 @@
+import time
+
+import numpy as np
+import pytest
+from side_checks import assert_on_sides
+
+from meshcore import HalfEdgeMesh, foldover, generate, quality, shapes, untangle
+from meshcore import region as regions
+from meshcore.hopeless import hopeless, hopeless_corners
+from meshcore.sides import Sides
+
+
+def mended(mesh, vertices=None):
+    found = untangle.untangle(mesh, vertices)
+    fixed = mesh.geometric()
+    before = mesh.points[fixed].copy()
+    mesh.move(found.vertices, found.positions)
+    assert mesh.points[fixed].tobytes() == before.tobytes()
+    assert sorted(quality.inverted(mesh)) == found.inverted.tolist()
+    assert_on_sides(mesh)
+    return found
+
+
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+@pytest.mark.parametrize("name", ["star", "disc", "square-with-hole", "airfoil"])
+@pytest.mark.parametrize("eps", [1.0, 1e-2])
+def test_gradient_against_finite_differences(kind, name, eps):
+    mesh = generate.mesh_domain(shapes.shape(name), kind)
+    region = regions.whole(mesh)
+    rng = np.random.default_rng(0)
+    free = np.flatnonzero(region.free)
+    region.points[free, :2] += 0.3 * rng.normal(size=(len(free), 2))
+    unit = 0.3
+    targets = np.full(len(region.elements), unit * unit)
+    centre = region.points.mean(axis=0)[:2]
+    problem, x = untangle.energy_problem(
+        region,
+        np.zeros(region.elements.shape, bool),
+        (region.points[:, :2] - centre) / unit,
+        centre,
+        unit,
+        targets,
+    )
+    x = x + 1e-3  # off the bends of polylines, where there is no gradient
+    gradient, unused = np.zeros(len(x)), np.zeros(len(x))
+    value, _ = foldover.energy(problem, x, gradient, eps, 0.5)
+    assert np.isfinite(value)
+    for i in rng.choice(len(x), min(len(x), 20), replace=False):
+        step = np.zeros(len(x))
+        step[i] = 1e-6
+        above, _ = foldover.energy(problem, x + step, unused, eps, 0.5)
+        below, _ = foldover.energy(problem, x - step, unused, eps, 0.5)
+        scale = max(1.0, np.abs(gradient).max())
+        assert (above - below) / 2e-6 == pytest.approx(gradient[i], rel=1e-4, abs=1e-5 * scale)
+
+
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+@pytest.mark.parametrize("start", ["point", "outside", "random", "sides"])
+@pytest.mark.parametrize("name", ["star", "l-shape", "gear", "plate-with-holes", "disc"])
+def test_terrible_starts(kind, start, name):
+    mesh = generate.mesh_domain(shapes.shape(name), kind)
+    inside = np.flatnonzero(~mesh.boundary())
+    rng = np.random.default_rng(5)
+    if start == "point":
+        mesh.points[inside] = mesh.points.mean(axis=0)
+    elif start == "outside":
+        mesh.points[inside, :2] += 10.0
+    elif start == "random":
+        mesh.points[inside, :2] = rng.uniform(-1, 1, (len(inside), 2))
+    else:  # all vertices of a side at one point, and not even on the side
+        for chain in Sides(mesh).chains:
+            if mesh.geometric()[chain].any():
+                mesh.points[chain[1:-1]] = mesh.points[chain].mean(axis=0) + [0.1, 0.1, 0]
+    found = mended(mesh)
+    assert len(found.inverted) == 0
+    assert quality.scaled_jacobian(mesh).min() > 1e-3
+
+
+def test_the_same_input_gives_the_same_output():
+    mesh = generate.mesh_domain(shapes.shape("gear"), "quad")
+    mesh.points[~mesh.boundary(), :2] = 0.1
+    first, second = untangle.untangle(mesh), untangle.untangle(mesh)
+    assert first.positions.tobytes() == second.positions.tobytes()
+
+
+def test_untangling_moves_only_what_it_may():
+    mesh = generate.grid("quad", 100)
+    middle = np.flatnonzero(~mesh.boundary())
+    near = middle[np.linalg.norm(mesh.points[middle] - [0.5, 0.5, 0], axis=1) < 0.25]
+    mesh.points[near] = [0.9, 0.5, 0]
+    found = mended(mesh, near)
+    assert set(found.vertices) <= set(near)
+    assert len(found.inverted) == 0
+
+
+def test_a_single_quad_at_a_reflex_corner_is_hopeless():
+    points = np.array([[0, 0], [2, 0], [0.5, 0.5], [0, 2]])
+    mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 2, 3]])
+    found = untangle.untangle(mesh)
+    assert found.inverted.tolist() == found.hopeless.tolist() == [0]
+
+
+def test_a_flat_boundary_vertex_is_hopeless_and_the_rest_is_mended():
+    mesh = generate.grid("quad", 64)
+    slides = np.flatnonzero((mesh.points[:, 1] == 0) & ~mesh.geometric())
+    vertex = int(slides[len(slides) // 2])
+    # a flip takes the only edge inwards from a boundary vertex: three corners on one line
+    done = False
+    for h in mesh.outgoing(vertex):
+        for name in ("flip_left", "flip_right"):
+            if not done and mesh.check(name, h):
+                mesh.apply(name, h)
+                done = len(mesh.neighbours(vertex)) == 2
+                if not done:
+                    mesh.undo()
+    assert done
+    inside = ~mesh.boundary()
+    mesh.points[inside, :2] = np.random.default_rng(0).random((inside.sum(), 2))
+    found = mended(mesh)
+    flat = mesh.element_of(mesh.outgoing(vertex)[0])
+    assert found.inverted.tolist() == found.hopeless.tolist() == [flat]
+    assert hopeless(mesh).tolist() == [flat]
+
+
+def test_a_doublet_is_hopeless():
+    points = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1.5, 0.5]])
+    mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 2, 4], [0, 4, 2, 3]])
+    found = untangle.untangle(mesh)
+    assert set(found.inverted) <= {0, 1}
+    assert found.hopeless.tolist() == found.inverted.tolist()
+
+
+@pytest.mark.parametrize("pieces", [9, 32, 100])
+@pytest.mark.parametrize("turn", [0.0, 0.013])
+def test_boundary_vertices_of_one_quad_find_the_bends_of_a_circle(pieces, turn):
+    # 2 x 2 quads whose outline is a polygon of so many pieces, none of its points geometric
+    angle = 2 * np.pi * np.arange(pieces) / pieces
+    circle = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(pieces)])
+    boundary = [0, 1, 2, 5, 8, 7, 6, 3]
+    quads = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]]
+    angle = 2 * np.pi * np.arange(8) / 8 + turn
+    points = np.zeros((9, 2))
+    points[boundary] = 0.9 * np.column_stack([np.cos(angle), np.sin(angle)])
+    mesh = HalfEdgeMesh.from_elements(points, quads, np.zeros(9, bool))
+    mesh.outline = [(np.arange(100, 100 + pieces), circle)]
+    assert len(mended(mesh).inverted) == 0
+
+
+def test_a_circle_seen_from_outside_is_hopeless_for_a_single_quad():
+    mesh = generate.mesh_domain(shapes.shape("annulus"), "tri")
+    inner = min(mesh.boundary_loops(), key=len)
+    region = regions.whole(mesh)
+    assert not hopeless_corners(region).any()
+    h = next(
+        h
+        for a, b in zip(inner, np.roll(inner, -1), strict=True)
+        for h in [mesh.next(mesh.halfedge(int(a), int(b)))]
+        if mesh.check("flip", h)
+    )
+    mesh.apply("flip", h)
+    assert len(hopeless(mesh)) == len(untangle.untangle(mesh).inverted)
+
+
+def test_locked_vertices_stay():
+    mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+    inside = int(np.flatnonzero(~mesh.boundary())[0])
+    mesh.set_locked(inside)
+    before = mesh.points[inside].copy()
+    others = np.flatnonzero(~mesh.boundary())[1:]
+    mesh.points[others] = before
+    found = mended(mesh)
+    assert inside not in found.vertices
+    assert len(found.inverted) == 0
+
+
+def test_a_tilted_plane_is_untangled_in_its_plane():
+    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    flat = generate.mesh_domain(shapes.shape("l-shape"), "quad")
+    mesh = HalfEdgeMesh.from_elements(flat.points @ turn.T + 3.0, flat.elements(), flat.geometric())
+    mesh.points[~mesh.boundary()] = mesh.points[0]
+    assert len(mended(mesh).inverted) == 0
+    assert np.abs(((mesh.points - 3.0) @ turn)[:, 2]).max() < 1e-9
+
+
+def test_a_surface_is_left_alone():
+    mesh = generate.grid("quad", 16)
+    mesh.points[:, 2] = mesh.points[:, 0] ** 2
+    found = untangle.untangle(mesh)
+    assert len(found.vertices) == 0
+    assert found.starts == 0
+
+
+def test_ten_thousand_elements_in_seconds():
+    mesh = generate.grid("quad", 10_000)
+    inside = ~mesh.boundary()
+    mesh.points[inside, :2] = np.random.default_rng(0).random((inside.sum(), 2))
+    begin = time.perf_counter()
+    found = untangle.untangle(mesh)
+    assert len(found.inverted) == 0
+    assert time.perf_counter() - begin < 10.0
