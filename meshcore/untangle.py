@@ -29,6 +29,8 @@ UNFOLDING, SHAPING = 1.0, 0.1
 corner is unfolded: equal areas keep room for what is folded, equal angles look better."""
 ROUNDS, INNER = 40, 60
 """The most values of the regularisation, and the most L-BFGS steps at each."""
+BUDGET = 4_000_000
+"""Corners evaluated after which no random start is tried: some tenth of a second."""
 ALL = 100
 """More starts than there are."""
 POLISH = 60
@@ -100,6 +102,8 @@ def untangle_region(
     best, present = _State(region, lost), _State(region, lost)
     tried = evaluations = 0
     for start in starts(region, np.random.default_rng(seed))[:tries]:
+        if tried >= 3 and evaluations * region.elements.size > BUDGET:
+            break
         present.restore(region)
         start(region)
         tried += 1
@@ -107,7 +111,7 @@ def untangle_region(
         best.keep_better(region)
         if best.done:
             break
-    else:
+    if not best.done:
         # give up the corners that stay folded, so that they do not drag others along
         best.restore(region)
         evaluations += _run(region, lost | region.folded(), polish)

@@ -9,10 +9,12 @@ import numpy as np
 
 from meshcore.compiled import warm
 from meshcore.mesh import HalfEdgeMesh
+from meshcore.sides import Sides
+from meshcore.smoothing import relax
 
 
 def exercise() -> None:
-    """Check, apply, undo and redo on two tiny meshes; all operations compile with these few."""
+    """Check, apply, relax, undo and redo on two tiny meshes; these few compile everything."""
     points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     triangles = HalfEdgeMesh.from_elements(points, [[0, 1, 2], [0, 2, 3]])
     triangles.apply("flip", triangles.halfedge(0, 2))
@@ -22,6 +24,9 @@ def exercise() -> None:
         np.column_stack([x, y]),
         np.column_stack([corners, corners + 1, corners + 4, corners + 3]),
     )
+    quads.move([4], np.array([[3.0, 3.0, 0.0]]))
+    relax(quads, [4])
+    Sides(quads).project(1, quads.points[1])
     quads.set_locked(4)
     quads.move([4], quads.points[[4]])
     while quads.undo():

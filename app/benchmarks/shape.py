@@ -141,6 +141,7 @@ METHODS: dict[str, Method] = {
 def _measured(mesh: HalfEdgeMesh) -> dict[str, Any]:
     row: dict[str, Any] = {
         "elements": mesh.n_elements,
+        "obstacle": not drawable(mesh, _domain(mesh)),
         "as is": not len(quality.inverted(mesh)),
     }
     for name, method in METHODS.items():
@@ -156,6 +157,7 @@ def _measured(mesh: HalfEdgeMesh) -> dict[str, Any]:
 def _summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
     return {
         "meshes": len(rows),
+        "with_a_plain_obstacle": sum(row["obstacle"] for row in rows) / len(rows),
         "elements_median": median(row["elements"] for row in rows),
         "without_inverted": {
             name: sum(row[name] for row in rows) / len(rows) for name in ("as is", *METHODS)
