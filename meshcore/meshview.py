@@ -1,0 +1,225 @@
+"""What can be read of a half-edge mesh: counts, score, arrays, walks. Nothing here changes it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshcore import construct, navigation, validate
+from meshcore.halfedge import (
+    BOUNDARY_EDGES,
+    DEGREE,
+    DELTA_SUM,
+    DESIRED,
+    ELEMENT_SLOTS,
+    ELEMENTS,
+    FLAGS,
+    GEOMETRIC,
+    HALF,
+    IRREGULAR,
+    LOCKED,
+    ORIGIN,
+    SCORE,
+    SIDES,
+    TWIN,
+    VERTEX_SLOTS,
+    VERTICES,
+    MeshArrays,
+)
+
+Outline = list[tuple[np.ndarray, np.ndarray]]
+
+_KINDS = {3: "tri", 4: "quad"}
+
+
+class MeshView:
+    """The reading half of :class:`meshcore.mesh.HalfEdgeMesh`.
+
+    Ids of vertices, elements and half-edges are plain ints; -1 is none. See
+    :mod:`meshcore.halfedge` for the arrays behind it.
+    """
+
+    def __init__(self, arrays: MeshArrays, outline: Outline) -> None:
+        """Wraps arrays that obey the invariants."""
+        self._arrays = arrays
+        self.outline = outline
+        """One (vertex ids (m,), points (m, 3)) per boundary loop, as the mesh was made: the sides
+        on which boundary vertices slide."""
+        self.k: int = int(arrays.counters[SIDES])
+        """Sides of an element, 3 or 4."""
+
+    # -- counts and score ------------------------------------------------------------------------
+
+    @property
+    def kind(self) -> str:
+        """The kind of its elements, "tri" or "quad"."""
+        return _KINDS[self.k]
+
+    @property
+    def n_vertices(self) -> int:
+        """Live vertices."""
+        return int(self._arrays.counters[VERTICES])
+
+    @property
+    def n_elements(self) -> int:
+        """Live elements."""
+        return int(self._arrays.counters[ELEMENTS])
+
+    @property
+    def n_edges(self) -> int:
+        """Edges, each counted once."""
+        counters = self._arrays.counters
+        return int(self.k * counters[ELEMENTS] + counters[BOUNDARY_EDGES]) // 2
+
+    @property
+    def euler(self) -> int:
+        """Euler characteristic V - E + F: 1 for a disc, one less for each hole."""
+        return self.n_vertices - self.n_edges + self.n_elements
+
+    @property
+    def score(self) -> int:
+        """s, the sum of |Delta| over all vertices (equation 1)."""
+        return int(self._arrays.counters[SCORE])
+
+    @property
+    def optimum(self) -> int:
+        """s* = |sum of Delta|, which no operation changes and s never falls below (equation 6)."""
+        return abs(int(self._arrays.counters[DELTA_SUM]))
+
+    @property
+    def irregular_count(self) -> int:
+        """Vertices whose degree is not the desired one."""
+        return int(self._arrays.counters[IRREGULAR])
+
+    # -- whole arrays ----------------------------------------------------------------------------
+
+    @property
+    def arrays(self) -> MeshArrays:
+        """The arrays themselves, for compiled code; they are replaced when the mesh outgrows
+        them.
+        """
+        return self._arrays
+
+    @property
+    def slots(self) -> int:
+        """Vertex ids ever used: one more than the largest, dead ones included."""
+        return int(self._arrays.counters[VERTEX_SLOTS])
+
+    @property
+    def points(self) -> np.ndarray:
+        """(slots, 3) float64 coordinates by vertex id, a writable view; ask again after an edit."""
+        return self._arrays.points[: self.slots]
+
+    def element_ids(self) -> np.ndarray:
+        """(m,) ids of the live elements, ascending."""
+        slots = int(self._arrays.counters[ELEMENT_SLOTS])
+        return np.flatnonzero(self._arrays.edge[: slots * self.k : self.k, ORIGIN] >= 0)
+
+    def elements(self) -> np.ndarray:
+        """(m, k) int64 vertex ids of the live elements, counter-clockwise."""
+        slots = int(self._arrays.counters[ELEMENT_SLOTS])
+        rows = self._arrays.edge[: slots * self.k, ORIGIN].reshape(slots, self.k)
+        if slots != self.n_elements:
+            rows = rows[rows[:, 0] >= 0]
+        return rows.astype(np.int64)
+
+    def vertices(self) -> np.ndarray:
+        """(n,) ids of the live vertices, ascending."""
+        return np.flatnonzero(self._arrays.vertex[: self.slots, HALF] >= 0)
+
+    def degree(self) -> np.ndarray:
+        """(slots,) number of edges at each vertex; 0 for dead ids."""
+        return self._arrays.vertex[: self.slots, DEGREE].copy()
+
+    def desired(self) -> np.ndarray:
+        """(slots,) desired degree; 0 for dead ids."""
+        return self._arrays.vertex[: self.slots, DESIRED].copy()
+
+    def irregularity(self) -> np.ndarray:
+        """(slots,) Delta = degree - desired degree by vertex id; 0 for dead ids."""
+        rows = self._arrays.vertex[: self.slots]
+        return rows[:, DEGREE] - rows[:, DESIRED]
+
+    def geometric(self) -> np.ndarray:
+        """(slots,) whether a vertex is part of the geometry: it neither moves nor vanishes."""
+        return (self._arrays.vertex[: self.slots, FLAGS] & GEOMETRIC) > 0
+
+    def locked(self) -> np.ndarray:
+        """(slots,) whether the user has locked a vertex: it neither moves nor vanishes."""
+        return (self._arrays.vertex[: self.slots, FLAGS] & LOCKED) > 0
+
+    def boundary(self) -> np.ndarray:
+        """(slots,) whether a vertex lies on the boundary; False for dead ids."""
+        half = self._arrays.vertex[: self.slots, HALF]
+        return (half >= 0) & (self._arrays.edge[np.maximum(half, 0), TWIN] < 0)
+
+    def boundary_loops(self) -> list[np.ndarray]:
+        """Vertex ids along each boundary loop, the domain on the left."""
+        on_it = np.flatnonzero(self.boundary())
+        half = self._arrays.vertex[on_it, HALF].astype(np.int64)
+        ahead = half + 1 - self.k * ((half + 1) % self.k == 0)
+        return construct.trace_loops(on_it, self._arrays.edge[ahead, ORIGIN].astype(np.int64))
+
+    # -- walking ---------------------------------------------------------------------------------
+
+    def live(self, h: int) -> bool:
+        """Whether h is the id of a half-edge of a live element."""
+        return 0 <= h < len(self._arrays.edge) and bool(self._arrays.edge[h, ORIGIN] >= 0)
+
+    def next(self, h: int) -> int:
+        """The next half-edge of the element."""
+        return h + 1 if (h + 1) % self.k else h + 1 - self.k
+
+    def prev(self, h: int) -> int:
+        """The previous half-edge of the element."""
+        return h - 1 if h % self.k else h + self.k - 1
+
+    def twin(self, h: int) -> int:
+        """The half-edge on the other side, -1 on the boundary."""
+        return int(self._arrays.edge[h, TWIN])
+
+    def origin(self, h: int) -> int:
+        """The vertex where h starts."""
+        return int(self._arrays.edge[h, ORIGIN])
+
+    def target(self, h: int) -> int:
+        """The vertex where h ends."""
+        return int(self._arrays.edge[self.next(h), ORIGIN])
+
+    def element_of(self, h: int) -> int:
+        """The element that owns h."""
+        return h // self.k
+
+    def is_boundary(self, v: int) -> bool:
+        """Whether the live vertex v lies on the boundary."""
+        return bool(self._arrays.edge[self._arrays.vertex[v, HALF], TWIN] < 0)
+
+    def outgoing(self, v: int) -> list[int]:
+        """The half-edges that leave v, counter-clockwise, on the boundary from its outgoing
+        edge.
+        """
+        return navigation.outgoing(self._arrays, v)
+
+    def neighbours(self, v: int) -> list[int]:
+        """The vertices joined to v, counter-clockwise."""
+        return navigation.neighbours(self._arrays, v)
+
+    def halfedge(self, a: int, b: int) -> int:
+        """The half-edge from vertex a to vertex b, -1 if there is none."""
+        if not (0 <= a < self.slots and self._arrays.vertex[a, HALF] >= 0):
+            return -1
+        return next((h for h in self.outgoing(a) if self.target(h) == b), -1)
+
+    # -- as a whole ------------------------------------------------------------------------------
+
+    def validate(self) -> None:
+        """Check every invariant the slow way; raises MeshError that says what is broken and
+        where.
+        """
+        validate.validate(self._arrays)
+
+    def __repr__(self) -> str:
+        """Kind, size and score in one line."""
+        return (
+            f"<{type(self).__name__} {self.kind}: {self.n_vertices} vertices, {self.n_elements}"
+            f" elements, s = {self.score}, s* = {self.optimum}>"
+        )
