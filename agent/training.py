@@ -18,6 +18,7 @@ from safetensors.torch import load_file, save
 
 from agent.batch import Batch, start_meshes
 from agent.evaluate import evaluate, roll_out
+from agent.figures import learning_curve
 from agent.network import Architecture, PolicyNetwork
 from agent.policies import Policy, save_policy
 from agent.ppo import Settings, collect, update
@@ -215,9 +216,9 @@ def train(
 ) -> dict[str, Any]:
     """Train until the configured number of updates, or for so many minutes; returns the results.
 
-    Writes policy.safetensors, configuration.json, curve.json and, for a later call to resume,
-    checkpoint.safetensors into `folder`. `report(done, total, numbers)` is called after each
-    update. Ctrl-C leaves the last checkpoint.
+    Writes policy.safetensors, configuration.json, curve.json, curve.png and, for a later call to
+    resume, checkpoint.safetensors into `folder`. `report(done, total, numbers)` is called after
+    each update. Ctrl-C leaves the last checkpoint.
     """
     training = read_configuration(configuration)
     if seed is not None:
@@ -254,4 +255,7 @@ def finish(trainer: Trainer) -> dict[str, Any]:
     ):
         with replacing(folder / name) as temporary:
             temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
+    sides_text = f"{sides[0]} to {sides[1]} sides"
+    title = f"{'Triangles' if training.task.kind == 'tri' else 'Quads'}, polygons of {sides_text}"
+    learning_curve(trainer.progress.curve, training.task.kind, title, folder / "curve.png")
     return {"policy": str(folder / "policy.safetensors"), **asdict(trainer.progress), **row}

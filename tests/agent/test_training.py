@@ -1,0 +1,104 @@
+"""A tiny training: learns to save, resumes, and refuses what it cannot read."""
+
+import json
+
+import numpy as np
+import pytest
+
+from agent.evaluate import evaluate
+from agent.policies import load
+from agent.search import improve
+from agent.training import ConfigurationError, read_configuration, shipped_configuration, train
+from meshcore.generate import benchmark_mesh
+
+_TINY = {
+    "sides": [8, 10],
+    "pool": 12,
+    "iterations": 3,
+    "evaluate_every": 1,
+    "evaluation_meshes": 4,
+    "task": {"kind": "quad", "blocks": 2, "candidates": 8, "steps": 0.5},
+    "architecture": {"width": 8, "embedding": 4},
+    "ppo": {"environments": 8, "horizon": 6, "minibatch": 16, "lambda": 0.9},
+}
+
+
+def test_a_training_can_be_stopped_and_resumed(tmp_path, monkeypatch):
+    monkeypatch.setattr("agent.training.evaluate", lambda *_: {"single_mean": 0.0})
+
+    class Stop(Exception):
+        pass
+
+    def stop(done, total, numbers):
+        assert total == 3
+        assert "mean" in numbers
+        if done == 2:
+            raise Stop
+
+    with pytest.raises(Stop):
+        train(_TINY, tmp_path, report=stop)
+    done = []
+    found = train(_TINY, tmp_path, report=lambda i, *_: done.append(i))
+    assert done == [3]
+    assert found["iteration"] == 3
+    assert len(found["curve"]) == 4
+    assert load(tmp_path / "policy.safetensors").header["training"]["pool"] == 12
+    assert json.loads((tmp_path / "curve.json").read_text()) == found["curve"]
+    assert (tmp_path / "curve.png").stat().st_size > 5000
+    with pytest.raises(ConfigurationError, match="another configuration"):
+        train({**_TINY, "pool": 13}, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["tri", "quad", "tri-paper", "quad-paper"])
+def test_the_configurations_that_travel_can_be_read(name):
+    training = read_configuration(shipped_configuration(name))
+    assert training.task.kind == name.split("-")[0]
+    assert (training.task.selection == "template") == name.endswith("paper")
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        ({"task": {"kind": "hex"}}, "hex"),
+        ({"task": {"kind": "quad", "selecton": "x"}}, "selecton"),
+        ({"sides": [2, 9]}, "sides"),
+        ({"speed": 3}, "speed"),
+    ],
+)
+def test_a_wrong_configuration_is_refused(change, word):
+    with pytest.raises(ConfigurationError, match=word):
+        read_configuration({**_TINY, **change})
+
+
+def test_a_configuration_that_is_no_toml_is_refused(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text("sides = [10,")
+    with pytest.raises(ConfigurationError, match=r"mine\.toml"):
+        read_configuration(path)
+
+
+def test_the_shipped_quad_policy_reaches_the_optimum():
+    mesh = benchmark_mesh("quad", 12, np.random.default_rng(31))
+    before = mesh.elements()
+    progress = []
+    solution = improve(mesh, load("quad"), rollouts=10, progress=lambda *now: progress.append(now))
+    assert (mesh.elements() == before).all()
+    for operation, h in solution.operations:
+        mesh.apply(operation, h)
+    assert mesh.score == solution.score == mesh.optimum
+    assert progress[-1] == (solution.rollouts, solution.score)
+
+
+def test_a_search_can_be_cancelled():
+    mesh = benchmark_mesh("quad", 12, np.random.default_rng(31))
+    solution = improve(mesh, load("quad"), rollouts=10, cancelled=lambda: True)
+    assert solution.operations == []
+    assert solution.score == mesh.score
+
+
+def test_evaluation_is_repeatable_and_beats_doing_nothing():
+    rows = [evaluate("tri", (8, 10), 4, 2, seed=3) for _ in range(2)]
+    for row in rows:
+        row.pop("seconds")
+    assert rows[0] == rows[1]
+    assert 0.3 < rows[0]["single_mean"] <= rows[0]["best_mean"] <= 1.0
