@@ -36,7 +36,7 @@ def learning_curve(
         f"paper, single rollout: {paper}",
         (1.0, paper),
         xycoords=("axes fraction", "data"),
-        xytext=(-4, 3),
+        xytext=(-4, -11),
         textcoords="offset points",
         ha="right",
         fontsize=8,
@@ -45,6 +45,6 @@ def learning_curve(
     axes.set(title=title, xlabel="decisions (thousands)", ylim=(0.0, 1.02))
     axes.set_xlim(0.0, max(decisions))
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, loc="lower right", fontsize=9)
+    axes.legend(frameon=False, loc="center right", fontsize=9)
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=160)
