@@ -203,7 +203,6 @@ def test_reasons_of_quad_operations():
     assert "locked" in _reason(locked, "cleanup", 4, 5)
     strip = grid(3, 1, geometric=np.zeros(8, bool), desired_degree=np.full(8, 3))
     assert "without an element" in _reason(strip, "chord_collapse", 4, 0)
-    assert "without an element" in _reason(ring(8, 1), "chord_collapse", 0, 8)
 
 
 def test_refusals_that_are_no_operation_of_the_mesh():
