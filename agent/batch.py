@@ -11,15 +11,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from agent.patch import LARGEST, Patches
-from agent.selection import masks
+from agent.selection import masks, permitted
 from agent.task import Observation, Scratch, Task, choose_candidates, look, transition
 from meshcore.compiled import kernel
 from meshcore.generate import benchmark_mesh
 from meshcore.halfedge import (
     DELTA_SUM,
+    ELEMENT_SLOTS,
     ELEMENTS,
     JOURNALLING,
+    ORIGIN,
     SCORE,
+    SIDES,
     MeshArrays,
     allocate,
     enlarge,
@@ -27,6 +30,7 @@ from meshcore.halfedge import (
 from meshcore.mesh import HalfEdgeMesh
 
 _ROOM = 2.5  # slots of a run, relative to the largest start mesh; a run that needs more is masked
+_TRIES = 64  # random half-edges that a random step tries before it gives up
 
 
 def start_meshes(
@@ -132,6 +136,35 @@ def _act_all(meshes, first, actions, count, cap, chosen, touched, cleaned):
         transition(member(meshes, b), first + actions[b] % count, h, cap, touched, cleaned)
 
 
+@kernel
+def _random_steps(
+    meshes, pool, source, steps, limits, floors, ceilings, optima, first, count, cap, extended,
+    touched, cleaned, useful, rounds, rng,
+):  # fmt: skip
+    """Random permitted operations, `rounds` for each run; returns how many were done."""
+    done = 0
+    k = meshes.counters[0, SIDES]
+    for _ in range(rounds):
+        for b in range(len(source)):
+            m = member(meshes, b)
+            slots = m.counters[ELEMENT_SLOTS] * k
+            for _ in range(_TRIES):
+                h = int(rng.random() * slots)
+                operation = first + int(rng.random() * count)
+                if m.edge[h, ORIGIN] >= 0 and permitted(
+                    m, operation, h, cap, floors[b], ceilings[b], extended
+                ):
+                    transition(m, operation, h, cap, touched, cleaned)
+                    done += 1
+                    break
+            steps[b] += 1
+            if steps[b] >= limits[source[b]] or m.counters[SCORE] <= optima[source[b]]:
+                source[b] = useful[int(rng.random() * len(useful))]
+                steps[b] = 0
+                _reset(meshes, pool, b, source[b])
+    return done
+
+
 @dataclass
 class Outcome:
     """What one step of all runs brought."""
@@ -224,6 +257,21 @@ class Batch:
         state = np.column_stack([self.gaps / 10.0, left, growth]).astype(np.float32)
         patches = Patches(self._features[:rows].copy(), self._reads[:read_rows].copy(), sizes)
         return Observation(chosen, mask, changes, state, patches)
+
+    def play_at_random(self, rounds: int) -> int:
+        """Play so many random permitted operations in every run; returns how many were done.
+
+        It keeps no account of best states: a measure of speed, and the floor under any policy.
+        """
+        task, scratch = self.task, self.scratch
+        bounds = self._bounds[self.source]
+        done = _random_steps(
+            self.meshes, self.pool, self.source, self.steps, self._limits,
+            np.ascontiguousarray(bounds[:, 0]), np.ascontiguousarray(bounds[:, 1]), self.optima,
+            task.first_operation, task.operations, task.cap, task.extended, scratch.touched,
+            scratch.cleaned, self.useful, rounds, self.rng,
+        )  # fmt: skip
+        return int(done)
 
     def step(self, observation: Observation, actions: np.ndarray) -> Outcome:
         """Apply one action (B,) int64 to every run, -1 where nothing is permitted."""

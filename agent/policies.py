@@ -62,6 +62,15 @@ def shipped(kind: str | None = None) -> list[str]:
     return [name for name in names if kind is None or name.split("-")[0] == kind]
 
 
+def decide_on_one_thread() -> None:
+    """Let torch use one thread in this process, for programs that play policies.
+
+    The matrices of a decision are small: more threads gain little on an idle machine, and where
+    other processes want the cores a decision waits for them, fifty times as long as it takes.
+    """
+    torch.set_num_threads(1)
+
+
 def load(name_or_path: str | os.PathLike[str]) -> Policy:
     """A shipped policy by name, or one from a file. Raises PolicyError with one sentence."""
     text = os.fspath(name_or_path)

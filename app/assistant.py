@@ -393,6 +393,7 @@ def _count(number: int, noun: str) -> str:
 def _load_policy(name: str) -> Any:
     from agent import policies
 
+    policies.decide_on_one_thread()
     return policies.load(name)
 
 

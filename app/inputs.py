@@ -66,6 +66,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
     """Return a policy for meshes of this kind: by name, from a file, or the one we ship."""
     from agent import policies
 
+    policies.decide_on_one_thread()
     if name is None:
         shipped = policies.shipped(kind)
         if not shipped:

@@ -30,7 +30,7 @@ from meshcore.halfedge import (
 )
 from meshcore.meshview import MeshView, Outline
 from meshcore.operations import Operation
-from meshcore.verdicts import Edit, Verdict
+from meshcore.verdicts import YES, Edit, Verdict
 
 _GROUP = -1  # the operation code of a transaction's step
 
@@ -82,9 +82,11 @@ class HalfEdgeMesh(MeshView):
         """Whether the operation may be applied to half-edge h, and if not, why. No side effect."""
         code = self._codes.get(operation, -1)
         if code < 0:
-            return Verdict(refusals.OTHER_KIND, self, Operation(operation), h)
-        found = operations.check(self._arrays, code, h, self.degree_cap)
-        return Verdict(found, self, Operation(operation), h)
+            return Verdict.refused(refusals.OTHER_KIND, self, Operation(operation), h)
+        found = operations.check_once(*self._arrays, code, h, self.degree_cap)
+        if found == refusals.ALLOWED or found == refusals.NEED_ROOM:
+            return YES
+        return Verdict.refused(found, self, Operation(operation), h)
 
     def allowed(self, h: int) -> dict[Operation, Verdict]:
         """The verdict on each operation of this kind of mesh at half-edge h."""
@@ -98,10 +100,10 @@ class HalfEdgeMesh(MeshView):
         code = self._codes.get(operation, -1)
         if code < 0:
             raise OperationRefused(self.check(operation, h).reason)
-        done = operations.apply(self._arrays, code, h, self.degree_cap)
+        done = operations.apply_once(*self._arrays, code, h, self.degree_cap)
         while done[0] == refusals.NEED_ROOM:
             self._enlarge()
-            done = operations.apply(self._arrays, code, h, self.degree_cap)
+            done = operations.apply_once(*self._arrays, code, h, self.degree_cap)
         if done[0] != refusals.ALLOWED:
             raise OperationRefused(
                 f"{operation} at half-edge {h} is not allowed: {self.check(operation, h).reason}"

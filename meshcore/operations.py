@@ -22,6 +22,7 @@ from meshcore.halfedge import (
     TOUCHED_COUNT,
     TRACE_IDS,
     TWIN,
+    MeshArrays,
     following,
     preceding,
 )
@@ -222,27 +223,46 @@ def rewrite(m, operation, h):
 
 
 @bare_kernel
-def apply(m, operation, h, cap):
-    """Check, then rewrite. Returns the code, the change of s, and what the trace says: the number
-    of new and of touched vertices and the first six of their ids.
+def check_once(
+    edge, vertex, points, irregular, element_mark, trace, counters, journal, steps,
+    operation, h, cap,
+):  # fmt: skip
+    """:func:`check` for callers in Python, who hand over arrays one by one at half the cost."""
+    m = MeshArrays(
+        edge, vertex, points, irregular, element_mark, trace, counters, journal, steps
+    )  # fmt: skip
+    return check(m, operation, h, cap)
+
+
+@bare_kernel
+def apply_once(
+    edge, vertex, points, irregular, element_mark, trace, counters, journal, steps,
+    operation, h, cap,
+):  # fmt: skip
+    """Check, then rewrite, for callers in Python as :func:`check_once`.
+
+    Returns the code, the change of s, and what the trace says: the number of new and of touched
+    vertices and the first six of their ids.
     """
+    m = MeshArrays(
+        edge, vertex, points, irregular, element_mark, trace, counters, journal, steps
+    )  # fmt: skip
     code = check(m, operation, h, cap)
     if code != ALLOWED:
         return code, 0, 0, 0, 0, 0, 0, 0, 0, 0
-    before = m.counters[SCORE]
+    before = counters[SCORE]
     rewrite(m, operation, h)
-    t = m.trace
     return (
         code,
-        m.counters[SCORE] - before,
-        t[NEW_COUNT],
-        t[TOUCHED_COUNT],
-        t[TRACE_IDS],
-        t[TRACE_IDS + 1],
-        t[TRACE_IDS + 2],
-        t[TRACE_IDS + 3],
-        t[TRACE_IDS + 4],
-        t[TRACE_IDS + 5],
+        counters[SCORE] - before,
+        trace[NEW_COUNT],
+        trace[TOUCHED_COUNT],
+        trace[TRACE_IDS],
+        trace[TRACE_IDS + 1],
+        trace[TRACE_IDS + 2],
+        trace[TRACE_IDS + 3],
+        trace[TRACE_IDS + 4],
+        trace[TRACE_IDS + 5],
     )
 
 

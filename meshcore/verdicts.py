@@ -16,10 +16,15 @@ class Verdict:
 
     __slots__ = ("code", "reason")
 
-    def __init__(self, code: int, mesh: HalfEdgeMesh, operation: Operation, h: int) -> None:
-        """From the code that a check returned; asks `mesh` for the names of the vertices."""
-        self.code = refusals.ALLOWED if code == refusals.NEED_ROOM else code
-        self.reason = "" if self.code == refusals.ALLOWED else _sentence(code, mesh, operation, h)
+    def __init__(self, code: int, reason: str) -> None:
+        """code: one of :mod:`meshcore.refusals`; reason: empty if it is ALLOWED."""
+        self.code = code
+        self.reason = reason
+
+    @classmethod
+    def refused(cls, code: int, mesh: HalfEdgeMesh, operation: Operation, h: int) -> Verdict:
+        """A refusal with its sentence; asks `mesh` for the names of the vertices."""
+        return cls(code, _sentence(code, mesh, operation, h))
 
     def __bool__(self) -> bool:
         """Whether the operation is allowed."""
@@ -28,6 +33,10 @@ class Verdict:
     def __repr__(self) -> str:
         """The verdict in words."""
         return f"<Verdict: {self.reason or 'allowed'}>"
+
+
+YES = Verdict(refusals.ALLOWED, "")
+"""The verdict on everything that is allowed."""
 
 
 def _sentence(code: int, mesh: HalfEdgeMesh, operation: Operation, h: int) -> str:
