@@ -258,4 +258,5 @@ def finish(trainer: Trainer) -> dict[str, Any]:
     sides_text = f"{sides[0]} to {sides[1]} sides"
     title = f"{'Triangles' if training.task.kind == 'tri' else 'Quads'}, polygons of {sides_text}"
     learning_curve(trainer.progress.curve, training.task.kind, title, folder / "curve.png")
+    row["evaluation_seconds"] = row.pop("seconds")
     return {"policy": str(folder / "policy.safetensors"), **asdict(trainer.progress), **row}

@@ -92,6 +92,30 @@ def check_flip_right(m, h, cap):
 
 
 @bare_kernel
+def _halfedges(m, h):
+    """The other half-edges of the two quads at h: three of its own, its twin, three of the
+    twin's.
+    """
+    n, p, t = following(h, 4), preceding(h, 4), m.edge[h, TWIN]
+    tn = following(t, 4)
+    return n, following(n, 4), p, t, tn, following(tn, 4), preceding(t, 4)
+
+
+@bare_kernel
+def _corners(m, h, n, o, p, to, tp):
+    """The six vertices a, b, c, d, f, g of the two quads at h."""
+    edge = m.edge
+    return (
+        edge[h, ORIGIN],
+        edge[n, ORIGIN],
+        edge[o, ORIGIN],
+        edge[p, ORIGIN],
+        edge[to, ORIGIN],
+        edge[tp, ORIGIN],
+    )
+
+
+@bare_kernel
 def flip_left(m, h):
     """Turn the edge a-b counter-clockwise into f-c; V, E, F stay; h runs from f to c, all ids live.
 
@@ -101,12 +125,8 @@ def flip_left(m, h):
     |       |         | /     |
     f ----- g         f ----- g
     """
-    n, p, t = following(h, 4), preceding(h, 4), m.edge[h, TWIN]
-    o = following(n, 4)
-    tn, tp = following(t, 4), preceding(t, 4)
-    to = following(tn, 4)
-    a, b, c, d = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
-    f, g = m.edge[to, ORIGIN], m.edge[tp, ORIGIN]
+    n, o, p, t, tn, to, tp = _halfedges(m, h)
+    a, b, c, d, f, g = _corners(m, h, n, o, p, to, tp)
     bc, cd, da = m.edge[n, TWIN], m.edge[o, TWIN], m.edge[p, TWIN]
     af, fg, gb = m.edge[tn, TWIN], m.edge[to, TWIN], m.edge[tp, TWIN]
 
@@ -152,12 +172,8 @@ def flip_right(m, h):
     |       |         |     \ |
     f ----- g         f ----- g
     """
-    n, p, t = following(h, 4), preceding(h, 4), m.edge[h, TWIN]
-    o = following(n, 4)
-    tn, tp = following(t, 4), preceding(t, 4)
-    to = following(tn, 4)
-    a, b, c, d = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
-    f, g = m.edge[to, ORIGIN], m.edge[tp, ORIGIN]
+    n, o, p, t, tn, to, tp = _halfedges(m, h)
+    a, b, c, d, f, g = _corners(m, h, n, o, p, to, tp)
     bc, cd, da = m.edge[n, TWIN], m.edge[o, TWIN], m.edge[p, TWIN]
     af, fg, gb = m.edge[tn, TWIN], m.edge[to, TWIN], m.edge[tp, TWIN]
 
