@@ -24,7 +24,7 @@ _TINY = {
 
 
 def test_a_training_can_be_stopped_and_resumed(tmp_path, monkeypatch):
-    monkeypatch.setattr("agent.training.evaluate", lambda *_: {"single_mean": 0.0})
+    monkeypatch.setattr("agent.training.evaluate", lambda *_: {"single_mean": 0.0, "seconds": 1.0})
 
     class Stop(Exception):
         pass
