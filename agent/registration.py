@@ -1,14 +1,13 @@
-"""Makes the environments known to Gymnasium; found by its plugin mechanism, cheap to import."""
+"""Makes the environments known to Gymnasium when it is imported, which is cheap.
+
+``gymnasium.make("agent.registration:meshwright/Quads-v0")`` imports it by itself.
+"""
 
 import gymnasium
 
 TRIANGLES, QUADS = "meshwright/Triangles-v0", "meshwright/Quads-v0"
 
-
-def register_environments() -> None:
-    """Register both environments, once."""
-    for name, kind in ((TRIANGLES, "tri"), (QUADS, "quad")):
-        if name not in gymnasium.registry:
-            gymnasium.register(
-                name, entry_point="agent.environment:MeshEnvironment", kwargs={"kind": kind}
-            )
+for _name, _kind in ((TRIANGLES, "tri"), (QUADS, "quad")):
+    gymnasium.register(
+        _name, entry_point="agent.environment:MeshEnvironment", kwargs={"kind": _kind}
+    )

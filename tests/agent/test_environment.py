@@ -1,20 +1,27 @@
 """The Gymnasium environment."""
 
+import subprocess
+import sys
+
 import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from agent.registration import QUADS, TRIANGLES, register_environments
+from agent.registration import QUADS, TRIANGLES
 from meshcore.generate import benchmark_mesh
-
-register_environments()
 
 
 @pytest.mark.parametrize("name", [TRIANGLES, QUADS])
 @pytest.mark.filterwarnings("error")
 def test_passes_the_checker(name):
     check_env(gymnasium.make(name).unwrapped, skip_render_check=True)
+
+
+@pytest.mark.parametrize("name", [TRIANGLES, QUADS])
+def test_is_found_by_name_alone(name):
+    code = f"import gymnasium; gymnasium.make('agent.registration:{name}').reset(seed=0)"
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 @pytest.mark.parametrize("name", [TRIANGLES, QUADS])
