@@ -104,7 +104,12 @@ def allocate(
 
 
 def copy_rows(source: np.ndarray, length: int, fill: int) -> np.ndarray:
-    """A longer copy of `source`: (length, ...) rows, the new ones set to `fill`."""
+    """A longer copy of `source`: (length, ...) rows, the new ones set to `fill`.
+
+    `source` itself if it has that length already: a journal grows without copying a large mesh.
+    """
+    if length == len(source):
+        return source
     longer = np.full((length, *source.shape[1:]), fill, source.dtype)
     longer[: len(source)] = source
     return longer
