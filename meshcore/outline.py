@@ -103,6 +103,13 @@ def place_all(sides, side, parameters):
     return points
 
 
+def vector_area(loop: np.ndarray) -> np.ndarray:
+    """(3,) vector area of a closed polygon (n, 3): positive along the normal it turns around."""
+    p = loop - loop.mean(axis=0)
+    area: np.ndarray = 0.5 * np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0)
+    return area
+
+
 class _Loop:
     """One loop of the outline: its points, closed by the first, without those on straight lines."""
 
@@ -118,6 +125,7 @@ class _Loop:
         unit = np.diff(closed, axis=0) / np.maximum(lengths, 1e-300)[:, None]
         turn = np.linalg.norm(unit - np.roll(unit, 1, axis=0), axis=1)
         self.turning = np.flatnonzero(turn > STRAIGHT)
+        self.area = vector_area(self.points)
 
     def between(self, start: float, stop: float) -> np.ndarray:
         """(p, 3) points where the loop turns, after arc length `start` and before `stop`."""
@@ -147,10 +155,8 @@ class Outline:
         if self.loops:
             everything = np.vstack([loop.points for loop in self.loops])
             self.extent = float(np.linalg.norm(np.ptp(everything, axis=0)))
-            centre = everything.mean(axis=0)
             for loop in self.loops:
-                p = loop.points - centre
-                self.area += 0.5 * np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0)
+                self.area += loop.area
 
     @classmethod
     def of(cls, mesh: HalfEdgeMesh) -> Outline:
@@ -203,25 +209,29 @@ class Outline:
         number = int(np.argmin([square for _, square in found]))
         return number, float(found[number][0]), float(np.sqrt(found[number][1]))
 
-    def _around(self, chain: np.ndarray, points: np.ndarray) -> _Loop:
+    def _around(self, points: np.ndarray) -> _Loop:
         """The loop that a boundary without geometric vertices runs on.
 
-        The one that its vertices lie on; if they are off them all, the one that began with most of
-        their ids (ids of vertices that died are used again, so that they alone prove nothing).
+        The one that its vertices lie on; if edits have pulled them off them all, the nearest of
+        those that turn the same way, the outer boundary or holes. (Ids prove nothing here: those of
+        vertices that died are used again.)
         """
         sample = points[:: max(1, len(points) // 8)]
         off = [max(nearest_on(loop.polyline, 0, p)[1] for p in sample) for loop in self.loops]
         if min(off) <= (1e-3 * self.extent) ** 2:
             return self.loops[int(np.argmin(off))]
-        shared = [sum(int(v) in loop.ids for v in chain) for loop in self.loops]
-        return self.loops[int(np.argmax(shared))]
+        turning = vector_area(points)
+        alike = [loop for loop in self.loops if loop.area @ turning > 0.0] or self.loops
+        centre = points.mean(axis=0)
+        away = [float(np.linalg.norm(loop.points.mean(axis=0) - centre)) for loop in alike]
+        return alike[int(np.argmin(away))]
 
     def side(self, chain: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
         """(p, 3) polyline of the side whose boundary vertices are `chain`, at `points` (n, 3)."""
         if not self.loops:
             raise MeshError("The mesh has a boundary but no outline to slide on.")
         if closed:
-            loop = self._around(chain, points)
+            loop = self._around(points)
             corners = loop.points[loop.turning]
             return np.vstack([corners, corners[:1]])
         number, start = self.find(int(chain[0]), points[0])

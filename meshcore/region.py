@@ -97,6 +97,16 @@ class Region:
         away = np.abs(there - self.points[rows]).max(axis=1) > ON_SIDE * size
         self.points[rows[away]] = there[away]
 
+    def fork(self) -> Region:
+        """The same region on positions of its own."""
+        seats = self.seats._replace(parameter=self.seats.parameter.copy())
+        return replace(self, points=self.points.copy(), seats=seats)
+
+    def adopt(self, other: Region) -> None:
+        """Take over the positions of a fork."""
+        self.points[:] = other.points
+        self.seats.parameter[:] = other.seats.parameter
+
     def holding(self, members: list[int]) -> Region:
         """The same region, on the same positions, in which the sliding `members` stay."""
         seats = Seats(*(array.copy() for array in self.seats))

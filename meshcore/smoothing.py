@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshcore import region as regions
+from meshcore.bends import bending, spread
 from meshcore.compiled import kernel
 from meshcore.halfedge import ORIGIN
 from meshcore.hopeless import mendable
@@ -235,6 +236,24 @@ def _relax_near(mesh: HalfEdgeMesh, seeds: np.ndarray) -> Region:
 
 def _relax_region(region: Region, tries: int = ALL) -> bool:
     """Give the elements better shapes in place; false if some stay inverted without need.
+
+    On sides that bend the vertices are spread first, and held; only where elements would stay
+    inverted with that do they slide as those on straight sides do.
+    """
+    bent = bending(region)
+    if bent:
+        trial = region.fork()
+        trial.settle()
+        spread(trial)
+        held = trial.holding(bent)
+        if _shape(held, tries):
+            region.adopt(trial)
+            return True
+    return _shape(region, tries)
+
+
+def _shape(region: Region, tries: int) -> bool:
+    """Smooth and untangle in place; false if some elements stay inverted without need.
 
     Averaging unfolds most of what an edit has folded, and is what there is for surfaces that are
     not plane; the energy, which weighs shapes against each other, gives the better positions.

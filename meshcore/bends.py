@@ -1,0 +1,72 @@
+"""Boundary vertices on sides that bend: spread so that the polygon through them follows the side.
+
+The energy of element shapes does not see the outline between two boundary vertices: left to it,
+they crowd in one place, and a chord cuts off a piece of a disc elsewhere. So on a side that bends
+the vertices are spread evenly, by a measure of one half arc length and one half turning, and held
+there; sides that are straight are left to the energy.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshcore.hopeless import turns
+from meshcore.region import Region
+
+LEAST_TURN = np.radians(10.0)
+"""A side that turns by less in all counts as straight."""
+
+
+def _measure(region: Region, side: int) -> tuple[np.ndarray, np.ndarray] | None:
+    """Arc lengths (p,) of a side's points and the measure (p,) up to each; None for straight sides.
+
+    The turning at a point counts half for each of the two pieces that meet there. Closed sides are
+    measured for three rounds, from one before to one after, since runs may pass their seam.
+    """
+    assert region.frame is not None
+    sides = region.sides
+    rows = slice(sides.first[side], sides.first[side + 1])
+    closed = bool(sides.closed[side])
+    arc = sides.arc[rows]
+    lengths = np.diff(arc)
+    angles = np.abs(turns(sides.points[rows] @ region.frame[:2].T, closed))
+    if angles.sum() < LEAST_TURN:
+        return None
+    # angle i is the turning at the end of piece i
+    turning = np.zeros(len(lengths))
+    turning[: len(angles)] += 0.5 * angles
+    following = np.roll(np.arange(len(lengths)), -1)[: len(angles)]
+    turning[following] += 0.5 * angles
+    pieces = lengths / lengths.sum() + turning / angles.sum()
+    measure = np.concatenate([[0.0], np.cumsum(pieces)])
+    if not closed:
+        return arc, measure
+    length, total = arc[-1], measure[-1]
+    return (
+        np.concatenate([arc[:-1] - length, arc[:-1], arc + length]),
+        np.concatenate([measure[:-1] - total, measure[:-1], measure + total]),
+    )
+
+
+def bending(region: Region) -> list[int]:
+    """The sliding vertices of a region, by local index, that lie on sides which bend."""
+    if region.frame is None:
+        return []
+    sides = region.seats.side
+    bent = {int(s) for s in np.unique(sides[sides >= 0]) if _measure(region, int(s)) is not None}
+    return [int(i) for i in np.flatnonzero(region.sliding) if int(sides[i]) in bent]
+
+
+def spread(region: Region) -> None:
+    """Spread the sliding vertices of bending sides evenly, by :func:`_measure`, between those
+    around them that stay.
+    """
+    for run in region.runs():
+        found = _measure(region, int(region.seats.side[run.members[0]]))
+        if found is None:
+            continue
+        arc, measure = found
+        low, high = np.interp([run.low, run.high], arc, measure)
+        even = np.linspace(low, high, len(run.members) + 2)[1:-1]
+        region.seats.parameter[run.members] = np.interp(even, measure, arc) - run.shift
+    region.settle()
