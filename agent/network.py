@@ -6,7 +6,6 @@ beta times the exact change of s of the operation, with beta learned.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -130,8 +129,3 @@ class PolicyNetwork(nn.Module):
         mean = embedding.sum(dim=1) / real.sum(dim=1, keepdim=True).clamp(min=1)
         value = self.value(torch.cat([mean, embedding.amax(dim=1), state], dim=1)).squeeze(1)
         return logits.flatten(1), value
-
-
-def parameters_of(network: nn.Module) -> int:
-    """Number of trainable numbers."""
-    return sum(math.prod(p.shape) for p in network.parameters() if p.requires_grad)

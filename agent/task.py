@@ -17,7 +17,7 @@ from meshcore.halfedge import (
     MeshArrays,
 )
 from meshcore.navigation import cleanable_at
-from meshcore.operations import CLEANUP, FLIP_LEFT, GLOBAL_SPLIT, NAMES, TRI_FLIP, rewrite
+from meshcore.operations import CLEANUP, FLIP_LEFT, GLOBAL_SPLIT, TRI_FLIP, rewrite
 
 FIRST_OPERATION = {"tri": TRI_FLIP, "quad": FLIP_LEFT}
 OPERATION_COUNT = {"tri": 3, "quad": 5}
@@ -83,11 +83,6 @@ class Task:
     def operations(self) -> int:
         """Number of operations per half-edge."""
         return OPERATION_COUNT[self.kind]
-
-    @property
-    def operation_names(self) -> list[str]:
-        """The operations in the order of the policy's columns."""
-        return [str(NAMES[self.first_operation + i]) for i in range(self.operations)]
 
     @property
     def template(self) -> tuple[np.ndarray, np.ndarray]:
