@@ -11,10 +11,14 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
+import threading
 import traceback
-from collections.abc import Sequence
-from typing import NoReturn
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any, NoReturn
 
 from app.commands import COMMANDS, Command
 from app.report import Report, UserError
@@ -86,6 +90,39 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     words = list(sys.argv[1:] if argv is None else argv)
     report = Report(as_json="--json" in words)
+    with _noted_interrupts() as interrupted:
+        return _run(words, report, interrupted)
+
+
+@contextmanager
+def _noted_interrupts() -> Iterator[threading.Event]:
+    """Note Ctrl-C besides raising it: libraries that are at work may turn it into an error of
+    their own, as numba does while it compiles.
+    """
+    noted = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield noted
+        return
+
+    def note(number: int, frame: FrameType | None) -> None:
+        noted.set()
+        raise KeyboardInterrupt
+
+    def report_unraisable(unraisable: Any) -> None:
+        if not isinstance(unraisable.exc_value, KeyboardInterrupt):
+            usual(unraisable)
+
+    before = signal.signal(signal.SIGINT, note)
+    usual = sys.unraisablehook
+    sys.unraisablehook = report_unraisable
+    try:
+        yield noted
+    finally:
+        sys.unraisablehook = usual
+        signal.signal(signal.SIGINT, before)
+
+
+def _run(words: list[str], report: Report, interrupted: threading.Event) -> int:
     name = "meshwright"
     try:
         words = _with_command(words)
@@ -99,8 +136,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as leave:
         return leave.code if isinstance(leave.code, int) else DONE
     except KeyboardInterrupt:
-        report.error(name, "stopped by Ctrl-C; no file is half written")
-        return REFUSED
+        return _interrupted(report, name)
     except UserError as error:
         _traceback_if_wanted()
         report.error(name, str(error))
@@ -110,11 +146,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         report.error(name, "not enough memory for this")
         return REFUSED
     except Exception as error:
+        if interrupted.is_set():
+            return _interrupted(report, name)
         shown = _traceback_if_wanted()
         hint = "" if shown else f"; run again with {DEBUG}=1 for the traceback, and please tell us"
         report.error(name, f"internal error: {type(error).__name__}: {error}{hint}")
         return BUG
     return DONE
+
+
+def _interrupted(report: Report, name: str) -> int:
+    report.error(name, "stopped by Ctrl-C; no file is half written")
+    return REFUSED
 
 
 def _with_command(words: list[str]) -> list[str]:
