@@ -98,8 +98,8 @@ def _reset(meshes, pool, b, p):
 @kernel
 def _observe_all(
     meshes, active, k, first, count, cap, floors, ceilings, extended, listed_up, noise, source,
-    turn, rng, found, keys, slots, listed, reads, slot_of, chosen, mask, changes, sizes, features,
-    all_reads,
+    turn, rng, found, keys, slots, listed, reads, slot_of, field, chosen, mask, changes, sizes,
+    features, all_reads,
 ):  # fmt: skip
     """Candidates, masks and patches of every active run; rows of features and reads in use."""
     rows = read_rows = 0
@@ -119,7 +119,7 @@ def _observe_all(
         ):
             chosen[b] = -1
             continue
-        look(m, chosen[b], k, sizes[b], listed, reads, slot_of, features[rows:])
+        look(m, chosen[b], k, sizes[b], listed, reads, slot_of, field, features[rows:])
         all_reads[read_rows : read_rows + sizes[b, 1]] = reads[: sizes[b, 1]]
         rows += sizes[b, 0]
         read_rows += sizes[b, 1]
@@ -171,6 +171,8 @@ class Outcome:
 
     rewards: np.ndarray
     """(B,) s before - s after."""
+    growth: np.ndarray
+    """(B,) elements that came to be, less those that went."""
     ended: np.ndarray
     """(B,) bool: at the optimum, out of steps, or nothing left to do."""
     returns: np.ndarray
@@ -208,7 +210,7 @@ class Batch:
         self.best = np.zeros(size, int)
         self.best_step = np.zeros(size, int)
         self.active = np.ones(size, np.bool_)
-        self.scratch = Scratch(task, self.pool.edge.shape[1])
+        self.scratch = Scratch(task, self.pool.edge.shape[1], self.pool.vertex.shape[1])
         self.meshes = MeshArrays(*(array[np.zeros(size, int)].copy() for array in self.pool))
         rows = min(LARGEST, self.pool.edge.shape[1])
         self._features = np.zeros((size * rows, task.channels), np.int8)
@@ -249,8 +251,8 @@ class Batch:
             self.meshes, self.active, task.k, task.first_operation, task.operations, task.cap,
             np.ascontiguousarray(bounds[:, 0]), np.ascontiguousarray(bounds[:, 1]), task.extended,
             task.selection == "shortlist", task.noise, source, turn, self.rng, scratch.found,
-            scratch.keys, scratch.slots, scratch.listed, scratch.reads, scratch.slot_of, chosen,
-            mask, changes, sizes, self._features, self._reads,
+            scratch.keys, scratch.slots, scratch.listed, scratch.reads, scratch.slot_of,
+            scratch.field, chosen, mask, changes, sizes, self._features, self._reads,
         )  # fmt: skip
         left = 1.0 - self.steps / self._limits[self.source]
         growth = self.meshes.counters[:, ELEMENTS] / self.start_elements[self.source]
@@ -275,13 +277,13 @@ class Batch:
 
     def step(self, observation: Observation, actions: np.ndarray) -> Outcome:
         """Apply one action (B,) int64 to every run, -1 where nothing is permitted."""
-        before = self.scores
+        before, elements = self.scores, self.meshes.counters[:, ELEMENTS].copy()
         scratch, task = self.scratch, self.task
         _act_all(
             self.meshes, task.first_operation, actions, task.operations, task.cap,
             observation.chosen, scratch.touched, scratch.cleaned,
         )  # fmt: skip
-        after = self.scores
+        after, growth = self.scores, self.meshes.counters[:, ELEMENTS] - elements
         acted = actions >= 0
         self.steps += acted
         better = after < self.best
@@ -298,4 +300,4 @@ class Batch:
                 self._begin(int(b), int(self.rng.choice(self.useful)))
         else:
             self.active &= ~ended
-        return Outcome((before - after).astype(np.float32), ended, returns)
+        return Outcome((before - after).astype(np.float32), growth, ended, returns)

@@ -8,7 +8,8 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from agent.patch import describe
+from agent.patch import POTENTIALS, describe
+from agent.potential import forget, solve_potential
 from agent.selection import gather, masks
 from agent.task import Scratch, Task, choose_candidates, transition
 from meshcore.compiled import bare_kernel
@@ -18,8 +19,10 @@ from meshcore.mesh import HalfEdgeMesh
 
 
 @bare_kernel
-def _describe_templates(m, chosen, k, source, turn, slots, out):
+def _describe_templates(m, chosen, k, source, turn, slots, field, out):
     """Channels (K, T, C) of the templates of the candidates (K,), zero beyond the boundary."""
+    solved = out.shape[2] > POTENTIALS
+    elements = solve_potential(m, k, chosen, field) if solved else 0
     for i in range(len(chosen)):
         if chosen[i] < 0:
             out[i] = 0
@@ -29,7 +32,8 @@ def _describe_templates(m, chosen, k, source, turn, slots, out):
             if slots[j] < 0:
                 out[i, j] = 0
             else:
-                describe(m, slots[j], k, out[i, j])
+                describe(m, slots[j], k, field, out[i, j])
+    forget(m, k, field, elements)
 
 
 class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
@@ -98,7 +102,7 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
         self.mesh, self._steps = mesh, 0
         self._start_elements, self._start_score = size, mesh.score
         self._limit, self._bounds = self.task.step_limit(size), self.task.bounds(size)
-        self._scratch = Scratch(self.task, len(mesh.arrays.edge))
+        self._scratch = Scratch(self.task, len(mesh.arrays.edge), len(mesh.arrays.vertex))
         return self._observe(), self._info()
 
     def _draw(self) -> HalfEdgeMesh:
@@ -121,7 +125,9 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
         changes = np.zeros(self._mask.shape, np.int8)
         masks(arrays, self._chosen, *settings, self._mask, changes)
         template = np.empty((task.rows, len(source), task.channels), np.int8)
-        _describe_templates(arrays, self._chosen, task.k, source, turn, scratch.slots, template)
+        _describe_templates(
+            arrays, self._chosen, task.k, source, turn, scratch.slots, scratch.field, template
+        )
         state = (
             (self.mesh.score - self.mesh.optimum) / 10.0,
             1.0 - self._steps / self._limit,

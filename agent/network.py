@@ -14,7 +14,7 @@ from torch import Tensor, nn
 
 from agent.task import Task
 
-SCALES = (6.0, 1.0, 1.0, 1.0)
+SCALES = (6.0, 1.0, 1.0, 1.0, 32.0, 32.0)
 """Divisors that bring the channels of a patch to order one."""
 NEVER = -1e9
 """The logit of what is not permitted."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from agent.potential import as_feature
 from meshcore.compiled import bare_kernel, kernel
 from meshcore.halfedge import (
     DEGREE,
@@ -26,8 +27,11 @@ from meshcore.halfedge import (
     preceding,
 )
 
-CHANNELS = ("degree", "irregularity", "boundary", "geometric")
-"""What is known of the vertex of a half-edge; the paper uses the first two."""
+CHANNELS = ("degree", "irregularity", "boundary", "geometric", "potential", "absolute potential")
+"""What is known of the vertex of a half-edge; the paper uses the first two. The last two are those
+of :mod:`agent.potential`."""
+POTENTIALS = 4
+"""Channels that need no potential."""
 
 LARGEST = 8192
 """Half-edges that a patch may hold; candidates far apart need more than such that lie together."""
@@ -84,14 +88,20 @@ def list_patch(m, chosen, k, sizes, listed, reads, slot_of):
 
 
 @bare_kernel
-def describe(m, h, k, row):
-    """Write what is known of the vertex of h into `row`, as many of CHANNELS as it has room for."""
+def describe(m, h, k, field, row):
+    """Write what is known of the vertex of h into `row`, as many of CHANNELS as it has room for;
+    field: solved, if there is room for the potentials.
+    """
     v = seen_vertex(m, h, k)
     row[0] = m.vertex[v, DEGREE]
     row[1] = m.vertex[v, DEGREE] - m.vertex[v, DESIRED]
     if len(row) > 2:
         row[2] = 1 if on_boundary(m, v) else 0
         row[3] = 1 if m.vertex[v, FLAGS] & GEOMETRIC else 0
+    if len(row) > POTENTIALS:
+        place = field.place_of[v] - 1
+        row[4] = as_feature(field.value[place, 0]) if place >= 0 else 0
+        row[5] = as_feature(field.value[place, 1]) if place >= 0 else 0
 
 
 @dataclass

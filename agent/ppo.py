@@ -49,6 +49,10 @@ class Settings:
     """Whether a learned value is subtracted."""
     gradient_norm: float = 0.5
     """Gradients are cut to this length."""
+    operation_price: float = 0.0
+    """What each operation costs, in units of s."""
+    element_price: float = 0.0
+    """What each new element costs, in units of s; one that goes pays as much back."""
 
 
 @dataclass
@@ -139,7 +143,9 @@ def collect(
         gaps[t] = batch.gaps
         actions[t], log_probabilities[t], values[t] = decide(network, observation, generator)
         outcome = batch.step(observation, actions[t])
-        rewards[t], ended[t] = outcome.rewards, outcome.ended
+        rewards[t] = outcome.rewards - settings.operation_price
+        rewards[t] -= settings.element_price * outcome.growth
+        ended[t] = outcome.ended
         returns.append(outcome.returns[outcome.ended])
         observations.append(observation)
     gaps[-1] = batch.gaps

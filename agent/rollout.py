@@ -40,7 +40,7 @@ class Runner:
         self._bounds = self._task.bounds(mesh.n_elements)
         self._rng = np.random.default_rng(seed)
         self._generator = torch.Generator().manual_seed(seed)
-        self._scratch = Scratch(self._task, 0)
+        self._scratch = Scratch(self._task, 0, 0)
         self.best_score = mesh.score
         self.reason = ""
         """Why the run is over, in words; empty while it goes on."""
@@ -101,6 +101,6 @@ class Runner:
         ):
             size = self.mesh.n_elements
             self.mesh.reserve(2 * _SPARE + size // 4, 2 * _SPARE + size // 4)
-        halfedges = len(self.mesh.arrays.edge)
-        if len(self._scratch.slot_of) < halfedges:
-            self._scratch.slot_of = np.zeros(halfedges, np.int32)
+        arrays = self.mesh.arrays
+        if len(self._scratch.slot_of) < len(arrays.edge):
+            self._scratch = Scratch(self._task, len(arrays.edge), len(arrays.vertex))

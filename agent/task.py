@@ -6,7 +6,8 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from agent.patch import LARGEST, Patches, describe, list_patch
+from agent.patch import LARGEST, POTENTIALS, Patches, describe, list_patch
+from agent.potential import field, forget, solve_potential
 from agent.selection import best_template, masks, shortlist, template_plan
 from meshcore.compiled import bare_kernel, kernel
 from meshcore.halfedge import (
@@ -61,8 +62,8 @@ class Task:
             raise ValueError(f'a task is of kind "tri" or "quad", not "{self.kind}"')
         if self.selection not in ("shortlist", "template"):
             raise ValueError(f'selection is "shortlist" or "template", not "{self.selection}"')
-        if self.channels not in (2, 4):
-            raise ValueError(f"a policy sees 2 or 4 channels, not {self.channels}")
+        if self.channels not in (2, 4, 6):
+            raise ValueError(f"a policy sees 2, 4 or 6 channels, not {self.channels}")
 
     @property
     def k(self) -> int:
@@ -112,14 +113,15 @@ class Task:
 class Scratch:
     """Arrays that looking at meshes needs and that nobody else looks at."""
 
-    def __init__(self, task: Task, halfedges: int) -> None:
-        """For meshes with at most so many half-edge slots."""
+    def __init__(self, task: Task, halfedges: int, vertices: int) -> None:
+        """For meshes with at most so many half-edge slots and vertex slots."""
         self.found = np.zeros(_FOUND, np.int64)
         self.keys = np.zeros(_FOUND * task.k)
         self.slots = np.zeros(len(task.template[0]), np.int64)
         self.listed = np.zeros(LARGEST, np.int64)
         self.reads = np.zeros((LARGEST, task.k + 1), np.int16)
         self.slot_of = np.zeros(halfedges, np.int32)
+        self.field = field(vertices if task.channels > POTENTIALS else 0)
         self.touched = np.zeros(_TOUCHED, np.int64)
         self.cleaned = np.zeros(MOST_CLEANUPS, np.int64)
 
@@ -170,13 +172,16 @@ def choose_candidates(
 
 
 @bare_kernel
-def look(m, chosen, k, sizes, listed, reads, slot_of, features):
+def look(m, chosen, k, sizes, listed, reads, slot_of, field, features):
     """List the patch of the candidates and describe its half-edges: rows of `features` (N, C)
     int8.
     """
     list_patch(m, chosen, k, sizes, listed, reads, slot_of)
+    solved = features.shape[1] > POTENTIALS
+    elements = solve_potential(m, k, chosen, field) if solved else 0
     for i in range(sizes[0]):
-        describe(m, listed[i], k, features[i])
+        describe(m, listed[i], k, field, features[i])
+    forget(m, k, field, elements)
 
 
 @dataclass
@@ -225,6 +230,7 @@ def observe(
         scratch.listed,
         scratch.reads,
         scratch.slot_of,
+        scratch.field,
         features,
     )
     patches = Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]].copy(), sizes)

@@ -6,6 +6,7 @@ import torch
 
 from agent.network import Architecture, PolicyNetwork
 from agent.patch import LARGEST, Patches, assemble, describe
+from agent.potential import field, forget, solve_potential
 from agent.task import Scratch, Task, look
 from meshcore.generate import benchmark_mesh
 from meshcore.halfedge import TWIN
@@ -15,15 +16,19 @@ def _whole(network, mesh):
     arrays, k = mesh.arrays, mesh.k
     count = k * mesh.n_elements
     features = np.zeros((count, network.task.channels), np.int8)
+    solved = field(len(arrays.vertex))
+    elements = solve_potential(arrays, k, np.array([-1]), solved)
     for h in range(count):
-        describe(arrays, h, k, features[h])
+        describe(arrays, h, k, solved, features[h])
+    forget(arrays, k, solved, elements)
+    assert not solved.place_of.any()
     twins = torch.from_numpy(arrays.edge[:count, TWIN].astype(np.int64))
     return network.convolve_mesh(torch.from_numpy(features), twins)
 
 
 def _local(network, mesh, chosen):
     task = network.task
-    scratch = Scratch(task, len(mesh.arrays.edge))
+    scratch = Scratch(task, len(mesh.arrays.edge), len(mesh.arrays.vertex))
     sizes = np.zeros((1, task.blocks + 1), np.int32)
     features = np.zeros((LARGEST, task.channels), np.int8)
     look(
@@ -34,6 +39,7 @@ def _local(network, mesh, chosen):
         scratch.listed,
         scratch.reads,
         scratch.slot_of,
+        scratch.field,
         features,
     )
     assert not scratch.slot_of.any()
@@ -47,7 +53,9 @@ def _local(network, mesh, chosen):
 def test_logits_of_the_patch_are_those_of_the_whole_mesh(kind, blocks):
     rng = np.random.default_rng(blocks)
     torch.manual_seed(blocks)
-    network = PolicyNetwork(Task(kind, blocks=blocks), Architecture(prior=False)).double()
+    network = PolicyNetwork(
+        Task(kind, blocks=blocks, channels=6), Architecture(prior=False)
+    ).double()
     torch.nn.init.normal_(network.head.weight)
     for block in network.blocks:
         torch.nn.init.normal_(block.beyond)
@@ -88,7 +96,7 @@ def test_several_decisions_assemble_as_each_alone():
     for sides in (10, 17, 12):
         mesh = benchmark_mesh("tri", sides, rng)
         chosen = rng.permutation(3 * mesh.n_elements)[:5].astype(np.int64)
-        scratch = Scratch(task, len(mesh.arrays.edge))
+        scratch = Scratch(task, len(mesh.arrays.edge), len(mesh.arrays.vertex))
         sizes = np.zeros((1, task.blocks + 1), np.int32)
         features = np.zeros((LARGEST, task.channels), np.int8)
         look(
@@ -99,6 +107,7 @@ def test_several_decisions_assemble_as_each_alone():
             scratch.listed,
             scratch.reads,
             scratch.slot_of,
+            scratch.field,
             features,
         )
         parts.append(Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]].copy(), sizes))
