@@ -3,6 +3,9 @@
 A suite has a ``SUMMARY`` and ``run(seed, quick, update)``, which returns the numbers by name.
 ``quick`` asks for a small share of the work, to see that the suite runs; ``update`` is called as
 ``update(done, remark)`` and may be ignored.
+
+A suite that searches has ``SECONDS`` too, the time for each mesh, and takes ``seconds`` as a fourth
+argument. A suite whose numbers are better read as a table has ``text(results)``, which returns it.
 """
 
 from __future__ import annotations

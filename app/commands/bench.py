@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from app import inputs
-from app.report import Report, table
+from app.report import Report, UserError, table
 
 SUMMARY = "measure the program itself on this machine"
 DESCRIPTION = "Run a suite of measurements and report the numbers."
@@ -26,6 +26,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--quick", action="store_true", help="a small share of the work, to see that it runs"
     )
+    parser.add_argument(
+        "--seconds",
+        metavar="S",
+        type=inputs.positive_float,
+        help="search time for each mesh, in suites that search",
+    )
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
@@ -39,9 +45,14 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         report.result({"command": "bench", "suites": summaries}, text)
         return
     suite = benchmarks.load(inputs.one_of(arguments.suite, names, "--suite"))
+    options = {}
+    if arguments.seconds is not None:
+        if not hasattr(suite, "SECONDS"):
+            raise UserError(f"--seconds: the suite {arguments.suite} does not search")
+        options["seconds"] = arguments.seconds
     start = time.perf_counter()
     with report.progress(arguments.suite) as update:
-        results = suite.run(arguments.seed, arguments.quick, update)
+        results = suite.run(arguments.seed, arguments.quick, update, **options)
     values = {
         "command": "bench",
         "suite": arguments.suite,
@@ -51,9 +62,10 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         "results": results,
         "seconds": round(time.perf_counter() - start, 3),
     }
-    rows = [(name, _shown(value)) for name, value in flat(results)]
     head = f"{arguments.suite}: {suite.SUMMARY}\n{', '.join(machine().values())}\n"
-    report.result(values, head + table(rows))
+    own = getattr(suite, "text", None)
+    rows = [(name, _shown(value)) for name, value in flat(results)]
+    report.result(values, head + (own(results) if own else table(rows)))
 
 
 def machine() -> dict[str, str]:

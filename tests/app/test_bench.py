@@ -33,3 +33,21 @@ def test_fuzz_finds_no_violation(capsys):
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--json", "--seed", "3"]) == 0
     results = json.loads(capsys.readouterr().out)["results"]
     assert results["tri"]["violations"] == results["quad"]["violations"] == 0
+
+
+def test_parts_are_a_table_of_shapes(capsys):
+    command = ["bench", "--suite", "parts", "--quick", "--seconds", "2"]
+    assert cli.main([*command, "--json"]) == 0
+    results = json.loads(capsys.readouterr().out)["results"]
+    assert list(results) == ["gallery", "8-24 corners", "25-50 corners"]
+    for group in results.values():
+        assert group["meshes"] == len(group["shapes"]) == group["corners kept"]
+        for row in group["shapes"].values():
+            assert row["s*"] <= row["s"] <= row["s start"]
+            assert 1 <= row["blocks"] <= row["elements"]
+            assert (row["worst Jacobian"] > 0) == (row["inverted"] == 0)
+
+
+def test_seconds_are_for_suites_that_search(capsys):
+    assert cli.main(["bench", "--suite", "fuzz", "--quick", "--seconds", "2"]) == 2
+    assert "does not search" in capsys.readouterr().err

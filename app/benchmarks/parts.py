@@ -1,0 +1,127 @@
+"""The solver on the gallery and on random straight-sided parts, as quads, one core.
+
+Each shape is meshed as ``meshwright mesh`` does by default, improved for so many seconds, smoothed
+and untangled. Part i of a row depends on the seed and on i alone.
+"""
+
+from __future__ import annotations
+
+import time
+from statistics import median
+from typing import Any
+
+from agent import policies, search
+from agent.policies import Policy
+from app import meshfile
+from app.benchmarks.gallery import corners
+from app.commands.improve import replay
+from app.report import Update
+from meshcore import generate, quality, shapes
+from meshcore.blocks import block_count
+from meshcore.domain import Domain
+from meshcore.parts import parts
+
+SUMMARY = "gallery and random parts as quads: s, s*, elements, blocks, shapes after so many seconds"
+SECONDS = 10.0
+"""Search time for each shape where nothing else is asked for."""
+
+PARTS = 40
+ROWS = ((8, 24), (25, 50))
+"""Corners of the parts, over all loops."""
+QUICK = 2
+
+
+def run(seed: int, quick: bool, update: Update, seconds: float = SECONDS) -> dict[str, Any]:
+    """Improve the gallery and 40 parts of each row; quick: two of each, a tenth of the time."""
+    policy = policies.load(policies.shipped("quad")[0])
+    time_each = 0.1 * seconds if quick else seconds
+    groups = {"gallery": list(shapes.gallery().values())}
+    for low, high in ROWS:
+        groups[f"{low}-{high} corners"] = parts(QUICK if quick else PARTS, (low, high), seed)
+    found: dict[str, Any] = {}
+    for group, domains in groups.items():
+        rows = {}
+        for number, domain in enumerate(domains[:QUICK] if quick else domains):
+            name = domain.name if group == "gallery" else f"{number} {domain.name}"
+            update(number, f"{group}: {name}")
+            rows[name] = solved(domain, policy, time_each, seed)
+        found[group] = {**summary(list(rows.values())), "shapes": rows}
+    return found
+
+
+def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[str, Any]:
+    """Return one row of the table."""
+    mesh = generate.mesh_domain(domain, "quad")
+    before, places = mesh.copy(), corners(mesh)
+    began = time.perf_counter()
+    solution = search.improve(mesh, policy, rollouts=None, seconds=seconds, seed=seed)
+    took = time.perf_counter() - began
+    replay(mesh, solution)
+    meshfile.settle(mesh)
+    mesh.validate()
+    return {
+        "corners": sum(int(flags.sum()) for flags in domain.loop_corners),
+        "holes": len(domain.holes),
+        "s start": before.score,
+        "s": mesh.score,
+        "s*": mesh.optimum,
+        "elements start": before.n_elements,
+        "elements": mesh.n_elements,
+        "blocks": block_count(mesh),
+        "worst Jacobian": round(float(quality.scaled_jacobian(mesh).min()), 3),
+        "inverted": len(quality.inverted(mesh)),
+        "kept": corners(mesh) == places and mesh.optimum == before.optimum,
+        "operations": len(solution.operations),
+        "seconds": round(took, 2),
+    }
+
+
+def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """How many rows are at the optimum, without inverted elements, with every corner kept."""
+    return {
+        "meshes": len(rows),
+        "at s*": sum(row["s"] == row["s*"] for row in rows),
+        "not inverted": sum(not row["inverted"] for row in rows),
+        "at s* and not inverted": sum(
+            row["s"] == row["s*"] and not row["inverted"] for row in rows
+        ),
+        "corners kept": sum(row["kept"] for row in rows),
+        "elements relative to the start, mean": sum(
+            row["elements"] / row["elements start"] for row in rows
+        )
+        / len(rows),
+        "blocks, median": median(row["blocks"] for row in rows),
+        "worst Jacobian, median": median(row["worst Jacobian"] for row in rows),
+        "operations, median": median(row["operations"] for row in rows),
+    }
+
+
+def text(results: dict[str, Any]) -> str:
+    """Return the results as one table for each group, with its summary below."""
+    tables = []
+    for group, found in results.items():
+        rows = [["shape", *next(iter(found["shapes"].values()))]]
+        rows += [[name, *map(_shown, row.values())] for name, row in found["shapes"].items()]
+        told = [
+            f"{name}: {value} of {found['meshes']}"
+            for name, value in found.items()
+            if isinstance(value, int) and name != "meshes"
+        ]
+        told += [f"{name}: {value:.3g}" for name, value in found.items() if "," in name]
+        tables.append("\n".join([group, _aligned(rows), *told]))
+    return "\n\n".join(tables)
+
+
+def _shown(value: Any) -> str:
+    return ("no", "yes")[value] if isinstance(value, bool) else f"{value}"
+
+
+def _aligned(rows: list[list[str]]) -> str:
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(
+            cell.rjust(width) if column else cell.ljust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        for row in rows
+    )
