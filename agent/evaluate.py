@@ -2,17 +2,36 @@
 
 from __future__ import annotations
 
+import copy
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import torch
 
+from agent import paper
 from agent.batch import Batch, start_meshes
 from agent.policies import Policy, load, shipped
 from agent.ppo import decide
+from agent.rollout import Step
+from agent.task import MOST_CLEANUPS, Task, transition
+from meshcore.halfedge import ELEMENTS, JOURNALLING
 from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import NAMES, Operation
+
+
+@dataclass
+class Trace:
+    """One rollout on each of M meshes, step by step."""
+
+    gaps: np.ndarray
+    """(T + 1, M) s - s* at the start and after each step; a run that has ended stays as it is."""
+    codes: np.ndarray
+    """(T, M) int8 code of the operation of each step, -1 when the run has ended."""
+    halfedges: np.ndarray
+    """(T, M) int64 half-edge of each step, -1 when the run has ended."""
 
 
 @dataclass
@@ -25,6 +44,32 @@ class Rollouts:
     """(M, K) s - s* at the best state."""
     operations: np.ndarray
     """(M, K) operations to the best state."""
+    elements: np.ndarray
+    """(M, K) elements at the best state, relative to the start."""
+    traces: list[Trace]
+    """K: what the runs did."""
+
+    def best(self) -> np.ndarray:
+        """(M,) the best rollout on each mesh, that with fewest operations among equals."""
+        rank = self.gaps * (self.operations.max(initial=0) + 1) + self.operations
+        numbers: np.ndarray = rank.argmin(axis=1)
+        return numbers
+
+    def steps(self, task: Task, mesh: HalfEdgeMesh, i: int, k: int) -> list[Step]:
+        """The steps of rollout k on mesh i to its best state, each the operation and the clean-ups
+        that followed; the operations replay on `mesh`, which is not changed.
+        """
+        played = mesh.copy()
+        played.arrays.counters[JOURNALLING] = 0
+        played.reserve(3 * mesh.slots + 64, 3 * mesh.n_elements + 64)
+        touched, cleaned = np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64)
+        trace, steps = self.traces[k], []
+        for t in range(int(self.operations[i, k])):
+            code, h = int(trace.codes[t, i]), int(trace.halfedges[t, i])
+            count = transition(played.arrays, code, h, task.cap, touched, cleaned)
+            lines = cleaned[:count].tolist()
+            steps.append([(NAMES[code], h), *((Operation.CLEANUP, line) for line in lines)])
+        return steps
 
 
 def roll_out(
@@ -40,20 +85,65 @@ def roll_out(
     rng = np.random.default_rng(seed)
     generator = torch.Generator().manual_seed(seed)
     shape = (len(meshes), rollouts)
-    result = Rollouts(np.zeros(shape), np.zeros(shape, int), np.zeros(shape, int))
+    result = Rollouts(
+        np.zeros(shape), np.zeros(shape, int), np.zeros(shape, int), np.zeros(shape), []
+    )
     for i in range(rollouts):
         batch = Batch(policy.task, meshes, len(meshes), rng, endless=False)
-        while batch.active.any():
-            observation = batch.observe()
-            actions = decide(policy.network, observation, generator)[0]
-            batch.step(observation, actions)
+        elements, trace = _play(batch, policy, generator)
         result.gaps[:, i] = batch.best - batch.optima
         start_gaps = batch.start_scores - batch.optima
         result.returns[:, i] = 1.0 - result.gaps[:, i] / start_gaps
         result.operations[:, i] = batch.best_step
+        result.elements[:, i] = elements / batch.start_elements
+        result.traces.append(trace)
         if progress is not None:
             progress(i + 1)
     return result
+
+
+def _play(batch: Batch, policy: Policy, generator: torch.Generator) -> tuple[np.ndarray, Trace]:
+    """Play all runs of the batch to their ends; elements (M,) at the best states, and the trace."""
+    task = policy.task
+    elements = batch.start_elements.copy()
+    gaps, codes, halfedges = [batch.gaps], [], []
+    while batch.active.any():
+        observation = batch.observe()
+        actions = decide(policy.network, observation, generator)[0]
+        best = batch.best.copy()
+        batch.step(observation, actions)
+        better = batch.best < best
+        elements[better] = batch.meshes.counters[better, ELEMENTS]
+        row, operation = np.divmod(actions, task.operations)
+        acted = actions >= 0
+        picked = observation.chosen[np.arange(len(actions)), np.where(acted, row, 0)]
+        gaps.append(batch.gaps)
+        codes.append(np.where(acted, task.first_operation + operation, -1).astype(np.int8))
+        halfedges.append(np.where(acted, picked, -1))
+    shape = (0, len(elements))
+    trace = Trace(
+        np.array(gaps),
+        np.array(codes, np.int8).reshape(-1, shape[1]),
+        np.array(halfedges, np.int64).reshape(-1, shape[1]),
+    )
+    return elements, trace
+
+
+def unseen(kind: str, sides: tuple[int, int], meshes: int, seed: int) -> list[HalfEdgeMesh]:
+    """The polygons of one row of an evaluation: those of so many drawn that are not at their
+    optimum from the start.
+    """
+    drawn = start_meshes(kind, sides, meshes, np.random.default_rng([seed, 1]))
+    return [mesh for mesh in drawn if mesh.score > mesh.optimum]
+
+
+def longer(policy: Policy, factor: float) -> Policy:
+    """The same policy with runs that are so many times as long."""
+    if factor == 1.0:
+        return policy
+    network = copy.copy(policy.network)
+    network.task = replace(policy.task, steps=factor * policy.task.steps)
+    return Policy(policy.name, network, policy.header)
 
 
 def evaluate(
@@ -69,22 +159,28 @@ def evaluate(
 
     single: the first rollout on each mesh; best: the best of `rollouts`. Meshes that are at their
     optimum from the start are left out and counted. `operations_median`: operations to the best
-    state of the best rollout, the shortest among equals.
+    state of the best rollout, the shortest among equals; `elements_mean`: elements there, relative
+    to the start.
     """
     began = time.perf_counter()
     chosen = policy if policy is not None else load(shipped(kind)[0])
-    drawn = start_meshes(kind, sides, meshes, np.random.default_rng([seed, 1]))
-    useful = [mesh for mesh in drawn if mesh.score > mesh.optimum]
+    useful = unseen(kind, sides, meshes, seed)
 
     def on_rollout(done: int) -> None:
         if progress is not None:
             progress(done * meshes // rollouts)
 
     rolled = roll_out(chosen, useful, rollouts, seed, on_rollout)
+    return summary(rolled) | {
+        "started_at_optimum": meshes - len(useful),
+        "seconds": time.perf_counter() - began,
+    }
+
+
+def summary(rolled: Rollouts) -> dict[str, float | int]:
+    """The numbers of a row."""
     single, best = rolled.returns[:, 0], rolled.returns.max(axis=1)
-    # among the best rollouts of a mesh the one with the fewest operations
-    rank = rolled.gaps * (rolled.operations.max() + 1) + rolled.operations
-    operations = np.take_along_axis(rolled.operations, rank.argmin(axis=1)[:, None], 1)
+    chosen = (np.arange(len(best)), rolled.best())
     return {
         "single_mean": float(single.mean()),
         "single_std": float(single.std()),
@@ -92,7 +188,16 @@ def evaluate(
         "best_mean": float(best.mean()),
         "best_std": float(best.std()),
         "at_optimum": float((rolled.gaps.min(axis=1) == 0).mean()),
-        "operations_median": float(np.median(operations)),
-        "started_at_optimum": len(drawn) - len(useful),
-        "seconds": time.perf_counter() - began,
+        "operations_median": float(np.median(rolled.operations[chosen])),
+        "elements_mean": float(rolled.elements[chosen].mean()),
     }
+
+
+def paper_table(
+    kind: str, meshes: int, rollouts: int, seed: int, policy: Policy
+) -> list[dict[str, Any]]:
+    """All rows that the paper gives for this kind, each as :func:`evaluate` measures it."""
+    return [
+        {"sides": list(row.sides), **evaluate(kind, row.sides, meshes, rollouts, seed, policy)}
+        for row in paper.ROWS[kind]
+    ]

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from agent.paper import single as paper_single
 from meshcore.atomic import replacing
-
-PAPER_SINGLE = {"tri": 0.81, "quad": 0.95}
-"""Mean normalised return of a single rollout, 10 to 30 sides, as the paper reports it."""
 
 
 def learning_curve(
@@ -30,7 +28,7 @@ def learning_curve(
     axes.fill_between(decisions, low, high, color="#0072B2", alpha=0.15, linewidth=0)
     axes.plot(decisions, mean, color="#0072B2", label="normalised return, single rollout")
     axes.plot(decisions, solved, color="#D55E00", linestyle="--", label="share at the optimum")
-    paper = PAPER_SINGLE[kind]
+    paper = paper_single(kind)
     axes.axhline(paper, color="#475569", linewidth=0.8, linestyle=":")
     axes.annotate(
         f"paper, single rollout: {paper}",

@@ -2,7 +2,8 @@
 
 With ``--json`` stdout carries exactly one JSON object, the result or ``{"error": ...}``.
 Progress and remarks go to stderr, and only when that is a terminal, so that a pipe or a log
-never fills with them. An error is one line on stderr.
+never fills with them; a training, which takes hours, writes a line now and then all the same. An
+error is one line on stderr.
 """
 
 from __future__ import annotations
@@ -52,8 +53,12 @@ class Report:
     def say(self, sentence: str) -> None:
         """Write a remark to stderr if a person is looking at it."""
         if self.err.isatty():
-            self.err.write(one_line(sentence) + "\n")
-            self.err.flush()
+            self.note(sentence)
+
+    def note(self, sentence: str) -> None:
+        """Write a remark to stderr that a log should keep too."""
+        self.err.write(one_line(sentence) + "\n")
+        self.err.flush()
 
     def error(self, command: str, sentence: str) -> None:
         """Write what went wrong as one line on stderr, and as an object where JSON is wanted."""

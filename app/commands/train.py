@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import os
+from contextlib import nullcontext
 from typing import Any
 
 from app import inputs
@@ -12,8 +14,13 @@ from app.report import Report, UserError, table
 SUMMARY = "train a policy on random polygons"
 DESCRIPTION = (
     "Train a policy by self-play on random polygons of the benchmark (PPO). The folder gets the "
-    "policy (policy.safetensors), its configuration, its learning curve, and a checkpoint: the "
-    "same command goes on where it was stopped."
+    "policy (policy.safetensors: the best by evaluation), its configuration, its learning curve, "
+    "events for TensorBoard, and a checkpoint: the same command goes on where it was stopped. "
+    "On N processes, each with its share of the runs: torchrun --nproc-per-node N -m app train ..."
+)
+NO_EVENTS = (
+    "no events for TensorBoard are written: they need tensorboardX "
+    '(pip install "meshwright[train]")'
 )
 
 
@@ -40,30 +47,34 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     """Train, then say how good the policy has become."""
     folder = checked_folder(arguments.output)
     configuration = inputs.read_configuration(arguments.config, arguments.kind)
-    from agent import training
+    from agent import events, training
+    from app.training_display import shown
 
-    with report.progress("training", configuration.iterations) as update:
+    # of the processes that torchrun starts, the first one speaks
+    speaks = os.environ.get("RANK", "0") == "0"
+    if speaks and not events.available():
+        report.note(NO_EVENTS)
+    total, minutes = configuration.iterations, arguments.minutes
+    with shown(report.err, total, minutes) if speaks else nullcontext() as on_update:
         try:
             found = training.train(
                 arguments.config or training.shipped_configuration(arguments.kind),
                 folder,
-                minutes=arguments.minutes,
+                minutes=minutes,
                 seed=arguments.seed,
-                report=lambda done, _, numbers: update(done, _remark(numbers)),
+                report=on_update,
             )
         except training.ConfigurationError as error:
             raise UserError(str(error)) from error
-    values = {"command": "train", "kind": arguments.kind, "folder": str(folder), **found}
-    report.result(values, _text(values))
-
-
-def _remark(numbers: dict[str, float]) -> str:
-    return f"return {numbers['mean']:.3f}" if "mean" in numbers else ""
+    if found:
+        values = {"command": "train", "kind": arguments.kind, "folder": str(folder), **found}
+        report.result(values, _text(values))
 
 
 def _text(values: dict[str, Any]) -> str:
     rows = [
         ("updates", values["iteration"]),
+        ("best after", f"{values['best_iteration']} updates: that policy is the result"),
         ("decisions", f"{values['decisions']:,}"),
         ("single rollout", f"{values['single_mean']:.3f} (normalised return, unseen polygons)"),
         ("best of 10", f"{values['best_mean']:.3f}"),

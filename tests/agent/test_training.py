@@ -17,6 +17,7 @@ _TINY = {
     "iterations": 3,
     "evaluate_every": 1,
     "evaluation_meshes": 4,
+    "table_meshes": 0,
     "task": {"kind": "quad", "blocks": 2, "candidates": 8, "steps": 0.5},
     "architecture": {"width": 8, "embedding": 4},
     "ppo": {"environments": 8, "horizon": 6, "minibatch": 16, "lambda": 0.9},

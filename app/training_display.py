@@ -1,0 +1,126 @@
+"""How a training shows that it goes on: a bar on a terminal, a line now and then in a log."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, TextIO
+
+OnUpdate = Callable[[int, int, Mapping[str, float]], None]
+"""Called as ``on_update(done, total, numbers)`` after each update of a training."""
+
+COLUMNS = ("update", "decisions", "a second", "self-play", "single", "at s*", "entropy", "left")
+_WIDTHS = (9, 13, 10, 11, 8, 7, 9, 9)
+
+
+class Line:
+    """The numbers of a training as the cells of one line."""
+
+    def __init__(self, minutes: float | None = None) -> None:
+        """minutes: after which the training ends, if not before."""
+        self._began = time.perf_counter()
+        self._minutes = minutes
+        self._first: int | None = None
+        self._measured: dict[str, float] = {}
+
+    def cells(self, done: int, total: int, numbers: Mapping[str, float]) -> list[str]:
+        """One text for each of COLUMNS; what has not been measured yet is a dash."""
+        if self._first is None:
+            self._first = done - 1
+        self._measured |= {
+            name: numbers[name] for name in ("mean", "at_optimum") if name in numbers
+        }
+        spent = time.perf_counter() - self._began
+        left = spent / (done - self._first) * (total - done)
+        if self._minutes is not None:
+            left = min(left, 60.0 * self._minutes - spent)
+        return [
+            f"{done}/{total}",
+            _shown(numbers.get("decisions"), ",.0f"),
+            _shown(numbers.get("decisions_per_second"), ",.0f"),
+            _shown(numbers.get("played"), ".3f"),
+            _shown(self._measured.get("mean"), ".3f"),
+            _shown(self._measured.get("at_optimum"), ".0%"),
+            _shown(numbers.get("entropy"), ".3f"),
+            clock(left),
+        ]
+
+
+def row(cells: tuple[str, ...] | list[str]) -> str:
+    """The cells as one line of a table, each against the right of its column."""
+    return "".join(f"{cell:>{width}}" for cell, width in zip(cells, _WIDTHS, strict=True))
+
+
+def clock(seconds: float) -> str:
+    """Seconds as m:ss, or h:mm:ss from an hour on."""
+    whole = max(0, round(seconds))
+    hours, minutes = whole // 3600, whole // 60 % 60
+    return f"{hours}:{minutes:02}:{whole % 60:02}" if hours else f"{minutes}:{whole % 60:02}"
+
+
+@contextmanager
+def shown(stream: TextIO, total: int, minutes: float | None = None) -> Iterator[OnUpdate]:
+    """Show a training on `stream` while the block runs; yield what is to be called after updates.
+
+    A terminal gets a bar with the numbers of now, and above it a table that grows by a line with
+    each evaluation; anything else only that table.
+    """
+    line = Line(minutes)
+    write = _bar if stream.isatty() else _log
+    with write(stream, total) as update:
+
+        def on_update(done: int, total: int, numbers: Mapping[str, float]) -> None:
+            update(done, line.cells(done, total, numbers), "mean" in numbers)
+
+        yield on_update
+
+
+@contextmanager
+def _log(stream: TextIO, total: int) -> Iterator[Callable[[int, list[str], bool], None]]:
+    lines = 0
+
+    def update(done: int, cells: list[str], evaluated: bool) -> None:
+        nonlocal lines
+        if not evaluated and done < total:
+            return
+        if lines == 0:
+            stream.write(row(COLUMNS) + "\n")
+        lines += 1
+        stream.write(row(cells) + "\n")
+        stream.flush()
+
+    yield update
+
+
+@contextmanager
+def _bar(stream: TextIO, total: int) -> Iterator[Callable[[int, list[str], bool], None]]:
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
+
+    console = Console(file=stream, highlight=False)
+    columns: list[Any] = [
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=24),
+        TextColumn("{task.fields[numbers]}"),
+    ]
+    with Progress(*columns, console=console, transient=True) as bar:
+        console.print(row(COLUMNS), style="dim")
+        task = bar.add_task("making meshes", total=total, numbers="")
+
+        def update(done: int, cells: list[str], evaluated: bool) -> None:
+            if evaluated:
+                console.print(row(cells))
+            now = dict(zip(COLUMNS, cells, strict=True))
+            numbers = (
+                f"{now['update']}  {now['a second']}/s  self-play {now['self-play']}  "
+                f"entropy {now['entropy']}  {now['left']} left"
+            )
+            bar.update(task, completed=done, description="training", numbers=numbers)
+
+        yield update
+
+
+def _shown(value: float | None, form: str) -> str:
+    return "-" if value is None or value != value else format(value, form)
