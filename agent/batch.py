@@ -28,20 +28,33 @@ from meshcore.halfedge import (
     enlarge,
 )
 from meshcore.mesh import HalfEdgeMesh
+from meshcore.parts import part_mesh
 
 _ROOM = 2.5  # slots of a run, relative to the largest start mesh; a run that needs more is masked
+PART_CORNERS = (8, 30)
+"""Corners of the parts among start meshes."""
 _TRIES = 64  # random half-edges that a random step tries before it gives up
 
 
 def start_meshes(
-    kind: str, sides: tuple[int, int], count: int, rng: np.random.Generator
+    kind: str,
+    sides: tuple[int, int],
+    count: int,
+    rng: np.random.Generator,
+    parts: float = 0.0,
 ) -> list[HalfEdgeMesh]:
-    """So many meshes of the benchmark distribution, the number of sides drawn from a closed
-    range.
+    """So many meshes of the benchmark distribution, the number of sides drawn from a closed range;
+    a share `parts` of them are random parts instead, half of these with holes.
     """
-    return [
-        benchmark_mesh(kind, int(rng.integers(sides[0], sides[1] + 1)), rng) for _ in range(count)
-    ]
+    meshes = []
+    for i in range(count):
+        corners = int(rng.integers(sides[0], sides[1] + 1))
+        if parts and rng.random() < parts:
+            corners = min(max(corners, PART_CORNERS[0]), PART_CORNERS[1])
+            meshes.append(part_mesh(kind, corners, rng, holes=i % 2 == 0))
+        else:
+            meshes.append(benchmark_mesh(kind, corners, rng))
+    return meshes
 
 
 def stack(meshes: list[HalfEdgeMesh], task: Task) -> MeshArrays:

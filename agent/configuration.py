@@ -29,6 +29,8 @@ class Training:
     ppo: Settings = field(default_factory=Settings)
     sides: tuple[int, int] = (10, 30)
     """Sides of the polygons of self-play, a closed range."""
+    parts: float = 0.0
+    """Share of random parts, half of them with holes, in place of polygons."""
     pool: int = 2000
     """Start meshes, made once."""
     iterations: int = 100
