@@ -119,13 +119,16 @@ class PolicyNetwork(nn.Module):
         """Logits (B, K A), NEVER where not permitted, and values (B,).
 
         features, tables: from :func:`agent.patch.assemble`; real (B, K): which candidates there
-        are; mask, changes (B, K, A) and state (B, 3) from an Observation.
+        are; mask, changes (B, K, A) and state (B, 3) from an Observation. All come from the
+        processor's memory and the results go there, wherever the network is.
         """
-        width = self.architecture.width
-        embedding = torch.zeros((*real.shape, width)).masked_scatter(
-            real.unsqueeze(2), self.convolve(features, tables)
+        place, width = self.scales.device, self.architecture.width
+        real, mask, changes, state = (x.to(place) for x in (real, mask, changes, state))
+        convolved = self.convolve(features.to(place), [table.to(place) for table in tables])
+        embedding = torch.zeros((*real.shape, width), device=place).masked_scatter(
+            real.unsqueeze(2), convolved
         )
         logits = self.logits_of(embedding, changes).masked_fill(~mask, NEVER)
         mean = embedding.sum(dim=1) / real.sum(dim=1, keepdim=True).clamp(min=1)
         value = self.value(torch.cat([mean, embedding.amax(dim=1), state], dim=1)).squeeze(1)
-        return logits.flatten(1), value
+        return logits.flatten(1).cpu(), value.cpu()

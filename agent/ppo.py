@@ -18,6 +18,7 @@ from torch import Tensor
 from agent.batch import Batch
 from agent.network import PolicyNetwork
 from agent.patch import Patches, assemble
+from agent.processes import Processes
 from agent.task import Observation
 
 
@@ -172,20 +173,27 @@ def update(
     collected: Collected,
     settings: Settings,
     rng: np.random.Generator,
+    processes: Processes | None = None,
 ) -> dict[str, float]:
-    """Some epochs of clipped policy gradient; returns the means of loss terms and entropy."""
+    """Some epochs of clipped policy gradient; returns the means of loss terms and entropy.
+
+    processes: those that train together; each brings its own decisions, and all make the same
+    steps, with advantages normalised over all and the mean of their gradients.
+    """
+    processes = processes or Processes()
     patches = Patches.join([observation.patches for observation in collected.observations])
     joined = {
         name: np.concatenate([getattr(o, name) for o in collected.observations])
         for name in ("chosen", "mask", "changes", "state")
     }
     usable = np.flatnonzero(collected.valid)
-    advantages = collected.advantages
-    advantages = (advantages - advantages[usable].mean()) / (advantages[usable].std() + 1e-8)
+    mean, deviation = processes.mean_and_deviation(collected.advantages[usable])
+    advantages = (collected.advantages - mean) / (deviation + 1e-8)
+    shared = processes.least(len(usable))
     totals = {"policy": 0.0, "value": 0.0, "entropy": 0.0, "clipped": 0.0}
     steps = 0
     for _ in range(settings.epochs):
-        order = rng.permutation(usable)
+        order = rng.permutation(usable)[:shared]
         for begin in range(0, len(order), settings.minibatch):
             picked = order[begin : begin + settings.minibatch]
             features, tables = assemble(patches, picked)
@@ -212,6 +220,7 @@ def update(
                 loss = loss + settings.value * error
             optimiser.zero_grad()
             loss.backward()
+            processes.average_gradients(network.parameters())
             torch.nn.utils.clip_grad_norm_(network.parameters(), settings.gradient_norm)
             optimiser.step()
             steps += 1

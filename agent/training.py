@@ -85,7 +85,9 @@ class Trainer:
             training.seed + self.progress.iteration + 1_000_003 * processes.rank
         )
         pool_rng = np.random.default_rng([training.seed, 7])
-        pool = start_meshes(training.task.kind, training.sides, training.pool, pool_rng)
+        pool = start_meshes(
+            training.task.kind, training.sides, training.pool, pool_rng, training.parts
+        )
         self.settings = replace(
             training.ppo,
             environments=processes.share(training.ppo.environments),
@@ -158,7 +160,7 @@ class Trainer:
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         collected = collect(self.batch, self.network, settings, self.generator)
-        report = update(self.network, self.optimiser, collected, settings, self.rng)
+        report = update(self.network, self.optimiser, collected, settings, self.rng, self.processes)
         decided, ended, played = self.processes.totals(
             np.array([collected.valid.sum(), len(collected.returns), collected.returns.sum()])
         )

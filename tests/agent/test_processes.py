@@ -1,0 +1,160 @@
+"""Two processes that train together, and one that is killed, started as a user starts them."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from safetensors.torch import load_file
+
+from agent import checkpoint
+from agent.processes import DeviceError, Processes, joined
+from agent.training import train
+
+ROOT = Path(__file__).parents[2]
+
+TINY = """
+sides = [8, 10]
+pool = 12
+iterations = {iterations}
+evaluate_every = 1
+evaluation_meshes = 4
+table_meshes = 0
+device = "cpu"
+[task]
+kind = "quad"
+blocks = 2
+candidates = 8
+steps = 0.5
+[architecture]
+width = 8
+embedding = 4
+[ppo]
+environments = 9
+horizon = 6
+minibatch = 16
+"""
+
+# runs in both processes: a training, and afterwards what each of them knows
+TOGETHER = """
+import json, sys
+from pathlib import Path
+import numpy as np
+from safetensors.torch import save_file
+from agent import training
+
+configuration, folder = sys.argv[1], Path(sys.argv[2])
+training.evaluate = lambda *_: {"single_mean": 0.0, "seconds": 1.0}
+loop = training._loop
+
+def loop_and_tell(trainer, *rest):
+    loop(trainer, *rest)
+    known = trainer.processes
+    numbers = np.arange(3.0 + known.rank)
+    name = folder.parent / f"process-{known.rank}"
+    told = {
+        "moments": known.mean_and_deviation(numbers),
+        "least": known.least(len(numbers)),
+        "from_first": known.from_first(known.rank),
+        "environments": trainer.settings.environments,
+        "decisions": trainer.progress.decisions,
+        "curve": [point["mean"] for point in trainer.progress.curve],
+    }
+    name.with_suffix(".json").write_text(json.dumps(told))
+    save_file(trainer.network.state_dict(), name.with_suffix(".safetensors"))
+
+training._loop = loop_and_tell
+training.train(configuration, folder)
+"""
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONPATH": str(ROOT)}
+
+
+def test_two_processes_make_the_same_steps_and_the_first_writes(tmp_path):
+    (tmp_path / "tiny.toml").write_text(TINY.format(iterations=2))
+    (tmp_path / "together.py").write_text(TOGETHER)
+    words = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node=2"]
+    done = subprocess.run(
+        [*words, "together.py", "tiny.toml", "out"],
+        capture_output=True,
+        text=True,
+        env=environment(),
+        cwd=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    told = [json.loads((tmp_path / f"process-{i}.json").read_text()) for i in range(2)]
+    assert [one["environments"] for one in told] == [5, 4]
+    assert told[0]["decisions"] == told[1]["decisions"] == 9 * 6 * 2
+    assert told[0]["curve"] == told[1]["curve"]
+    every = np.array([0, 1, 2, 0, 1, 2, 3])
+    for one in told:
+        assert one["moments"] == pytest.approx([every.mean(), every.std()])
+        assert (one["least"], one["from_first"]) == (3, 0)
+    first, second = (load_file(tmp_path / f"process-{i}.safetensors") for i in range(2))
+    assert all(torch.equal(first[name], second[name]) for name in first)
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert {"policy.safetensors", "checkpoint.safetensors", "curve.json", "curve.png"} <= written
+    assert len(json.loads((tmp_path / "out" / "curve.json").read_text())) == 3
+
+
+def test_a_training_that_was_killed_goes_on_from_its_last_checkpoint(tmp_path, monkeypatch):
+    (tmp_path / "long.toml").write_text(TINY.format(iterations=100_000))
+    words = ["train", "--kind", "quad", "--config", "long.toml", "-o", "out"]
+    started = subprocess.Popen(
+        [sys.executable, "-m", "app", *words],
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment(),
+        cwd=tmp_path,
+    )
+    path = tmp_path / "out" / "checkpoint.safetensors"
+    deadline = time.monotonic() + 150
+    while _updates(path) < 2 and time.monotonic() < deadline:
+        time.sleep(0.05)
+    os.kill(started.pid, signal.SIGKILL)
+    log = started.communicate()[1].splitlines()
+    assert "single" in log[0]
+    assert log[1].split()[0] == "1/100000"
+    before = checkpoint.unpack(path.read_bytes())[1]["progress"]
+    assert before["iteration"] >= 2
+    monkeypatch.setattr("agent.training.evaluate", lambda *_: {"single_mean": 0.0, "seconds": 1.0})
+    (tmp_path / "long.toml").write_text(TINY.format(iterations=before["iteration"] + 2))
+    after = train(tmp_path / "long.toml", tmp_path / "out")
+    assert after["iteration"] == before["iteration"] + 2
+    assert after["curve"][: len(before["curve"])] == before["curve"]
+    assert [point["iteration"] for point in after["curve"]] == list(range(len(before["curve"]) + 2))
+    assert after["decisions"] > before["decisions"]
+
+
+def _updates(path: Path) -> int:
+    return checkpoint.unpack(path.read_bytes())[1]["progress"]["iteration"] if path.exists() else 0
+
+
+def test_alone_everything_is_as_it_was():
+    alone = Processes()
+    assert (alone.first, alone.share(7), alone.least(5), alone.from_first("x")) == (True, 7, 5, "x")
+    values = np.array([1.0, 2.0, 6.0], np.float32)
+    assert alone.mean_and_deviation(values) == pytest.approx((values.mean(), values.std()))
+    assert sum(Processes.share(_numbered(i), 10) for i in range(4)) == 10
+
+
+def _numbered(rank: int) -> Processes:
+    one = Processes()
+    one.rank, one.size = rank, 4
+    return one
+
+
+def test_a_gpu_that_is_not_there_is_named(monkeypatch):
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    with pytest.raises(DeviceError, match="finds no GPU"), joined("cuda"):
+        pass
+    with joined("auto") as processes:
+        assert processes.device.type == "cpu"
