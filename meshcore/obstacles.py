@@ -1,8 +1,8 @@
-"""Obstacles: what in the connectivity of a mesh plainly rules out a drawing with straight edges.
+"""Obstacles: what in the connectivity of a mesh plainly rules out a faithful drawing.
 
-A mesh with an obstacle has an inverted element wherever its vertices go. One without any can nearly
-always be drawn, which untangling then has to show: this is the quick look that a search takes
-before it.
+A mesh with an obstacle has an inverted element wherever its vertices go, or too few vertices on a
+side that bends to look like it. One without any can nearly always be drawn, which untangling then
+has to show: this is the quick look that a search takes before it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 STRAIGHT = 1e-6
 """Radians by which a side may turn where it counts as straight."""
+PIECE = np.radians(30.0)
+"""What one edge may stand for of the turning of a side that bends; a circle keeps twelve edges, if
+it had so many."""
 
 
 class Obstacles:
@@ -26,12 +29,14 @@ class Obstacles:
 
     Args:
         mesh: a mesh of a plane domain, z = 0. Where its outline knows nothing, at a vertex that
-            the user has marked as geometric, say, and on sides that bend, nothing is an obstacle.
+            the user has marked as geometric, say, nothing is an obstacle.
     """
 
     def __init__(self, mesh: HalfEdgeMesh) -> None:
         self._least = np.zeros(mesh.slots, np.int64)
         self._straight = np.zeros(mesh.slots, bool)
+        self._edges = np.zeros(mesh.slots, np.int64)  # of the side that a corner begins
+        self._ring_edges = np.iinfo(np.int64).max  # of a loop without corners
         geometric = mesh.geometric()
         rings = []
         for ids, points in mesh.outline:
@@ -41,13 +46,17 @@ class Obstacles:
             corner = ids >= 0
             corner[corner] = geometric[ids[corner]]
             turned = _turns(rings[-1])
+            places = np.flatnonzero(corner)
+            if not len(places):
+                self._ring_edges = min(self._ring_edges, _edges(turned))
+                continue
             inside = np.pi - turned[corner]
             self._least[ids[corner]] = 2 + np.floor(inside / np.pi + STRAIGHT).astype(np.int64)
-            bent = np.append(0, np.cumsum((np.abs(turned) > STRAIGHT) & ~corner))
-            places = np.flatnonzero(corner)
-            upto = bent[np.roll(places, -1)] - bent[places]
-            upto[-1:] += bent[-1]  # the last side passes the seam
-            self._straight[ids[places]] = upto == 0
+            turned, ids = np.roll(turned, -places[0]), np.roll(ids, -places[0])
+            for side in np.split(np.arange(len(ids)), places[1:] - places[0]):
+                bends = turned[side[1:]]
+                self._straight[ids[side[0]]] = (np.abs(bends) < STRAIGHT).all()
+                self._edges[ids[side[0]]] = _edges(bends) if len(bends) else 1
         rings.sort(key=lambda ring: -shapely.Polygon(ring).area)
         # a hair wider, so that segments along the boundary count as inside
         self._domain = shapely.Polygon(rings[0], rings[1:]).buffer(1e-9 * np.ptp(rings[0]))
@@ -57,9 +66,9 @@ class Obstacles:
         """The number of obstacles; linear in the mesh, a fraction of a millisecond for some
         hundred elements.
 
-        Counted are the elements missing at a boundary vertex (two at least where the boundary is
-        straight or reflex), vertices inside of degree 2, and edges inside that join two vertices of
-        one straight side, or two corners that do not see each other.
+        Counted are the elements missing at boundary vertices (two at least where the boundary is
+        straight or reflex) and on sides that bend, vertices inside of degree 2, and edges inside
+        that join two vertices of one straight side, or two corners that do not see each other.
         """
         slots = mesh.k * int(mesh.arrays.counters[ELEMENT_SLOTS])
         origin = mesh.arrays.edge[:slots, ORIGIN].astype(np.int64)
@@ -73,17 +82,24 @@ class Obstacles:
         boundary = before >= 0
 
         # the side of a boundary vertex, named by the corner that it begins with: pointer jumping
-        owner = np.where(boundary & ~geometric, before, np.arange(mesh.slots))
-        for _ in range(mesh.slots.bit_length()):
-            owner = owner[owner]
-        known = np.zeros(mesh.slots, np.int64)
-        straight = np.zeros(mesh.slots, bool)
-        size = min(len(self._least), mesh.slots)
-        known[:size], straight[:size] = self._least[:size], self._straight[:size]
         slides = boundary & ~geometric
+        owner = np.where(slides, before, np.arange(mesh.slots))
+        name = np.arange(mesh.slots)  # of a loop without corners: its least vertex
+        for _ in range(mesh.slots.bit_length()):
+            name = np.minimum(name, name[owner])
+            owner = owner[owner]
+        in_ring = slides & ~geometric[owner]
+        owner = np.where(in_ring, name, owner)
+        known, straight, edges = (
+            _resized(row, mesh.slots) for row in (self._least, self._straight, self._edges)
+        )
         least = np.where(geometric, known, np.where(slides & straight[owner], 3, 0))
         found = int(np.maximum(least - degree, 0)[boundary].sum())
         found += int(((degree == 2) & ~boundary & (mesh.k == 4)).sum())
+        present = np.bincount(owner[slides], minlength=mesh.slots)
+        rings = np.unique(owner[in_ring])
+        found += int(np.maximum(self._ring_edges - present[rings], 0).sum())
+        found += int(np.maximum(edges - 1 - present, 0)[geometric].sum())
 
         inner = live[(twin[live] > live) & boundary[origin[live]]]
         a, b = origin[inner], origin[inner - inner % mesh.k + (inner + 1) % mesh.k]
@@ -99,6 +115,19 @@ class Obstacles:
             ends = np.stack([mesh.points[a[seen], :2], mesh.points[b[seen], :2]], axis=1)
             found += int((~shapely.covers(self._domain, shapely.linestrings(ends))).sum())
         return found
+
+
+def _edges(turned: np.ndarray) -> int:
+    """Edges that a side keeps which turns by so much at its points (n,), of the n or so it had."""
+    wanted = np.ceil(np.abs(turned).sum() / PIECE - STRAIGHT)
+    return int(np.clip(wanted, 1, len(turned)))
+
+
+def _resized(row: np.ndarray, length: int) -> np.ndarray:
+    """The first `length` entries of a row (n,), zeros for those that it has not."""
+    longer = np.zeros(length, row.dtype)
+    longer[: min(length, len(row))] = row[:length]
+    return longer
 
 
 def _turns(ring: np.ndarray) -> np.ndarray:

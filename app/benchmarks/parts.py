@@ -16,7 +16,7 @@ from app import meshfile
 from app.benchmarks.gallery import corners
 from app.commands.improve import replay
 from app.report import Update
-from meshcore import generate, quality, shapes
+from meshcore import HalfEdgeMesh, generate, quality, shapes
 from meshcore.blocks import block_count
 from meshcore.domain import Domain
 from meshcore.parts import parts
@@ -68,12 +68,18 @@ def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[st
         "elements start": before.n_elements,
         "elements": mesh.n_elements,
         "blocks": block_count(mesh),
+        "outline": round(_area(mesh) / domain.area, 3),
         "worst Jacobian": round(float(quality.scaled_jacobian(mesh).min()), 3),
         "inverted": len(quality.inverted(mesh)),
         "kept": corners(mesh) == places and mesh.optimum == before.optimum,
         "operations": len(solution.operations),
         "seconds": round(took, 2),
     }
+
+
+def _area(mesh: HalfEdgeMesh) -> float:
+    """The area of a plane mesh: that of its domain where the boundary follows every side."""
+    return float(quality.vector_areas(mesh.points, mesh.elements())[:, 2].sum())
 
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
@@ -86,6 +92,7 @@ def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
             row["s"] == row["s*"] and not row["inverted"] for row in rows
         ),
         "corners kept": sum(row["kept"] for row in rows),
+        "outline within 5 %": sum(abs(row["outline"] - 1.0) < 0.05 for row in rows),
         "elements relative to the start, mean": sum(
             row["elements"] / row["elements start"] for row in rows
         )
