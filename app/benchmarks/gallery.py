@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from agent import policies, search
+from agent import policies, solver
 from agent.policies import Policy
 from app import meshfile
 from app.commands.improve import ROLLOUTS, replay
@@ -51,7 +51,7 @@ def improved(name: str, kind: str, policy: Policy, rollouts: int, seed: int) -> 
         meshfile.write_mesh(first, made)
         mesh = read(first)
         before = mesh.copy()
-        solution = search.improve(mesh, policy, rollouts=rollouts, seed=seed)
+        solution = solver.solve(mesh, policy, rollouts=rollouts, seed=seed)
         replay(mesh, solution)
         meshfile.settle(mesh)
         meshfile.write_mesh(last, mesh)

@@ -10,7 +10,7 @@ import time
 from statistics import median
 from typing import Any
 
-from agent import policies, search
+from agent import policies, solver
 from agent.policies import Policy
 from app import meshfile
 from app.benchmarks.gallery import corners
@@ -54,7 +54,7 @@ def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[st
     mesh = generate.mesh_domain(domain, "quad")
     before, places = mesh.copy(), corners(mesh)
     began = time.perf_counter()
-    solution = search.improve(mesh, policy, rollouts=None, seconds=seconds, seed=seed)
+    solution = solver.solve(mesh, policy, seconds=seconds, seed=seed)
     took = time.perf_counter() - began
     replay(mesh, solution)
     meshfile.settle(mesh)

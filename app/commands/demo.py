@@ -67,10 +67,10 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
     from app.report import one_line
 
     policy = inputs.read_policy(None, mesh.kind)
-    from agent import search
+    from agent import solver
 
     with report.progress("the policy is at work", ROLLOUTS) as update:
-        solution = search.improve(
+        solution = solver.solve(
             mesh,
             policy,
             rollouts=ROLLOUTS,

@@ -12,7 +12,7 @@ from app.outputs import checked_output, replacing
 from app.report import Report, table
 
 if TYPE_CHECKING:
-    from agent.search import Solution
+    from agent.solver import Solution
     from meshcore import HalfEdgeMesh
 
 SUMMARY = "let a trained policy improve the connectivity of a mesh file"
@@ -131,11 +131,11 @@ def normalised_return(start: int, end: int, optimum: int) -> float:
 def _search(
     arguments: argparse.Namespace, report: Report, mesh: HalfEdgeMesh, policy: Any
 ) -> Solution:
-    from agent import search
+    from agent import solver
 
     rollouts = None if arguments.search else arguments.rollouts or ROLLOUTS
     with report.progress("searching", rollouts) as update:
-        return search.improve(
+        return solver.solve(
             mesh,
             policy,
             rollouts=rollouts,

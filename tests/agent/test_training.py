@@ -7,7 +7,7 @@ import pytest
 
 from agent.evaluate import evaluate
 from agent.policies import load
-from agent.search import improve
+from agent.solver import solve
 from agent.training import ConfigurationError, read_configuration, shipped_configuration, train
 from meshcore.generate import benchmark_mesh
 
@@ -82,7 +82,7 @@ def test_the_shipped_quad_policy_reaches_the_optimum():
     mesh = benchmark_mesh("quad", 12, np.random.default_rng(31))
     before = mesh.elements()
     progress = []
-    solution = improve(mesh, load("quad"), rollouts=10, progress=lambda *now: progress.append(now))
+    solution = solve(mesh, load("quad"), rollouts=10, progress=lambda *now: progress.append(now))
     assert (mesh.elements() == before).all()
     for operation, h in solution.operations:
         mesh.apply(operation, h)
@@ -92,7 +92,7 @@ def test_the_shipped_quad_policy_reaches_the_optimum():
 
 def test_a_search_can_be_cancelled():
     mesh = benchmark_mesh("quad", 12, np.random.default_rng(31))
-    solution = improve(mesh, load("quad"), rollouts=10, cancelled=lambda: True)
+    solution = solve(mesh, load("quad"), rollouts=10, cancelled=lambda: True)
     assert solution.operations == []
     assert solution.score == mesh.score
 

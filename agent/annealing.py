@@ -1,0 +1,448 @@
+"""Simulated annealing in compiled code: the strongest search that learns nothing, and a worker of
+the solver; with two weaker baselines, greedy descent and a random walk.
+
+A proposal is one operation of the agent's action set near an irregular vertex. Its exact change of
+s is known before it is applied, so that most proposals cost a few look-ups. Metropolis' rule
+accepts by s + price * elements at a temperature that falls geometrically over a sweep; every sweep
+starts from the best state so far. All that is applied is logged, so that the operations to the best
+state replay on the mesh that was given.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from agent.selection import permitted
+from agent.task import FIRST_OPERATION, MOST_CLEANUPS, Task, transition
+from meshcore.chords import check_chord_collapse
+from meshcore.compiled import bare_kernel, kernel
+from meshcore.halfedge import (
+    DEGREE,
+    ELEMENT_SLOTS,
+    ELEMENTS,
+    HALF,
+    IRREGULAR,
+    JOURNALLING,
+    ORIGIN,
+    SCORE,
+    SIDES,
+    TWIN,
+    VERTEX_SLOTS,
+    MeshArrays,
+    preceding,
+)
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import (
+    CHORD_COLLAPSE,
+    CLEANUP,
+    FLIP_LEFT,
+    FLIP_RIGHT,
+    GLOBAL_SPLIT,
+    NAMES,
+    QUAD_COLLAPSE,
+    QUAD_SPLIT,
+    TRI_COLLAPSE,
+    TRI_FLIP,
+    TRI_SPLIT,
+    Operation,
+    rewrite,
+    score_change,
+)
+from meshcore.refusals import ALLOWED
+
+Operations = list[tuple[Operation, int]]
+
+TEMPERATURES = (0.4, 0.3)
+"""Temperature at the start and at the end of a sweep."""
+SWEEP = 500
+"""Proposals of a sweep, relative to the number of elements."""
+PRICE = {"tri": 0.3, "quad": 0.0}
+"""Price of an element, in units of s: without it meshes grow, and large ones hold more defects."""
+SPLIT_PRICE = 1.0
+"""Price of a global split, in units of s."""
+WEIGHTS = {"tri": (0.5, 0.25, 0.25, 0.0, 0.0, 0.0), "quad": (0.3, 0.3, 0.15, 0.15, 0.1, 0.0)}
+"""How often each of the agent's operations is proposed; the last is the collapse of a strip."""
+ANYWHERE = 0.02
+"""Share of proposals that look at any half-edge."""
+SLICE = 20_000
+"""Proposals between two looks at the clock."""
+
+_SPARE = 900  # slots that the longest global split may want beyond what the mesh may grow to
+_LOG = 1 << 14
+_LONGEST_LOG = 1 << 23
+# what a search counts: rows of the integer state that its kernels share
+LENGTH, BEST_LENGTH, BEST_SCORE, BEST_ELEMENTS, PROPOSALS, APPLIED, SAVED_AT, SWEEP_AT = range(8)
+# what a slice ends with
+USED_UP, AT_GOAL, SHORT = 0, 1, 2
+
+
+@bare_kernel
+def copy_mesh(source, target):
+    """Make `target` what `source` is, in arrays of the same sizes; the history stays behind."""
+    k = source.counters[SIDES]
+    for h in range(k * max(source.counters[ELEMENT_SLOTS], target.counters[ELEMENT_SLOTS])):
+        target.edge[h, 0] = source.edge[h, 0]
+        target.edge[h, 1] = source.edge[h, 1]
+    for v in range(max(source.counters[VERTEX_SLOTS], target.counters[VERTEX_SLOTS])):
+        for column in range(6):
+            target.vertex[v, column] = source.vertex[v, column]
+        for axis in range(3):
+            target.points[v, axis] = source.points[v, axis]
+    for i in range(source.counters[IRREGULAR]):
+        target.irregular[i] = source.irregular[i]
+    for i in range(len(source.counters)):
+        target.counters[i] = source.counters[i]
+
+
+@bare_kernel
+def propose(m, k, anywhere, rng):
+    """A half-edge of an element at a random irregular vertex, or of one beside that element; with
+    probability `anywhere` any half-edge. -1 for a dead one.
+    """
+    total = m.counters[IRREGULAR]
+    if total == 0 or rng.random() < anywhere:
+        h = int(rng.random() * m.counters[ELEMENT_SLOTS] * k)
+        return h if m.edge[h, ORIGIN] >= 0 else -1
+    v = m.irregular[int(rng.random() * total)]
+    h = m.vertex[v, HALF]
+    for _ in range(int(rng.random() * m.vertex[v, DEGREE])):
+        onward = m.edge[preceding(h, k), TWIN]
+        if onward < 0:
+            break
+        h = onward
+    turn = int(rng.random() * 2 * k)
+    if turn >= k:
+        turn -= k
+        across = m.edge[h - h % k + (h + 1) % k, TWIN]
+        if across >= 0:
+            h = across
+    return h - h % k + (h + turn) % k
+
+
+@bare_kernel
+def draw_operation(weights, rng):
+    """The index of a weight (N,), drawn in proportion; the weights sum to one."""
+    r = rng.random()
+    for i in range(len(weights)):
+        r -= weights[i]
+        if r < 0.0:
+            return i
+    return 0
+
+
+@bare_kernel
+def growth(m, operation, h):
+    """Elements that an operation adds; 0 for those whose number depends on the way they go."""
+    if operation == TRI_SPLIT:
+        return 2 if m.edge[h, TWIN] >= 0 else 1
+    if operation == TRI_COLLAPSE:
+        return -2 if m.edge[h, TWIN] >= 0 else -1
+    if operation == QUAD_SPLIT:
+        return 1
+    return -1 if operation == QUAD_COLLAPSE else 0
+
+
+@bare_kernel
+def needs_twin(operation):
+    """Whether the operation is never allowed on the boundary, where its change is not defined."""
+    return (
+        operation == TRI_FLIP
+        or operation == FLIP_LEFT
+        or operation == FLIP_RIGHT
+        or operation == QUAD_SPLIT
+        or operation == GLOBAL_SPLIT
+    )
+
+
+@bare_kernel
+def save_best(m, best, state):
+    """Keep the present state as the best one."""
+    state[BEST_SCORE] = m.counters[SCORE]
+    state[BEST_ELEMENTS] = m.counters[ELEMENTS]
+    state[BEST_LENGTH] = state[LENGTH]
+    state[SAVED_AT] = state[APPLIED]
+    copy_mesh(m, best)
+
+
+@bare_kernel
+def is_better(m, state, fewer):
+    """Whether the present state beats the best: by s, then (fewer) by the number of elements."""
+    score = m.counters[SCORE]
+    if score != state[BEST_SCORE]:
+        return score < state[BEST_SCORE]
+    return fewer and m.counters[ELEMENTS] < state[BEST_ELEMENTS]
+
+
+@bare_kernel
+def restart(m, best, state):
+    """Go back to the best state, and begin a sweep."""
+    copy_mesh(best, m)
+    state[LENGTH] = state[BEST_LENGTH]
+    state[SWEEP_AT] = 0
+
+
+@kernel
+def anneal_slice(
+    m, best, log, state, proposals, hot, cold, sweep, price, split_price, fewer, weights, anywhere,
+    first, cap, floor, ceiling, extended, goal, touched, cleaned, rng,
+):  # fmt: skip
+    """At most so many proposals; returns USED_UP, AT_GOAL, or SHORT if the log is full.
+
+    sweep: proposals from the temperature `hot` to `cold`. fewer: among equal s prefer fewer
+    elements, and stop at the first state that is better than the best, with AT_GOAL.
+    """
+    k = m.counters[SIDES]
+    temperature = hot
+    for at in range(proposals):
+        if at % 64 == 0:
+            if state[SWEEP_AT] >= sweep:
+                if is_better(m, state, fewer):
+                    save_best(m, best, state)
+                restart(m, best, state)
+            if state[LENGTH] + 64 * (MOST_CLEANUPS + 1) > len(log):
+                return SHORT
+            temperature = hot * (cold / hot) ** (state[SWEEP_AT] / sweep)
+            state[SWEEP_AT] += 64
+            state[PROPOSALS] += 64
+        h = propose(m, k, anywhere, rng)
+        if h < 0:
+            continue
+        operation = first + draw_operation(weights, rng)
+        if m.edge[h, TWIN] < 0 and needs_twin(operation):
+            continue
+        cleanups = 0
+        if operation > GLOBAL_SPLIT:
+            # merging the ends of the rungs adds up their irregularities: s never rises
+            operation = CHORD_COLLAPSE
+            if m.counters[ELEMENTS] <= floor or check_chord_collapse(m, h, cap) != ALLOWED:
+                continue
+            rewrite(m, CHORD_COLLAPSE, h)
+        else:
+            change = score_change(m, operation, h) + price * growth(m, operation, h)
+            if operation == GLOBAL_SPLIT:
+                change += split_price
+            if change > 0.0 and rng.random() >= np.exp(-change / temperature):
+                continue
+            if not permitted(m, operation, h, cap, floor, ceiling, extended):
+                continue
+            cleanups = transition(m, operation, h, cap, touched, cleaned)
+        length = state[LENGTH]
+        log[length, 0], log[length, 1] = operation, h
+        for i in range(cleanups):
+            log[length + 1 + i, 0], log[length + 1 + i, 1] = CLEANUP, cleaned[i]
+        state[LENGTH] = length + 1 + cleanups
+        state[APPLIED] += 1
+        if not is_better(m, state, fewer):
+            continue
+        # a copy costs as much as the mesh is large: on large ones it waits for some more progress
+        due = 64 * (state[APPLIED] - state[SAVED_AT]) >= m.counters[ELEMENTS] - 256
+        if due or fewer or m.counters[SCORE] <= goal:
+            save_best(m, best, state)
+            if fewer or m.counters[SCORE] <= goal:
+                return AT_GOAL
+    return USED_UP
+
+
+@kernel
+def descent_step(m, plateau, first, count, cap, floor, ceiling, extended, touched, cleaned, rng):
+    """The best operation on the whole mesh, ties broken at random: (operation, half-edge, number of
+    clean-ups), or -1 for the operation if none lowers s (plateau: or leaves it).
+    """
+    k = m.counters[SIDES]
+    best, tied, chosen, at = 1 if plateau else 0, 0, -1, -1
+    for h in range(k * m.counters[ELEMENT_SLOTS]):
+        if m.edge[h, ORIGIN] < 0:
+            continue
+        for operation in range(first, first + count):
+            if m.edge[h, TWIN] < 0 and needs_twin(operation):
+                continue
+            change = score_change(m, operation, h)
+            if change > best or (change == best and tied == 0):
+                continue
+            if not permitted(m, operation, h, cap, floor, ceiling, extended):
+                continue
+            tied = 1 if change < best else tied + 1
+            if change < best or rng.random() * tied < 1.0:
+                best, chosen, at = change, operation, h
+    if chosen < 0:
+        return -1, -1, 0
+    return chosen, at, transition(m, chosen, at, cap, touched, cleaned)
+
+
+class Annealer:
+    """One annealing, slice by slice; what it has found stays valid in between."""
+
+    def __init__(
+        self,
+        mesh: HalfEdgeMesh,
+        seed: int,
+        *,
+        extended: bool = True,
+        floor: int | None = None,
+        ceiling: int | None = None,
+        temperatures: tuple[float, float] = TEMPERATURES,
+        sweep: float = SWEEP,
+        price: float | None = None,
+        split_price: float = SPLIT_PRICE,
+        weights: tuple[float, ...] | None = None,
+        anywhere: float = ANYWHERE,
+        fewer: bool = False,
+        goal: int | None = None,
+    ) -> None:
+        """`mesh` is copied. extended: triangles may collapse boundary edges.
+
+        floor, ceiling: bounds of the number of elements; by default triangles keep as many as there
+        are, and a mesh may become twice as large. fewer: among equal s look for fewer elements.
+        goal: s at which to stop, by default s*.
+        """
+        kind, size = mesh.kind, mesh.n_elements
+        task = Task(kind)
+        self.floor = (size if kind == "tri" else 1) if floor is None else floor
+        self.ceiling = max(2 * size, size + 8) if ceiling is None else ceiling
+        self.goal = mesh.optimum if goal is None else goal
+        self._weights = np.array(WEIGHTS[kind] if weights is None else weights)
+        self._weights /= self._weights.sum()
+        self._temperatures, self._anywhere = temperatures, anywhere
+        self._sweep = max(64.0, sweep * size)
+        self._prices = (PRICE[kind] if price is None else price, split_price)
+        self._fewer = fewer
+        self._settings = (FIRST_OPERATION[kind], task.cap, self.floor, self.ceiling, extended)
+        self._touched, self._cleaned = np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64)
+        self.rng = np.random.default_rng(seed)
+        self.state = np.zeros(8, np.int64)
+        self.log = np.zeros((_LOG, 2), np.int32)
+        self.arrays = with_room(mesh, self.ceiling)
+        self.best = MeshArrays(*(array.copy() for array in self.arrays))
+        self.state[BEST_SCORE], self.state[BEST_ELEMENTS] = mesh.score, size
+
+    @property
+    def best_score(self) -> int:
+        """s of the best state."""
+        return int(self.state[BEST_SCORE])
+
+    @property
+    def best_elements(self) -> int:
+        """Elements of the best state."""
+        return int(self.state[BEST_ELEMENTS])
+
+    @property
+    def finished(self) -> bool:
+        """Whether the goal is reached."""
+        return self.best_score <= self.goal
+
+    def operations(self) -> Operations:
+        """What leads from the mesh to the best state."""
+        rows = self.log[: self.state[BEST_LENGTH]].tolist()
+        return [(NAMES[code], h) for code, h in rows]
+
+    def run(self, proposals: int = SLICE) -> bool:
+        """So many proposals more; True if they ended early, with the goal or something better."""
+        ended = anneal_slice(
+            self.arrays, self.best, self.log, self.state, proposals, *self._temperatures,
+            self._sweep, *self._prices, self._fewer, self._weights, self._anywhere,
+            *self._settings, self.goal, self._touched, self._cleaned, self.rng,
+        )  # fmt: skip
+        if ended == SHORT:
+            self._lengthen()
+        elif is_better(self.arrays, self.state, self._fewer):
+            save_best(self.arrays, self.best, self.state)
+        return bool(ended == AT_GOAL)
+
+    def restart(self) -> None:
+        """Begin a new sweep from the best state."""
+        restart(self.arrays, self.best, self.state)
+
+    def _lengthen(self) -> None:
+        """A longer log; one that would be too long is cut back to the best state instead."""
+        if len(self.log) < _LONGEST_LOG:
+            self.log = np.concatenate([self.log, np.zeros_like(self.log)])
+        else:
+            self.restart()
+
+
+def with_room(mesh: HalfEdgeMesh, elements: int) -> MeshArrays:
+    """A copy without journal that has room for so many elements."""
+    copied = mesh.copy()
+    copied.arrays.counters[JOURNALLING] = 0
+    more = max(elements - mesh.n_elements, 0) + _SPARE
+    copied.reserve(more, more)
+    return copied.arrays
+
+
+def anneal(
+    mesh: HalfEdgeMesh,
+    *,
+    seconds: float | None = None,
+    proposals: int | None = None,
+    seed: int = 0,
+    cancelled: Callable[[], bool] | None = None,
+    **settings: object,
+) -> tuple[Operations, int]:
+    """Operations to the best state found within `seconds` or `proposals` (one second if neither is
+    given), and its s. `mesh` is not changed. settings: those of :class:`Annealer`.
+    """
+    began = time.perf_counter()
+    if seconds is None and proposals is None:
+        seconds = 1.0
+    annealer = Annealer(mesh, seed, **settings)  # type: ignore[arg-type]
+    left = proposals if proposals is not None else 1 << 62
+    while left > 0 and not annealer.finished:
+        if seconds is not None and time.perf_counter() - began > seconds:
+            break
+        if cancelled is not None and cancelled():
+            break
+        annealer.run(min(left, SLICE))
+        left -= SLICE
+    return annealer.operations(), annealer.best_score
+
+
+def random_walk(
+    mesh: HalfEdgeMesh,
+    *,
+    seconds: float | None = None,
+    proposals: int | None = None,
+    seed: int = 0,
+    cancelled: Callable[[], bool] | None = None,
+    **settings: object,
+) -> tuple[Operations, int]:
+    """The best state on a random walk of permitted operations, as :func:`anneal` says it."""
+    return anneal(
+        mesh, seconds=seconds, proposals=proposals, seed=seed, cancelled=cancelled,
+        temperatures=(1e9, 1e9), anywhere=1.0, price=0.0, split_price=0.0, **settings,
+    )  # fmt: skip
+
+
+def greedy(
+    mesh: HalfEdgeMesh,
+    *,
+    seed: int = 0,
+    plateau: int = 0,
+    extended: bool = True,
+    floor: int | None = None,
+    ceiling: int | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> tuple[Operations, int]:
+    """Steepest descent: always the operation that lowers s most; operations to the best state and
+    its s. plateau: operations in a row that may leave s as it is; 0 is strict descent.
+    """
+    limits = Annealer(mesh, seed, extended=extended, floor=floor, ceiling=ceiling)
+    task, arrays = Task(mesh.kind), limits.arrays
+    touched, cleaned = np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64)
+    done: Operations = []
+    length, best, idle = 0, mesh.score, 0
+    while best > mesh.optimum and idle <= plateau and not (cancelled is not None and cancelled()):
+        code, h, cleanups = descent_step(
+            arrays, idle < plateau, task.first_operation, task.operations, task.cap, limits.floor,
+            limits.ceiling, extended, touched, cleaned, limits.rng,
+        )  # fmt: skip
+        if code < 0:
+            break
+        done.append((NAMES[code], h))
+        done += [(Operation.CLEANUP, line) for line in cleaned[:cleanups].tolist()]
+        idle += 1
+        if int(arrays.counters[SCORE]) < best:
+            best, length, idle = int(arrays.counters[SCORE]), len(done), 0
+    return done[:length], best

@@ -1,0 +1,151 @@
+"""Coarser quad meshes at the same s: towards the coarsest block decomposition.
+
+Annealing with a price on elements and with the collapse of strips, which never raises s, among the
+operations. A state counts as better only if s is no higher than at the start, and if it can be
+drawn at least as well: it has no more obstacles, nor, smoothed, more inverted elements. Where a
+mesh cannot be drawn, states that can be come first, however many elements they have.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from agent.annealing import (
+    BEST_ELEMENTS,
+    BEST_LENGTH,
+    BEST_SCORE,
+    PROPOSALS,
+    SLICE,
+    Annealer,
+    Operations,
+    copy_mesh,
+)
+from meshcore import smoothing
+from meshcore.halfedge import ELEMENT_SLOTS, ELEMENTS, MeshArrays
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.obstacles import Obstacles
+
+DRAWN = 20_000
+"""Elements above which no mesh is drawn between two operations: it would take seconds."""
+TEMPERATURES = (0.5, 0.25)
+"""Of a sweep, see :mod:`agent.annealing`."""
+PRICE = 0.4
+"""Of an element, in units of s."""
+WEIGHTS = (0.27, 0.27, 0.12, 0.24, 0.04, 0.06)
+"""How often each operation is proposed; the last is the collapse of a strip."""
+SWEEP = 300
+"""Proposals of a sweep, relative to the number of elements."""
+
+
+def undrawable(mesh: HalfEdgeMesh, operations: Operations) -> int:
+    """Elements that stay inverted when the operations are done and the mesh is smoothed; 0 is said
+    of meshes too large to be drawn.
+    """
+    if mesh.n_elements > DRAWN:
+        return 0
+    return len(smoothing.relax(_replayed(mesh, operations)))
+
+
+def _replayed(mesh: HalfEdgeMesh, operations: Operations) -> HalfEdgeMesh:
+    reached = mesh.copy()
+    for operation, h in operations:
+        reached.apply(operation, h)
+    return reached
+
+
+def coarsen(
+    mesh: HalfEdgeMesh,
+    *,
+    seconds: float | None = 1.0,
+    proposals: int | None = None,
+    seed: int = 0,
+    floor: int = 1,
+    cancelled: Callable[[], bool] | None = None,
+) -> Operations:
+    """Operations from a quad mesh, which is not changed, to one with s no higher that is drawn
+    better, or as well with fewer elements; none for triangles, and where nothing is found.
+
+    Stops after `seconds` or `proposals` (None: no such limit). floor: elements to be left at least.
+    """
+    began = time.perf_counter()
+    if mesh.kind != "quad":
+        return []
+    coarser = _Coarser(mesh, seed, floor)
+    left = proposals if proposals is not None else 1 << 62
+    while left > 0:
+        if seconds is not None and time.perf_counter() - began > seconds:
+            break
+        if cancelled is not None and cancelled():
+            break
+        before = coarser.proposals
+        coarser.look(min(left, SLICE))
+        left -= coarser.proposals - before
+    return coarser.operations
+
+
+class _Coarser:
+    """One coarsening: an annealer whose discoveries are test-drawn before they count."""
+
+    def __init__(self, mesh: HalfEdgeMesh, seed: int, floor: int) -> None:
+        self._mesh = mesh
+        self._annealer = Annealer(
+            mesh, seed, floor=floor, temperatures=TEMPERATURES, sweep=SWEEP, price=PRICE,
+            split_price=4.0 * PRICE, weights=WEIGHTS, fewer=True, goal=-1,
+        )  # fmt: skip
+        self._obstacles = Obstacles(mesh)
+        self._flaws = self._flaws_of([])
+        self._seen: set[bytes] = set()
+        self.operations: Operations = []
+        self._keep()
+
+    def _flaws_of(self, operations: Operations) -> int:
+        """Obstacles, and elements that stay inverted; not drawn if the former are too many."""
+        if self._mesh.n_elements > DRAWN:
+            return 0
+        reached = _replayed(self._mesh, operations)
+        obstacles = self._obstacles.count(reached)
+        if operations and obstacles > self._flaws:
+            return obstacles
+        return obstacles + len(smoothing.relax(reached))
+
+    def _keep(self) -> None:
+        self._kept = MeshArrays(*(array.copy() for array in self._annealer.best))
+        if self._flaws:
+            # any state with s as low is worth a look
+            self._annealer.state[BEST_ELEMENTS] = self._annealer.ceiling + 1
+        self._kept_state = self._annealer.state.copy()
+
+    @property
+    def proposals(self) -> int:
+        """How many have been made."""
+        return int(self._annealer.state[PROPOSALS])
+
+    def look(self, proposals: int) -> None:
+        """Make so many proposals, or fewer if something coarser comes up; draw that."""
+        if self._annealer.run(proposals) and not self._accept():
+            self._go_back()
+
+    def _accept(self) -> bool:
+        """Whether the state just found is new, and drawn as well as the one kept."""
+        best = self._annealer.best
+        slots = 4 * int(best.counters[ELEMENT_SLOTS])
+        key = best.edge[:slots, 0].tobytes()
+        if key in self._seen:
+            return False
+        self._seen.add(key)
+        found = self._annealer.operations()
+        flaws = self._flaws_of(found)
+        if self._annealer.best_score == self._kept_state[BEST_SCORE]:
+            fewer = self._annealer.best_elements < self._kept.counters[ELEMENTS]
+            if flaws > self._flaws or (flaws == self._flaws and not fewer):
+                return False
+        self._flaws, self.operations = flaws, found
+        self._keep()
+        return True
+
+    def _go_back(self) -> None:
+        """Let the state kept be the best again; the sweep goes on from where it is."""
+        copy_mesh(self._kept, self._annealer.best)
+        for row in (BEST_LENGTH, BEST_SCORE, BEST_ELEMENTS):
+            self._annealer.state[row] = self._kept_state[row]

@@ -1,0 +1,360 @@
+"""Shorter lists of operations that end as well: loops cut out, then delta debugging.
+
+A deleted operation changes the ids that later operations are given, since slots are reused. So
+every vertex gets a name of its own when it is made, and an operation is kept as its two named ends;
+in a replay it means the half-edge between the vertices of those names, and drops out where there is
+none. Clean-ups, automatic in a run of the agent, are entries like any other.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from agent.annealing import Operations, copy_mesh, with_room
+from agent.task import Task
+from meshcore.compiled import bare_kernel, kernel
+from meshcore.halfedge import (
+    ELEMENT_SLOTS,
+    ELEMENTS,
+    HALF,
+    NEW_COUNT,
+    ORIGIN,
+    SCORE,
+    SIDES,
+    TRACE_IDS,
+    MeshArrays,
+    find,
+    following,
+)
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import CODES, NAMES, check, rewrite
+from meshcore.refusals import ALLOWED
+
+SLICE = 20_000
+"""Operations replayed between two looks at the clock."""
+LONGEST_DEBUGGED = 3000
+"""Operations of a list that is debugged as a whole; longer ones are debugged piece by piece."""
+
+_NOWHERE = -1
+
+
+class Script(NamedTuple):
+    """Operations by names."""
+
+    entries: np.ndarray
+    """(N, 5) int32: operation, names of the ends of its half-edge, first name and number of the
+    vertices that it makes."""
+
+
+class Names(NamedTuple):
+    """Which vertex has which name now."""
+
+    vertex_of: np.ndarray
+    """(names,) int32 vertex ids, -1 for none."""
+    name_of: np.ndarray
+    """(vertex slots,) int32 names, -1 for none."""
+
+
+def first_names(slots: int, capacity: int, count: int) -> Names:
+    """The names at the start: those of the first vertices are their ids."""
+    vertex_of, name_of = np.full(count, _NOWHERE, np.int32), np.full(capacity, _NOWHERE, np.int32)
+    vertex_of[:slots] = name_of[:slots] = np.arange(slots)
+    return Names(vertex_of, name_of)
+
+
+@bare_kernel
+def _christen(m, vertex_of, name_of, first, count):
+    """Name the vertices that the last operation has made; those too many stay without a name."""
+    made = m.trace[NEW_COUNT]
+    for i in range(made):
+        v = m.trace[TRACE_IDS + i]
+        if name_of[v] >= 0 and vertex_of[name_of[v]] == v:
+            vertex_of[name_of[v]] = -1
+        if i < count:
+            name_of[v] = first + i
+            vertex_of[first + i] = v
+        else:
+            name_of[v] = -1
+    for i in range(made, count):
+        vertex_of[first + i] = -1
+
+
+@kernel
+def name_all(m, codes, halfedges, slots, cap, entries, states):
+    """Replay operations (N,) and fill `entries` (N, 5); states (N+1, 3) receives a hash of the
+    connectivity, s and the number of elements before each and at the end. Returns the number of
+    names, or -1 - i if operation i is not allowed. Vertices made before `slots` have their ids.
+    """
+    k = m.counters[SIDES]
+    name_of = np.full(len(m.vertex), -1, np.int32)
+    for v in range(slots):
+        name_of[v] = v
+    names = slots
+    for i in range(len(codes) + 1):
+        states[i, 0] = connectivity_hash(m, k, name_of)
+        states[i, 1] = m.counters[SCORE]
+        states[i, 2] = m.counters[ELEMENTS]
+        if i == len(codes):
+            break
+        h = halfedges[i]
+        if check(m, codes[i], h, cap) != ALLOWED:
+            return -1 - i
+        entries[i, 0] = codes[i]
+        entries[i, 1] = name_of[m.edge[h, ORIGIN]]
+        entries[i, 2] = name_of[m.edge[following(h, k), ORIGIN]]
+        rewrite(m, codes[i], h)
+        made = m.trace[NEW_COUNT]
+        entries[i, 3], entries[i, 4] = names, made
+        for j in range(made):
+            name_of[m.trace[TRACE_IDS + j]] = names + j
+        names += made
+    return names
+
+
+@bare_kernel
+def connectivity_hash(m, k, name_of):
+    """A hash of the set of edges by the names of their ends: the same for the same connectivity."""
+    total = np.uint64(0)
+    for h in range(k * m.counters[ELEMENT_SLOTS]):
+        if m.edge[h, ORIGIN] >= 0:
+            x = np.uint64(name_of[m.edge[h, ORIGIN]] + 1) * np.uint64(0x9E3779B97F4A7C15)
+            y = np.uint64(name_of[m.edge[following(h, k), ORIGIN]] + 1)
+            x = (x ^ (x >> np.uint64(29))) + y * np.uint64(0xBF58476D1CE4E5B9)
+            x = (x ^ (x >> np.uint64(32))) * np.uint64(0x94D049BB133111EB)
+            total += x ^ (x >> np.uint64(31))
+    return np.int64(total)
+
+
+@bare_kernel
+def named_halfedge(m, k, entry, vertex_of, name_of):
+    """The half-edge that an entry means now; -1 if there is none."""
+    a, b = vertex_of[entry[1]], vertex_of[entry[2]]
+    if a < 0 or b < 0 or name_of[a] != entry[1] or name_of[b] != entry[2]:
+        return -1
+    if m.vertex[a, HALF] < 0 or m.vertex[b, HALF] < 0:
+        return -1
+    return find(m, a, b, k)
+
+
+@bare_kernel
+def replay(m, vertex_of, name_of, entries, start, stop, cap, floor, goal, most, kept, halfedges):
+    """Replay entries start ... stop-1 as far as they are allowed, and until s <= goal with at most
+    `most` elements. kept (N,): which of them were done; halfedges (N,): on what. Returns how many
+    were gone through, or -1 if that state was not met.
+    """
+    k = m.counters[SIDES]
+    for i in range(start, stop):
+        if m.counters[SCORE] <= goal and m.counters[ELEMENTS] <= most:
+            return i
+        kept[i] = False
+        h = named_halfedge(m, k, entries[i], vertex_of, name_of)
+        if h < 0 or check(m, entries[i, 0], h, cap) != ALLOWED:
+            continue
+        kept[i] = True
+        halfedges[i] = h
+        rewrite(m, entries[i, 0], h)
+        _christen(m, vertex_of, name_of, entries[i, 3], entries[i, 4])
+        if m.counters[ELEMENTS] < floor:
+            return -1
+    return stop if m.counters[SCORE] <= goal and m.counters[ELEMENTS] <= most else -1
+
+
+@bare_kernel
+def _copy(source, target):
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+@kernel
+def debug_pass(
+    prefix, work, vertex_of, name_of, vertex_work, name_work, entries, spare, progress, chunk, cap,
+    floor, goal, most, kept, halfedges, budget,
+):  # fmt: skip
+    """Try to delete chunk after chunk, from progress[0] on, until the end or until `budget`
+    operations have been replayed; progress[1] is the number of entries. Returns True at the end.
+
+    prefix: the mesh before entry progress[0], with its names; work and the like: scratch.
+    """
+    spent = 0
+    while progress[0] < progress[1]:
+        if spent > budget:
+            return False
+        at, total = progress[0], progress[1]
+        copy_mesh(prefix, work)
+        _copy(vertex_of, vertex_work)
+        _copy(name_of, name_work)
+        stop = replay(
+            work, vertex_work, name_work, entries, min(at + chunk, total), total, cap, floor, goal,
+            most, kept, halfedges,
+        )  # fmt: skip
+        spent += total - at + 8
+        if stop >= 0:
+            left = at
+            for i in range(min(at + chunk, total), stop):
+                if kept[i]:
+                    for column in range(5):
+                        spare[left, column] = entries[i, column]
+                    left += 1
+            for i in range(at, left):
+                for column in range(5):
+                    entries[i, column] = spare[i, column]
+            progress[1] = left
+            continue
+        end = min(at + chunk, total)
+        # the goal and the bounds are those of the whole list, so nothing ends early here
+        replay(
+            prefix, vertex_of, name_of, entries, at, end, cap, 0, -1, 0, kept, halfedges
+        )  # fmt: skip
+        progress[0] = end
+    return True
+
+
+def without_loops(states: np.ndarray) -> np.ndarray:
+    """Places of the operations that are left when every return to a former connectivity is cut
+    out; states: (N+1,) hashes before each operation and at the end.
+    """
+    last = {state: i for i, state in enumerate(states.tolist())}
+    kept = []
+    at, end = 0, len(states) - 1
+    hashes = states.tolist()
+    while at < end:
+        onward = last[hashes[at]]
+        if onward > at:
+            at = onward
+            continue
+        kept.append(at)
+        at += 1
+    return np.array(kept, np.int64)
+
+
+def shorten(
+    mesh: HalfEdgeMesh,
+    operations: Operations,
+    *,
+    seconds: float = 0.3,
+    seed: int = 0,
+    cancelled: Callable[[], bool] | None = None,
+) -> Operations:
+    """A list, never longer, that ends with s no higher and with no more elements than `operations`
+    on `mesh`, which is not changed, and never has fewer elements on its way than they had.
+
+    seed: order in which sizes of chunks are tried after the first round. The answer replays with
+    :meth:`HalfEdgeMesh.apply`. Raises ValueError if `operations` do not.
+    """
+    deadline = time.perf_counter() + seconds
+
+    def late() -> bool:
+        return time.perf_counter() > deadline or (cancelled is not None and cancelled())
+
+    if not operations:
+        return []
+    shortener = _Shortener(mesh, operations)
+    shortener.cut_loops()
+    shortener.debug(late)
+    return shortener.answer(operations)
+
+
+class _Shortener:
+    """The arrays of one shortening."""
+
+    def __init__(self, mesh: HalfEdgeMesh, operations: Operations) -> None:
+        codes = CODES[mesh.k]
+        self.codes = np.array([codes[operation] for operation, _ in operations], np.int32)
+        self.halfedges = np.array([h for _, h in operations], np.int64)
+        count, slots = len(operations), mesh.slots
+        self.mesh, self.cap = mesh, Task(mesh.kind).cap
+        self.start = with_room(mesh, 3 * mesh.n_elements)
+        while True:
+            self.entries = np.zeros((count, 5), np.int32)
+            self.states = np.zeros((count + 1, 3), np.int64)
+            work = self._copied()
+            names = name_all(
+                work, self.codes, self.halfedges, slots, self.cap, self.entries, self.states
+            )
+            if names >= 0:
+                break
+            self._relax_bounds(-1 - int(names), operations)
+        self.names = int(names)
+        self.goal, self.most = int(self.states[-1, 1]), int(self.states[-1, 2])
+        self.floor = int(self.states[:, 2].min())
+
+    def _relax_bounds(self, failed: int, operations: Operations) -> None:
+        """Where an operation is refused: do without the degree cap, then with more room."""
+        if self.cap:
+            self.cap = 0
+        elif len(self.start.element_mark) < 64 * (self.mesh.n_elements + 100):
+            self.start = with_room(self.mesh, 4 * len(self.start.element_mark))
+        else:
+            operation, h = operations[failed]
+            raise ValueError(f"operation {failed}, {operation} at half-edge {h}, does not replay")
+
+    def _copied(self) -> MeshArrays:
+        return MeshArrays(*(array.copy() for array in self.start))
+
+    def _replayed(self, entries: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
+        """Where a replay meets the goal (-1: nowhere), which entries are done, and on what."""
+        names = first_names(self.mesh.slots, len(self.start.vertex), self.names)
+        kept, halfedges = np.zeros(len(entries), np.bool_), np.zeros(len(entries), np.int64)
+        stop = replay(
+            self._copied(), *names, entries, 0, len(entries), self.cap, self.floor, self.goal,
+            self.most, kept, halfedges,
+        )  # fmt: skip
+        kept[max(int(stop), 0) :] = False
+        return int(stop), kept, halfedges
+
+    def cut_loops(self) -> None:
+        """End at the first state that is good enough, and cut out returns to former states."""
+        good = (self.states[:, 1] <= self.goal) & (self.states[:, 2] <= self.most)
+        end = int(np.argmax(good))
+        shorter = self.entries[:end][without_loops(self.states[: end + 1, 0])]
+        stop, kept, _ = self._replayed(shorter)
+        self.entries = shorter[kept] if stop >= 0 else self.entries[:end]
+
+    def debug(self, late: Callable[[], bool]) -> None:
+        """Delete chunks of falling size, until nothing more can go or time is up."""
+        while not late():
+            before = len(self.entries)
+            chunk = max(1, before // 2)
+            while chunk and not late():
+                self._delete(chunk, late)
+                chunk //= 2
+            if len(self.entries) == before:
+                return
+
+    def _delete(self, chunk: int, late: Callable[[], bool]) -> None:
+        prefix, work = self._copied(), self._copied()
+        names = first_names(self.mesh.slots, len(self.start.vertex), self.names)
+        scratch = Names(*(array.copy() for array in names))
+        total = len(self.entries)
+        entries = self.entries.copy()
+        progress = np.array([0, total])
+        kept, halfedges = np.zeros(total, np.bool_), np.zeros(total, np.int64)
+        ended = False
+        while not ended and not late():
+            ended = debug_pass(
+                prefix, work, *names, *scratch, entries, np.zeros_like(entries), progress, chunk,
+                self.cap, self.floor, self.goal, self.most, kept, halfedges, SLICE,
+            )  # fmt: skip
+        self.entries = entries[: progress[1]]
+
+    def answer(self, operations: Operations) -> Operations:
+        """The operations as they are applied to the mesh, checked on a copy of it."""
+        stop, kept, halfedges = self._replayed(self.entries)
+        if stop < 0 or int(kept.sum()) >= len(operations):
+            return operations
+        found = [
+            (NAMES[code], h)
+            for code, h in zip(
+                self.entries[kept, 0].tolist(), halfedges[kept].tolist(), strict=True
+            )
+        ]
+        checked = self.mesh.copy()
+        for operation, h in found:
+            checked.apply(operation, h)
+        if checked.score > self.goal or checked.n_elements > self.most:
+            return operations
+        return found

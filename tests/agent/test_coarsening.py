@@ -1,0 +1,47 @@
+"""Coarsening: fewer quads, s no higher, drawn as well, corners kept."""
+
+import numpy as np
+import pytest
+
+from agent.annealing import anneal
+from agent.coarsening import coarsen, undrawable
+from meshcore import generate, shapes
+
+
+def optimal(name):
+    mesh = generate.mesh_domain(shapes.shape(name), "quad")
+    for operation, h in anneal(mesh, proposals=1_000_000)[0]:
+        mesh.apply(operation, h)
+    assert mesh.score == mesh.optimum
+    return mesh
+
+
+def replayed(mesh, operations):
+    copy = mesh.copy()
+    for operation, h in operations:
+        copy.apply(operation, h)
+    copy.validate()
+    return copy
+
+
+@pytest.mark.parametrize(("name", "most"), [("l-shape", 3), ("square", 1), ("star", 12)])
+def test_gallery_shapes_become_coarse_at_the_optimum(name, most):
+    mesh = optimal(name)
+    after = replayed(mesh, coarsen(mesh, proposals=100_000, seconds=None))
+    assert after.score == mesh.optimum
+    assert after.n_elements <= most
+    assert undrawable(after, []) <= undrawable(mesh, [])
+    assert after.geometric().sum() == mesh.geometric().sum()
+
+
+def test_the_floor_is_kept():
+    mesh = generate.grid("quad", 36)
+    after = replayed(mesh, coarsen(mesh, proposals=50_000, seconds=None, floor=12))
+    assert 12 <= after.n_elements < 36
+
+
+def test_nothing_for_triangles_and_nothing_when_cancelled():
+    mesh = generate.benchmark_mesh("tri", 10, np.random.default_rng(0))
+    assert coarsen(mesh) == []
+    quads = generate.benchmark_mesh("quad", 10, np.random.default_rng(0))
+    assert coarsen(quads, seconds=60.0, cancelled=lambda: True) == []

@@ -1,0 +1,101 @@
+"""The anytime solver: what it returns replays, is the best met, and comes in time."""
+
+import time
+
+import numpy as np
+import pytest
+
+from agent import policies
+from agent.policies import PolicyError
+from agent.solver import Solution, prepare, solve
+from meshcore.generate import benchmark_mesh
+
+
+@pytest.fixture(scope="module", params=["tri", "quad"])
+def policy(request):
+    policy = policies.load(policies.shipped(request.param)[0])
+    prepare(policy)
+    return policy
+
+
+def start(kind, sides=14, seed=0):
+    return benchmark_mesh(kind, sides, np.random.default_rng(seed))
+
+
+def replayed(mesh, solution):
+    copy = mesh.copy()
+    for operation, h in solution.operations:
+        copy.apply(operation, h)
+    copy.validate()
+    return copy
+
+
+def test_a_search_replays_to_what_it_says(policy):
+    mesh = start(policy.kind)
+    told = []
+    found = solve(mesh, policy, seconds=1.5, progress=lambda *said: told.append(said))
+    after = replayed(mesh, found)
+    assert (after.score, after.n_elements) == (found.score, found.elements)
+    assert found.score < mesh.score and found.optimum == mesh.optimum
+    assert found.rollouts == told[-1][0]
+    assert [best for _, best in told] == sorted((best for _, best in told), reverse=True)
+
+
+def test_best_of_k_makes_no_more_than_k_rollouts(policy):
+    mesh = start(policy.kind, 20)
+    found = solve(mesh, policy, rollouts=3, max_steps=5)
+    assert found.rollouts == 3
+    assert replayed(mesh, found).score == found.score <= mesh.score
+    assert solve(mesh, policy, max_steps=5).rollouts == 1
+
+
+def test_time_is_kept(policy):
+    mesh = start(policy.kind, 40)
+    began = time.perf_counter()
+    solve(mesh, policy, seconds=0.5)
+    assert time.perf_counter() - began < 2.0
+
+
+def test_cancelling_comes_back_with_the_best_so_far(policy):
+    mesh = start(policy.kind, 40)
+    began = time.perf_counter()
+    found = solve(mesh, policy, seconds=60.0, cancelled=lambda: time.perf_counter() - began > 0.3)
+    assert time.perf_counter() - began < 3.0
+    assert replayed(mesh, found).score == found.score
+
+
+def test_workers_share_what_they_find(policy):
+    mesh = start(policy.kind, 20)
+    found = solve(mesh, policy, seconds=1.0, workers=2)
+    assert replayed(mesh, found).score == found.score < mesh.score
+
+
+def test_a_mesh_at_its_optimum_needs_nothing(policy):
+    mesh = start(policy.kind)
+    for operation, h in solve(mesh, policy, seconds=3.0).operations:
+        mesh.apply(operation, h)
+    assert mesh.score == mesh.optimum
+    assert solve(mesh, policy, seconds=1.0, coarsen=False).operations == []
+
+
+def test_quads_end_with_fewer_elements_only_if_asked():
+    policy = policies.load("quad")
+    mesh = start("quad", 20)
+    fine = solve(mesh, policy, seconds=1.5, coarsen=False)
+    coarse = solve(mesh, policy, seconds=3.0)
+    assert fine.score == coarse.score == mesh.optimum
+    assert coarse.elements < fine.elements
+
+
+def test_better_is_lower_s_then_drawable_then_coarser_then_shorter():
+    def rank(score, inverted, elements, length):
+        return Solution([("flip", 0)] * length, score, 0, inverted, elements).rank
+
+    ranks = [rank(1, 0, 9, 9), rank(1, 0, 9, 10), rank(1, 0, 10, 1), rank(1, 1, 1, 1)]
+    assert ranks == sorted(ranks)
+    assert rank(2, 0, 1, 1) > ranks[-1]
+
+
+def test_a_policy_of_the_other_kind_is_refused(policy):
+    with pytest.raises(PolicyError, match="is for"):
+        solve(start("quad" if policy.kind == "tri" else "tri"), policy)
