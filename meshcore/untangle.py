@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 UNFOLDING, SHAPING = 1.0, 0.1
 """Weights of equal areas against equal angles (lambda of the paper) before and after the last
 corner is unfolded: equal areas keep room for what is folded, equal angles look better."""
-ROUNDS, INNER = 40, 60
+ROUNDS, INNER = 100, 60
 """The most values of the regularisation, and the most L-BFGS steps at each."""
 BUDGET = 4_000_000
 """Corners evaluated after which no random start is tried: some tenth of a second."""
