@@ -22,6 +22,10 @@ from meshcore.mesh import HalfEdgeMesh
 from meshcore.operations import NAMES, Operation
 
 
+class NothingToDo(ValueError):
+    """Polygons that all are at their optimum from the start."""
+
+
 @dataclass
 class Trace:
     """One rollout on each of M meshes, step by step."""
@@ -131,10 +135,13 @@ def _play(batch: Batch, policy: Policy, generator: torch.Generator) -> tuple[np.
 
 def unseen(kind: str, sides: tuple[int, int], meshes: int, seed: int) -> list[HalfEdgeMesh]:
     """The polygons of one row of an evaluation: those of so many drawn that are not at their
-    optimum from the start.
+    optimum from the start. Raises NothingToDo if none is left.
     """
     drawn = start_meshes(kind, sides, meshes, np.random.default_rng([seed, 1]))
-    return [mesh for mesh in drawn if mesh.score > mesh.optimum]
+    useful = [mesh for mesh in drawn if mesh.score > mesh.optimum]
+    if not useful:
+        raise NothingToDo("every polygon that was drawn is at its optimum from the start")
+    return useful
 
 
 def longer(policy: Policy, factor: float) -> Policy:

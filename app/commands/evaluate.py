@@ -3,30 +3,44 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from app import inputs
-from app.report import Report
+from app import evaluation_table, inputs
+from app.outputs import checked_folder, checked_output
+from app.report import Report, UserError
 
-SUMMARY = "measure a policy on random polygons: one row of the paper's tables"
+if TYPE_CHECKING:
+    from agent.assessment import Assessment
+    from agent.policies import Policy
+
+SUMMARY = "measure a policy on random polygons: the paper's tables and figures"
 DESCRIPTION = (
     "Run a policy on random polygons of the benchmark and report the normalised return, "
-    "(s_start - s_best) / (s_start - s*), of single rollouts and of the best of K."
+    "(s_start - s_best) / (s_start - s*), of single rollouts and of the best of K: one row of the "
+    "paper's tables, or all of them."
 )
+STRIPS = {"tri": (20,), "quad": (10, 20)}
+"""Sides of the polygons whose rollouts are drawn, those of the paper's figures."""
+BRIEF = 1.0
+"""Seconds of the race that a figure needs, where none is asked for."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the row: kind, sides, how many meshes and rollouts."""
+    """Describe the row, or the table: kind, sides, how many meshes and rollouts."""
     parser.add_argument("--kind", choices=("tri", "quad"), required=True, help="triangles or quads")
-    parser.add_argument(
+    rows = parser.add_mutually_exclusive_group()
+    rows.add_argument(
         "--sides",
         metavar="A-B",
         type=inputs.sides,
         default=(10, 20),
         help="sides of the polygons (10-20)",
     )
+    rows.add_argument("--table", action="store_true", help="all rows of the paper's table")
     parser.add_argument(
-        "--meshes", metavar="M", type=inputs.positive_int, default=100, help="polygons (100)"
+        "--meshes", metavar="M", type=inputs.positive_int, default=100, help="polygons a row (100)"
     )
     parser.add_argument(
         "--rollouts", metavar="K", type=inputs.positive_int, default=10, help="runs on each (10)"
@@ -37,41 +51,149 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--policy", metavar="P", help="name of a shipped policy, or a policy file (the shipped one)"
     )
+    parser.add_argument(
+        "--steps",
+        metavar="FACTOR",
+        type=inputs.positive_float,
+        default=1.0,
+        help="length of a run, relative to that in training (1)",
+    )
+    parser.add_argument(
+        "--baselines",
+        action="store_true",
+        help="beside greedy descent, annealing and a random walk in the same time",
+    )
+    parser.add_argument(
+        "--race",
+        metavar="SECONDS",
+        type=inputs.positive_float,
+        help="share at s* against time: solver, annealing and greedy, so long on each mesh",
+    )
+    parser.add_argument(
+        "--shorten",
+        metavar="SECONDS",
+        nargs="?",
+        type=inputs.positive_float,
+        const=1.0,
+        help="shorten the solutions at s*, and coarsen those of quads, so long on each mesh (1)",
+    )
+    parser.add_argument(
+        "--note",
+        action="store_true",
+        help="with --table and a policy file: write how it scores into the file",
+    )
+    parser.add_argument(
+        "--figure",
+        metavar="FOLDER",
+        help="draw the learning curve, return against steps, share at s* against seconds "
+        "(a race of 1 second, if --race does not say otherwise), and rollouts",
+    )
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """Measure and report the row."""
+    """Measure and report the row, or the table; draw the figures."""
+    folder = checked_folder(arguments.figure, "--figure") if arguments.figure else None
+    noted = _checked_note(arguments) if arguments.note else None
     policy = inputs.read_policy(arguments.policy, arguments.kind)
-    from agent import evaluate
+    from agent import assessment, evaluate, paper
 
-    with report.progress("evaluating", arguments.meshes) as update:
-        row = evaluate.evaluate(
-            arguments.kind,
-            sides=arguments.sides,
-            meshes=arguments.meshes,
-            rollouts=arguments.rollouts,
-            seed=arguments.seed,
-            policy=policy,
-            progress=lambda done: update(done, ""),
-        )
+    table = [row.sides for row in paper.ROWS[arguments.kind]]
+    wanted = assessment.Wanted(
+        arguments.meshes,
+        arguments.rollouts,
+        arguments.seed,
+        arguments.baselines,
+        arguments.race or (BRIEF if folder else None),
+        arguments.shorten,
+    )
+    played = evaluate.longer(policy, arguments.steps)
+    found = []
+    for sides in table if arguments.table else [arguments.sides]:
+        title = evaluation_table.sides(sides)
+        with report.progress(title, arguments.meshes) as update:
+            try:
+                row = assessment.assess(
+                    played, sides, wanted, lambda what, done, update=update: update(done, what)
+                )
+            except evaluate.NothingToDo as error:
+                raise UserError(f"{title}, {arguments.meshes} meshes: {error}") from error
+        found.append(row)
     given = {
         "command": "evaluate",
         "kind": arguments.kind,
         "policy": policy.name,
-        "sides": list(arguments.sides),
         "meshes": arguments.meshes,
         "rollouts": arguments.rollouts,
         "seed": arguments.seed,
+        "steps": arguments.steps,
     }
-    report.result({**given, **row}, _text({**given, **row}))
+    if folder:
+        given["figures"] = [str(path) for path in draw(policy, found, wanted, folder)]
+    rows = [row.numbers for row in found]
+    if noted is not None:
+        note(policy, rows, noted)
+        given["noted"] = str(noted)
+    if arguments.table:
+        text = evaluation_table.all_rows(arguments.kind, policy.name, given, rows)
+        report.result({**given, "rows": rows}, _with_figures(text, given))
+    else:
+        text = evaluation_table.one_row(arguments.kind, policy.name, given, rows[0])
+        report.result({**given, **rows[0]}, _with_figures(text, given))
 
 
-def _text(row: dict[str, Any]) -> str:
-    low, high = row["sides"]
-    return (
-        f"{inputs.KIND_NOUN[row['kind']]}, {low}-{high} sides, {row['meshes']} meshes, "
-        f"{row['policy']}: single {row['single_mean']:.3f} (std {row['single_std']:.3f}), "
-        f"best of {row['rollouts']} {row['best_mean']:.3f} (std {row['best_std']:.3f}), "
-        f"at the optimum {row['at_optimum']:.0%}, {row['operations_median']:.0f} operations "
-        f"(median), {row['seconds']:.1f} s"
-    )
+def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path) -> list[Path]:
+    """Draw all figures; returns their paths."""
+    from agent import evaluate, figures, paper, strips
+
+    folder.mkdir(exist_ok=True)
+    kind, written = policy.kind, []
+
+    def path(name: str) -> Path:
+        written.append(folder / f"{kind}-{name}.png")
+        return written[-1]
+
+    curve = policy.header.get("progress", {}).get("curve", [])
+    if len(curve) > 1:
+        noun = inputs.KIND_NOUN[kind].capitalize()
+        low, high = policy.header["training"]["sides"]
+        title = f"{noun}, polygons of {low} to {high} sides"
+        figures.learning_curve(curve, kind, title, path("learning"))
+    titles = [evaluation_table.sides(row.sides) for row in found]
+    returns = [
+        (title, row.rolled, known.best.mean if (known := paper.row(kind, row.sides)) else None)
+        for title, row in zip(titles, found, strict=True)
+    ]
+    figures.returns_by_steps(returns, kind, path("returns"))
+    races = [(title, row.times) for title, row in zip(titles, found, strict=True)]
+    figures.shares_by_seconds(races, wanted.race, kind, path("seconds"))
+    for sides in STRIPS[kind]:
+        meshes = evaluate.unseen(kind, (sides, sides), 4, wanted.seed)[:1]
+        rolled = evaluate.roll_out(policy, meshes, wanted.rollouts, wanted.seed)
+        steps = rolled.steps(policy.task, meshes[0], 0, int(rolled.best()[0]))
+        strips.rollout_strip(meshes[0], steps, path(f"rollout-{sides}"))
+    return written
+
+
+def note(policy: Policy, rows: Sequence[dict[str, Any]], path: Path) -> None:
+    """Write the table into the header of the policy's file, which stays whole if that fails."""
+    from agent import policies
+    from meshcore.errors import MeshError
+
+    policy.header["table"] = list(rows)
+    try:
+        policies.save_policy(policy, path)
+    except MeshError as error:
+        raise UserError(str(error)) from error
+
+
+def _checked_note(arguments: argparse.Namespace) -> Path:
+    """The file to write the table into."""
+    if not arguments.table or arguments.steps != 1.0:
+        raise UserError("--note goes with --table, and not with --steps")
+    if arguments.policy is None or not inputs.looks_like_path(arguments.policy):
+        raise UserError("--note writes into a policy file: name it by --policy")
+    return checked_output(arguments.policy, option="--policy")
+
+
+def _with_figures(text: str, given: dict[str, Any]) -> str:
+    return "\n".join([text, *([""] if given.get("figures") else []), *given.get("figures", [])])

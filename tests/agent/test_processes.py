@@ -14,7 +14,11 @@ import torch
 from safetensors.torch import load_file
 
 from agent import checkpoint
+from agent.batch import Batch, start_meshes
+from agent.network import Architecture, PolicyNetwork
+from agent.ppo import tensors
 from agent.processes import DeviceError, Processes, joined
+from agent.task import Task
 from agent.training import train
 
 ROOT = Path(__file__).parents[2]
@@ -158,3 +162,17 @@ def test_a_gpu_that_is_not_there_is_named(monkeypatch):
         pass
     with joined("auto") as processes:
         assert processes.device.type == "cpu"
+
+
+def test_a_network_takes_what_it_looks_at_to_where_it_is(monkeypatch):
+    # no GPU is needed: tensors on "meta" have shapes and a device, and refuse to meet others
+    task = Task("tri", channels=6, blocks=2, candidates=8)
+    rng = np.random.default_rng(1)
+    seen = Batch(task, start_meshes("tri", (6, 8), 2, rng), 2, rng).observe()
+    network = PolicyNetwork(task, Architecture(width=8)).to("meta")
+    monkeypatch.setattr(torch.Tensor, "cpu", lambda tensor: tensor)
+    logits, values = network(*tensors(seen))
+    assert logits.shape == (2, 8 * task.operations)
+    assert logits.device.type == values.device.type == "meta"
+    (logits.mean() + values.mean()).backward()
+    assert network.head.weight.grad.device.type == "meta"

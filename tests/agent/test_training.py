@@ -1,11 +1,15 @@
 """A tiny training: learns to save, resumes, and refuses what it cannot read."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import torch
 
+from agent import checkpoint
 from agent.evaluate import evaluate
+from agent.events import Events
 from agent.policies import load
 from agent.solver import solve
 from agent.training import ConfigurationError, read_configuration, shipped_configuration, train
@@ -50,6 +54,38 @@ def test_a_training_can_be_stopped_and_resumed(tmp_path, monkeypatch):
         train({**_TINY, "pool": 13}, tmp_path)
 
 
+def test_a_training_ends_early_and_its_best_policy_is_the_result(tmp_path, monkeypatch):
+    means = iter([0.5, 0.8, 0.7, 0.8, 0.9])
+
+    def rolled(*_):
+        return SimpleNamespace(returns=np.array([[next(means)]]), gaps=np.array([[1]]))
+
+    monkeypatch.setattr("agent.training.roll_out", rolled)
+    monkeypatch.setattr("agent.training.evaluate", lambda *_: {"single_mean": 0.0, "seconds": 1.0})
+    found = train({**_TINY, "iterations": 9, "patience": 2}, tmp_path)
+    assert (found["iteration"], found["best_iteration"], found["best_return"]) == (3, 1, 0.8)
+    parts, notes = checkpoint.unpack((tmp_path / "checkpoint.safetensors").read_bytes())
+    assert notes["progress"]["waited"] == 2
+    kept = load(tmp_path / "policy.safetensors").network.state_dict()
+    assert all(torch.equal(kept[name], value) for name, value in parts["best"].items())
+    assert any(not torch.equal(kept[name], value) for name, value in parts["network"].items())
+    # resumed it is at its end still, and another patience lets it go on
+    assert train({**_TINY, "iterations": 9, "patience": 2}, tmp_path)["iteration"] == 3
+    again = train({**_TINY, "iterations": 4, "patience": 3}, tmp_path)
+    assert (again["iteration"], again["best_return"]) == (4, 0.9)
+
+
+def test_events_hold_what_has_a_tag_and_is_a_number(tmp_path):
+    events = Events(tmp_path, 0)
+    for update in range(1, 6):
+        events.write(update, {"entropy": 1.0, "mean": float("nan"), "unknown": 3.0})
+    events.close()
+    content = b"".join(path.read_bytes() for path in tmp_path.iterdir())
+    assert content.count(b"loss/entropy") == 5
+    assert b"evaluation/return" not in content
+    assert b"unknown" not in content
+
+
 @pytest.mark.parametrize("name", ["tri", "quad", "tri-paper", "quad-paper"])
 def test_the_configurations_that_travel_can_be_read(name):
     training = read_configuration(shipped_configuration(name))
@@ -64,6 +100,8 @@ def test_the_configurations_that_travel_can_be_read(name):
         ({"task": {"kind": "quad", "selecton": "x"}}, "selecton"),
         ({"sides": [2, 9]}, "sides"),
         ({"speed": 3}, "speed"),
+        ({"device": "tpu"}, "tpu"),
+        ({"patience": -1}, "patience"),
     ],
 )
 def test_a_wrong_configuration_is_refused(change, word):

@@ -1,0 +1,80 @@
+"""``meshwright evaluate``: tables, figures, notes in policy files; how a training shows itself."""
+
+import io
+import json
+import shutil
+
+import pytest
+
+from agent import paper, policies
+from app import cli, evaluation_table, training_display
+from app.policy_files import ENDING
+
+
+@pytest.fixture
+def small_table(monkeypatch):
+    rows = (paper.Row((6, 7), paper.Measured(0.98, 0.03)), paper.Row((8, 8), *_TWO))
+    monkeypatch.setitem(paper.ROWS, "quad", rows)
+
+
+_TWO = (paper.Measured(0.992, 0.02), paper.Measured(0.95, 0.05))
+
+
+def test_a_table_with_everything(small_table, tmp_path, capfd):
+    words = ["evaluate", "--kind", "quad", "--table", "--meshes", "2", "--rollouts", "2"]
+    more = ["--baselines", "--race", "0.05", "--shorten", "0.05", "--figure", str(tmp_path / "f")]
+    assert cli.main([*words, *more, "--json"]) == 0
+    said = capfd.readouterr()
+    assert said.err == ""
+    found = json.loads(said.out)
+    assert [row["sides"] for row in found["rows"]] == [[6, 7], [8, 8]]
+    assert found["rows"][1]["paper"]["single_mean"] == 0.95
+    for row in found["rows"]:
+        assert set(row["baselines"]) == {"greedy", "plateaus", "annealing", "random_walk"}
+        assert set(row["race"]) == {"policy", "annealing", "plateaus"}
+        assert row["polished"]["meshes"] <= 2
+    names = {path.name for path in (tmp_path / "f").iterdir()}
+    drawn = ("learning", "returns", "seconds", "rollout-10", "rollout-20")
+    assert names == {f"quad-{name}.png" for name in drawn}
+    text = evaluation_table.all_rows("quad", "quad", found, found["rows"])
+    for word in ("0.992 ± 0.02", "0.98 ± 0.03", "random walk", "solutions at s*", "0.05 s"):
+        assert word.lower() in text.lower()
+
+
+def test_a_table_can_be_noted_in_the_policy(small_table, tmp_path, capfd):
+    path = tmp_path / f"mine{ENDING}"
+    shutil.copy(policies._shipped_folder() / f"quad{ENDING}", path)
+    words = ["evaluate", "--kind", "quad", "--meshes", "1", "--rollouts", "1", "--note"]
+    assert cli.main([*words, "--table", "--policy", str(path)]) == 0
+    assert "best of 1" in capfd.readouterr().out
+    policy = policies.load(path)
+    assert [row["sides"] for row in policy.header["table"]] == [[6, 7], [8, 8]]
+    assert policy.header["progress"]["curve"]
+    assert cli.main([*words, "--table"]) == 2
+    assert "--policy" in capfd.readouterr().err
+    assert cli.main([*words, "--policy", str(path)]) == 2
+    assert "goes with --table" in capfd.readouterr().err
+
+
+def test_a_grid_is_aligned():
+    lines = evaluation_table.grid(["a", "long"], [["first", "1"], ["b", "22"]]).splitlines()
+    assert lines == ["a      long", "-----------", "first     1", "b        22"]
+
+
+def test_a_training_writes_a_line_at_each_evaluation_into_a_log():
+    stream = io.StringIO()
+    with training_display.shown(stream, 3) as on_update:
+        on_update(1, 3, {"decisions": 2048.0, "decisions_per_second": 1000.0, "entropy": 1.25})
+        evaluated = {"mean": 0.9, "at_optimum": 0.5, "played": float("nan")}
+        on_update(2, 3, {"decisions": 4096.0, **evaluated})
+        on_update(3, 3, {"decisions": 6144.0})
+    head, first, last = stream.getvalue().splitlines()
+    assert head.split()[:2] == ["update", "decisions"]
+    assert first.split()[:6] == ["2/3", "4,096", "-", "-", "0.900", "50%"]
+    assert last.split()[0] == "3/3"
+    assert "0.900" in last
+    assert len({len(head), len(first), len(last)}) == 1
+
+
+def test_a_clock_counts_hours_only_when_there_are_some():
+    assert [training_display.clock(x) for x in (5.2, 65, 3725)] == ["0:05", "1:05", "1:02:05"]
