@@ -17,18 +17,22 @@ from functools import partial
 from typing import Any, Protocol
 
 from app.document import Document
+from app.searching import Effort, SearchRunner
 from app.signals import Signal
 from meshcore import HalfEdgeMesh, MeshError, Operation
 
 APPLY_BUDGET = 0.02
 """Seconds of applying operations after which the window gets its turn."""
 BATCH_SECONDS = 0.03
-"""Seconds for which *complete* gathers decisions before it hands them over."""
+"""Seconds for which a search gathers its operations before it hands them over."""
 SLOWEST, FASTEST = 0.5, 60.0
 """Bounds of :attr:`Assistant.speed` in decisions per second."""
 
 Step = list[tuple[Operation, int]]
 Dispatch = Callable[[Callable[[], None]], None]
+Search = Callable[
+    [HalfEdgeMesh, Any, int, Effort, threading.Event, Callable[[int, int], None]], "Runner"
+]
 
 _log = logging.getLogger(__name__)
 
@@ -58,7 +62,7 @@ class State(StrEnum):
     STEPPING = "stepping"
     PLAYING = "playing"
     PAUSED = "paused"
-    COMPLETING = "completing"
+    SEARCHING = "searching"
 
 
 @dataclass
@@ -70,6 +74,7 @@ class _Run:
     seed: int
     mesh: HalfEdgeMesh | None
     first: int
+    effort: Effort | None = None
     runner: Runner | None = None
     in_step: bool = False
     decisions: int = 0
@@ -77,6 +82,7 @@ class _Run:
     stop: threading.Event = field(default_factory=threading.Event)
     applied: threading.Event = field(default_factory=threading.Event)
     wake: threading.Event = field(default_factory=threading.Event)
+    enough: threading.Event = field(default_factory=threading.Event)
 
     def end(self) -> bool:
         """Stop the worker; True if the runner stands exactly where the document stands."""
@@ -85,6 +91,7 @@ class _Run:
             in_step = self.in_step
         self.applied.set()
         self.wake.set()
+        self.enough.set()
         return not in_step and self.runner is not None
 
 
@@ -93,7 +100,8 @@ class Assistant:
 
     ``dispatch(call)`` must call ``call()`` in the document's thread, soon and in order.
     ``load(name)`` returns a policy, ``make_runner(mesh, policy, seed)`` a :class:`Runner` that
-    works on its own copy; both are called on the worker thread.
+    works on its own copy, ``make_search`` one as :class:`app.searching.SearchRunner` is; all are
+    called on the worker thread.
 
     Events, emitted in the document's thread: ``changed()`` state, policy or progress differ;
     ``said(sentence)`` something a person wants to know; ``failed(sentence)`` the run broke off.
@@ -105,6 +113,7 @@ class Assistant:
         dispatch: Dispatch,
         load: Callable[[str], Any] | None = None,
         make_runner: Callable[[HalfEdgeMesh, Any, int], Runner] | None = None,
+        make_search: Search = SearchRunner,
     ) -> None:
         self.changed = Signal()
         self.said = Signal()
@@ -113,6 +122,8 @@ class Assistant:
         self._dispatch = dispatch
         self._load = load or _load_policy
         self._make_runner = make_runner or _make_runner
+        self._make_search = make_search
+        self._best_so_far: int | None = None
         self._state = State.IDLE
         self._policy = ""
         self._speed = 4.0
@@ -131,7 +142,7 @@ class Assistant:
 
     @property
     def state(self) -> State:
-        """Idle, stepping, playing, paused or completing."""
+        """Idle, stepping, playing, paused or searching."""
         return self._state
 
     @property
@@ -196,9 +207,22 @@ class Assistant:
         if self._state is State.PLAYING:
             self._end(State.PAUSED)
 
-    def complete(self) -> None:
-        """Take decisions as fast as they come until finished, then go to the best state met."""
-        self._begin(State.COMPLETING)
+    def search(self, effort: Effort | None = None) -> None:
+        """Look for the best state within `effort` and go there by the shortest way found."""
+        self._begin(State.SEARCHING, effort or Effort())
+
+    @property
+    def best_so_far(self) -> int | None:
+        """The lowest s that the search under way has found; None before, and without a search."""
+        return self._best_so_far
+
+    def stop(self) -> None:
+        """End the run now; a search still does what it has found, unless asked once more."""
+        run = self._run
+        if run is not None and run.state is State.SEARCHING and not run.enough.is_set():
+            run.enough.set()
+        else:
+            self.cancel()
 
     def cancel(self) -> None:
         """End the run now; what has been applied stays."""
@@ -215,7 +239,7 @@ class Assistant:
 
     # The document's thread
 
-    def _begin(self, state: State) -> None:
+    def _begin(self, state: State, effort: Effort | None = None) -> None:
         mesh = self._document.mesh
         if self._run is not None:
             if self._run.state is state:
@@ -231,15 +255,17 @@ class Assistant:
         if self._state is State.IDLE:
             self._decisions = 0
         synced = self._runner is not None and self._runner_at == self._document.revision
-        if self._runner is None or not synced or self._runner.finished:
+        if self._runner is None or not synced or self._runner.finished or effort is not None:
             self._runner = None
             self._seed += 1
+        self._best_so_far = None
         run = _Run(
             state=state,
             policy=self._policy,
             seed=self._seed,
             mesh=mesh.copy() if self._runner is None else None,
             first=self._document.history.cursor,
+            effort=effort,
             runner=self._runner,
         )
         self._run, self._state = run, state
@@ -281,13 +307,8 @@ class Assistant:
         document = self._document
         reason = run.runner.reason if run.runner is not None else ""
         self._end(State.IDLE)
-        last = document.score
-        if run.state is State.COMPLETING:
-            document.go_to(document.history.best_index(run.first))
         if document.at_optimum:
             self.said.emit(f"At the optimum after {_count(self._decisions, 'decision')}.")
-        elif document.score < last:
-            self.said.emit(f"Finished; back to the best state met, s {document.score}.")
         else:
             self.said.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
 
@@ -295,7 +316,7 @@ class Assistant:
         run, self._run = self._run, None
         if run is not None:
             exact = run.end()
-            self._runner = run.runner if exact else None
+            self._runner = run.runner if exact and run.effort is None else None
             self._runner_at = self._document.revision
         self._loading = False
         self._finish_state(state)
@@ -310,6 +331,11 @@ class Assistant:
         self._end(State.IDLE)
         self._runner = None
         self.failed.emit(sentence)
+
+    def _on_progress(self, run: _Run, best: int) -> None:
+        if run is self._run and best != self._best_so_far:
+            self._best_so_far = best
+            self.changed.emit()
 
     def _loaded(self, name: str, policy: Any) -> None:
         self._policies[name] = policy
@@ -344,12 +370,21 @@ class Assistant:
         try:
             policy = self._policy_of(run.policy)
             if run.mesh is not None:
-                run.runner = self._make_runner(run.mesh, policy, run.seed)
+                run.runner = self._runner_of(run, run.mesh, policy)
                 run.mesh = None
             while run.runner is not None and self._decide(run, run.runner):
                 pass
         except Exception as error:  # a thread's boundary: whatever broke is told to the person
             self._dispatch(partial(self._break_off, run, _sentence(error)))
+
+    def _runner_of(self, run: _Run, mesh: HalfEdgeMesh, policy: Any) -> Runner:
+        if run.effort is None:
+            return self._make_runner(mesh, policy, run.seed)
+
+        def progress(done: int, best: int) -> None:
+            self._dispatch(partial(self._on_progress, run, best))
+
+        return self._make_search(mesh, policy, run.seed, run.effort, run.enough, progress)
 
     def _decide(self, run: _Run, runner: Runner) -> bool:
         """Take one decision, or a batch of them, and wait until applied; False when over."""
@@ -365,7 +400,7 @@ class Assistant:
             step = runner.step()
             operations += step
             decisions += bool(step)
-            if run.state is not State.COMPLETING or time.monotonic() - begun > BATCH_SECONDS:
+            if run.state is not State.SEARCHING or time.monotonic() - begun > BATCH_SECONDS:
                 break
         self._dispatch(partial(self._apply, run, operations, runner.finished, decisions))
         run.applied.wait()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import inspect
 import os
 import platform
 import sys
@@ -32,6 +33,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=inputs.positive_float,
         help="search time for each mesh, in suites that search",
     )
+    parser.add_argument(
+        "--meshes",
+        metavar="M",
+        type=inputs.positive_int,
+        help="meshes in each row, in suites that draw them",
+    )
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
@@ -45,11 +52,15 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         report.result({"command": "bench", "suites": summaries}, text)
         return
     suite = benchmarks.load(inputs.one_of(arguments.suite, names, "--suite"))
-    options = {}
+    options: dict[str, Any] = {}
     if arguments.seconds is not None:
-        if not hasattr(suite, "SECONDS"):
-            raise UserError(f"--seconds: the suite {arguments.suite} does not search")
+        if not isinstance(getattr(suite, "SECONDS", None), float):
+            raise UserError(f"--seconds: the suite {arguments.suite} takes no search time")
         options["seconds"] = arguments.seconds
+    if arguments.meshes is not None:
+        if "meshes" not in inspect.signature(suite.run).parameters:
+            raise UserError(f"--meshes: the suite {arguments.suite} has meshes of its own")
+        options["meshes"] = arguments.meshes
     start = time.perf_counter()
     with report.progress(arguments.suite) as update:
         results = suite.run(arguments.seed, arguments.quick, update, **options)

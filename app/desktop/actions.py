@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QObject
@@ -11,6 +12,7 @@ from qtpy.QtGui import QAction, QKeySequence
 
 from app.assistant import State
 from app.desktop import icons
+from app.searching import COMPLETE_SECONDS, Effort
 from app.theme import Theme
 from meshcore.operations import CATALOGUE, OperationInfo
 
@@ -19,6 +21,11 @@ if TYPE_CHECKING:
 
 When = Callable[["MainWindow"], bool]
 Run = Callable[["MainWindow"], None]
+
+BEST_OF = 10
+"""Rollouts of *Best of*, as in the paper's tables."""
+SEARCHES = ((10, ("Ctrl+Shift+Return",)), (60, ()))
+"""Seconds of the searches on offer, and their keys."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,10 @@ def _can_run(window: MainWindow) -> bool:
 
 def _is_active(window: MainWindow) -> bool:
     return window.assistant.running or window.assistant.state is State.PAUSED
+
+
+def _search_for(seconds: float, window: MainWindow) -> None:
+    window.assistant.search(Effort(seconds=seconds))
 
 
 def _operation(info: OperationInfo) -> Action:
@@ -203,17 +214,38 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.complete",
         "Complete",
-        "Let the policy finish, and keep the best state that it meets",
-        lambda window: window.assistant.complete(),
+        f"Search for up to {COMPLETE_SECONDS:g} seconds, and go to the best state found",
+        lambda window: window.assistant.search(),
         ("Ctrl+Return",),
         _can_run,
         menu="Agent",
     ),
     Action(
+        "agent.best_of",
+        f"Best of {BEST_OF}",
+        f"Run the policy {BEST_OF} times, and go to the best state found",
+        lambda window: window.assistant.search(Effort(rollouts=BEST_OF, seconds=None)),
+        ("Ctrl+B",),
+        _can_run,
+        menu="Agent",
+    ),
+    *(
+        Action(
+            f"agent.search_{seconds}",
+            f"Search for {seconds} seconds",
+            "Search that long for the optimum, then for fewer elements and operations",
+            partial(_search_for, seconds),
+            keys,
+            _can_run,
+            menu="Agent",
+        )
+        for seconds, keys in SEARCHES
+    ),
+    Action(
         "agent.stop",
         "Stop",
-        "Stop the policy; what it has done stays",
-        lambda window: window.assistant.cancel(),
+        "Stop the policy; what it has done stays. A search still goes to the best it has found",
+        lambda window: window.assistant.stop(),
         ("Esc",),
         _is_active,
         menu="Agent",

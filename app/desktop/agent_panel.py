@@ -6,7 +6,7 @@ from qtpy.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QSlider, QVBoxLa
 
 from app.assistant import Assistant, State
 from app.desktop import icons
-from app.desktop.actions import ActionSet
+from app.desktop.actions import BEST_OF, SEARCHES, ActionSet
 from app.desktop.widgets import named
 from app.document import Document
 from app.policy_files import shipped
@@ -15,6 +15,9 @@ from app.theme import GRID, Theme
 NO_POLICY = {"tri": "No policy for triangle meshes", "quad": "No policy for quad meshes"}
 SPEEDS = (0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60)
 """What the slider offers, in decisions per second."""
+
+
+_SEARCH = f"agent.search_{SEARCHES[0][0]}"
 
 
 class AgentPanel(QWidget):
@@ -35,6 +38,8 @@ class AgentPanel(QWidget):
         self.play = _button(actions["agent.play"], "Play")
         self.complete = _button(actions["agent.complete"], "Complete")
         self.complete.setObjectName("Primary")
+        self.best_of = _button(actions["agent.best_of"], f"Best of {BEST_OF}")
+        self.search = _button(actions[_SEARCH], f"Search {SEARCHES[0][0]} s")
         self.stop = _button(actions["agent.stop"], "Stop")
         self.speed = QSlider(Qt.Orientation.Horizontal)
         self.speed.setRange(0, len(SPEEDS) - 1)
@@ -67,6 +72,8 @@ class AgentPanel(QWidget):
             (self.step, "agent.step"),
             (self.play, "agent.play"),
             (self.complete, "agent.complete"),
+            (self.best_of, "agent.best_of"),
+            (self.search, _SEARCH),
             (self.stop, "agent.stop"),
         ):
             button.setEnabled(self._actions[name].isEnabled())
@@ -77,7 +84,11 @@ class AgentPanel(QWidget):
         layout.setSpacing(GRID)
         layout.addWidget(named("AGENT", "Heading"))
         layout.addWidget(self.policy)
-        for pair in ((self.step, self.play), (self.complete, self.stop)):
+        for pair in (
+            (self.step, self.play),
+            (self.complete, self.stop),
+            (self.best_of, self.search),
+        ):
             line = QHBoxLayout()
             line.setSpacing(GRID)
             for button in pair:
@@ -133,6 +144,9 @@ def progress(assistant: Assistant) -> str:
         return "Loading the policy\u2026"
     if assistant.state is State.PAUSED:
         return f"Paused after {decisions}"
+    if assistant.state is State.SEARCHING:
+        best = assistant.best_so_far
+        return "Searching\u2026" if best is None else f"Searching: s {best} is the best so far"
     if assistant.running:
         return f"{assistant.state.value.capitalize()}: {decisions}"
     return f"{decisions} taken" if count else "Ready" if assistant.policy else ""

@@ -6,18 +6,28 @@ import pytest
 
 from app.assistant import Assistant, State
 from app.document import Document
+from app.searching import Effort
 
 
 @pytest.fixture
 def make(desk, greedy):
     made = []
 
-    def build(document, load=lambda name: name, **options):
+    def build(document, load=lambda name: name, patient=False, **options):
+        def search(mesh, policy, seed, effort, enough, progress):
+            """Find what the greedy run finds; a patient one then waits to be told to stop."""
+            found = greedy(mesh, **options)
+            progress(1, mesh.optimum)
+            if patient:
+                assert enough.wait(20)
+            return found
+
         assistant = Assistant(
             document,
             desk.dispatch,
             load=load,
             make_runner=lambda mesh, policy, seed: greedy(mesh, **options),
+            make_search=search,
         )
         assistant.policy = "greedy"
         assistant.heard = []
@@ -66,11 +76,11 @@ def test_the_runner_goes_on_from_where_it_was_unless_a_person_edited(make, desk,
     assert document.history.cursor == 2
 
 
-def test_complete_reaches_the_optimum(make, desk, star):
+def test_a_search_reaches_the_optimum(make, desk, star):
     document = Document(star)
     assistant = make(document)
-    assistant.complete()
-    assert assistant.state is State.COMPLETING
+    assistant.search()
+    assert assistant.state is State.SEARCHING
     desk.until(lambda: not assistant.running)
     assert assistant.state is State.IDLE
     assert document.at_optimum
@@ -79,15 +89,31 @@ def test_complete_reaches_the_optimum(make, desk, star):
     star.validate()
 
 
-def test_complete_goes_back_to_the_best_state(make, desk, star):
+def test_a_search_tells_its_best_and_stops_with_it(make, desk, star):
     document = Document(star)
-    assistant = make(document, bad_steps=3, longest=3)
-    assistant.complete()
+    assistant = make(document, patient=True)
+    assistant.search(Effort(seconds=60.0))
+    desk.until(lambda: assistant.best_so_far is not None)
+    assert assistant.best_so_far < document.score and document.history.cursor == 0
+    assistant.stop()
+    assert assistant.running  # what it has found is still to be done
     desk.until(lambda: not assistant.running)
+    assert document.history.cursor > 0
+
+
+def test_a_search_stopped_twice_or_disturbed_does_nothing(make, desk, star):
+    document = Document(star)
+    assistant = make(document, patient=True)
+    assistant.search()
+    assistant.stop()
+    assistant.stop()
+    assert assistant.state is State.IDLE and document.history.cursor == 0
+    assistant.search()
+    document.set_locked(0, True)  # a person took over
+    assert assistant.state is State.IDLE
+    assistant.close()
+    desk.work()
     assert document.score == 12
-    assert document.history.cursor == 0
-    assert document.can_redo
-    assert "back to the best" in assistant.heard[-1]
 
 
 def test_play_pause_and_go_on(make, desk, star):
@@ -140,7 +166,7 @@ def test_a_person_takes_over_in_mid_run(make, desk, star):
 def test_another_mesh_ends_the_run(make, desk, star, triangles):
     document = Document(star)
     assistant = make(document, longest=100, bad_steps=100)
-    assistant.complete()
+    assistant.search()
     document.replace(triangles, "star")
     assert not assistant.running
     desk.work()
@@ -149,7 +175,7 @@ def test_another_mesh_ends_the_run(make, desk, star, triangles):
 
 def test_nothing_to_do(make, desk, strip, star):
     assistant = make(Document(strip))
-    assistant.complete()
+    assistant.search()
     assert not assistant.running
     assert "optimum" in assistant.heard[-1]
     assistant = make(Document())
@@ -167,7 +193,7 @@ def test_a_policy_that_cannot_be_loaded_is_one_sentence(make, desk, star):
         raise ValueError("greedy.safetensors is cut off.")
 
     assistant = make(Document(star), load=load)
-    assistant.complete()
+    assistant.search()
     assert assistant.loading
     desk.until(lambda: not assistant.running)
     assert assistant.heard == ["greedy.safetensors is cut off."]

@@ -50,4 +50,6 @@ def test_parts_are_a_table_of_shapes(capsys):
 
 def test_seconds_are_for_suites_that_search(capsys):
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--seconds", "2"]) == 2
-    assert "does not search" in capsys.readouterr().err
+    assert "takes no search time" in capsys.readouterr().err
+    assert cli.main(["bench", "--suite", "fuzz", "--quick", "--meshes", "2"]) == 2
+    assert "has meshes of its own" in capsys.readouterr().err

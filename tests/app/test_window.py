@@ -39,6 +39,7 @@ def open_window(qtbot, greedy):
             Dispatcher(),
             load=lambda name: name,
             make_runner=lambda mesh, policy, seed: greedy(mesh, **options),
+            make_search=lambda mesh, *_: greedy(mesh, **options),
         )
         window = MainWindow(document, assistant=assistant, ready=ready)
         window.resize(1000, 700)
@@ -281,7 +282,7 @@ def test_escape_stops_and_an_edit_takes_over(qtbot, open_window, star):
 
 def test_the_window_closes_in_mid_run(qtbot, open_window, star):
     window = open_window(star, bad_steps=500, longest=500)
-    window.assistant.complete()
+    window.assistant.search()
     qtbot.waitUntil(lambda: window.document.history.cursor >= 1, timeout=WAIT)
     window.close()
     assert not window.assistant.running

@@ -1,0 +1,74 @@
+"""A search in the clothes of a run: it looks for the best operations first, then hands them out.
+
+Neither Qt nor torch is imported here; the first step brings torch in, on the assistant's worker.
+"""
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Event
+from typing import Any
+
+from meshcore import HalfEdgeMesh, Operation
+
+COMPLETE_SECONDS = 3.0
+"""How long *Complete* searches when the optimum does not come sooner."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How hard to search: so many rollouts, or so many seconds."""
+
+    rollouts: int | None = None
+    seconds: float | None = COMPLETE_SECONDS
+
+
+class SearchRunner:
+    """What ``app.assistant.Runner`` asks for, with the answer of ``agent.solver.solve`` as its
+    steps.
+    """
+
+    def __init__(
+        self,
+        mesh: HalfEdgeMesh,
+        policy: Any,
+        seed: int,
+        effort: Effort,
+        enough: Event,
+        progress: Callable[[int, int], None],
+    ) -> None:
+        """`mesh` is the runner's own; `enough` ends the search early, with the best so far;
+        `progress(done, best score)` is called while it goes on.
+        """
+        self._mesh, self._policy, self._seed, self._effort = mesh, policy, seed, effort
+        self._enough, self._progress = enough, progress
+        self._left: list[tuple[Operation, int]] | None = None
+        self.reason = ""
+
+    @property
+    def finished(self) -> bool:
+        """Whether all operations have been handed out."""
+        return self._left is not None and not self._left
+
+    def step(self) -> list[tuple[Operation, int]]:
+        """The next operation, once the search is over; the first call waits for that."""
+        if self._left is None:
+            self._left = self._search()
+        return [self._left.pop(0)] if self._left else []
+
+    def _search(self) -> list[tuple[Operation, int]]:
+        from agent.solver import solve
+
+        solution = solve(
+            self._mesh,
+            self._policy,
+            rollouts=self._effort.rollouts,
+            seconds=self._effort.seconds,
+            seed=self._seed,
+            workers=max(1, (os.cpu_count() or 2) - 1),
+            progress=self._progress,
+            cancelled=self._enough.is_set,
+        )
+        if not solution.operations:
+            self.reason = f"nothing better was found in {solution.seconds:.0f} s"
+        return list(solution.operations)
