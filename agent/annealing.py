@@ -55,11 +55,11 @@ from meshcore.refusals import ALLOWED
 
 Operations = list[tuple[Operation, int]]
 
-TEMPERATURES = (0.4, 0.3)
-"""Temperature at the start and at the end of a sweep."""
+TEMPERATURES = {"tri": (0.35, 0.35), "quad": (0.4, 0.3)}
+"""Temperature at the start and at the end of a sweep; on a hotter one triangles never settle."""
 SWEEP = 500
 """Proposals of a sweep, relative to the number of elements."""
-PRICE = {"tri": 0.3, "quad": 0.0}
+PRICE = {"tri": 0.6, "quad": 0.0}
 """Price of an element, in units of s: without it meshes grow, and large ones hold more defects."""
 SPLIT_PRICE = 1.0
 """Price of a global split, in units of s."""
@@ -283,7 +283,7 @@ class Annealer:
         extended: bool = True,
         floor: int | None = None,
         ceiling: int | None = None,
-        temperatures: tuple[float, float] = TEMPERATURES,
+        temperatures: tuple[float, float] | None = None,
         sweep: float = SWEEP,
         price: float | None = None,
         split_price: float = SPLIT_PRICE,
@@ -305,7 +305,8 @@ class Annealer:
         self.goal = mesh.optimum if goal is None else goal
         self._weights = np.array(WEIGHTS[kind] if weights is None else weights)
         self._weights /= self._weights.sum()
-        self._temperatures, self._anywhere = temperatures, anywhere
+        self._temperatures = TEMPERATURES[kind] if temperatures is None else temperatures
+        self._anywhere = anywhere
         self._sweep = max(64.0, sweep * size)
         self._prices = (PRICE[kind] if price is None else price, split_price)
         self._fewer = fewer

@@ -204,10 +204,12 @@ class Batch:
         rng: np.random.Generator,
         *,
         endless: bool = True,
+        bounds: tuple[int, int] | None = None,
     ) -> None:
         """Runs from `meshes`; endless: a run that ends is followed by another, drawn at random.
 
-        Otherwise run b starts from mesh b, and stands still when it has ended.
+        Otherwise run b starts from mesh b, and stands still when it has ended. bounds: floor and
+        ceiling of the number of elements of every run; by default those of the task.
         """
         self.task, self.rng, self.endless = task, rng, endless
         self.pool = stack(meshes, task)
@@ -229,8 +231,8 @@ class Batch:
         self._features = np.zeros((size * rows, task.channels), np.int8)
         self._reads = np.zeros((size * rows, task.k + 1), np.int16)
         limits = [task.step_limit(int(n)) for n in self.start_elements]
-        bounds = [task.bounds(int(n)) for n in self.start_elements]
-        self._limits, self._bounds = np.array(limits), np.array(bounds)
+        own = [task.bounds(int(n)) if bounds is None else bounds for n in self.start_elements]
+        self._limits, self._bounds = np.array(limits), np.array(own)
         for b in range(size):
             self._begin(b, int(rng.choice(self.useful)) if endless else b % len(meshes))
 

@@ -15,33 +15,24 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-import torch
 
-from agent.annealing import SLICE, Annealer, Operations, anneal, with_room
+from agent.annealing import Operations, anneal
 from agent.batch import Batch
 from agent.coarsening import coarsen as coarser
 from agent.coarsening import undrawable
 from agent.policies import Policy, PolicyError
-from agent.ppo import decide
-from agent.rollout import Runner
 from agent.shortening import shorten as shorter
-from agent.task import Scratch, Task, transition
+from agent.task import Task
+from agent.worker import KEPT, LARGE, Candidate, Worker, replayed
 from meshcore.generate import benchmark_mesh
 from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import NAMES, Operation
 
-LARGE = 20_000
-"""Elements above which one rollout is made at a time."""
-TOGETHER = 8
-"""Rollouts side by side, on smaller meshes."""
 POLISH = 0.15
 """Share of the time that is left for shortening where the optimum is not found."""
 POLISHED = 0.5
 """Share of the time that shortening and coarsening may take at the optimum."""
 ALONE = 0.5
 """Seconds of shortening, and of coarsening, where only a number of rollouts is asked for."""
-_KEPT = 4
-_SLICE_SECONDS = 0.02
 
 
 @dataclass
@@ -125,26 +116,18 @@ def solve(
 
 
 @cache
-def _kernels(task: Task) -> None:
+def _warm_up(task: Task) -> None:
     mesh = benchmark_mesh(task.kind, 8, np.random.default_rng(0))
     operations = anneal(mesh, proposals=2000)[0]
     shorter(mesh, operations)
     coarser(mesh, proposals=500, seconds=None)
     batch = Batch(task, [mesh], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
-    with_room(mesh, 0)
 
 
 def prepare(policy: Policy) -> None:
-    """Compile the kernels that a search needs, or load them, so that no search pays for it."""
-    _kernels(policy.task)
-
-
-@dataclass
-class _Candidate:
-    operations: Operations
-    score: int
-    method: str
+    """Compile what a search needs, or load it, so that no search pays for it."""
+    _warm_up(policy.task)
 
 
 class _Search:
@@ -169,8 +152,8 @@ class _Search:
         self._progress, self._cancelled = progress, cancelled
         self._lock = threading.Lock()
         self.score, self.done, self._begun = mesh.score, 0, 0
-        self.best = _Candidate([], mesh.score, "none")
-        self._candidates: list[_Candidate] = []
+        self.best = Candidate([], mesh.score, "none")
+        self._candidates: list[Candidate] = []
         self._rounds = 0
 
     def nothing(self, coarse: bool) -> Solution:
@@ -195,7 +178,7 @@ class _Search:
         """Whether all rollouts that were asked for are done."""
         return self.wanted is not None and self._begun >= self.wanted
 
-    def offer(self, candidate: _Candidate) -> None:
+    def offer(self, candidate: Candidate) -> None:
         """A state that was found; the best few are kept, shortest first."""
         with self._lock:
             if candidate.score > self.score:
@@ -206,13 +189,13 @@ class _Search:
                 self.score = candidate.score
             self._candidates.append(candidate)
             self._candidates.sort(key=lambda found: len(found.operations))
-            del self._candidates[_KEPT:]
+            del self._candidates[KEPT:]
             if better:
                 self.best = candidate
         if better:
             self.count(0)
 
-    def take(self) -> list[_Candidate]:
+    def take(self) -> list[Candidate]:
         """The best states that have not been taken yet."""
         taken, self._candidates = self._candidates, []
         return taken
@@ -246,17 +229,17 @@ class _Search:
 
         mesh = self.mesh
         if workers <= 1:
-            _Worker(self, self.seed + 104729 * self._rounds, stop).work()
+            Worker(self, self.seed + 104729 * self._rounds, stop).work()
             return
         with ThreadPoolExecutor(workers, thread_name_prefix="solver") as pool:
             futures = [
-                pool.submit(_Worker(self, self.seed + 104729 * self._rounds + i, stop).work)
+                pool.submit(Worker(self, self.seed + 104729 * self._rounds + i, stop).work)
                 for i in range(workers)
             ]
             for future in futures:
                 future.result()
 
-    def shortened(self) -> list[_Candidate]:
+    def shortened(self) -> list[Candidate]:
         """The best states not taken yet, with fewer operations where possible; shortest first."""
         found = []
         for left, candidate in enumerate(reversed(self.take()), 1):
@@ -271,12 +254,12 @@ class _Search:
         return self.over(1.0)
 
     def finished(
-        self, candidate: _Candidate, coarsen: bool, shorten: bool, best: Solution
+        self, candidate: Candidate, coarsen: bool, shorten: bool, best: Solution
     ) -> Solution:
         """The candidate coarsened and shortened again, within its share of the time."""
         mesh, operations = self.mesh, candidate.operations
         if coarsen and mesh.kind == "quad" and mesh.n_elements <= LARGE:
-            reached = _replayed(mesh, operations)
+            reached = replayed(mesh, operations)
             added = coarser(
                 reached, seconds=self._share(0.7), seed=self.seed + self.done,
                 cancelled=self._stopped,
@@ -286,7 +269,7 @@ class _Search:
                 operations = shorter(
                     mesh, operations, seconds=self._share(1.0), cancelled=self._stopped
                 )
-        reached = _replayed(mesh, operations)
+        reached = replayed(mesh, operations)
         return Solution(
             operations, reached.score, mesh.optimum, undrawable(mesh, operations),
             reached.n_elements, method=candidate.method, coarse=best.coarse,
@@ -298,127 +281,3 @@ class _Search:
             return ALONE
         left = self.seconds - (time.perf_counter() - self.began)
         return max(0.0, share * min(left, POLISHED * self.seconds))
-
-
-class _Worker:
-    """One thread's search."""
-
-    def __init__(self, search: _Search, seed: int, stop: Callable[[], bool]) -> None:
-        self._search, self._stop = search, stop
-        self._mesh, self._policy = search.mesh, search.policy
-        self._rng = np.random.default_rng(seed)
-        self._generator = torch.Generator().manual_seed(seed)
-        self._task = self._policy.task
-        self._annealer: Annealer | None = None
-        self._from = search.best
-
-    def work(self) -> None:
-        """Rollouts from the start, then in turn annealing and rollouts, equal in time."""
-        search = self._search
-        spent = {"rollouts": 0.0, "annealing": 0.0 if search.annealing else np.inf}
-        while not self._stop():
-            began = time.perf_counter()
-            if spent["rollouts"] <= spent["annealing"]:
-                granted = search.book(self._together())
-                if not granted:
-                    return
-                self._roll(granted)
-                spent["rollouts"] += time.perf_counter() - began
-            else:
-                self._anneal(max(spent["rollouts"] - spent["annealing"], _SLICE_SECONDS))
-                spent["annealing"] += time.perf_counter() - began
-
-    def _together(self) -> int:
-        return max(1, min(TOGETHER, LARGE // max(self._mesh.n_elements, 1)))
-
-    def _roll(self, count: int) -> None:
-        if self._mesh.n_elements > LARGE:
-            self._run_one()
-        else:
-            self._run_batch(count)
-        self._search.count(count)
-
-    def _run_one(self) -> None:
-        """One rollout on a large mesh, decision by decision."""
-        search = self._search
-        runner = Runner(
-            self._mesh, self._policy, int(self._rng.integers(1 << 31)), search.max_steps
-        )
-        operations: Operations = []
-        best, length = runner.score, 0
-        while not self._stop() and (step := runner.step()):
-            operations += step
-            if runner.score < best:
-                best, length = runner.score, len(operations)
-        search.offer(_Candidate(operations[:length], best, "rollouts"))
-
-    def _run_batch(self, count: int) -> None:
-        """Rollouts side by side; what leads to the best state of each is offered."""
-        search, mesh = self._search, self._mesh
-        if mesh.score == mesh.optimum:
-            return
-        task = self._task
-        if search.max_steps is not None:
-            task = replace(task, steps=search.max_steps / mesh.n_elements)
-        batch = Batch(task, [mesh], count, self._rng, endless=False)
-        codes, halfedges = [], []
-        rows = np.arange(count)
-        while batch.active.any() and not self._stop():
-            observation = batch.observe()
-            actions = decide(self._policy.network, observation, self._generator)[0]
-            halfedges.append(observation.chosen[rows, actions // task.operations])
-            codes.append(task.first_operation + actions % task.operations)
-            batch.step(observation, actions)
-            if self._search.wanted is None and (batch.best <= mesh.optimum).any():
-                break
-        best = int(batch.best.min())
-        if best > search.score:
-            return
-        for b in np.flatnonzero(batch.best == best)[:_KEPT].tolist():
-            length = int(batch.best_step[b])
-            decisions = [(int(codes[t][b]), int(halfedges[t][b])) for t in range(length)]
-            search.offer(_Candidate(self._with_cleanups(decisions), best, "rollouts"))
-
-    def _with_cleanups(self, decisions: list[tuple[int, int]]) -> Operations:
-        """Decisions and the clean-ups that follow each of them."""
-        arrays = with_room(self._mesh, 3 * self._mesh.n_elements)
-        scratch = Scratch(self._task, 0, 0)
-        operations: Operations = []
-        for code, h in decisions:
-            count = transition(arrays, code, h, self._task.cap, scratch.touched, scratch.cleaned)
-            operations.append((NAMES[code], h))
-            operations += [(Operation.CLEANUP, line) for line in scratch.cleaned[:count].tolist()]
-        return operations
-
-    def _anneal(self, seconds: float) -> None:
-        """Anneal for so long from the best state that anybody has found."""
-        search = self._search
-        deadline = time.perf_counter() + seconds
-        optimum = self._mesh.optimum
-        if self._annealer is None or optimum < search.best.score < self._from.score:
-            self._from = search.best
-            if self._from.score <= self._mesh.optimum:
-                self._from = _Candidate([], self._mesh.score, "none")
-            floor, ceiling = self._task.bounds(self._mesh.n_elements)
-            start = _replayed(self._mesh, self._from.operations)
-            self._annealer = Annealer(
-                start, int(self._rng.integers(1 << 31)), extended=self._task.extended,
-                floor=floor, ceiling=max(ceiling, start.n_elements + 8),
-            )  # fmt: skip
-        annealer = self._annealer
-        while time.perf_counter() < deadline and not self._stop():
-            annealer.run(SLICE)
-            if annealer.best_score < search.score or annealer.finished:
-                operations = self._from.operations + annealer.operations()
-                found = _Candidate(operations, annealer.best_score, "annealing")
-                search.offer(found)
-                if annealer.finished:
-                    self._annealer = None
-                    return
-
-
-def _replayed(mesh: HalfEdgeMesh, operations: Operations) -> HalfEdgeMesh:
-    reached = mesh.copy()
-    for operation, h in operations:
-        reached.apply(operation, h)
-    return reached

@@ -1,0 +1,201 @@
+"""One thread of the solver: rollouts from the start, rollouts from the best state, and annealing
+from it, in turn. Each is given the same time, and more once it has found something better.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+import torch
+
+from agent.annealing import SLICE, Annealer, Operations, with_room
+from agent.batch import Batch
+from agent.policies import Policy
+from agent.ppo import decide
+from agent.rollout import Runner
+from agent.task import Scratch, transition
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import NAMES, Operation
+
+LARGE = 20_000
+"""Elements above which one rollout is made at a time."""
+FIRST, TOGETHER = 8, 32
+"""Rollouts side by side on smaller meshes: at first, and later, when nothing was easy."""
+KEPT = 4
+"""States of equal score that are kept."""
+_SHORTEST = 0.02  # seconds of a turn
+
+
+@dataclass
+class Candidate:
+    """A state that was found."""
+
+    operations: Operations
+    score: int
+    method: str
+    """What found it: "rollouts", "annealing" or "none"."""
+
+
+def replayed(mesh: HalfEdgeMesh, operations: Operations) -> HalfEdgeMesh:
+    """A copy of the mesh on which the operations are done."""
+    reached = mesh.copy()
+    for operation, h in operations:
+        reached.apply(operation, h)
+    return reached
+
+
+class Shared(Protocol):
+    """What the workers of one search share."""
+
+    mesh: HalfEdgeMesh
+    policy: Policy
+    max_steps: int | None
+    wanted: int | None
+    annealing: bool
+    score: int
+    best: Candidate
+
+    def offer(self, candidate: Candidate) -> None:
+        """Tell of a state."""
+
+    def book(self, wanted: int) -> int:
+        """How many of so many rollouts may be begun."""
+
+    def count(self, rollouts: int) -> None:
+        """So many rollouts are done."""
+
+
+class Worker:
+    """One thread's search."""
+
+    def __init__(self, search: Shared, seed: int, stop: Callable[[], bool]) -> None:
+        self._search, self._stop = search, stop
+        self._mesh, self._policy = search.mesh, search.policy
+        self._task = self._policy.task
+        self._bounds = self._task.bounds(self._mesh.n_elements)
+        self._rng = np.random.default_rng(seed)
+        self._generator = torch.Generator().manual_seed(seed)
+        self._annealer: Annealer | None = None
+        self._from = search.best
+        self._seconds = {"rollouts": 0.0}
+        self._finds = {"rollouts": 0}
+
+    def work(self) -> None:
+        """Rollouts from the start first; then the arm that has had least time for what it found."""
+        search = self._search
+        while not self._stop():
+            arm = min(self._seconds, key=lambda arm: self._seconds[arm] / (1 + self._finds[arm]))
+            began, before = time.perf_counter(), search.score
+            if arm == "annealing":
+                most = max(self._seconds.values())
+                self._anneal(max(min(most, 0.5), _SHORTEST))
+            else:
+                granted = search.book(self._together())
+                if not granted:
+                    return
+                going_on = arm == "continue" and search.best.score > self._mesh.optimum
+                self._roll(granted, search.best.operations if going_on else [])
+            self._seconds[arm] += time.perf_counter() - began
+            self._finds[arm] += len(self._seconds) > 1 and search.score < before
+            if len(self._seconds) == 1 and search.annealing:
+                # what comes after the first rollouts starts level with them
+                for other in ("annealing", "continue"):
+                    self._seconds[other], self._finds[other] = 0.0, 0
+                self._seconds["rollouts"] = 0.0
+
+    def _together(self) -> int:
+        most = TOGETHER if len(self._seconds) > 1 else FIRST
+        return max(1, min(most, LARGE // max(self._mesh.n_elements, 1)))
+
+    def _roll(self, count: int, before: Operations) -> None:
+        if self._mesh.n_elements > LARGE:
+            self._run_one(before)
+        else:
+            self._run_batch(count, before)
+        self._search.count(count)
+
+    def _run_one(self, before: Operations) -> None:
+        """One rollout on a large mesh, decision by decision."""
+        search = self._search
+        start = replayed(self._mesh, before)
+        seed = int(self._rng.integers(1 << 31))
+        runner = Runner(start, self._policy, seed, search.max_steps)
+        operations: Operations = []
+        best, length = runner.score, 0
+        while not self._stop() and (step := runner.step()):
+            operations += step
+            if runner.score < best:
+                best, length = runner.score, len(operations)
+        if not before or best < start.score:
+            search.offer(Candidate(before + operations[:length], best, "rollouts"))
+
+    def _run_batch(self, count: int, before: Operations) -> None:
+        """Rollouts side by side from where `before` leads to; what leads to the best state of each
+        is offered.
+        """
+        search, start = self._search, replayed(self._mesh, before)
+        if start.score == start.optimum:
+            return
+        task = self._task
+        if search.max_steps is not None:
+            task = replace(task, steps=search.max_steps / start.n_elements)
+        batch = Batch(task, [start], count, self._rng, endless=False, bounds=self._bounds)
+        codes, halfedges = [], []
+        rows = np.arange(count)
+        while batch.active.any() and not self._stop():
+            observation = batch.observe()
+            actions = decide(self._policy.network, observation, self._generator)[0]
+            halfedges.append(observation.chosen[rows, actions // task.operations])
+            codes.append(task.first_operation + actions % task.operations)
+            batch.step(observation, actions)
+            if search.wanted is None and (batch.best <= start.optimum).any():
+                break
+        best = int(batch.best.min())
+        if best > search.score or (before and best == start.score):
+            return
+        for b in np.flatnonzero(batch.best == best)[:KEPT].tolist():
+            length = int(batch.best_step[b])
+            decisions = [(int(codes[t][b]), int(halfedges[t][b])) for t in range(length)]
+            operations = before + self._with_cleanups(start, decisions)
+            search.offer(Candidate(operations, best, "rollouts"))
+
+    def _with_cleanups(self, start: HalfEdgeMesh, decisions: list[tuple[int, int]]) -> Operations:
+        """Decisions and the clean-ups that follow each of them."""
+        arrays = with_room(start, 3 * start.n_elements)
+        scratch = Scratch(self._task, 0, 0)
+        operations: Operations = []
+        for code, h in decisions:
+            count = transition(arrays, code, h, self._task.cap, scratch.touched, scratch.cleaned)
+            operations.append((NAMES[code], h))
+            operations += [(Operation.CLEANUP, line) for line in scratch.cleaned[:count].tolist()]
+        return operations
+
+    def _anneal(self, seconds: float) -> None:
+        """Anneal for so long from the best state that anybody has found."""
+        search = self._search
+        deadline = time.perf_counter() + seconds
+        optimum = self._mesh.optimum
+        if self._annealer is None or optimum < search.best.score < self._from.score:
+            self._from = search.best
+            if self._from.score <= self._mesh.optimum:
+                self._from = Candidate([], self._mesh.score, "none")
+            floor, ceiling = self._bounds
+            start = replayed(self._mesh, self._from.operations)
+            self._annealer = Annealer(
+                start, int(self._rng.integers(1 << 31)), extended=self._task.extended,
+                floor=floor, ceiling=max(ceiling, start.n_elements + 8),
+            )  # fmt: skip
+        annealer = self._annealer
+        while time.perf_counter() < deadline and not self._stop():
+            annealer.run(SLICE)
+            if annealer.best_score < search.score or annealer.finished:
+                operations = self._from.operations + annealer.operations()
+                found = Candidate(operations, annealer.best_score, "annealing")
+                search.offer(found)
+                if annealer.finished:
+                    self._annealer = None
+                    return
