@@ -64,7 +64,9 @@ class Progress:
 class Trainer:
     """One training: network, optimiser, self-play and learning curve."""
 
-    def __init__(self, training: Training, folder: Path, processes: Processes | None = None):
+    def __init__(
+        self, training: Training, folder: Path, processes: Processes | None = None
+    ) -> None:
         """Writes into `folder`; resumes what is there."""
         self.training, self.folder = training, folder
         self.processes = processes = processes or Processes()
@@ -223,6 +225,7 @@ def train(
     minutes: float | None = None,
     seed: int | None = None,
     report: Callable[[int, int, dict[str, float]], None] | None = None,
+    finishing: Callable[[], None] | None = None,
 ) -> dict[str, Any]:
     """Train until the configured number of updates, for so many minutes, or until the policy has
     not become better for the configured patience; returns the results.
@@ -230,8 +233,10 @@ def train(
     Writes policy.safetensors (the best by evaluation, with how it scores), configuration.json,
     curve.json, curve.png, events for TensorBoard and, for a later call to resume,
     checkpoint.safetensors into `folder`. `report(done, total, numbers)` is called after each
-    update. Ctrl-C leaves the last checkpoint. Where ``torchrun`` has started several processes,
-    each calls this; the first reports, writes and returns the results, the others return {}.
+    update, `finishing()` before the result is evaluated. Ctrl-C leaves the last checkpoint.
+
+    Where ``torchrun`` has started several processes, each calls this; the first reports, writes and
+    returns the results, the others return {}.
     """
     training = read_configuration(configuration)
     if seed is not None:
@@ -243,7 +248,11 @@ def train(
             _loop(trainer, minutes, report)
     except DeviceError as error:
         raise ConfigurationError(str(error)) from None
-    return finish(trainer) if trainer.processes.first else {}
+    if not trainer.processes.first:
+        return {}
+    if finishing is not None:
+        finishing()
+    return finish(trainer)
 
 
 def _loop(

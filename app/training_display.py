@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, TextIO
 
-OnUpdate = Callable[[int, int, Mapping[str, float]], None]
-"""Called as ``on_update(done, total, numbers)`` after each update of a training."""
+Write = Callable[[int, "list[str] | None", bool], None]
+"""Called as ``write(done, cells, evaluated)``; without cells when the training is over."""
 
 COLUMNS = ("update", "decisions", "a second", "self-play", "single", "at s*", "entropy", "left")
 _WIDTHS = (9, 13, 10, 11, 8, 7, 9, 9)
@@ -59,30 +59,42 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{whole % 60:02}" if hours else f"{minutes}:{whole % 60:02}"
 
 
+class Display:
+    """What a training tells."""
+
+    def __init__(self, write: Write, minutes: float | None) -> None:
+        """write: puts a line where it belongs; minutes: after which the training ends."""
+        self._write, self._line, self._done = write, Line(minutes), 0
+
+    def update(self, done: int, total: int, numbers: Mapping[str, float]) -> None:
+        """An update is made."""
+        self._done = done
+        self._write(done, self._line.cells(done, total, numbers), "mean" in numbers)
+
+    def finish(self) -> None:
+        """No more updates come: the result is evaluated, which takes a while."""
+        self._write(self._done, None, False)
+
+
 @contextmanager
-def shown(stream: TextIO, total: int, minutes: float | None = None) -> Iterator[OnUpdate]:
-    """Show a training on `stream` while the block runs; yield what is to be called after updates.
+def shown(stream: TextIO, total: int, minutes: float | None = None) -> Iterator[Display]:
+    """Show a training on `stream` while the block runs; yield what is to be told.
 
     A terminal gets a bar with the numbers of now, and above it a table that grows by a line with
     each evaluation; anything else only that table.
     """
-    line = Line(minutes)
-    write = _bar if stream.isatty() else _log
-    with write(stream, total) as update:
-
-        def on_update(done: int, total: int, numbers: Mapping[str, float]) -> None:
-            update(done, line.cells(done, total, numbers), "mean" in numbers)
-
-        yield on_update
+    form = _bar if stream.isatty() else _log
+    with form(stream, total) as write:
+        yield Display(write, minutes)
 
 
 @contextmanager
-def _log(stream: TextIO, total: int) -> Iterator[Callable[[int, list[str], bool], None]]:
+def _log(stream: TextIO, total: int) -> Iterator[Write]:
     lines = 0
 
-    def update(done: int, cells: list[str], evaluated: bool) -> None:
+    def write(done: int, cells: list[str] | None, evaluated: bool) -> None:
         nonlocal lines
-        if not evaluated and done < total:
+        if cells is None or (not evaluated and done < total):
             return
         if lines == 0:
             stream.write(row(COLUMNS) + "\n")
@@ -90,11 +102,11 @@ def _log(stream: TextIO, total: int) -> Iterator[Callable[[int, list[str], bool]
         stream.write(row(cells) + "\n")
         stream.flush()
 
-    yield update
+    yield write
 
 
 @contextmanager
-def _bar(stream: TextIO, total: int) -> Iterator[Callable[[int, list[str], bool], None]]:
+def _bar(stream: TextIO, total: int) -> Iterator[Write]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
@@ -109,7 +121,10 @@ def _bar(stream: TextIO, total: int) -> Iterator[Callable[[int, list[str], bool]
         console.print(row(COLUMNS), style="dim")
         task = bar.add_task("making meshes", total=total, numbers="")
 
-        def update(done: int, cells: list[str], evaluated: bool) -> None:
+        def write(done: int, cells: list[str] | None, evaluated: bool) -> None:
+            if cells is None:
+                bar.update(task, completed=total, description="evaluating the result", numbers="")
+                return
             if evaluated:
                 console.print(row(cells))
             now = dict(zip(COLUMNS, cells, strict=True))
@@ -119,7 +134,7 @@ def _bar(stream: TextIO, total: int) -> Iterator[Callable[[int, list[str], bool]
             )
             bar.update(task, completed=done, description="training", numbers=numbers)
 
-        yield update
+        yield write
 
 
 def _shown(value: float | None, form: str) -> str:

@@ -55,14 +55,15 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     if speaks and not events.available():
         report.note(NO_EVENTS)
     total, minutes = configuration.iterations, arguments.minutes
-    with shown(report.err, total, minutes) if speaks else nullcontext() as on_update:
+    with shown(report.err, total, minutes) if speaks else nullcontext() as display:
         try:
             found = training.train(
                 arguments.config or training.shipped_configuration(arguments.kind),
                 folder,
                 minutes=minutes,
                 seed=arguments.seed,
-                report=on_update,
+                report=display.update if display else None,
+                finishing=display.finish if display else None,
             )
         except training.ConfigurationError as error:
             raise UserError(str(error)) from error

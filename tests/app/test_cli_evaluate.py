@@ -63,11 +63,12 @@ def test_a_grid_is_aligned():
 
 def test_a_training_writes_a_line_at_each_evaluation_into_a_log():
     stream = io.StringIO()
-    with training_display.shown(stream, 3) as on_update:
-        on_update(1, 3, {"decisions": 2048.0, "decisions_per_second": 1000.0, "entropy": 1.25})
+    with training_display.shown(stream, 3) as display:
+        display.update(1, 3, {"decisions": 2048.0, "decisions_per_second": 1000.0, "entropy": 1.25})
         evaluated = {"mean": 0.9, "at_optimum": 0.5, "played": float("nan")}
-        on_update(2, 3, {"decisions": 4096.0, **evaluated})
-        on_update(3, 3, {"decisions": 6144.0})
+        display.update(2, 3, {"decisions": 4096.0, **evaluated})
+        display.update(3, 3, {"decisions": 6144.0})
+        display.finish()
     head, first, last = stream.getvalue().splitlines()
     assert head.split()[:2] == ["update", "decisions"]
     assert first.split()[:6] == ["2/3", "4,096", "-", "-", "0.900", "50%"]
