@@ -1,0 +1,348 @@
+"""Meshes of any size: many disjoint patches, each a small mesh of its own, decided in one batch.
+
+A large mesh is repaired where it is irregular. First a compiled descent does whatever lowers s by
+itself. Then patches of some 128 elements are cut out around irregular vertices, 64 at a time, and
+the policy plays on all of them side by side, as it does on polygons; of each patch the operations
+up to its best state are done on the large mesh, so that s never rises. A patch that did not get
+better is looked at again later, within a larger one, and in the end left alone. So the time is
+proportional to what there is to repair, a decision costs the same at any size, and the memory that
+it takes is that of the patches.
+
+Operations stay inside their patch: global splits, whose cuts would run on through others, and
+clean-ups, which do not change s, are left to solvers of the whole mesh.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import torch
+
+from agent.agenda import FILL, Agenda, agenda, descend, enlarged, enlist, settle
+from agent.batch import Batch
+from agent.cutout import MOST_TAKEN, cut_out, mask_rim, next_patch, put_back
+from agent.policies import Policy, PolicyError
+from agent.ppo import decide
+from agent.task import Task
+from meshcore.halfedge import JOURNALLING, STEP_COLUMNS, allocate
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import NAMES, Operation
+
+LARGE = 5_000
+"""Elements from which on a mesh is better repaired patch by patch than as a whole."""
+PATCHES = 64
+"""Patches that are worked on side by side."""
+SMALLEST, LARGEST = 128, 512
+"""Elements of a patch at the first visit, and when it has been doubled as often as it may."""
+VISITS = 3
+"""Visits in vain after which an irregular vertex is left alone."""
+PATIENCE = 25
+"""Decisions that a patch may take without getting better than its best state."""
+CANDIDATES = 12
+"""Half-edges that one decision chooses among; with more a decision costs more and gains nothing."""
+CEILING = 1.1
+"""Elements that a patch may reach, relative to its start."""
+_FOUND = 1024  # elements of the largest patch when its pinched vertices are filled up
+_LOOKS = 10_000  # vertices that the descent looks at between two questions whether to go on
+_ENTRIES = 100  # journal entries of a local operation, at most
+_SPARE = 4 * PATCHES * LARGEST  # slots that are free before a round of patches is put back
+
+
+@dataclass
+class LargeRun:
+    """What :func:`improve_large` did."""
+
+    mesh: HalfEdgeMesh
+    """The result; without history."""
+    operations: np.ndarray
+    """(N,) codes of :mod:`meshcore.operations`, which replay in this order on the mesh given."""
+    halfedges: np.ndarray
+    """(N,) the half-edge of each."""
+    score: int
+    optimum: int
+    start_score: int
+    start_irregular: int
+    """Irregular vertices at the start."""
+    start_elements: int
+    descent: int = 0
+    """How many of the operations the descent did, first."""
+    decisions: int = 0
+    """Of the policy."""
+    patches: int = 0
+    """Patches that were played on."""
+    seconds: float = 0.0
+    reason: str = ""
+    """Why it ended, in words."""
+
+    @property
+    def irregular(self) -> int:
+        """Irregular vertices that are left."""
+        return self.mesh.irregular_count
+
+    @property
+    def removed(self) -> float:
+        """Share of the irregular vertices that are gone."""
+        return 1.0 - self.irregular / self.start_irregular if self.start_irregular else 0.0
+
+    def steps(self) -> list[tuple[Operation, int]]:
+        """Operations and half-edges as the searches give them."""
+        pairs = zip(self.operations.tolist(), self.halfedges.tolist(), strict=True)
+        return [(NAMES[code], h) for code, h in pairs]
+
+
+def improve_large(
+    mesh: HalfEdgeMesh,
+    policy: Policy,
+    *,
+    seconds: float | None = None,
+    max_steps: int | None = None,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> LargeRun:
+    """Repair a mesh of any size, which is not changed; s of the result is never higher.
+
+    Ends when nothing is left that is worth a visit, after `seconds`, after `max_steps` decisions of
+    the policy, or when `cancelled()` says so, and then keeps what it has.
+    `progress(operations, s)` is called now and then. Raises PolicyError if the policy is for the
+    other kind of mesh.
+    """
+    if mesh.kind != policy.kind:
+        raise PolicyError(
+            f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
+        )
+    began = time.perf_counter()
+    work = _Work(mesh, policy, seed)
+
+    def stop() -> str:
+        if work.mesh.score == work.mesh.optimum:
+            return "at the optimum"
+        if cancelled is not None and cancelled():
+            return "cancelled"
+        if seconds is not None and time.perf_counter() - began > seconds:
+            return f"its {seconds:g} seconds are used up"
+        if max_steps is not None and work.decisions >= max_steps:
+            return f"its {max_steps} decisions are used up"
+        return ""
+
+    reason = work.descend(stop)
+    descent = work.count
+    if progress is not None:
+        progress(work.count, work.mesh.score)
+    while not reason:
+        if not work.play_round(stop):
+            reason = "nothing is left that is worth another visit"
+        if progress is not None:
+            progress(work.count, work.mesh.score)
+        reason = stop() or reason
+    operations, halfedges = work.done()
+    return LargeRun(
+        work.result(),
+        operations,
+        halfedges,
+        work.mesh.score,
+        mesh.optimum,
+        mesh.score,
+        mesh.irregular_count,
+        mesh.n_elements,
+        descent,
+        work.decisions,
+        work.patches,
+        time.perf_counter() - began,
+        reason,
+    )
+
+
+@dataclass
+class _Patch:
+    """One patch of a round."""
+
+    elements: np.ndarray
+    """(N,) of the large mesh."""
+    vertices: np.ndarray
+    """(M,) of the large mesh."""
+    irregular: np.ndarray
+    """Those that were irregular."""
+    mesh: HalfEdgeMesh
+
+    @property
+    def hopeless(self) -> bool:
+        """Whether nothing can be gained: Delta has one sign only."""
+        return self.mesh.score == self.mesh.optimum
+
+
+@dataclass
+class _Played:
+    """Operations (T, B) and half-edges (T, B) of a round, and how many lead each patch to its best
+    state.
+    """
+
+    operations: list[np.ndarray] = field(default_factory=list)
+    halfedges: list[np.ndarray] = field(default_factory=list)
+    counts: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
+
+
+class _Work:
+    """A copy of the mesh and everything that is known of it while it is repaired."""
+
+    def __init__(self, mesh: HalfEdgeMesh, policy: Policy, seed: int) -> None:
+        self.policy, self.task = policy, policy.task
+        self.rng = np.random.default_rng(seed)
+        self.generator = torch.Generator().manual_seed(seed)
+        self.mesh = mesh.copy()
+        self.mesh.arrays.counters[JOURNALLING] = 0
+        self.cap = min(self.task.cap, mesh.degree_cap or self.task.cap)
+        self.bounds = self.task.bounds(mesh.n_elements)
+        self.agenda: Agenda = agenda(0, 0)
+        self.decisions = self.patches = self.count = 0
+        self._operations: list[np.ndarray] = []
+        self._halfedges: list[np.ndarray] = []
+        self._found = np.zeros(_FOUND, np.int64)
+        self._ids = np.zeros(_FOUND * mesh.k, np.int64)
+        self._slots = np.zeros((2, MOST_TAKEN), np.int64)
+        self._journal = np.zeros((_ENTRIES * self._longest(), 2), np.int64)
+        self._steps = np.zeros((self._longest() + 1, STEP_COLUMNS), np.int64)
+        self._make_room()
+        arrays = self.mesh.arrays
+        enlist(self.agenda, self.rng.permutation(arrays.irregular[: self.mesh.irregular_count]))
+
+    def _longest(self) -> int:
+        """Steps that a patch can take at most."""
+        return self.task.step_limit(_FOUND)
+
+    @property
+    def _local(self) -> tuple[int, int]:
+        """Code of the first operation and the number of those that stay local."""
+        return self.task.first_operation, 3 if self.mesh.k == 3 else 4
+
+    def _patch_task(self) -> Task:
+        """The policy's task, as it is played on a patch."""
+        candidates = min(CANDIDATES, self.task.candidates)
+        return replace(self.task, candidates=candidates, element_ceiling=CEILING)
+
+    def _make_room(self) -> None:
+        """Have slots enough for a round of operations, and an agenda of the same size."""
+        mesh = self.mesh
+        slots = max(mesh.slots, int(mesh.arrays.counters[1]))
+        if min(len(mesh.arrays.vertex), len(mesh.arrays.element_mark)) < slots + _SPARE // 2:
+            mesh.reserve(_SPARE + slots // 8, _SPARE + slots // 8)
+        sizes = len(mesh.arrays.vertex), len(mesh.arrays.element_mark)
+        if sizes != (len(self.agenda.queue), len(self.agenda.place)):
+            self.agenda = enlarged(self.agenda, *sizes)
+
+    def _note(self, operations: np.ndarray, halfedges: np.ndarray) -> None:
+        self._operations.append(operations)
+        self._halfedges.append(halfedges)
+        self.count += len(operations)
+
+    def done(self) -> tuple[np.ndarray, np.ndarray]:
+        """All operations and half-edges so far."""
+        empty = [np.zeros(0, np.int64)]
+        return np.concatenate(self._operations or empty), np.concatenate(self._halfedges or empty)
+
+    def result(self) -> HalfEdgeMesh:
+        """The mesh as it is, to be changed further by whoever gets it."""
+        self.mesh.arrays.counters[JOURNALLING] = 1
+        return self.mesh
+
+    def descend(self, stop: Callable[[], str]) -> str:
+        """Do what lowers s by itself; returns why it was stopped, empty if it came to its end."""
+        task = self.task
+        buffers = np.zeros((2, _LOOKS), np.int64)
+        reason = stop()
+        while not reason and self.agenda.state[FILL] > 0:
+            self._make_room()
+            count = descend(
+                self.mesh.arrays, self.agenda, task.k, *self._local, self.cap, *self.bounds,
+                task.extended, _LOOKS, buffers[0], buffers[1],
+            )  # fmt: skip
+            self._note(buffers[0, :count].copy(), buffers[1, :count].copy())
+            reason = stop()
+        left = self.mesh.arrays.irregular[: self.mesh.irregular_count]
+        if not reason:
+            enlist(self.agenda, self.rng.permutation(left))
+        return reason
+
+    def play_round(self, stop: Callable[[], str]) -> bool:
+        """Play on as many patches as there are side by side; False when there are none left."""
+        self._make_room()
+        patches, hopeless = self._pick()
+        if patches:
+            self._put_back(patches, self._play([patch.mesh for patch in patches], stop))
+        return bool(patches) or hopeless > 0
+
+    def _pick(self) -> tuple[list[_Patch], int]:
+        """Patches for one round, and how many were not worth playing."""
+        patches: list[_Patch] = []
+        hopeless = 0
+        tries = int(self.agenda.state[FILL])
+        while len(patches) < PATCHES:
+            count, tries, _ = next_patch(
+                self.mesh.arrays, self.agenda, self.mesh.k, SMALLEST, LARGEST, VISITS,
+                len(patches) + 1, tries, self._found,
+            )  # fmt: skip
+            if count == 0:
+                break
+            patch = self._cut_out(self._found[:count].copy())
+            if patch.hopeless:
+                hopeless += 1
+                self._settle(patch, patch.elements, False)
+            else:
+                patches.append(patch)
+        return patches, hopeless
+
+    def _cut_out(self, elements: np.ndarray) -> _Patch:
+        k = self.mesh.k
+        out = allocate(k, len(elements) * k, len(elements), 1, 1)
+        count = cut_out(self.mesh.arrays, self.agenda, k, elements, k == 4, out, self._ids)
+        vertices = self._ids[:count].copy()
+        irregular = vertices[out.irregular[: out.counters[9]]]
+        return _Patch(elements, vertices, irregular, HalfEdgeMesh(out, []))
+
+    def _settle(self, patch: _Patch, elements: np.ndarray, better: bool) -> None:
+        arrays, k = self.mesh.arrays, self.mesh.k
+        settle(arrays, self.agenda, k, patch.vertices, elements, better, patch.irregular)
+
+    def _play(self, meshes: list[HalfEdgeMesh], stop: Callable[[], str]) -> tuple[Batch, _Played]:
+        """Let the policy play on all patches until each is done or has lost patience."""
+        task = self._patch_task()
+        batch = Batch(task, meshes, len(meshes), self.rng, endless=False)
+        played = _Played()
+        while batch.active.any() and not stop():
+            seen = batch.observe()
+            if task.kind == "quad":
+                seen.mask[:, :, -1] = False  # a global split does not end at the rim
+            else:
+                mask_rim(batch.meshes, seen.chosen, seen.mask)
+            actions = decide(self.policy.network, seen, self.generator)[0]
+            self.decisions += int((actions >= 0).sum())
+            rows = np.maximum(actions // task.operations, 0)
+            played.operations.append(task.first_operation + actions % task.operations)
+            played.halfedges.append(seen.chosen[np.arange(len(rows)), rows])
+            batch.step(seen, actions)
+            batch.active &= batch.steps - batch.best_step < PATIENCE
+        played.counts = batch.best_step.astype(np.int64)
+        self.patches += len(meshes)
+        return batch, played
+
+    def _put_back(self, patches: list[_Patch], played: tuple[Batch, _Played]) -> None:
+        """Do on the large mesh what led each patch to its best state."""
+        batch, record = played
+        elements = np.full((len(patches), batch.pool.element_mark.shape[1]), -1, np.int64)
+        for row, patch in zip(elements, patches, strict=True):
+            row[: len(patch.elements)] = patch.elements
+        total = int(record.counts.sum())
+        if total:
+            done = np.zeros((2, total), np.int64)
+            arrays = self.mesh.arrays._replace(journal=self._journal, steps=self._steps)
+            count = put_back(
+                arrays, batch.pool, self.mesh.k, self.mesh.degree_cap, elements,
+                np.array(record.operations), np.array(record.halfedges), record.counts,
+                self._slots, done[0], done[1],
+            )  # fmt: skip
+            self._note(done[0, :count], done[1, :count])
+        for row, patch, kept in zip(elements, patches, record.counts, strict=True):
+            self._settle(patch, row, bool(kept))
