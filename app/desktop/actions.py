@@ -56,7 +56,7 @@ def _has_quads(window: MainWindow) -> bool:
 
 
 def _can_run(window: MainWindow) -> bool:
-    return _has_mesh(window) and window.ready and bool(window.assistant.policy)
+    return _has_mesh(window) and window.agent_ready and bool(window.assistant.policy)
 
 
 def _is_active(window: MainWindow) -> bool:

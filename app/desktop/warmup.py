@@ -2,6 +2,7 @@
 
 import sys
 import threading
+from collections.abc import Callable
 from functools import partial
 
 from qtpy.QtCore import QObject, QProcess, Signal
@@ -11,17 +12,19 @@ from meshcore import compiled
 
 FIRST_START = "Preparing (first start only)\u2026"
 EVERY_START = "Preparing\u2026"
+AGENT_FIRST = "Preparing the agent (first start only)\u2026"
 
 
 class Warmup(QObject):
     """Compiles the kernels in a process of their own where that was never done, then loads them.
 
     Compiling holds the interpreter for minutes, which a thread would pass on to the window.
-    ``ready()`` comes once; ``noted(text)`` with what is being done; ``failed(sentence)`` if the
-    kernels cannot be made.
+    ``ready()`` comes once, when a person can edit, ``agent_ready()`` when the agent can run;
+    ``noted(text)`` with what is being done; ``failed(sentence)`` if the kernels cannot be made.
     """
 
     ready = Signal()
+    agent_ready = Signal()
     noted = Signal(str)
     failed = Signal(str)
 
@@ -30,6 +33,7 @@ class Warmup(QObject):
         self.done = False
         self._dispatch = Dispatcher()
         self._process: QProcess | None = None
+        self._then: Callable[[], None] = self._load
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
@@ -38,10 +42,16 @@ class Warmup(QObject):
             self._load()
             return
         self.noted.emit(FIRST_START)
-        self._process = QProcess(self)
+        self._run("meshcore.warm_up", self._load)
+
+    def _run(self, module: str, then: Callable[[], None]) -> None:
+        """Run a module in a process of its own; what comes then also comes after a failure, and
+        compiles here, or says why not.
+        """
+        self._process, self._then = QProcess(self), then
         self._process.finished.connect(self._on_compiled)
         self._process.errorOccurred.connect(self._on_error)
-        self._process.start(sys.executable, ["-m", "meshcore.warm_up"])
+        self._process.start(sys.executable, ["-m", module])
 
     def stop(self) -> None:
         """End what is under way; loading that has begun is waited for."""
@@ -57,7 +67,7 @@ class Warmup(QObject):
 
     def _on_compiled(self, code: int, status: QProcess.ExitStatus) -> None:
         self._process = None
-        self._load()  # also after a failed process: loading then compiles here, or says why not
+        self._then()
 
     def _on_error(self, error: QProcess.ProcessError) -> None:
         if error == QProcess.ProcessError.FailedToStart:
@@ -79,6 +89,18 @@ class Warmup(QObject):
     def _finish(self) -> None:
         self.done = True
         self.ready.emit()
+        if agent_is_warm():
+            self.agent_ready.emit()
+        else:
+            self.noted.emit(AGENT_FIRST)
+            self._run("agent.warm_up", self.agent_ready.emit)
 
     def _fail(self, sentence: str) -> None:
         self.failed.emit(sentence)
+
+
+def agent_is_warm() -> bool:
+    """Whether the agent's kernels were compiled before; the agent is not imported sooner."""
+    from agent.warm_up import is_warm_on_disk
+
+    return is_warm_on_disk()

@@ -60,7 +60,7 @@ class MainWindow(QMainWindow):
         self.document = document
         self.theme = theme(theme_name)
         self.assistant = assistant or Assistant(document, Dispatcher())
-        self.ready = ready
+        self.ready = self.agent_ready = ready
         self.canvas = Canvas(document, self.theme)
         self.actions_by_id = actions.ActionSet(self)
         self.score_panel = ScorePanel(document, self.theme)
@@ -154,6 +154,7 @@ class MainWindow(QMainWindow):
         self.canvas.vertex_chosen.connect(self._offer_vertex)
         self.warmup.noted.connect(self.preparing.setText)
         self.warmup.ready.connect(self._on_ready)
+        self.warmup.agent_ready.connect(self._on_agent_ready)
         self.warmup.failed.connect(self._on_warmup_failed)
 
     def _disconnect(self) -> None:
@@ -243,6 +244,10 @@ class MainWindow(QMainWindow):
 
     def _on_ready(self) -> None:
         self.ready = self.operations_panel.ready = True
+        self._refresh()
+
+    def _on_agent_ready(self) -> None:
+        self.agent_ready = True
         self.preparing.setText("")
         self._refresh()
 

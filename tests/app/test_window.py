@@ -14,6 +14,7 @@ from app.assistant import Assistant, State
 from app.desktop import actions
 from app.desktop.application import application
 from app.desktop.dispatch import Dispatcher
+from app.desktop.warmup import AGENT_FIRST
 from app.desktop.window import POINT_FIRST, PREPARING, MainWindow
 from app.document import Document
 from meshcore import compiled
@@ -290,6 +291,8 @@ def test_the_window_closes_in_mid_run(qtbot, open_window, star):
 
 def test_before_the_kernels_are_ready_operations_say_so(qtbot, open_window, star, monkeypatch):
     monkeypatch.setattr("app.desktop.warmup.Warmup.start", lambda self: None)
+    monkeypatch.setattr("app.desktop.warmup.Warmup._run", lambda self, module, then: None)
+    monkeypatch.setattr("app.desktop.warmup.agent_is_warm", lambda: False)
     window = open_window(star, ready=False)
     halfedge = find(star, "flip_left")
     point_at(qtbot, window, halfedge)
@@ -297,7 +300,11 @@ def test_before_the_kernels_are_ready_operations_say_so(qtbot, open_window, star
     assert window.said.text() == PREPARING
     assert not window.agent_panel.step.isEnabled()
     window.warmup._finish()
+    assert not window.agent_panel.step.isEnabled()
+    assert window.preparing.text() == AGENT_FIRST
+    window.warmup.agent_ready.emit()
     assert window.agent_panel.step.isEnabled()
+    assert window.preparing.text() == ""
     press(qtbot, window, Qt.Key.Key_F)
     assert window.document.history.cursor == 1
 
