@@ -114,7 +114,7 @@ def _bar(stream: TextIO, total: int) -> Iterator[Write]:
     columns: list[Any] = [
         SpinnerColumn(),
         TextColumn("{task.description}"),
-        BarColumn(bar_width=24),
+        BarColumn(bar_width=20),
         TextColumn("{task.fields[numbers]}"),
     ]
     with Progress(*columns, console=console, transient=True) as bar:
@@ -128,9 +128,10 @@ def _bar(stream: TextIO, total: int) -> Iterator[Write]:
             if evaluated:
                 console.print(row(cells))
             now = dict(zip(COLUMNS, cells, strict=True))
+            # with the bar this fits into a terminal of 80 columns, as the table does
             numbers = (
-                f"{now['update']}  {now['a second']}/s  self-play {now['self-play']}  "
-                f"entropy {now['entropy']}  {now['left']} left"
+                f"{now['update']}  {now['a second']}/s  entropy {now['entropy']}  "
+                f"{now['left']} left"
             )
             bar.update(task, completed=done, description="training", numbers=numbers)
 
