@@ -8,13 +8,22 @@ there; sides that are straight are left to the energy.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from meshcore import region as regions
 from meshcore.hopeless import turns
 from meshcore.region import Region
 
+if TYPE_CHECKING:
+    from meshcore.mesh import HalfEdgeMesh
+
 LEAST_TURN = np.radians(10.0)
 """A side that turns by less in all counts as straight."""
+PIECE = np.radians(30.0)
+"""What one edge may stand for of the turning of a side that bends; a circle keeps twelve edges, if
+it had so many."""
 
 
 def _measure(region: Region, side: int) -> tuple[np.ndarray, np.ndarray] | None:
@@ -70,3 +79,37 @@ def spread(region: Region) -> None:
         even = np.linspace(low, high, len(run.members) + 2)[1:-1]
         region.seats.parameter[run.members] = np.interp(even, measure, arc) - run.shift
     region.settle()
+
+
+def anchors(mesh: HalfEdgeMesh) -> np.ndarray:
+    """Ids, ascending, of vertices which keep the look of the sides that bend while they stay.
+
+    About one for each :data:`PIECE` of turning, evenly by :func:`_measure`; all vertices of a side
+    that has no more. A search that locks them cannot turn a disc into a square.
+    """
+    region = regions.whole(mesh)
+    found: list[int] = []
+    if region.frame is None:
+        return np.array(found, np.int64)
+    for side, closed in enumerate(region.sides.closed.tolist()):
+        measured = _measure(region, side)
+        members = np.flatnonzero(region.seats.side == side)
+        if measured is None or not len(members):
+            continue
+        rows = slice(region.sides.first[side], region.sides.first[side + 1])
+        flat = region.sides.points[rows] @ region.frame[:2].T
+        pieces = int(np.ceil(np.abs(turns(flat, closed)).sum() / PIECE - 1e-6))
+        at = np.interp(region.seats.parameter[members], *measured)
+        start, stop = np.interp([0.0, region.sides.arc[rows][-1]], *measured)
+        even = np.linspace(start, stop, pieces + 1)[:-1]
+        if not closed:
+            even = even[1:]
+        if len(even) >= len(members):
+            chosen = members
+        else:
+            away = np.abs(even[:, None] - at)
+            if closed:
+                away = np.minimum(away, np.abs(stop - start - away))
+            chosen = members[np.unique(away.argmin(axis=1))]
+        found += chosen.tolist()
+    return np.sort(region.vertices[found]).astype(np.int64)

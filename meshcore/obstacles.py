@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from meshcore.bends import PIECE
 from meshcore.halfedge import ELEMENT_SLOTS, ORIGIN, TWIN
 
 if TYPE_CHECKING:
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
 
 STRAIGHT = 1e-6
 """Radians by which a side may turn where it counts as straight."""
-PIECE = np.radians(30.0)
-"""What one edge may stand for of the turning of a side that bends; a circle keeps twelve edges, if
-it had so many."""
 
 
 class Obstacles:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from meshcore import region, shapes, smoothing
-from meshcore.bends import bending
+from meshcore.bends import anchors, bending
 from meshcore.generate import mesh_domain
 
 
@@ -77,3 +77,31 @@ def test_only_sides_that_bend_are_spread(name):
     curved = name in ("plate-with-holes", "gear")
     assert (len(bent) > 0) == curved
     assert mesh.boundary()[bent].all()
+
+
+@pytest.mark.parametrize(
+    ("name", "count"), [("disc", 12), ("annulus", 24), ("half-disc", 5), ("star", 0)]
+)
+def test_anchors_keep_the_look_of_sides_that_bend(name, count):
+    mesh = mesh_domain(shapes.shape(name), "quad")
+    chosen = anchors(mesh)
+    assert len(chosen) == count
+    assert mesh.boundary()[chosen].all()
+    assert not mesh.geometric()[chosen].any()
+    for loop in mesh.boundary_loops():
+        kept = np.isin(loop, chosen) | mesh.geometric()[loop]
+        if count and kept.any() and not mesh.geometric()[loop].all():
+            assert _area(mesh.points[loop[kept]]) > 0.94 * _area(mesh.points[loop])
+
+
+def test_with_anchors_locked_a_disc_is_not_coarsened_to_a_square():
+    mesh = mesh_domain(shapes.shape("disc"), "quad")
+    for vertex in anchors(mesh).tolist():
+        mesh.set_locked(vertex)
+    rng = np.random.default_rng(0)
+    for _ in range(1500):
+        h = int(rng.choice(mesh.element_ids())) * 4 + int(rng.integers(4))
+        operation = ("cleanup", "chord_collapse")[int(rng.integers(2))]
+        if mesh.check(operation, h):
+            mesh.apply(operation, h)
+    assert len(mesh.boundary_loops()[0]) >= 12
