@@ -126,7 +126,8 @@ def _race(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _polished(rows: Sequence[Mapping[str, Any]]) -> str:
-    names = ["sides", "meshes", *2 * ["operations", "and clean-ups", "elements"]]
+    columns = ["operations", "and clean-ups", "elements"]
+    names = ["sides", "meshes", *columns, f"coarse: {columns[0]}", *columns[1:]]
     cells = []
     for row in rows:
         found = row["polished"]
