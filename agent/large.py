@@ -37,7 +37,7 @@ PATCHES = 64
 """Patches that are worked on side by side."""
 SMALLEST, LARGEST = 128, 512
 """Elements of a patch at the first visit, and when it has been doubled as often as it may."""
-VISITS = 3
+VISITS = 2
 """Visits in vain after which an irregular vertex is left alone."""
 PATIENCE = 25
 """Decisions that a patch may take without getting better than its best state."""
