@@ -307,6 +307,9 @@ class Assistant:
         document = self._document
         reason = run.runner.reason if run.runner is not None else ""
         self._end(State.IDLE)
+        if run.effort is not None and run.decisions:
+            # what smoothing around each operation has folded on the way, the whole unfolds
+            document.smooth(by=run.policy)
         if document.at_optimum:
             self.said.emit(f"At the optimum after {_count(self._decisions, 'decision')}.")
         else:
