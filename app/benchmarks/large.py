@@ -41,14 +41,14 @@ def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
 
     decide_on_one_thread()
     found: dict[str, Any] = {}
-    repaired(refined(*SMALL[0], seed), seed, update)  # compiles
+    by_size([refined(*SMALL[0], seed)], seed, update)  # compiles what is measured below
     quads = [refined(sides, levels, seed) for sides, levels in (SMALL if quick else REFINED)]
     found["quads"] = by_size(quads, seed, update)
     if not quick:
         found["triangles"] = by_size(
             [generate.grid("tri", size) for size in TRIANGLES], seed, update
         )
-    for sides in POLYGONS[:1] if quick else POLYGONS:
+    for sides in (SMALL[0][0],) if quick else POLYGONS:
         update(0, f"polygons of {sides} sides")
         found[f"polygons of {sides} sides"] = polygons(sides, seed, 1 if quick else 10)
     return found
