@@ -169,7 +169,7 @@ def save_best(m, best, state):
 
 @bare_kernel
 def is_better(m, state, fewer):
-    """Whether the present state beats the best: by s, then (fewer) by the number of elements."""
+    """Whether the present state beats the best: by s, then (fewer) by its elements."""
     score = m.counters[SCORE]
     if score != state[BEST_SCORE]:
         return score < state[BEST_SCORE]
@@ -199,7 +199,7 @@ def anneal_slice(
     for at in range(proposals):
         if at % 64 == 0:
             if state[SWEEP_AT] >= sweep:
-                if is_better(m, state, fewer):
+                if not fewer and is_better(m, state, fewer):
                     save_best(m, best, state)
                 restart(m, best, state)
             if state[LENGTH] + 64 * (MOST_CLEANUPS + 1) > len(log):
@@ -309,8 +309,8 @@ class Annealer:
         self._anywhere = anywhere
         self._sweep = max(64.0, sweep * size)
         self._prices = (PRICE[kind] if price is None else price, split_price)
-        self._fewer = fewer
-        self._settings = (FIRST_OPERATION[kind], task.cap, self.floor, self.ceiling, extended)
+        self.fewer = fewer
+        self._first, self._cap, self._extended = FIRST_OPERATION[kind], task.cap, extended
         self._touched, self._cleaned = np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64)
         self.rng = np.random.default_rng(seed)
         self.state = np.zeros(8, np.int64)
@@ -343,12 +343,13 @@ class Annealer:
         """So many proposals more; True if they ended early, with the goal or something better."""
         ended = anneal_slice(
             self.arrays, self.best, self.log, self.state, proposals, *self._temperatures,
-            self._sweep, *self._prices, self._fewer, self._weights, self._anywhere,
-            *self._settings, self.goal, self._touched, self._cleaned, self.rng,
+            self._sweep, *self._prices, self.fewer, self._weights, self._anywhere,
+            self._first, self._cap, self.floor, self.ceiling, self._extended, self.goal,
+            self._touched, self._cleaned, self.rng,
         )  # fmt: skip
         if ended == SHORT:
             self._lengthen()
-        elif is_better(self.arrays, self.state, self._fewer):
+        elif not self.fewer and is_better(self.arrays, self.state, False):
             save_best(self.arrays, self.best, self.state)
         return bool(ended == AT_GOAL)
 

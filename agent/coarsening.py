@@ -3,7 +3,8 @@
 Annealing with a price on elements and with the collapse of strips, which never raises s, among the
 operations. A state counts as better only if s is no higher than at the start, and if it can be
 drawn at least as well: it has no more obstacles, nor, smoothed, more inverted elements. Where a
-mesh cannot be drawn, states that can be come first, however many elements they have.
+mesh cannot be drawn, states that can be come first, however many elements they have, and it grows
+no coarser before.
 """
 
 from __future__ import annotations
@@ -34,6 +35,10 @@ PRICE = 0.4
 """Of an element, in units of s."""
 WEIGHTS = (0.27, 0.27, 0.12, 0.24, 0.04, 0.06)
 """How often each operation is proposed; the last is the collapse of a strip."""
+APART = 512
+"""Proposals between a state that was rejected and the next that is looked at."""
+AFRESH = 0.2
+"""Probability that a state that was found is followed by a new sweep, down to another floor."""
 SWEEP = 300
 """Proposals of a sweep, relative to the number of elements."""
 
@@ -88,7 +93,7 @@ class _Coarser:
     """One coarsening: an annealer whose discoveries are test-drawn before they count."""
 
     def __init__(self, mesh: HalfEdgeMesh, seed: int, floor: int) -> None:
-        self._mesh = mesh
+        self._mesh, self._floor = mesh, floor
         self._annealer = Annealer(
             mesh, seed, floor=floor, temperatures=TEMPERATURES, sweep=SWEEP, price=PRICE,
             split_price=4.0 * PRICE, weights=WEIGHTS, fewer=True, goal=-1,
@@ -123,8 +128,18 @@ class _Coarser:
 
     def look(self, proposals: int) -> None:
         """Make so many proposals, or fewer if something coarser comes up; draw that."""
-        if self._annealer.run(proposals) and not self._accept():
+        found = self._annealer.run(proposals)
+        if found and not self._accept():
             self._go_back()
+            # on from there for a while without a look: what comes next is much the same
+            self._annealer.fewer = False
+            self._annealer.run(APART)
+            self._annealer.fewer = True
+        if not found or self._annealer.rng.random() < AFRESH:
+            # not always as far as it goes: the coarsest states can often not be drawn
+            most = max(self._floor + 1, int(self._kept.counters[ELEMENTS]))
+            self._annealer.floor = int(self._annealer.rng.integers(self._floor, most))
+            self._annealer.restart()
 
     def _accept(self) -> bool:
         """Whether the state just found is new, and drawn as well as the one kept."""
@@ -138,7 +153,7 @@ class _Coarser:
         flaws = self._flaws_of(found)
         if self._annealer.best_score == self._kept_state[BEST_SCORE]:
             fewer = self._annealer.best_elements < self._kept.counters[ELEMENTS]
-            if flaws > self._flaws or (flaws == self._flaws and not fewer):
+            if flaws > self._flaws or (flaws == self._flaws and (flaws or not fewer)):
                 return False
         self._flaws, self.operations = flaws, found
         self._keep()

@@ -21,6 +21,7 @@ from agent.batch import Batch
 from agent.coarsening import coarsen as coarser
 from agent.coarsening import undrawable
 from agent.policies import Policy, PolicyError
+from agent.refining import without_cleanups
 from agent.shortening import shorten as shorter
 from agent.task import Task
 from agent.worker import KEPT, LARGE, Candidate, Worker, replayed
@@ -258,6 +259,10 @@ class _Search:
     ) -> Solution:
         """The candidate coarsened and shortened again, within its share of the time."""
         mesh, operations = self.mesh, candidate.operations
+        if mesh.kind == "quad" and (inverted := undrawable(mesh, operations)):
+            finer = without_cleanups(mesh, operations)
+            if undrawable(mesh, finer) < inverted:
+                operations = finer
         if coarsen and mesh.kind == "quad" and mesh.n_elements <= LARGE:
             reached = replayed(mesh, operations)
             added = coarser(

@@ -1,0 +1,49 @@
+"""The same answer with its lines left in: where clean-ups made a quad mesh too coarse to be drawn.
+
+A clean-up changes no irregularity, so leaving clean-ups out of a list of operations leaves s as it
+is wherever the others still apply.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from agent.annealing import Operations, with_room
+from agent.shortening import first_names, name_all, replay
+from meshcore.halfedge import MeshArrays
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import CLEANUP, CODES, NAMES
+
+_UNLIMITED = 1 << 40
+
+
+def without_cleanups(mesh: HalfEdgeMesh, operations: Operations) -> Operations:
+    """The operations but for the clean-ups, as far as they still apply, up to the first state with
+    s as low as theirs; the operations themselves if there is none.
+    """
+    codes = np.array([CODES[mesh.k][operation] for operation, _ in operations], np.int32)
+    halfedges = np.array([h for _, h in operations], np.int64)
+    if not (codes == CLEANUP).any():
+        return operations
+    start = with_room(mesh, 4 * mesh.n_elements)
+    entries = np.zeros((len(codes), 5), np.int32)
+    states = np.zeros((len(codes) + 1, 3), np.int64)
+    names = int(name_all(_copy(start), codes, halfedges, mesh.slots, 0, entries, states))
+    if names < 0:
+        return operations
+    left = entries[codes != CLEANUP]
+    done, on = np.zeros(len(left), np.bool_), np.zeros(len(left), np.int64)
+    stop = replay(
+        _copy(start), *first_names(mesh.slots, len(start.vertex), names), left, 0, len(left), 0, 0,
+        int(states[-1, 1]), _UNLIMITED, done, on,
+    )  # fmt: skip
+    if stop < 0:
+        return operations
+    done[stop:] = False
+    return [
+        (NAMES[code], h) for code, h in zip(left[done, 0].tolist(), on[done].tolist(), strict=True)
+    ]
+
+
+def _copy(arrays: MeshArrays) -> MeshArrays:
+    return MeshArrays(*(array.copy() for array in arrays))

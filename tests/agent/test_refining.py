@@ -1,0 +1,35 @@
+"""Clean-ups left out: s stays, lines stay."""
+
+import numpy as np
+import pytest
+
+from agent.annealing import anneal
+from agent.refining import without_cleanups
+from meshcore import generate, shapes
+
+
+def replayed(mesh, operations):
+    copy = mesh.copy()
+    for operation, h in operations:
+        copy.apply(operation, h)
+    copy.validate()
+    return copy
+
+
+@pytest.mark.parametrize("name", ["annulus", "star", "t-shape"])
+def test_s_stays_as_low_and_no_elements_are_lost(name):
+    mesh = generate.mesh_domain(shapes.shape(name), "quad")
+    operations, score = anneal(mesh, proposals=100_000, seed=1)
+    assert any(operation == "cleanup" for operation, _ in operations)
+    finer = without_cleanups(mesh, operations)
+    after = replayed(mesh, finer)
+    assert after.score == score
+    if finer != operations:
+        assert not any(operation == "cleanup" for operation, _ in finer)
+        assert after.n_elements >= replayed(mesh, operations).n_elements
+
+
+def test_operations_without_clean_ups_stay_as_they_are():
+    mesh = generate.benchmark_mesh("tri", 10, np.random.default_rng(0))
+    operations, _ = anneal(mesh, proposals=20_000)
+    assert without_cleanups(mesh, operations) is operations
