@@ -25,6 +25,7 @@ from agent.refining import without_cleanups
 from agent.shortening import shorten as shorter
 from agent.task import Task
 from agent.worker import KEPT, LARGE, Candidate, Worker, replayed
+from meshcore.bends import anchors
 from meshcore.generate import benchmark_mesh
 from meshcore.mesh import HalfEdgeMesh
 
@@ -97,6 +98,7 @@ def solve(
             f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
         )
     prepare(policy)
+    mesh = _anchored(mesh)
     search = _Search(mesh, policy, rollouts, seconds, max_steps, seed, progress, cancelled)
     best = search.nothing(coarsen)
     again = False
@@ -114,6 +116,19 @@ def solve(
             break
     best.rollouts, best.seconds = search.done, time.perf_counter() - search.began
     return best
+
+
+def _anchored(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
+    """A copy in which sides that bend keep their look: a solution must not turn a disc into a
+    square. Locks only refuse operations, so that what is found replays on the mesh itself.
+    """
+    held = anchors(mesh).tolist() if mesh.n_elements <= LARGE else []
+    if not held:
+        return mesh
+    copy = mesh.copy()
+    for vertex in held:
+        copy.set_locked(vertex)
+    return copy
 
 
 @cache

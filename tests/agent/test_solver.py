@@ -8,7 +8,8 @@ import pytest
 from agent import policies
 from agent.policies import PolicyError
 from agent.solver import Solution, prepare, solve
-from meshcore.generate import benchmark_mesh
+from meshcore import shapes
+from meshcore.generate import benchmark_mesh, mesh_domain
 
 
 @pytest.fixture(scope="module", params=["tri", "quad"])
@@ -99,3 +100,12 @@ def test_better_is_lower_s_then_drawable_then_coarser_then_shorter():
 def test_a_policy_of_the_other_kind_is_refused(policy):
     with pytest.raises(PolicyError, match="is for"):
         solve(start("quad" if policy.kind == "tri" else "tri"), policy)
+
+
+def test_a_disc_stays_a_disc(policy):
+    mesh = mesh_domain(shapes.shape("disc"), policy.kind)
+    found = solve(mesh, policy, rollouts=1, seconds=1.0)
+    after = replayed(mesh, found)
+    assert after.score == found.score < mesh.score
+    assert len(after.boundary_loops()[0]) >= 12
+    assert not after.locked().any()
