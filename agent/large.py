@@ -26,13 +26,14 @@ from agent.batch import Batch
 from agent.cutout import MOST_TAKEN, cut_out, mask_rim, next_patch, put_back
 from agent.policies import Policy, PolicyError
 from agent.ppo import decide
+from agent.selection import LOOKED_AT
 from agent.task import Task
 from meshcore.halfedge import JOURNALLING, STEP_COLUMNS, allocate
 from meshcore.mesh import HalfEdgeMesh
 from meshcore.operations import NAMES, Operation
 
-LARGE = 5_000
-"""Elements from which on a mesh is better repaired patch by patch than as a whole."""
+LARGE, MANY = 5_000, 500
+"""Elements of a large mesh; irregular vertices that make a mesh large, whatever its elements."""
 PATCHES = 64
 """Patches that are worked on side by side."""
 SMALLEST, LARGEST = 128, 512
@@ -91,6 +92,14 @@ class LargeRun:
         """Operations and half-edges as the searches give them."""
         pairs = zip(self.operations.tolist(), self.halfedges.tolist(), strict=True)
         return [(NAMES[code], h) for code, h in pairs]
+
+
+def is_large(mesh: HalfEdgeMesh) -> bool:
+    """Whether a mesh is better repaired patch by patch, first, than as a whole.
+
+    Not where a decision can look at all irregular vertices anyway, at any size.
+    """
+    return mesh.irregular_count > (LOOKED_AT if mesh.n_elements > LARGE else MANY)
 
 
 def improve_large(

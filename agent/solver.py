@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from agent.annealing import Operations, anneal
 from agent.batch import Batch
 from agent.coarsening import coarsen as coarser
 from agent.coarsening import undrawable
+from agent.large import LARGE as MANY_ELEMENTS
+from agent.large import improve_large, is_large
 from agent.policies import Policy, PolicyError
 from agent.refining import without_cleanups
 from agent.shortening import shorten as shorter
@@ -36,6 +38,9 @@ POLISHED = 0.5
 ALONE = 0.5
 """Seconds of shortening, and of coarsening, where only a number of rollouts is asked for."""
 
+PER_IRREGULAR = 50
+"""Steps of a rollout for each irregular vertex that patches have left on a large mesh."""
+
 
 @dataclass
 class Solution:
@@ -51,7 +56,8 @@ class Solution:
     rollouts: int = 0
     seconds: float = 0.0
     method: str = "none"
-    """What found it: "rollouts", "annealing", or "none" where nothing better was found."""
+    """What found it: "rollouts", "annealing", "patches" on large meshes, or "none" where nothing
+    better was found."""
     coarse: bool = True
     """Whether fewer elements are better."""
 
@@ -91,6 +97,9 @@ def solve(
     far. `progress(rollouts done, best s)` is called, from the worker threads, after rollouts and
     whenever s falls.
 
+    A mesh with many irregular vertices is repaired patch by patch first (:mod:`agent.large`); what
+    time is left goes into the few that remain.
+
     Raises PolicyError if the policy is for the other kind of mesh.
     """
     if mesh.kind != policy.kind:
@@ -99,6 +108,9 @@ def solve(
         )
     prepare(policy)
     mesh = _anchored(mesh)
+    if is_large(mesh):
+        go_on = partial(solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten)
+        return _patch_by_patch(mesh, policy, seconds, max_steps, seed, progress, cancelled, go_on)
     search = _Search(mesh, policy, rollouts, seconds, max_steps, seed, progress, cancelled)
     best = search.nothing(coarsen)
     again = False
@@ -129,6 +141,43 @@ def _anchored(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
     for vertex in held:
         copy.set_locked(vertex)
     return copy
+
+
+def _patch_by_patch(
+    mesh: HalfEdgeMesh,
+    policy: Policy,
+    seconds: float | None,
+    max_steps: int | None,
+    seed: int,
+    progress: Callable[[int, int], None] | None,
+    cancelled: Callable[[], bool] | None,
+    go_on: Callable[..., Solution],
+) -> Solution:
+    """Repair a large mesh patch by patch; where few irregular vertices are left, go on with the
+    whole.
+    """
+    began = time.perf_counter()
+    run = improve_large(
+        mesh, policy, seconds=seconds, max_steps=max_steps, seed=seed, cancelled=cancelled,
+        progress=None if progress is None else lambda _, score: progress(0, score),
+    )  # fmt: skip
+    reached, operations = run.mesh, run.steps()
+    best = Solution(
+        operations, run.score, run.optimum, undrawable(reached, []), reached.n_elements, 1,
+        method="patches" if operations else "none",
+    )  # fmt: skip
+    left = None if seconds is None else max(0.0, seconds - (time.perf_counter() - began))
+    if not is_large(reached) and left != 0.0 and not (cancelled is not None and cancelled()):
+        if max_steps is None and reached.n_elements > MANY_ELEMENTS:
+            max_steps = PER_IRREGULAR * (reached.irregular_count + 1)
+        rest = go_on(
+            reached, policy, seconds=left, max_steps=max_steps, seed=seed, progress=progress,
+            cancelled=cancelled,
+        )  # fmt: skip
+        if rest.operations:
+            best = replace(rest, operations=operations + rest.operations, method="patches")
+    best.seconds = time.perf_counter() - began
+    return best
 
 
 @cache

@@ -7,8 +7,9 @@ from agent import policies
 from agent.agenda import FILL, agenda, dequeue, enlarged, enlist
 from agent.batch import stack
 from agent.cutout import MOST_TAKEN, cut_out, next_patch, put_back
-from agent.large import improve_large
+from agent.large import improve_large, is_large
 from agent.policies import PolicyError
+from agent.solver import solve
 from agent.task import Task
 from meshcore import HalfEdgeMesh, generate, quadrangulate
 from meshcore.halfedge import JOURNALLING, STEP_COLUMNS, allocate
@@ -202,3 +203,17 @@ def test_a_regular_mesh_is_left_as_it_is(policy):
     mesh = generate.grid("quad", 100)
     run = improve_large(mesh, policy)
     assert (len(run.operations), run.removed, run.reason) == (0, 0.0, "at the optimum")
+
+
+def test_the_solver_goes_patch_by_patch_where_much_is_irregular(quads, policy):
+    few = generate.benchmark_mesh("quad", 50, np.random.default_rng(0))
+    assert is_large(quads) and not is_large(few)
+    told = []
+    found = solve(quads, policy, max_steps=400, progress=lambda *said: told.append(said[1]))
+    copy = quads.copy()
+    for operation, h in found.operations:
+        copy.apply(operation, h)
+    assert found.method == "patches"
+    assert (copy.score, copy.n_elements) == (found.score, found.elements)
+    assert quads.score - found.score > 0.6 * (quads.score - quads.optimum)
+    assert told == sorted(told, reverse=True)
