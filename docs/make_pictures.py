@@ -1,7 +1,8 @@
 """Makes every picture that README shows, from the program itself, into docs/images/.
 
     python docs/make_pictures.py              all of them
-    python docs/make_pictures.py operations   only these: demo, operations, gallery, window
+    python docs/make_pictures.py operations   only these: demo, operations, gallery, parts,
+                                              window
 
 No display is needed except for the window, which wants one: under a virtual screen run
 ``xvfb-run -s "-screen 0 1920x1200x24" python docs/make_pictures.py window``.
@@ -21,7 +22,7 @@ from app import scene
 from app.filmstrip import side_by_side
 from app.theme import LIGHT
 from app.viewport import Viewport
-from meshcore import HalfEdgeMesh, Operation, shapes, smoothing
+from meshcore import HalfEdgeMesh, Operation, blocks, parts, shapes, smoothing
 from meshcore.generate import mesh_domain
 from meshcore.operations import CATALOGUE, OperationInfo
 
@@ -30,6 +31,7 @@ RENDER = 1800
 """Pixels of the square that is drawn; discs are sized for it, then the middle is cut out."""
 PANEL = (560, 460)
 GAP = 120
+PARTS_SEED, PARTS_SECONDS = 1, 10.0
 
 
 def triangles(rings: int) -> HalfEdgeMesh:
@@ -164,6 +166,44 @@ def make_gallery() -> None:
     save(whole, IMAGES / "gallery.png")
 
 
+def make_parts() -> None:
+    """Random parts as generated and, below, at the optimum, cut into their blocks."""
+    from agent import policies
+    from agent.solver import solve
+    from app.commands.improve import replay
+
+    policy = policies.load(policies.shipped("quad")[0])
+    size, columns = (300, 260), 4
+    tiles: list[list[Any]] = []
+    for number, domain in enumerate(parts.parts(2 * columns, (10, 26), seed=PARTS_SEED)):
+        mesh = mesh_domain(domain, "quad")
+        if number % columns == 0:
+            tiles += [[], []]
+        tiles[-2].append(scene.image(mesh, size, score=False))
+        replay(mesh, solve(mesh, policy, seconds=PARTS_SECONDS))
+        smoothing.relax(mesh)
+        tiles[-1].append(with_blocks(mesh, size))
+    whole = Image.new("RGB", (columns * size[0], len(tiles) * size[1]), LIGHT.background)
+    for row, images in enumerate(tiles):
+        whole.paste(side_by_side(images), (0, row * size[1]))
+    save(whole, IMAGES / "parts.png")
+
+
+def with_blocks(mesh: HalfEdgeMesh, size: tuple[int, int]) -> Any:
+    """Return the picture of a quad mesh with the lines between its blocks drawn stronger."""
+    drawn = scene.image(mesh, size, score=False)
+    fine = 4
+    view = Viewport(size=size).fitted(mesh.points[mesh.vertices()], 0.06 * min(size))
+    overlay = Image.new("RGBA", (fine * size[0], fine * size[1]), LIGHT.boundary + "00")
+    draw = ImageDraw.Draw(overlay)
+    for h in np.flatnonzero(blocks.separatrices(mesh)).tolist():
+        ends = fine * view.to_screen(mesh.points[[mesh.origin(h), mesh.target(h)]])
+        draw.line([tuple(end) for end in ends], fill=LIGHT.boundary, width=int(1.4 * fine))
+    smooth = overlay.resize(drawn.size, Image.Resampling.LANCZOS)
+    drawn.paste(smooth, (0, 0), smooth)
+    return drawn
+
+
 def make_demo() -> None:
     """The run of ``meshwright demo -o``."""
     from app.cli import main
@@ -208,6 +248,7 @@ MAKERS: dict[str, Callable[[], None]] = {
     "demo": make_demo,
     "operations": make_operations,
     "gallery": make_gallery,
+    "parts": make_parts,
     "window": make_window,
 }
 
