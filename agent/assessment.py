@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from agent import paper
-from agent.coarsening import coarsen
+from agent.coarsening import coarsen, replayed
 from agent.contest import MOMENTS, baselines, race, share_within
 from agent.evaluate import Rollouts, roll_out, summary, unseen
 from agent.policies import Policy
@@ -127,7 +127,7 @@ def polished(
             continue
         steps = rolled.steps(policy.task, mesh, i, int(best[i]))
         short = shorten(mesh, [one for step in steps for one in step], seconds=seconds, seed=seed)
-        ended = _replayed(mesh, short)
+        ended = replayed(mesh, short)
         added = coarsen(ended, seconds=seconds, seed=seed + i)
         coarse = shorten(mesh, short + added, seconds=seconds, seed=seed) if added else short
         rows.append([*_measured(mesh, short), *_measured(mesh, coarse)])
@@ -147,11 +147,4 @@ def polished(
 def _measured(mesh: HalfEdgeMesh, operations: list[Any]) -> tuple[int, int, float]:
     """Operations, those that are no clean-ups, and elements afterwards relative to the start."""
     decisions = sum(operation != Operation.CLEANUP for operation, _ in operations)
-    return len(operations), decisions, _replayed(mesh, operations).n_elements / mesh.n_elements
-
-
-def _replayed(mesh: HalfEdgeMesh, operations: list[Any]) -> HalfEdgeMesh:
-    reached = mesh.copy()
-    for operation, h in operations:
-        reached.apply(operation, h)
-    return reached
+    return len(operations), decisions, replayed(mesh, operations).n_elements / mesh.n_elements

@@ -49,10 +49,11 @@ def undrawable(mesh: HalfEdgeMesh, operations: Operations) -> int:
     """
     if mesh.n_elements > DRAWN:
         return 0
-    return len(smoothing.relax(_replayed(mesh, operations)))
+    return len(smoothing.relax(replayed(mesh, operations)))
 
 
-def _replayed(mesh: HalfEdgeMesh, operations: Operations) -> HalfEdgeMesh:
+def replayed(mesh: HalfEdgeMesh, operations: Operations) -> HalfEdgeMesh:
+    """A copy of the mesh on which the operations are done."""
     reached = mesh.copy()
     for operation, h in operations:
         reached.apply(operation, h)
@@ -108,7 +109,7 @@ class _Coarser:
         """Obstacles, and elements that stay inverted; not drawn if the former are too many."""
         if self._mesh.n_elements > DRAWN:
             return 0
-        reached = _replayed(self._mesh, operations)
+        reached = replayed(self._mesh, operations)
         obstacles = self._obstacles.count(reached)
         if operations and obstacles > self._flaws:
             return obstacles

@@ -19,14 +19,14 @@ import numpy as np
 from agent.annealing import Operations, anneal
 from agent.batch import Batch
 from agent.coarsening import coarsen as coarser
-from agent.coarsening import undrawable
+from agent.coarsening import replayed, undrawable
 from agent.large import LARGE as MANY_ELEMENTS
 from agent.large import improve_large, is_large
 from agent.policies import Policy, PolicyError
 from agent.refining import without_cleanups
 from agent.shortening import shorten as shorter
 from agent.task import Task
-from agent.worker import KEPT, LARGE, Candidate, Worker, replayed
+from agent.worker import KEPT, LARGE, Candidate, Worker
 from meshcore.bends import anchors
 from meshcore.generate import benchmark_mesh
 from meshcore.mesh import HalfEdgeMesh

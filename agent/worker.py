@@ -14,6 +14,7 @@ import torch
 
 from agent.annealing import SLICE, Annealer, Operations, with_room
 from agent.batch import Batch
+from agent.coarsening import replayed
 from agent.policies import Policy
 from agent.ppo import decide
 from agent.rollout import Runner
@@ -38,14 +39,6 @@ class Candidate:
     score: int
     method: str
     """What found it: "rollouts", "annealing" or "none"."""
-
-
-def replayed(mesh: HalfEdgeMesh, operations: Operations) -> HalfEdgeMesh:
-    """A copy of the mesh on which the operations are done."""
-    reached = mesh.copy()
-    for operation, h in operations:
-        reached.apply(operation, h)
-    return reached
 
 
 class Shared(Protocol):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from replay import replayed
 
 from agent.annealing import Annealer, anneal, greedy, random_walk
 from meshcore.generate import benchmark_mesh
@@ -11,14 +12,6 @@ KINDS = ("tri", "quad")
 
 def start(kind, sides=12, seed=0):
     return benchmark_mesh(kind, sides, np.random.default_rng(seed))
-
-
-def replayed(mesh, operations):
-    copy = mesh.copy()
-    for operation, h in operations:
-        copy.apply(operation, h)
-    copy.validate()
-    return copy
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from replay import replayed
 
 from agent.annealing import anneal
 from agent.coarsening import coarsen, undrawable
@@ -14,14 +15,6 @@ def optimal(name):
         mesh.apply(operation, h)
     assert mesh.score == mesh.optimum
     return mesh
-
-
-def replayed(mesh, operations):
-    copy = mesh.copy()
-    for operation, h in operations:
-        copy.apply(operation, h)
-    copy.validate()
-    return copy
 
 
 @pytest.mark.parametrize(("name", "most"), [("l-shape", 3), ("square", 1), ("star", 12)])

@@ -2,18 +2,11 @@
 
 import numpy as np
 import pytest
+from replay import replayed
 
 from agent.annealing import anneal
 from agent.refining import without_cleanups
 from meshcore import generate, shapes
-
-
-def replayed(mesh, operations):
-    copy = mesh.copy()
-    for operation, h in operations:
-        copy.apply(operation, h)
-    copy.validate()
-    return copy
 
 
 @pytest.mark.parametrize("name", ["annulus", "star", "t-shape"])

@@ -4,18 +4,11 @@ import time
 
 import numpy as np
 import pytest
+from replay import replayed
 
 from agent.annealing import anneal
 from agent.shortening import shorten, without_loops
 from meshcore.generate import benchmark_mesh
-
-
-def replayed(mesh, operations):
-    copy = mesh.copy()
-    for operation, h in operations:
-        copy.apply(operation, h)
-    copy.validate()
-    return copy
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
