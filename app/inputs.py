@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.report import UserError
+from app.report import Report, UserError
 
 if TYPE_CHECKING:
     from agent.policies import Policy
@@ -60,6 +60,15 @@ def make_mesh(
 
     with _bad_input(domain.name or "the domain"):
         return generate.mesh_domain(domain, kind, max_edge=max_edge, seed=seed)
+
+
+def prepare_agent(report: Report) -> None:
+    """Compile what an agent needs where that was never done, and say so: it takes a while."""
+    from agent import warm_up
+
+    if not warm_up.is_warm_on_disk():
+        report.note("Preparing the agent. This takes a minute or two, once on this machine.")
+        warm_up.warm()
 
 
 def read_policy(name: str | None, kind: str) -> Policy:

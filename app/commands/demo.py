@@ -69,6 +69,7 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
     policy = inputs.read_policy(None, mesh.kind)
     from agent import solver
 
+    inputs.prepare_agent(report)
     with report.progress("the policy is at work", ROLLOUTS) as update:
         solution = solver.solve(
             mesh,

@@ -69,6 +69,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     output = meshfile.checked_mesh_output(arguments.output, mesh.kind)
     policy = inputs.read_policy(arguments.policy, mesh.kind)
 
+    inputs.prepare_agent(report)
     start = time.perf_counter()
     before = {"score": mesh.score, "elements": mesh.n_elements, "optimum": mesh.optimum}
     solution = _search(arguments, report, mesh, policy)

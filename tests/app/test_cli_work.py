@@ -10,10 +10,17 @@ import pytest
 from PIL import Image
 
 import meshcore
+from agent import warm_up
 from app import cli
 from meshcore import quality, shapes
 
 KINDS = ("tri", "quad")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _compiled():
+    if not warm_up.is_warm_on_disk():
+        warm_up.warm()
 
 
 @pytest.fixture(autouse=True)
@@ -104,6 +111,14 @@ def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
     assert 0 < said["normalised_return"] <= 1
     with Image.open(tmp_path / "out.png") as picture:
         assert picture.size == (1200, 900)
+
+
+def test_improve_says_why_the_first_time_takes_long(run, capfd, monkeypatch):
+    run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
+    monkeypatch.setattr(warm_up, "is_warm_on_disk", lambda: False)
+    monkeypatch.setattr(warm_up, "warm", lambda: None)
+    assert cli.main(["improve", "a.vtk", "-o", "a.vtk", "--rollouts", "1"]) == 0
+    assert "Preparing the agent" in capfd.readouterr().err
 
 
 def test_improve_in_place_with_a_budget_and_the_same_seed(run, tmp_path):
