@@ -77,6 +77,15 @@ class Desk:
             self.calls.get()()
 
 
+@pytest.fixture(scope="session")
+def prepared_agent() -> None:
+    """The agent's kernels are compiled, so that no command has to say that it compiles them."""
+    from agent import warm_up
+
+    if not warm_up.is_warm_on_disk():
+        warm_up.warm()
+
+
 @pytest.fixture
 def desk() -> Desk:
     return Desk()

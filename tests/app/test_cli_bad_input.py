@@ -13,6 +13,8 @@ import pytest
 import meshcore
 from app import cli
 
+pytestmark = pytest.mark.usefixtures("prepared_agent")
+
 TRIANGLES = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
 
 BAD_MESHES = {

@@ -15,12 +15,7 @@ from app import cli
 from meshcore import quality, shapes
 
 KINDS = ("tri", "quad")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _compiled():
-    if not warm_up.is_warm_on_disk():
-        warm_up.warm()
+pytestmark = pytest.mark.usefixtures("prepared_agent")
 
 
 @pytest.fixture(autouse=True)
