@@ -126,10 +126,10 @@ def polished(
         if rolled.gaps[i, best[i]] > 0:
             continue
         steps = rolled.steps(policy.task, mesh, i, int(best[i]))
-        short = shorten(mesh, [one for step in steps for one in step], seconds=seconds, seed=seed)
+        short = shorten(mesh, [one for step in steps for one in step], seconds=seconds)
         ended = replayed(mesh, short)
         added = coarsen(ended, seconds=seconds, seed=seed + i)
-        coarse = shorten(mesh, short + added, seconds=seconds, seed=seed) if added else short
+        coarse = shorten(mesh, short + added, seconds=seconds) if added else short
         rows.append([*_measured(mesh, short), *_measured(mesh, coarse)])
         progress("polish", i + 1)
     table = np.array(rows, float).reshape(-1, 6)

@@ -236,14 +236,12 @@ def shorten(
     operations: Operations,
     *,
     seconds: float = 0.3,
-    seed: int = 0,
     cancelled: Callable[[], bool] | None = None,
 ) -> Operations:
     """A list, never longer, that ends with s no higher and with no more elements than `operations`
     on `mesh`, which is not changed, and never has fewer elements on its way than they had.
 
-    seed: order in which sizes of chunks are tried after the first round. The answer replays with
-    :meth:`HalfEdgeMesh.apply`. Raises ValueError if `operations` do not.
+    The answer replays with :meth:`HalfEdgeMesh.apply`. Raises ValueError if `operations` do not.
     """
     deadline = time.perf_counter() + seconds
 
