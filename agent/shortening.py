@@ -36,18 +36,8 @@ from meshcore.refusals import ALLOWED
 
 SLICE = 20_000
 """Operations replayed between two looks at the clock."""
-LONGEST_DEBUGGED = 3000
-"""Operations of a list that is debugged as a whole; longer ones are debugged piece by piece."""
 
 _NOWHERE = -1
-
-
-class Script(NamedTuple):
-    """Operations by names."""
-
-    entries: np.ndarray
-    """(N, 5) int32: operation, names of the ends of its half-edge, first name and number of the
-    vertices that it makes."""
 
 
 class Names(NamedTuple):
@@ -85,9 +75,12 @@ def _christen(m, vertex_of, name_of, first, count):
 
 @kernel
 def name_all(m, codes, halfedges, slots, cap, entries, states):
-    """Replay operations (N,) and fill `entries` (N, 5); states (N+1, 3) receives a hash of the
-    connectivity, s and the number of elements before each and at the end. Returns the number of
-    names, or -1 - i if operation i is not allowed. Vertices made before `slots` have their ids.
+    """Replay operations (N,) and fill `entries` (N, 5): operation, names of the ends of its
+    half-edge, first name and number of the vertices that it makes.
+
+    states (N+1, 3) receives a hash of the connectivity, s and the number of elements before each
+    and at the end. Returns the number of names, or -1 - i if operation i is not allowed. Vertices
+    made before `slots` have their ids.
     """
     k = m.counters[SIDES]
     name_of = np.full(len(m.vertex), -1, np.int32)

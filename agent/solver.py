@@ -20,13 +20,12 @@ from agent.annealing import Operations, anneal
 from agent.batch import Batch
 from agent.coarsening import coarsen as coarser
 from agent.coarsening import replayed, undrawable
-from agent.large import LARGE as MANY_ELEMENTS
-from agent.large import improve_large, is_large
+from agent.large import LARGE, improve_large, is_large
 from agent.policies import Policy, PolicyError
 from agent.refining import without_cleanups
 from agent.shortening import shorten as shorter
 from agent.task import Task
-from agent.worker import KEPT, LARGE, Candidate, Worker
+from agent.worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
 from meshcore.bends import anchors
 from meshcore.generate import benchmark_mesh
 from meshcore.mesh import HalfEdgeMesh
@@ -134,7 +133,7 @@ def _anchored(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
     """A copy in which sides that bend keep their look: a solution must not turn a disc into a
     square. Locks only refuse operations, so that what is found replays on the mesh itself.
     """
-    held = anchors(mesh).tolist() if mesh.n_elements <= LARGE else []
+    held = anchors(mesh).tolist() if mesh.n_elements <= SIDE_BY_SIDE else []
     if not held:
         return mesh
     copy = mesh.copy()
@@ -168,7 +167,7 @@ def _patch_by_patch(
     )  # fmt: skip
     left = None if seconds is None else max(0.0, seconds - (time.perf_counter() - began))
     if not is_large(reached) and left != 0.0 and not (cancelled is not None and cancelled()):
-        if max_steps is None and reached.n_elements > MANY_ELEMENTS:
+        if max_steps is None and reached.n_elements > LARGE:
             max_steps = PER_IRREGULAR * (reached.irregular_count + 1)
         rest = go_on(
             reached, policy, seconds=left, max_steps=max_steps, seed=seed, progress=progress,
@@ -327,7 +326,7 @@ class _Search:
             finer = without_cleanups(mesh, operations)
             if undrawable(mesh, finer) < inverted:
                 operations = finer
-        if coarsen and mesh.kind == "quad" and mesh.n_elements <= LARGE:
+        if coarsen and mesh.kind == "quad" and mesh.n_elements <= SIDE_BY_SIDE:
             reached = replayed(mesh, operations)
             added = coarser(
                 reached, seconds=self._share(0.7), seed=self.seed + self.done,

@@ -22,8 +22,8 @@ from agent.task import Scratch, transition
 from meshcore.mesh import HalfEdgeMesh
 from meshcore.operations import NAMES, Operation
 
-LARGE = 20_000
-"""Elements above which one rollout is made at a time."""
+SIDE_BY_SIDE = 20_000
+"""Elements up to which several rollouts are made at a time; all of them together have as many."""
 FIRST, TOGETHER = 8, 32
 """Rollouts side by side on smaller meshes: at first, and later, when nothing was easy."""
 KEPT = 4
@@ -102,10 +102,10 @@ class Worker:
 
     def _together(self) -> int:
         most = TOGETHER if len(self._seconds) > 1 else FIRST
-        return max(1, min(most, LARGE // max(self._mesh.n_elements, 1)))
+        return max(1, min(most, SIDE_BY_SIDE // max(self._mesh.n_elements, 1)))
 
     def _roll(self, count: int, before: Operations) -> None:
-        if self._mesh.n_elements > LARGE:
+        if self._mesh.n_elements > SIDE_BY_SIDE:
             self._run_one(before)
         else:
             self._run_batch(count, before)
