@@ -6,7 +6,8 @@ from qtpy.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QSlider, QVBoxLa
 
 from app.assistant import Assistant, State
 from app.desktop import icons
-from app.desktop.actions import BEST_OF, SEARCHES, ActionSet
+from app.desktop.actions import ActionSet
+from app.desktop.tables.agent import BEST_OF, SEARCHES
 from app.desktop.widgets import named
 from app.document import Document
 from app.policy_files import shipped

@@ -2,9 +2,10 @@
 
 import numpy as np
 from qtpy.QtCore import QEvent, QObject, QPoint, QPointF, Qt, QTimer, Signal
-from qtpy.QtGui import QMouseEvent, QResizeEvent, QWheelEvent
+from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QVBoxLayout, QWidget
 
+from app.desktop.mouse import Mouse
 from app.desktop.overlay import Overlay
 from app.document import Document
 from app.markers import label
@@ -13,11 +14,8 @@ from app.scene import CROWD, Scene
 from app.theme import Theme
 from app.viewport import Viewport
 
-DRAG = 4
-"""Pixels that the mouse may move between press and release of a click."""
 VERTEX_REACH = 12
 """Pixels around a vertex that count as on it."""
-ZOOM_PER_STEP = 1.0015
 
 
 class Canvas(QWidget):
@@ -44,9 +42,8 @@ class Canvas(QWidget):
         self._delta = np.empty(0, dtype=int)  # of the mesh that the picker was made for
         self._fitted = True
         self._stale = False
-        self._mouse: QPointF | None = None
-        self._pressed: QPointF | None = None
-        self._panning = False
+        self._at: QPointF | None = None  # where the mouse is
+        self._mouse = Mouse(self)
         self._frozen = False
         self._refresh = QTimer(self)
         self._refresh.setSingleShot(True)
@@ -83,7 +80,7 @@ class Canvas(QWidget):
         self.document.changed.disconnect(self._on_changed)
         self.document.hover_changed.disconnect(self._on_hover_changed)
         self._refresh.stop()
-        self.overlay.hide_card()
+        self.overlay.card.hide()
         if self.plotter is not None:
             self.plotter.removeEventFilter(self)
             self.plotter.close()
@@ -104,9 +101,12 @@ class Canvas(QWidget):
         mesh = self.document.mesh
         self._fitted = True
         if mesh is not None:
-            self._see(self.viewport.fitted(mesh.points[mesh.vertices()]))
+            self.viewport = self.viewport.fitted(mesh.points[mesh.vertices()])
+            self._look()
 
-    def _see(self, viewport: Viewport) -> None:
+    def see(self, viewport: Viewport) -> None:
+        """Look elsewhere; the mesh is not fitted into the window any more."""
+        self._fitted = False
         self.viewport = viewport
         self._look()
 
@@ -120,7 +120,7 @@ class Canvas(QWidget):
             at = self.viewport.to_screen(marks.places)
             seen = ((at > 0) & (at < self.viewport.size)).all(axis=1).sum() if len(at) else 0
             self.scene.show_crowd(mesh, bool(seen > CROWD))
-        self.overlay.set_markers(marks, self.viewport, self.scene.crowd, self.scene.outlined)
+        self.overlay.show_markers(marks, self.viewport, self.scene.crowd, self.scene.outlined)
         self._show_hover()
         self.plotter.update()
 
@@ -137,7 +137,7 @@ class Canvas(QWidget):
     def _on_changed(self) -> None:
         self._picker = None
         self._stale = True
-        self.overlay.hide_card()
+        self.overlay.card.hide()
         self._refresh.start()  # many changes in one turn of the event loop are one frame
 
     def _on_refresh(self) -> None:
@@ -146,8 +146,8 @@ class Canvas(QWidget):
             return
         self._stale = False
         self.scene.update(mesh)
-        if self._mouse is not None and not self._frozen:
-            self._point_at(self._mouse)
+        if self._at is not None and not self._frozen:
+            self.point_at(self._at)
         self._look()
         self.drawn.emit()
 
@@ -156,21 +156,21 @@ class Canvas(QWidget):
     @property
     def under_mouse(self) -> int:
         """The half-edge under the mouse now, -1 for none; looks at the mesh as it is now."""
-        if self._mouse is None:
+        if self._at is None:
             return -1
-        return self._halfedge_at(self._mouse)
+        return self._halfedge_at(self._at)
 
     def freeze(self, frozen: bool) -> None:
         """Keep the half-edge that is shown while a menu is open."""
         self._frozen = frozen
         if not frozen:
-            self._mouse = None
-            self._point_at(QPointF(self.mapFromGlobal(self.cursor().pos())), check=True)
+            self._at = None
+            self.point_at(QPointF(self.mapFromGlobal(self.cursor().pos())), check=True)
 
     def refuse(self, reason: str) -> None:
         """Show beside the mouse why something is not allowed."""
-        at = self._mouse.toPoint() if self._mouse is not None else self.rect().center()
-        self.overlay.show_card(reason, at, warns=True, fades=True)
+        at = self._at.toPoint() if self._at is not None else self.rect().center()
+        self.overlay.card.show(reason, at, warns=True, fades=True)
 
     def _pick(self) -> Picker | None:
         mesh = self.document.mesh
@@ -183,38 +183,42 @@ class Canvas(QWidget):
         picker = self._pick()
         return picker.halfedge(*self.viewport.to_plane(at.x(), at.y())) if picker else -1
 
-    def _vertex_at(self, at: QPointF) -> int:
+    def vertex_at(self, at: QPointF) -> int:
+        """The vertex within reach of pixel ``at``, -1 for none."""
         picker = self._pick()
         if picker is None:
             return -1
         reach = VERTEX_REACH / self.viewport.pixels
         return picker.vertex(*self.viewport.to_plane(at.x(), at.y()), reach)
 
-    def _point_at(self, at: QPointF, check: bool = False) -> None:
+    def point_at(self, at: QPointF, check: bool = False) -> None:
         """The mouse is at ``at``; ``check`` that this is on the canvas at all."""
         if check and not self.rect().contains(at.toPoint()):
-            self._leave()
+            self.leave()
             return
-        self._mouse = at
+        self._at = at
         self.document.hover = self._halfedge_at(at)
         self._tell_vertex(at)
 
-    def _leave(self) -> None:
-        self._mouse = None
+    def leave(self) -> None:
+        """The mouse is gone; while a menu is open that says nothing."""
+        if self._frozen:
+            return
+        self._at = None
         self.document.hover = -1
-        self.overlay.hide_card()
+        self.overlay.card.hide()
 
     def _tell_vertex(self, at: QPointF) -> None:
         mesh = self.document.mesh
-        vertex = self._vertex_at(at)
+        vertex = self.vertex_at(at)
         if mesh is None or vertex < 0 or self._delta[vertex] == 0:
-            if not self.overlay.warning:
-                self.overlay.hide_card()
+            if not self.overlay.card.warning:
+                self.overlay.card.hide()
             return
         degree, desired = int(mesh.degree()[vertex]), int(mesh.desired()[vertex])
         x, y = self.viewport.to_screen(mesh.points[vertex]).tolist()
         text = f"Degree {degree}, desired {desired}:  \u0394 {label(degree - desired)}"
-        self.overlay.show_card(text, QPoint(round(x), round(y)))
+        self.overlay.card.show(text, QPoint(round(x), round(y)))
 
     def _on_hover_changed(self, halfedge: int) -> None:
         if not self._stale:
@@ -223,15 +227,15 @@ class Canvas(QWidget):
     def _show_hover(self) -> None:
         mesh, halfedge = self.document.mesh, self.document.hover
         if mesh is None or halfedge < 0 or not mesh.live(halfedge):
-            self.overlay.set_hover(None, 0)
+            self.overlay.show_hover(None, 0)
             return
         first = halfedge - halfedge % mesh.k
         corners = [mesh.origin(first + side) for side in range(mesh.k)]
-        self.overlay.set_hover(
+        self.overlay.show_hover(
             self.viewport.to_screen(mesh.points[np.array(corners)]), halfedge % mesh.k
         )
 
-    # Mouse
+    # Events of Qt
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
         """Keep the overlay over the plotter, and the mesh in view."""
@@ -244,58 +248,4 @@ class Canvas(QWidget):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Take the plotter's mouse and keys: VTK's own 3-D interaction is not wanted."""
-        kind = event.type()
-        if kind == QEvent.Type.MouseMove:
-            self._on_move(event)
-        elif kind in (QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick):
-            self._on_press(event)
-        elif kind == QEvent.Type.MouseButtonRelease:
-            self._on_release(event)
-        elif kind == QEvent.Type.Wheel:
-            self._on_wheel(event)
-        elif kind == QEvent.Type.Leave:
-            if not self._frozen:
-                self._leave()
-        elif kind not in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease, QEvent.Type.Enter):
-            return False
-        return kind not in (QEvent.Type.Enter, QEvent.Type.Leave)
-
-    def _on_move(self, event: QMouseEvent) -> None:
-        at = event.position()
-        if self._pressed is not None:
-            step = at - self._pressed
-            if self._panning or step.manhattanLength() > DRAG:
-                self._panning = True
-                self._fitted = False
-                self._pressed = at
-                self.plotter.setCursor(Qt.CursorShape.ClosedHandCursor)
-                self._see(self.viewport.panned(step.x(), step.y()))
-                return
-        self._point_at(at)
-
-    def _on_press(self, event: QMouseEvent) -> None:
-        self.plotter.setFocus(Qt.FocusReason.MouseFocusReason)
-        if event.button() != Qt.MouseButton.RightButton:
-            self._pressed = event.position()
-            self._panning = False
-
-    def _on_release(self, event: QMouseEvent) -> None:
-        panned, self._panning, self._pressed = self._panning, False, None
-        self.plotter.unsetCursor()
-        at = event.position()
-        self._point_at(at)
-        if panned or event.button() == Qt.MouseButton.MiddleButton:
-            return
-        where = self.plotter.mapToGlobal(at.toPoint())
-        vertex = self._vertex_at(at) if event.button() == Qt.MouseButton.RightButton else -1
-        if vertex >= 0:
-            self.vertex_chosen.emit(vertex, where)
-        elif self.document.hover >= 0:
-            self.halfedge_chosen.emit(self.document.hover, where)
-
-    def _on_wheel(self, event: QWheelEvent) -> None:
-        at = event.position()
-        self._fitted = False
-        factor = ZOOM_PER_STEP ** event.angleDelta().y()
-        self._see(self.viewport.zoomed(factor, at.x(), at.y()))
-        self._point_at(at)
+        return self._mouse.handle(event)

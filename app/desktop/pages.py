@@ -14,7 +14,7 @@ from qtpy.QtWidgets import (
 )
 
 from app.desktop import icons
-from app.desktop.actions import Action, key_text
+from app.desktop.action import Action, key_text
 from app.desktop.widgets import named
 from app.theme import GRID
 

@@ -1,12 +1,9 @@
-"""The window: canvas, panels, menus; what actions do is here, what a mesh does is not."""
+"""The window: its parts and their wiring. What actions do is in its controllers."""
 
-from pathlib import Path
-
-from qtpy.QtCore import QPoint, QSize, Qt, QTimer, Signal
+from qtpy.QtCore import QSize, Qt, QTimer, Signal
 from qtpy.QtGui import QCloseEvent, QShowEvent
 from qtpy.QtWidgets import (
     QApplication,
-    QFileDialog,
     QHBoxLayout,
     QLabel,
     QMainWindow,
@@ -18,32 +15,30 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.assistant import Assistant, State
+from app.assistant import Assistant
 from app.desktop import actions, pages
+from app.desktop.agent import AgentControl
 from app.desktop.agent_panel import AgentPanel
 from app.desktop.canvas import Canvas
 from app.desktop.dispatch import Dispatcher
-from app.desktop.operation_menu import OperationMenu
+from app.desktop.editing import Editing
+from app.desktop.files import Files
+from app.desktop.film import Film
+from app.desktop.guide import Guide
 from app.desktop.operations_panel import OperationsPanel
 from app.desktop.score_panel import ScorePanel
+from app.desktop.settings import Settings
 from app.desktop.sidebar import sidebar
-from app.desktop.vertex_menu import vertex_menu
 from app.desktop.warmup import Warmup
-from app.desktop.widgets import Notice, sentence
+from app.desktop.widgets import Notice
 from app.document import Document
-from app.history import YOU, Row
-from app.markers import label
 from app.theme import THEMES, style_sheet, theme
-from meshcore import Operation, io
-from meshcore.operations import of_kind
-
-PREPARING = "Still preparing the operations: a moment, please."
-POINT_FIRST = "Point at a half-edge first, then press the key."
 
 
 class MainWindow(QMainWindow):
     """A view on ``document``; the mesh is changed by the document only.
 
+    Controllers say what happens: ``files``, ``editing``, ``film``, ``agent``, ``guide``.
     ``opened()`` comes when the canvas is there too, shortly after the window itself.
     """
 
@@ -55,12 +50,17 @@ class MainWindow(QMainWindow):
         theme_name: str = "light",
         assistant: Assistant | None = None,
         ready: bool = False,
+        settings: Settings | None = None,
     ) -> None:
         super().__init__()
         self.document = document
+        self.settings = settings or Settings()
         self.theme = theme(theme_name)
         self.assistant = assistant or Assistant(document, Dispatcher())
         self.ready = self.agent_ready = ready
+        self.files, self.editing, self.film = Files(self), Editing(self), Film(self)
+        self.agent, self.guide = AgentControl(self), Guide(self)
+        self.controllers = (self.files, self.editing, self.film, self.agent, self.guide)
         self.canvas = Canvas(document, self.theme)
         self.actions_by_id = actions.ActionSet(self)
         self.score_panel = ScorePanel(document, self.theme)
@@ -68,13 +68,11 @@ class MainWindow(QMainWindow):
         self.operations_panel = OperationsPanel(document)
         self.operations_panel.ready = ready
         self.notice = Notice(self.theme)
-        self.menu: OperationMenu | None = None
         self.warmup = Warmup(self)
         self._arrange()
         self._connect()
         self.set_theme(theme_name)
         self._on_replaced()
-        self._on_saved_changed()
 
     # Putting it together
 
@@ -90,18 +88,18 @@ class MainWindow(QMainWindow):
         self.pages = QStackedWidget()
         self.pages.addWidget(self.canvas)
         self.pages.addWidget(self.empty)
-        left = QWidget()
-        column = QVBoxLayout(left)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.notice)
-        column.addWidget(self.pages, 1)
+        middle = QWidget()
+        self.column = QVBoxLayout(middle)  # the canvas and what stands above and below it
+        self.column.setContentsMargins(0, 0, 0, 0)
+        self.column.setSpacing(0)
+        self.column.addWidget(self.notice)
+        self.column.addWidget(self.pages, 1)
         whole = QWidget()
-        row = QHBoxLayout(whole)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        row.addWidget(left, 1)
-        row.addWidget(sidebar(self.score_panel, self.agent_panel, self.operations_panel))
+        self.row = QHBoxLayout(whole)  # what stands left of the canvas, the canvas, the sidebar
+        self.row.setContentsMargins(0, 0, 0, 0)
+        self.row.setSpacing(0)
+        self.row.addWidget(middle, 1)
+        self.row.addWidget(sidebar(self.score_panel, self.agent_panel, self.operations_panel))
         self.setCentralWidget(whole)
         self.said = QLabel()
         self.pointed = QLabel()
@@ -142,31 +140,25 @@ class MainWindow(QMainWindow):
                 menu.addAction(self.actions_by_id[action.id])
 
     def _connect(self) -> None:
-        document, assistant = self.document, self.assistant
-        document.replaced.connect(self._on_replaced)
-        document.history_changed.connect(self._on_history_changed)
-        document.saved_changed.connect(self._on_saved_changed)
-        document.hover_changed.connect(self._on_hover_changed)
-        assistant.changed.connect(self._refresh)
-        assistant.said.connect(self.say)
-        assistant.failed.connect(self.notice.tell)
-        self.canvas.halfedge_chosen.connect(self.offer)
-        self.canvas.vertex_chosen.connect(self._offer_vertex)
+        self.document.replaced.connect(self._on_replaced)
+        self.document.history_changed.connect(self.refresh)
+        for controller in self.controllers:
+            controller.connect()
         self.warmup.noted.connect(self.preparing.setText)
         self.warmup.ready.connect(self._on_ready)
         self.warmup.agent_ready.connect(self._on_agent_ready)
         self.warmup.failed.connect(self._on_warmup_failed)
 
-    def _disconnect(self) -> None:
-        document, assistant = self.document, self.assistant
-        document.replaced.disconnect(self._on_replaced)
-        document.history_changed.disconnect(self._on_history_changed)
-        document.saved_changed.disconnect(self._on_saved_changed)
-        document.hover_changed.disconnect(self._on_hover_changed)
-        assistant.changed.disconnect(self._refresh)
-        assistant.said.disconnect(self.say)
-        assistant.failed.disconnect(self.notice.tell)
-        for part in (self.canvas, self.score_panel, self.agent_panel, self.operations_panel):
+    def _release(self) -> None:
+        self.document.replaced.disconnect(self._on_replaced)
+        self.document.history_changed.disconnect(self.refresh)
+        for part in (
+            *self.controllers,
+            self.canvas,
+            self.score_panel,
+            self.agent_panel,
+            self.operations_panel,
+        ):
             part.release()
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
@@ -187,11 +179,8 @@ class MainWindow(QMainWindow):
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
         """End runs and threads, free VTK's resources."""
-        if self.menu is not None:
-            self.menu.close()
-        self.assistant.close()
         self.warmup.stop()
-        self._disconnect()
+        self._release()
         super().closeEvent(event)
 
     # Words and looks
@@ -213,230 +202,33 @@ class MainWindow(QMainWindow):
         names = list(THEMES)
         self.set_theme(names[1 - names.index(self.theme.name)])
 
-    def _refresh(self) -> None:
+    def refresh(self) -> None:
+        """Enable what makes sense now."""
         self.actions_by_id.refresh()
         self.agent_panel.refresh()
 
-    # What the document says
+    def createPopupMenu(self) -> QMenu | None:  # noqa: N802
+        """No menu that hides the toolbar."""
+        return None
+
+    # What document and warm-up say
 
     def _on_replaced(self) -> None:
         self._fill_menus()
         self.pages.setCurrentWidget(self.empty if self.document.empty else self.canvas)
         self.notice.hide()
         self.say("")
-        self._refresh()
-
-    def _on_history_changed(self) -> None:
-        self._refresh()
-
-    def _on_saved_changed(self) -> None:
-        name = self.document.name or "No mesh"
-        self.setWindowTitle(f"{name}[*] \u2013 Meshwright")
-        self.setWindowModified(self.document.modified)
-
-    def _on_hover_changed(self, halfedge: int) -> None:
-        mesh = self.document.mesh
-        if mesh is None or halfedge < 0:
-            self.pointed.setText("")
-            return
-        ends = f"{mesh.origin(halfedge)} \u2192 {mesh.target(halfedge)}"
-        self.pointed.setText(f"Half-edge {halfedge}:  {ends}")
+        self.refresh()
 
     def _on_ready(self) -> None:
         self.ready = self.operations_panel.ready = True
-        self._refresh()
+        self.refresh()
 
     def _on_agent_ready(self) -> None:
         self.agent_ready = True
         self.preparing.setText("")
-        self._refresh()
+        self.refresh()
 
     def _on_warmup_failed(self, sentence: str) -> None:
         self.preparing.setText("")
         self.notice.tell(sentence)
-
-    # Operations
-
-    def operate(self, operation: Operation) -> None:
-        """Do ``operation`` on the half-edge under the mouse, or say why not."""
-        halfedge = self.canvas.under_mouse
-        if halfedge < 0:
-            self.say(POINT_FIRST)
-        elif not self.ready:
-            self.say(PREPARING)
-            self.canvas.refuse(PREPARING)
-        else:
-            self._submit(operation, halfedge)
-
-    def offer(self, halfedge: int, where: QPoint) -> None:
-        """Open the menu of operations of ``halfedge`` at ``where`` on the screen."""
-        mesh = self.document.mesh
-        if mesh is None:
-            return
-        if not self.ready:
-            self.say(PREPARING)
-            self.canvas.refuse(PREPARING)
-            return
-        verdicts = self.document.allowed(halfedge)
-        offers = [(info, verdicts[info.operation]) for info in of_kind(mesh.kind)]
-        ends = f"{mesh.origin(halfedge)} \u2192 {mesh.target(halfedge)}"
-        revision = self.document.revision
-        self.menu = OperationMenu(f"Half-edge {ends}", offers, self)
-        self.menu.chosen.connect(lambda operation: self._take(operation, halfedge, revision))
-        self.menu.closed.connect(self._on_menu_closed)
-        self.canvas.freeze(True)
-        self.menu.popup(where)
-
-    def _take(self, operation: Operation, halfedge: int, revision: int) -> None:
-        if revision == self.document.revision:  # an agent may have gone on behind the menu
-            self._submit(operation, halfedge)
-
-    def _submit(self, operation: Operation, halfedge: int) -> None:
-        verdict = self.document.check(operation, halfedge)
-        if not verdict:
-            self.say(sentence(verdict.reason))
-            self.canvas.refuse(sentence(verdict.reason))
-            return
-        self.document.submit(operation, halfedge)
-        self.say(told(self.document.history.last))
-
-    def _on_menu_closed(self) -> None:
-        self.menu = None
-        self.canvas.freeze(False)
-
-    def _offer_vertex(self, vertex: int, where: QPoint) -> None:
-        menu = vertex_menu(self.document, vertex, self.ready, self)
-        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.popup(where)
-
-    def clean_all(self) -> None:
-        """Remove all global lines that can be removed."""
-        if not self.ready:
-            self.say(PREPARING)
-            return
-        count = self.document.clean_all()
-        lines = "1 line" if count == 1 else f"{count} lines"
-        self.say(f"Removed {lines}." if count else "There is no line that can be removed.")
-
-    def smooth(self) -> None:
-        """Smooth the whole mesh."""
-        if not self.ready:
-            self.say(PREPARING)
-            return
-        self.document.smooth()
-        self.say("Smoothed.")
-
-    def undo(self) -> None:
-        """Take back one step."""
-        row = self.document.undo()
-        if row is not None:
-            self.say(f"Undone: {row.title}.")
-
-    def redo(self) -> None:
-        """Do one step again."""
-        row = self.document.redo()
-        if row is not None:
-            self.say(f"Done again: {row.title}.")
-
-    # Agent
-
-    def play_or_pause(self) -> None:
-        """Pause a played run; else play."""
-        if self.assistant.state is State.PLAYING:
-            self.assistant.pause()
-        else:
-            self.assistant.play()
-
-    # Files and shapes
-
-    def choose_file(self) -> None:
-        """Ask for a file and open it."""
-        folder = str(self.document.path.parent) if self.document.path else ""
-        path, _ = QFileDialog.getOpenFileName(self, "Open a mesh", folder, _files())
-        if path:
-            self.open(path)
-
-    def open(self, path: str | Path) -> None:
-        """Open a mesh file; what is wrong with it is one sentence in the notice bar."""
-        try:
-            self.document.open(path)
-        except (ValueError, OSError) as error:
-            self.notice.tell(_one_line(error))
-        else:
-            self.canvas.fit()
-
-    def save(self) -> None:
-        """Write the mesh to its file, or ask for one."""
-        if self.document.path is None:
-            self.save_as()
-        else:
-            self._save(None)
-
-    def save_as(self) -> None:
-        """Ask for a file and write the mesh to it."""
-        start = str(self.document.path or f"{self.document.name or 'mesh'}.vtk")
-        path, _ = QFileDialog.getSaveFileName(self, "Save the mesh as", start, _files())
-        if path:
-            self._save(path)
-
-    def _save(self, path: str | None) -> None:
-        try:
-            written = self.document.save(path)
-        except (ValueError, OSError) as error:
-            self.notice.tell(_one_line(error))
-        else:
-            self.say(f"Saved {written.name}.")
-
-    def choose_shape(self) -> None:
-        """Ask for a shape of the gallery and mesh it."""
-        from app.desktop.gallery import Gallery
-
-        dialog = Gallery(self.document.kind, self.theme, self)
-        if dialog.exec():
-            self.make(dialog.shape, dialog.kind)
-        dialog.deleteLater()
-
-    def make(self, shape: str, kind: str) -> None:
-        """Mesh a gallery shape with elements of ``kind``."""
-        from meshcore import generate, shapes
-
-        try:
-            mesh = generate.mesh_domain(shapes.shape(shape), kind)
-        except ValueError as error:
-            self.notice.tell(_one_line(error))
-        else:
-            self.document.replace(mesh, shape)
-
-    # Help
-
-    def show_keys(self) -> None:
-        """All keys, and what the mouse does."""
-        pages.KeysDialog(actions.groups(self), self).exec()
-
-    def show_about(self) -> None:
-        """Version and licences."""
-        pages.AboutDialog(self).exec()
-
-    def createPopupMenu(self) -> QMenu | None:  # noqa: N802
-        """No menu that hides the toolbar."""
-        return None
-
-
-def told(row: Row | None) -> str:
-    """``Flip left: s 8 to 6 (-2)``, for the status line."""
-    if row is None:
-        return ""
-    who = "" if row.by == YOU else f" by {row.by}"
-    return f"{row.title}{who}:  s {row.before} \u2192 {row.after}  ({label(row.change)})"
-
-
-def _files() -> str:
-    endings = " ".join(f"*{ending}" for ending in io.endings())
-    return f"Meshes ({endings});;All files (*)"
-
-
-def _one_line(error: Exception) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        name = Path(error.filename).name if error.filename else "The file"
-        return f"{name}: {error.strerror}."
-    return sentence(" ".join(str(error).split()))

@@ -1,8 +1,9 @@
-"""A mesh and a policy for the tests of document, assistant and window; no torch needed."""
+"""A mesh, a policy and a window for the tests of the application; no torch needed."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from queue import Empty, Queue
+from typing import Any
 
 import numpy as np
 import pytest
@@ -118,3 +119,60 @@ def strip() -> HalfEdgeMesh:
     """Two quads side by side on the rectangle from (0, 0) to (2, 1); four corners."""
     points = np.array([(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)], dtype=float)
     return HalfEdgeMesh.from_elements(points, np.array([(0, 1, 4, 3), (1, 2, 5, 4)]))
+
+
+@pytest.fixture(scope="session")
+def _own_settings(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Windows of tests keep their settings in a folder of the tests."""
+    from qtpy.QtCore import QSettings
+
+    folder = str(tmp_path_factory.mktemp("settings"))
+    QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, folder)
+
+
+@pytest.fixture
+def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterator[Callable]:
+    """Opens a window on a mesh, with :class:`Greedy` as its policy; closed after the test."""
+    from driving import WAIT
+    from qtpy.QtCore import QTimer
+
+    from app.assistant import Assistant
+    from app.desktop.application import application
+    from app.desktop.dispatch import Dispatcher
+    from app.desktop.window import MainWindow
+    from app.document import Document
+    from meshcore import compiled
+
+    compiled.warm()
+    application()
+    windows = []
+
+    def build(mesh: HalfEdgeMesh | None = None, ready: bool = True, **options: int) -> MainWindow:
+        document = Document(mesh, "star" if mesh is not None else "")
+        assistant = Assistant(
+            document,
+            Dispatcher(),
+            load=lambda name: name,
+            make_runner=lambda mesh, policy, seed: greedy(mesh, **options),
+            make_search=lambda mesh, *_: greedy(mesh, **options),
+        )
+        window = MainWindow(document, assistant=assistant, ready=ready)
+        window.resize(1000, 700)
+        assistant.policy = "greedy" if mesh is not None else ""
+        windows.append(window)
+        qtbot.addWidget(window)
+        with qtbot.waitSignal(window.opened, timeout=WAIT):
+            window.show()
+        window.activateWindow()  # there is no window manager to do it
+        qtbot.waitUntil(window.isActiveWindow, timeout=WAIT)
+        qtbot.waitUntil(lambda: window.canvas.viewport.size[0] > 300, timeout=WAIT)
+        return window
+
+    yield build
+    for window in windows:
+        window.close()
+        assert not [t for t in window.findChildren(QTimer) if t.isActive()]
+    for thread in threading.enumerate():
+        if thread.name.startswith(("assistant", "warmup")):
+            thread.join(10)
+            assert not thread.is_alive()

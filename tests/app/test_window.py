@@ -2,100 +2,19 @@
 
 import subprocess
 import sys
-import threading
 
 import numpy as np
 import pytest
+from driving import WAIT, beside, find, pixel, point_at, press
 from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtGui import QColor, QWheelEvent
 from qtpy.QtWidgets import QApplication, QWidget
 
-from app.assistant import Assistant, State
+from app.assistant import State
 from app.desktop import actions
-from app.desktop.application import application
-from app.desktop.dispatch import Dispatcher
+from app.desktop.editing import POINT_FIRST, PREPARING
 from app.desktop.warmup import AGENT_FIRST
-from app.desktop.window import POINT_FIRST, PREPARING, MainWindow
-from app.document import Document
-from meshcore import compiled
 from meshcore.operations import of_kind
-
-WAIT = 20_000
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _kernels():
-    compiled.warm()
-
-
-@pytest.fixture
-def open_window(qtbot, greedy):
-    application()
-    windows = []
-
-    def build(mesh=None, ready=True, **options):
-        document = Document(mesh, "star" if mesh is not None else "")
-        assistant = Assistant(
-            document,
-            Dispatcher(),
-            load=lambda name: name,
-            make_runner=lambda mesh, policy, seed: greedy(mesh, **options),
-            make_search=lambda mesh, *_: greedy(mesh, **options),
-        )
-        window = MainWindow(document, assistant=assistant, ready=ready)
-        window.resize(1000, 700)
-        assistant.policy = "greedy" if mesh is not None else ""
-        windows.append(window)
-        qtbot.addWidget(window)
-        with qtbot.waitSignal(window.opened, timeout=WAIT):
-            window.show()
-        window.activateWindow()  # there is no window manager to do it
-        qtbot.waitUntil(window.isActiveWindow, timeout=WAIT)
-        qtbot.waitUntil(lambda: window.canvas.viewport.size[0] > 300, timeout=WAIT)
-        return window
-
-    yield build
-    for window in windows:
-        window.close()
-        assert not [t for t in window.findChildren(QTimer) if t.isActive()]
-    for thread in threading.enumerate():
-        if thread.name.startswith(("assistant", "warmup")):
-            thread.join(10)
-            assert not thread.is_alive()
-
-
-def pixel(window, plane) -> QPoint:
-    x, y = window.canvas.viewport.to_screen(np.asarray(plane)).tolist()
-    return QPoint(round(x), round(y))
-
-
-def beside(window, halfedge) -> QPoint:
-    """A pixel near the middle of ``halfedge``, inside its element."""
-    mesh = window.document.mesh
-    first = halfedge - halfedge % mesh.k
-    corners = mesh.points[[mesh.origin(first + i) for i in range(mesh.k)]][:, :2]
-    middle = mesh.points[[mesh.origin(halfedge), mesh.target(halfedge)]][:, :2].mean(axis=0)
-    return pixel(window, middle + 0.15 * (corners.mean(axis=0) - middle))
-
-
-def point_at(qtbot, window, halfedge) -> None:
-    where = beside(window, halfedge)
-    qtbot.mouseMove(window.canvas.plotter, where + QPoint(3, 0))
-    qtbot.mouseMove(window.canvas.plotter, where)
-    qtbot.waitUntil(lambda: window.document.hover == halfedge, timeout=WAIT)
-
-
-def press(qtbot, window, key, modifier=Qt.KeyboardModifier.NoModifier) -> None:
-    qtbot.keyClick(window.canvas.plotter, key, modifier)
-
-
-def find(mesh, operation, allowed=True) -> int:
-    return next(
-        h
-        for e in mesh.element_ids().tolist()
-        for h in range(mesh.k * e, mesh.k * e + mesh.k)
-        if bool(mesh.check(operation, h)) == allowed
-    )
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
@@ -155,7 +74,7 @@ def test_a_refused_key_shows_the_reason(qtbot, open_window, star):
     press(qtbot, window, Qt.Key.Key_F)
     reason = star.check("flip_left", halfedge).reason
     assert window.said.text().lower() == f"{reason.lower()}."
-    assert window.canvas.overlay.card == window.said.text()
+    assert window.canvas.overlay.card.text == window.said.text()
     assert window.document.history.cursor == 0
 
 
@@ -171,7 +90,7 @@ def test_a_click_offers_all_operations_with_reasons(qtbot, open_window, star):
     boundary = next(h for h in range(star.k * star.n_elements) if star.twin(h) < 0)
     point_at(qtbot, window, boundary)
     qtbot.mouseClick(window.canvas.plotter, Qt.MouseButton.LeftButton, pos=beside(window, boundary))
-    menu = window.menu
+    menu = window.editing.menu
     assert menu.isVisible()
     assert [row.info for row in menu.rows] == list(of_kind("quad"))
     for row in menu.rows:
@@ -185,7 +104,7 @@ def test_a_click_offers_all_operations_with_reasons(qtbot, open_window, star):
     allowed = next(row for row in menu.rows if row.allowed)
     qtbot.mouseClick(allowed, Qt.MouseButton.LeftButton)
     assert window.document.history.last.action == allowed.info.operation.value
-    assert window.menu is None
+    assert window.editing.menu is None
 
 
 def test_the_menu_by_keyboard(qtbot, open_window, star):
@@ -196,21 +115,23 @@ def test_the_menu_by_keyboard(qtbot, open_window, star):
         qtbot.mouseClick(
             window.canvas.plotter, Qt.MouseButton.LeftButton, pos=beside(window, halfedge)
         )
-        menu, cursor = window.menu, window.document.history.cursor
+        menu, cursor = window.editing.menu, window.document.history.cursor
         if key == Qt.Key.Key_Return:
             qtbot.keyClick(menu, Qt.Key.Key_Down)
         qtbot.keyClick(menu, key)
         assert window.document.history.cursor == cursor + 1
         window.document.undo()
-        qtbot.waitUntil(lambda: window.canvas.document.revision and not window.menu, timeout=WAIT)
+        qtbot.waitUntil(
+            lambda: not window.editing.menu, timeout=WAIT
+        )
 
 
 def test_hover_over_an_irregular_vertex_tells_its_degree(qtbot, open_window, star):
     window = open_window(star)
     vertex = int(np.flatnonzero(star.irregularity() == 2)[0])
     qtbot.mouseMove(window.canvas.plotter, pixel(window, star.points[vertex]) + QPoint(2, 2))
-    qtbot.waitUntil(lambda: "Degree" in window.canvas.overlay.card, timeout=WAIT)
-    assert window.canvas.overlay.card.endswith("+2")
+    qtbot.waitUntil(lambda: "Degree" in window.canvas.overlay.card.text, timeout=WAIT)
+    assert window.canvas.overlay.card.text.endswith("+2")
 
 
 def test_wheel_zooms_at_the_mouse_drag_pans_and_home_fits(qtbot, open_window, star):
@@ -238,14 +159,14 @@ def test_wheel_zooms_at_the_mouse_drag_pans_and_home_fits(qtbot, open_window, st
         qtbot.mouseMove(canvas.plotter, at + QPoint(10 * step, 0))
     qtbot.mouseRelease(canvas.plotter, Qt.MouseButton.LeftButton, pos=at + QPoint(40, 0))
     assert canvas.viewport.centre[0] == pytest.approx(centre[0] - 40 / canvas.viewport.pixels)
-    assert window.menu is None
+    assert window.editing.menu is None
     press(qtbot, window, Qt.Key.Key_Home)
     assert canvas.viewport == fitted
 
 
 def test_step_play_pause_complete(qtbot, open_window, star):
     window = open_window(star)
-    window._refresh()
+    window.refresh()
     panel, document = window.agent_panel, window.document
     qtbot.mouseClick(panel.step, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: document.history.cursor == 1, timeout=WAIT)
@@ -267,7 +188,7 @@ def test_step_play_pause_complete(qtbot, open_window, star):
 
 def test_escape_stops_and_an_edit_takes_over(qtbot, open_window, star):
     window = open_window(star, bad_steps=500, longest=500)
-    window._refresh()
+    window.refresh()
     window.assistant.speed = 30
     press(qtbot, window, Qt.Key.Key_Space)
     qtbot.waitUntil(lambda: window.document.history.cursor >= 2, timeout=WAIT)
@@ -320,7 +241,7 @@ def test_a_wrong_file_is_one_sentence(qtbot, open_window, star, tmp_path):
     broken = tmp_path / "broken.vtk"
     broken.write_text("this is no mesh")
     for path in (broken, tmp_path / "missing.vtk"):
-        window.open(path)
+        window.files.open(path)
         text = window.notice.text
         assert path.name in text
         assert "Traceback" not in text

@@ -1,0 +1,1 @@
+"""What the overlay paints over the mesh, one layer a module."""

@@ -1,0 +1,93 @@
+"""The layer of boundary, corners, irregular vertices with their numbers, and locks."""
+
+import numpy as np
+from qtpy.QtCore import QPointF, QRect, QRectF, Qt
+from qtpy.QtGui import QColor, QFont, QPainter, QPainterPath, QPen, QPolygonF
+
+from app.desktop.layers.layer import Layer, inside, pen
+from app.markers import READABLE, Markers, label
+from app.theme import Theme
+from app.viewport import Viewport
+
+MOST_CORNERS = 5000
+"""More visible corners than this are not drawn: they would be all that is seen."""
+
+
+class MarkersLayer(Layer):
+    """Paints :class:`app.markers.Markers`."""
+
+    def __init__(self, theme: Theme, font: QFont) -> None:
+        super().__init__(theme)
+        self._font = QFont(font)
+        self._font.setWeight(QFont.Weight.DemiBold)
+        self._discs = np.empty((0, 5))  # x, y, radius, delta, corner? of visible irregular vertices
+        self._corners = np.empty((0, 2))
+        self._rings = np.empty((0, 2))
+        self._outline = QPainterPath()
+
+    def show(self, marks: Markers | None, viewport: Viewport, crowd: bool, outlined: bool) -> None:
+        """Paint these markers as seen through ``viewport``.
+
+        Discs are VTK's where ``crowd``, the boundary is where ``outlined``.
+        """
+        self.viewport = viewport
+        self._discs = np.empty((0, 5))
+        self._corners = self._rings = np.empty((0, 2))
+        self._outline = QPainterPath()
+        if marks is not None:
+            if not outlined:
+                for loop in marks.loops:
+                    points = viewport.to_screen(loop).tolist()
+                    self._outline.addPolygon(QPolygonF([QPointF(x, y) for x, y in points]))
+            self._rings = inside(viewport.to_screen(marks.locked_places), viewport)
+            if not crowd:
+                corners = inside(viewport.to_screen(marks.corner_places), viewport)
+                self._corners = corners if len(corners) < MOST_CORNERS else self._corners
+                discs = np.column_stack(
+                    (
+                        viewport.to_screen(marks.places),
+                        marks.radii(viewport),
+                        marks.delta,
+                        marks.corners,
+                    )
+                )
+                self._discs = inside(discs, viewport)
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """Boundary first, then what stands on vertices."""
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(pen(self.theme.boundary, 1.75))
+        painter.drawPath(self._outline)
+        near = QRectF(rect).adjusted(-24, -24, 24, 24)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(self.theme.corner))
+        for x, y in self._corners.tolist():
+            if near.contains(x, y):
+                painter.drawRect(QRectF(x - 4.0, y - 4.0, 8.0, 8.0))
+        self._paint_discs(painter, near)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(QColor(self.theme.boundary), 1.5))
+        for x, y in self._rings.tolist():
+            if near.contains(x, y):
+                painter.drawEllipse(QPointF(x, y), 12.5, 12.5)
+
+    def _paint_discs(self, painter: QPainter, near: QRectF) -> None:
+        plus, minus = QColor(self.theme.plus), QColor(self.theme.minus)
+        halo = QPen(QColor(self.theme.background), 1.25)
+        font = QFont(self._font)
+        for x, y, r, delta, corner in self._discs.tolist():
+            if not near.contains(x, y):
+                continue
+            if corner:
+                painter.setPen(Qt.PenStyle.NoPen)
+                painter.setBrush(QColor(self.theme.corner))
+                painter.drawRect(QRectF(x - r, y - r, 2 * r, 2 * r))
+            painter.setPen(halo if r > 4 else Qt.PenStyle.NoPen)
+            painter.setBrush(plus if delta > 0 else minus)
+            painter.drawEllipse(QPointF(x, y), r, r)
+            if r >= READABLE:
+                font.setPixelSize(max(8, round(1.2 * r)))
+                painter.setFont(font)
+                painter.setPen(QColor(self.theme.marker_text))
+                box = QRectF(x - 2 * r, y - 2 * r, 4 * r, 4 * r)
+                painter.drawText(box, Qt.AlignmentFlag.AlignCenter, label(int(delta)))

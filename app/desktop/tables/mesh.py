@@ -1,0 +1,50 @@
+"""Changes of the mesh: the catalogue's operations, and what concerns the whole mesh."""
+
+from __future__ import annotations
+
+from app.desktop.action import Action, has_mesh, has_quads
+from meshcore.operations import CATALOGUE, OperationInfo
+
+
+def operation_id(info: OperationInfo) -> str:
+    """The id of the action that does an operation on the half-edge under the mouse."""
+    return f"{info.kind}.{info.operation.value}"
+
+
+def _operation(info: OperationInfo) -> Action:
+    return Action(
+        id=operation_id(info),
+        title=info.title,
+        tooltip=info.summary,
+        run=lambda window: window.editing.operate(info.operation),
+        shortcuts=(info.key.upper(),),
+        enabled=lambda window: window.document.kind == info.kind,
+        menu="Mesh",
+    )
+
+
+ACTIONS: tuple[Action, ...] = (
+    *(_operation(info) for info in CATALOGUE),
+    Action(
+        "clean_all",
+        "Clean all",
+        "Remove every global line that can be removed",
+        lambda window: window.editing.clean_all(),
+        ("Ctrl+L",),
+        has_quads,
+        menu="Mesh",
+        icon="clean",
+        word="Clean all",
+    ),
+    Action(
+        "smooth",
+        "Smooth",
+        "Smooth and untangle the whole mesh; corners stay",
+        lambda window: window.editing.smooth(),
+        ("Ctrl+M",),
+        has_mesh,
+        menu="Mesh",
+        icon="smooth",
+        word="Smooth",
+    ),
+)

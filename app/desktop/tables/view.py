@@ -1,0 +1,28 @@
+"""What is seen, and how."""
+
+from __future__ import annotations
+
+from app.desktop.action import Action, has_mesh
+
+ACTIONS: tuple[Action, ...] = (
+    Action(
+        "fit",
+        "Fit",
+        "Show the whole mesh",
+        lambda window: window.canvas.fit(),
+        ("Home", "Ctrl+0"),
+        has_mesh,
+        menu="View",
+        icon="fit",
+        word="Fit",
+    ),
+    Action(
+        "theme",
+        "Light or dark",
+        "Switch between the light and the dark theme",
+        lambda window: window.toggle_theme(),
+        ("Ctrl+T",),
+        menu="View",
+        icon="theme",
+    ),
+)
