@@ -1,0 +1,237 @@
+"""What is measured of the window, in a process of its own: ``python -m`` this ``WHAT BEGAN N SEED``.
+
+Prints one JSON object.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+HOVERS, OPERATIONS = 60, 15
+PLAY_SECONDS = 6.0
+KERNELS_S = 300.0
+SCRAMBLES = 50
+"""One in so many elements gets an operation before the window opens: meshes are never regular."""
+
+
+def start(began: float, *numbers: int) -> dict[str, Any]:
+    """Open the window on the star and note when what is there."""
+    from qtpy.QtCore import QEvent, QObject
+
+    from app.desktop.application import application, open_window
+
+    result: dict[str, Any] = {}
+
+    class Watch(QObject):
+        def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+            if event.type() == QEvent.Type.Paint and "first_paint_s" not in result:
+                result["first_paint_s"] = time.time() - began
+                result["torch_at_first_paint"] = "torch" in sys.modules
+                result["pyvista_at_first_paint"] = "pyvista" in sys.modules
+                result["compiled_at_first_paint"] = window.ready
+            return False
+
+    app = application()
+    watch = Watch()
+    window = open_window("star", demo=False)
+    window.installEventFilter(watch)
+    _spin(app, lambda: window.canvas.plotter is not None)
+    _frame(app, window)
+    result["mesh_drawn_s"] = time.time() - began
+    _spin(app, lambda: window.ready, KERNELS_S)  # minutes where nothing was compiled yet
+    result["kernels_ready_s"] = time.time() - began
+    result["torch_at_the_end"] = "torch" in sys.modules
+    window.close()
+    return result
+
+
+def answer(began: float, size: int, seed: int) -> dict[str, Any]:
+    """Move the mouse over a mesh of ``size`` quads, and do operations by key."""
+    mesh = _scrambled(size, seed)
+    at = time.perf_counter()
+    app, window = _open(mesh)
+    result: dict[str, Any] = {"open_s": time.perf_counter() - at, "irregular": _irregular(mesh)}
+    _hover(app, window, 1)  # the first move builds the search tree
+    frames = _count_frames(window)
+    times = _hover(app, window, HOVERS)
+    result["hover_ms"] = {"median": median(times), "slowest": max(times)}
+    result["frames_per_hover"] = frames[0] / len(times)
+    result["operation_ms"] = _operate(app, window)
+    window.close()
+    return result
+
+
+def play(began: float, size: int, seed: int) -> dict[str, Any]:
+    """Let the shipped policy play on a mesh of ``size`` quads while the mouse moves."""
+    from app.assistant import State
+    from app.policy_files import shipped
+
+    mesh = _scrambled(size, seed, every=5)
+    app, window = _open(mesh)
+    assistant, document = window.assistant, window.document
+    assistant.policy = shipped("quad")[0]
+    assistant.speed = 60.0
+    assistant.play()
+    _spin(app, lambda: document.history.cursor > 3, KERNELS_S)
+    frames = _count_frames(window)
+    cursor, at = document.history.cursor, time.perf_counter()
+    times = []
+    while time.perf_counter() - at < PLAY_SECONDS and assistant.state is State.PLAYING:
+        times += _hover(app, window, 1)
+        until = time.perf_counter() + 0.02
+        while time.perf_counter() < until:
+            app.processEvents()
+    elapsed = time.perf_counter() - at
+    result = {
+        "operations_per_s": (document.history.cursor - cursor) / elapsed,
+        "frames_per_s": frames[0] / elapsed,
+        "seconds": elapsed,
+        "answer_ms": {
+            "median": median(times),
+            "95 %": float(np.quantile(times, 0.95)),
+            "slowest": max(times),
+        },
+    }
+    window.close()
+    return result
+
+
+def _open(mesh: Any) -> tuple[Any, Any]:
+    from app.desktop.application import application
+    from app.desktop.window import MainWindow
+    from app.document import Document
+    from meshcore import compiled
+
+    compiled.warm()
+    app = application()
+    window = MainWindow(Document(mesh), ready=True)
+    window.resize(1280, 800)
+    window.show()
+    _spin(app, lambda: window.canvas.plotter is not None)
+    window.activateWindow()
+    _frame(app, window)
+    return app, window
+
+
+def _scrambled(size: int, seed: int, every: int = SCRAMBLES) -> Any:
+    """A square grid of ``size`` quads after random flips, smoothed."""
+    from meshcore import compiled, generate, smoothing
+
+    compiled.warm()
+    rng = np.random.default_rng(seed)
+    mesh = generate.grid("quad", size)
+    for h in rng.integers(0, 4 * mesh.n_elements, size // every).tolist():
+        if mesh.check("flip_left", h):
+            mesh.apply("flip_left", h)
+    smoothing.relax(mesh)
+    return mesh.copy()  # without a history
+
+
+def _irregular(mesh: Any) -> int:
+    return int(np.count_nonzero(mesh.irregularity()))
+
+
+def _hover(app: Any, window: Any, count: int) -> list[float]:
+    """Milliseconds from a mouse move until what it asks of the overlay has been painted."""
+    from qtpy.QtCore import QEvent, QObject, QPoint
+    from qtpy.QtTest import QTest
+
+    painted = [0]
+
+    class Watch(QObject):
+        def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+            painted[0] += event.type() == QEvent.Type.Paint
+            return False
+
+    watch = Watch()
+    overlay, plotter = window.canvas.overlay, window.canvas.plotter
+    overlay.installEventFilter(watch)
+    times = []
+    for _ in range(count):
+        before, halfedge, at = painted[0], window.document.hover, time.perf_counter()
+        while window.document.hover == halfedge:  # a move within one half-edge paints nothing
+            at = time.perf_counter()
+            _hover.step += 1
+            x = 200 + 17 * _hover.step % 300
+            QTest.mouseMove(plotter, QPoint(x, 200 + 11 * _hover.step % 200))
+        _spin(app, lambda before=before: painted[0] > before)
+        times.append(1000.0 * (time.perf_counter() - at))
+    overlay.removeEventFilter(watch)
+    return times
+
+
+_hover.step = 0
+
+
+def _operate(app: Any, window: Any) -> dict[str, float]:
+    """Medians in milliseconds from a key to the drawn operation, and what the time went into."""
+    from qtpy.QtCore import QPoint, Qt
+    from qtpy.QtTest import QTest
+
+    canvas, document = window.canvas, window.document
+    spans: dict[str, list[float]] = {"whole": [], "document": [], "prepare": [], "frame": []}
+    marks: dict[str, float] = {}
+    document.changed.connect(lambda: marks.setdefault("document", time.perf_counter()))
+    observers = [
+        canvas.plotter.ren_win.AddObserver(event, lambda *_, e=event: marks.setdefault(e, _now()))
+        for event in ("StartEvent", "EndEvent")
+    ]
+    for i in range(OPERATIONS):
+        QTest.mouseMove(canvas.plotter, QPoint(200 + 23 * i, 240 + 7 * i))
+        _spin(app, lambda: document.hover >= 0)
+        app.processEvents()
+        cursor, at = document.history.cursor, _now()
+        marks.clear()
+        QTest.keyClick(canvas.plotter, Qt.Key.Key_F)
+        if document.history.cursor == cursor:
+            continue
+        _spin(app, lambda: "EndEvent" in marks)
+        spans["whole"].append(_now() - at)
+        spans["document"].append(marks["document"] - at)
+        spans["prepare"].append(marks["StartEvent"] - marks["document"])
+        spans["frame"].append(marks["EndEvent"] - marks["StartEvent"])
+    for tag in observers:
+        canvas.plotter.ren_win.RemoveObserver(tag)
+    return {name: 1000.0 * median(times) for name, times in spans.items()}
+
+
+def _now() -> float:
+    return time.perf_counter()
+
+
+def _count_frames(window: Any) -> list[int]:
+    frames = [0]
+
+    def count(*_: Any) -> None:
+        frames[0] += 1
+
+    window.canvas.plotter.ren_win.AddObserver("EndEvent", count)
+    return frames
+
+
+def _frame(app: Any, window: Any) -> None:
+    """Let the event loop run until the plotter has drawn what is there now."""
+    frames = _count_frames(window)
+    _spin(app, lambda: bool(frames[0]))
+
+
+def _spin(app: Any, condition: Callable[[], bool], seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > end:
+            raise RuntimeError(f"the window did not answer within {seconds:g} s")
+        app.processEvents()
+
+
+if __name__ == "__main__":
+    _measurement = {"start": start, "answer": answer, "play": play}[sys.argv[1]]
+    sys.stdout.write(
+        json.dumps(_measurement(float(sys.argv[2]), *(int(n) for n in sys.argv[3:]))) + "\n"
+    )
