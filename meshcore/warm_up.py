@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshcore.compiled import warm
+from meshcore.lines import cleanable_lines
 from meshcore.mesh import HalfEdgeMesh
 from meshcore.sides import Sides
 from meshcore.smoothing import relax
@@ -32,6 +33,7 @@ def exercise() -> None:
     while quads.undo():
         continue
     quads.redo()
+    cleanable_lines(quads)
     quads.clean_all()
 
 

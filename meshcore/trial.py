@@ -1,0 +1,227 @@
+"""What an operation would do, found by doing it on the side and taking it back to the bit.
+
+The mesh's own journal is not touched, so that what can be undone and redone stays so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from meshcore import journal, operations, refusals
+from meshcore.errors import OperationRefused
+from meshcore.halfedge import (
+    DEGREE,
+    DESIRED,
+    ELEMENT_SLOTS,
+    GROUPED,
+    HALF,
+    JOURNAL_TOP,
+    JOURNALLING,
+    NEW_COUNT,
+    ORIGIN,
+    RESTORED,
+    SIDES,
+    STEP,
+    STEP_COLUMNS,
+    STEP_END,
+    TRACE_IDS,
+    VERTEX_COLUMNS,
+    MeshArrays,
+)
+from meshcore.operations import Operation
+
+if TYPE_CHECKING:
+    from meshcore.mesh import HalfEdgeMesh
+
+_WRITE_KINDS = 1 + journal.LIST_WRITE
+_ENTRIES = 1024
+"""Journal entries that there is room for before an operation says that it needs more."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What `operation` at half-edge `halfedge` would change; ids are those it would give.
+
+    An edge that would only be cut into two pieces, or be one piece where it was two, counts neither
+    as added nor as removed.
+    """
+
+    operation: Operation
+    halfedge: int
+    score_change: int
+    added: np.ndarray
+    """(n, 2, 3) both ends of each edge that there would be, where they would first be put."""
+    removed: np.ndarray
+    """(m, 2, 3) both ends of each edge that would go."""
+    vertices: np.ndarray
+    """(p,) the vertices that there would be with another Delta than now, new ones included."""
+    places: np.ndarray
+    """(p, 3) where they would be."""
+    delta: np.ndarray
+    """(p,) their Delta then."""
+    new_vertices: np.ndarray
+    """(q,) those of all vertices then that there are not now."""
+
+
+class _State(NamedTuple):
+    """What some elements and vertices are at one time."""
+
+    keys: np.ndarray
+    """(n,) the edges of the elements as sorted numbers, one for each pair of vertices."""
+    ends: np.ndarray
+    """(n, 2) the pairs."""
+    segments: np.ndarray
+    """(n, 2, 3) where they are."""
+    alive: np.ndarray
+    """(p,) which of the vertices there are."""
+    delta: np.ndarray
+    """(p,)"""
+    places: np.ndarray
+    """(p, 3)"""
+
+
+def trial(mesh: HalfEdgeMesh, operation: Operation | str, h: int) -> Trial:
+    """What the operation would do at half-edge h, before any smoothing.
+
+    The mesh is left as it was, bit for bit, its undo and redo included; only its arrays may have
+    grown. Raises OperationRefused where :meth:`HalfEdgeMesh.check` says no.
+    """
+    verdict = mesh.check(operation, h)
+    if not verdict:
+        raise OperationRefused(f"{operation} at half-edge {h} is not allowed: {verdict.reason}")
+    code = operations.CODES[mesh.k][Operation(operation)]
+    entries = _ENTRIES
+    while True:
+        held = mesh.arrays.counters.copy()
+        aside = mesh.arrays._replace(
+            journal=np.zeros((entries, 2), np.int64), steps=np.zeros((1, STEP_COLUMNS), np.int64)
+        )
+        aside.counters[[JOURNAL_TOP, STEP, STEP_END, GROUPED]] = 0
+        aside.counters[JOURNALLING] = 1
+        try:
+            done = operations.apply_once(*aside, code, h, mesh.degree_cap)
+            if done[0] == refusals.ALLOWED:
+                return _read(aside, Operation(operation), h, int(done[1]))
+        finally:
+            aside.counters[RESTORED:] = held[RESTORED:]
+        vertices, elements, more = aside.trace[TRACE_IDS : TRACE_IDS + 3].tolist()
+        entries = max(entries, more)
+        _make_room(mesh, vertices, elements)
+
+
+def _make_room(mesh: HalfEdgeMesh, vertices: int, elements: int) -> None:
+    """Room for so many more; twice what there is, so that it is seldom made."""
+    arrays = mesh.arrays
+    slots = int(arrays.counters[ELEMENT_SLOTS])
+    short = mesh.slots + vertices > len(arrays.vertex)
+    if short or slots + elements > len(arrays.element_mark):
+        mesh.reserve(max(vertices, mesh.slots), max(elements, slots))
+
+
+def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> Trial:
+    """Compare with what was, and take the operation back."""
+    entries = aside.journal[: aside.counters[JOURNAL_TOP], 0]
+    index, kind = entries // _WRITE_KINDS, entries % _WRITE_KINDS
+    k = int(aside.counters[SIDES])
+    elements = np.unique(index[kind == journal.EDGE_WRITE] // (2 * k))
+    vertices = np.unique(index[kind == journal.VERTEX_WRITE] // VERTEX_COLUMNS)
+    new = aside.trace[TRACE_IDS : TRACE_IDS + int(aside.trace[NEW_COUNT])].astype(np.int64)
+    try:
+        after = _state(aside, elements, vertices)
+        new_places = aside.points[new].copy()
+    finally:
+        journal.undo(aside)
+    before = _state(aside, elements, vertices)
+    added = ~np.isin(after.keys, before.keys)
+    removed = ~np.isin(before.keys, after.keys)
+    if operation == Operation.CLEANUP:
+        gone = vertices[before.alive & ~after.alive]
+        _join(before, removed, after, added, gone)
+    elif len(new):
+        _halve(before, removed, after, added, new, new_places)
+    differs = after.alive & ((after.delta != before.delta) | ~before.alive)
+    return Trial(
+        operation=operation,
+        halfedge=h,
+        score_change=change,
+        added=after.segments[added],
+        removed=before.segments[removed],
+        vertices=vertices[differs],
+        places=after.places[differs],
+        delta=after.delta[differs],
+        new_vertices=new,
+    )
+
+
+def _state(m: MeshArrays, elements: np.ndarray, vertices: np.ndarray) -> _State:
+    k = int(m.counters[SIDES])
+    corners = m.edge[k * elements[:, None] + np.arange(k), ORIGIN].astype(np.int64)
+    corners = corners[corners[:, 0] >= 0]
+    a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    keys, first = np.unique(low * len(m.vertex) + high, return_index=True)
+    ends = np.column_stack([low[first], high[first]])
+    rows = m.vertex[vertices]
+    return _State(
+        keys=keys,
+        ends=ends,
+        segments=m.points[ends],
+        alive=rows[:, HALF] >= 0,
+        delta=(rows[:, DEGREE] - rows[:, DESIRED]).astype(np.int64),
+        places=m.points[vertices],
+    )
+
+
+def _halve(
+    before: _State,
+    removed: np.ndarray,
+    after: _State,
+    added: np.ndarray,
+    new: np.ndarray,
+    places: np.ndarray,
+) -> None:
+    """Strike edges that a new vertex would cut in two from `removed`, and the halves from
+    `added`.
+    """
+    rows = np.flatnonzero(removed).tolist()
+    middles = 0.5 * (before.segments[rows, 0] + before.segments[rows, 1])
+    halved = {middle.tobytes(): row for row, middle in zip(rows, middles, strict=True)}
+    fresh = _rows_of(after, added)
+    for v, place in zip(new.tolist(), places, strict=True):
+        row = halved.get(place.tobytes())
+        if row is None:
+            continue
+        x, y = before.ends[row].tolist()
+        halves = fresh.get((min(x, v), max(x, v))), fresh.get((min(y, v), max(y, v)))
+        if halves[0] is not None and halves[1] is not None:
+            removed[row] = added[halves[0]] = added[halves[1]] = False
+
+
+def _join(
+    before: _State, removed: np.ndarray, after: _State, added: np.ndarray, gone: np.ndarray
+) -> None:
+    """Strike the edges that would become one where a line is deleted: what stays is the line."""
+    going = set(gone.tolist())
+    beside: dict[int, list[tuple[int, int]]] = {v: [] for v in going}
+    for (a, b), row in _rows_of(before, removed).items():
+        if (a in going) != (b in going):
+            v, other = (a, b) if a in going else (b, a)
+            beside[v].append((other, row))
+    fresh = _rows_of(after, added)
+    for found in beside.values():
+        if len(found) == 2:
+            (p, first), (q, second) = sorted(found)
+            joint = fresh.get((p, q))
+            if joint is not None:
+                removed[first] = removed[second] = added[joint] = False
+
+
+def _rows_of(state: _State, chosen: np.ndarray) -> dict[tuple[int, int], int]:
+    """The chosen edges of `state` by their ends."""
+    rows = np.flatnonzero(chosen)
+    return {
+        (a, b): row for (a, b), row in zip(state.ends[rows].tolist(), rows.tolist(), strict=True)
+    }
