@@ -1,0 +1,96 @@
+"""Quality measured beside the editing: after a pause, on a copy of the mesh, in a thread."""
+
+import threading
+from functools import partial
+
+from qtpy.QtCore import QObject, QTimer, Signal
+
+from app.desktop.dispatch import Dispatcher
+from app.document import Document
+from app.quality_summary import QualitySummary, summarise
+from meshcore import HalfEdgeMesh
+
+PAUSE = 120
+"""Milliseconds from a change to the measuring; more changes meanwhile do not put it off."""
+
+
+class Gauge(QObject):
+    """Follows ``document``. ``aged()`` when what was measured is no longer of this mesh,
+    ``measured()`` when :attr:`summary` is new.
+
+    A change costs the editing a timer's start and nothing else; the copy of the mesh is made in
+    the pause. One thread at a time: a change while it works calls it off.
+    """
+
+    aged = Signal()
+    measured = Signal()
+
+    def __init__(self, document: Document, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._document = document
+        self.summary: QualitySummary | None = None
+        self.fresh = False
+        """True while :attr:`summary` is that of the mesh as it is."""
+        self._dispatch = Dispatcher()
+        self._thread: threading.Thread | None = None
+        self._cancel = threading.Event()
+        self._pause = QTimer(self)
+        self._pause.setSingleShot(True)
+        self._pause.setInterval(PAUSE)
+        self._pause.timeout.connect(self._on_pause)
+        document.replaced.connect(self._on_replaced)
+        document.changed.connect(self._on_changed)
+        self._on_replaced()
+
+    def release(self) -> None:
+        """Let go of the document and end the thread."""
+        self._document.replaced.disconnect(self._on_replaced)
+        self._document.changed.disconnect(self._on_changed)
+        self._pause.stop()
+        self._cancel.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+
+    def _on_replaced(self) -> None:
+        self.summary = None
+        self._on_changed()
+
+    def _on_changed(self) -> None:
+        self._cancel.set()
+        if self.fresh or self.summary is None:
+            self.fresh = False
+            self.aged.emit()
+        if self._document.empty:
+            self._pause.stop()
+        elif not self._pause.isActive():
+            self._pause.start()
+
+    def _on_pause(self) -> None:
+        mesh = self._document.mesh
+        if self._thread is not None or mesh is None:
+            return  # the thread that is being called off starts the next one when it is done
+        self._cancel = threading.Event()
+        self._thread = threading.Thread(
+            target=self._measure, args=(mesh.copy(), self._cancel), name="quality", daemon=True
+        )
+        self._thread.start()
+
+    def _measure(self, mesh: HalfEdgeMesh, cancel: threading.Event) -> None:
+        summary = None
+        try:
+            summary = summarise(mesh, cancel.is_set)
+        finally:
+            self._dispatch(partial(self._finish, summary, cancel))
+
+    def _finish(self, summary: QualitySummary | None, cancel: threading.Event) -> None:
+        if self._thread is None:
+            return  # released meanwhile
+        self._thread.join()
+        self._thread = None
+        if cancel.is_set():
+            if not self._document.empty and not self._pause.isActive():
+                self._pause.start()
+        elif summary is not None:
+            self.summary, self.fresh = summary, True
+            self.measured.emit()

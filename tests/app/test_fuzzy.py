@@ -1,0 +1,40 @@
+"""Typed letters find what a person means."""
+
+import pytest
+
+from app.fuzzy import match
+
+TITLES = ["Flip left", "Flip right", "Fit", "Light or dark", "Save as\u2026", "Smooth", "Clean all"]
+
+
+@pytest.mark.parametrize(
+    ("query", "meant"),
+    [
+        ("fl", "Flip left"),
+        ("fr", "Flip right"),
+        ("flip r", "Flip right"),
+        ("FIT", "Fit"),
+        ("dark", "Light or dark"),
+        ("sa", "Save as\u2026"),
+        ("ca", "Clean all"),
+        ("smth", "Smooth"),
+    ],
+)
+def test_the_best_match_is_what_is_meant(query, meant):
+    found = {title: match(query, title) for title in TITLES}
+    assert max((m.score, title) for title, m in found.items() if m)[1] == meant
+
+
+def test_places_are_the_letters_that_were_typed():
+    assert match("fl", "Flip left").places == (0, 5)
+    assert match("flip", "Flip left").places == (0, 1, 2, 3)
+
+
+def test_letters_out_of_order_or_absent_do_not_match():
+    assert match("tf", "Fit") is None
+    assert match("fitt", "Fit") is None
+    assert match("a", "") is None
+
+
+def test_an_empty_query_matches_everything():
+    assert match("  ", "Fit").places == ()
