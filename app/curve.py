@@ -1,0 +1,133 @@
+"""The score curve: s and s* of every state of a history, and lines to draw them with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.history import History, Row
+
+FIRST_ROOM = 256
+
+
+class Track:
+    """Scores s and optima s* of all states of a history, followed at the cost of what is new.
+
+    State 0 is the start, state i the one after row i - 1; undone rows count too.
+    """
+
+    def __init__(self) -> None:
+        self._values = np.zeros((FIRST_ROOM, 2), dtype=np.int64)
+        self._count = 0
+        self._last: Row | None = None
+
+    @property
+    def scores(self) -> np.ndarray:
+        """(n,) s of each state; empty before the first :meth:`follow`."""
+        return self._values[: self._count, 0]
+
+    @property
+    def optima(self) -> np.ndarray:
+        """(n,) s* of each state."""
+        return self._values[: self._count, 1]
+
+    def follow(self, history: History, score: int, optimum: int) -> int:
+        """Take over what ``history`` holds now; returns the first state that may be new.
+
+        ``score`` and ``optimum`` are those of the state at the cursor. A row is never changed, and
+        it comes after the same rows always: where the last known row is still in its place, so is
+        everything before it.
+        """
+        known = self._count - 1  # rows
+        same = 0 < known <= len(history) and history[known - 1] is self._last
+        first = known if same else 0
+        rows = [history[i] for i in range(first, len(history))]
+        self._count = len(history) + 1
+        if self._count > len(self._values):
+            longer = np.zeros((2 * self._count, 2), dtype=np.int64)
+            longer[: len(self._values)] = self._values
+            self._values = longer
+        if rows:
+            self._values[first + 1 : self._count] = [(row.after, row.optimum) for row in rows]
+        if not same:
+            begin = history[0] if len(history) else None
+            self._values[0] = (begin.before, begin.optimum) if begin else (score, optimum)
+        self._last = history[len(history) - 1] if len(history) else None
+        return first + 1 if same else 0
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where a curve is drawn: a rectangle in pixels, the states and scores at its edges."""
+
+    left: float
+    top: float
+    width: float
+    height: float
+    states: int
+    low: float
+    high: float
+
+    def x(self, state: np.ndarray | float) -> np.ndarray | float:
+        """Pixels from the left of a state, or of many."""
+        return self.left + np.asarray(state) * (self.width / max(self.states - 1, 1))
+
+    def y(self, score: np.ndarray | float) -> np.ndarray | float:
+        """Pixels from the top of a score, or of many."""
+        share = (np.asarray(score) - self.low) / max(self.high - self.low, 1e-9)
+        return self.top + self.height * (1.0 - share)
+
+    def state(self, x: float) -> int:
+        """The state nearest to pixel ``x``."""
+        steps = max(self.states - 1, 1)
+        nearest = round((x - self.left) / max(self.width, 1e-9) * steps)
+        return min(max(nearest, 0), max(self.states - 1, 0))
+
+
+def frame(
+    scores: np.ndarray, optima: np.ndarray, left: float, top: float, width: float, height: float
+) -> Frame:
+    """The frame that holds all scores and optima (n,) in this rectangle."""
+    low = float(optima.min()) if len(optima) else 0.0
+    high = max(float(scores.max()) if len(scores) else 1.0, low + 1.0)
+    return Frame(left, top, width, height, len(scores), low, high)
+
+
+def steps(values: np.ndarray, into: Frame) -> np.ndarray:
+    """The values (n,) as a line of steps, (m, 2) pixels; m grows with the width, not with n.
+
+    The line changes its height where a state is reached. With more states than pixels each column
+    of pixels shows the first, the lowest, the highest and the last value in it.
+    """
+    count = len(values)
+    if count == 0:
+        return np.empty((0, 2))
+    if count > 2 * into.width:
+        column = np.floor(into.x(np.arange(count)) - into.left).astype(np.int64)
+        begin = np.flatnonzero(np.diff(column, prepend=-1))
+        end = np.append(begin[1:], count) - 1
+        shown = np.column_stack(
+            [
+                values[begin],
+                np.minimum.reduceat(values, begin),
+                np.maximum.reduceat(values, begin),
+                values[end],
+            ]
+        )
+        x = np.repeat(into.left + column[begin] + 0.5, 4)
+        return np.column_stack([x, into.y(shown.ravel())])
+    x, y = into.x(np.arange(count)), into.y(values)
+    line = np.empty((2 * count - 1, 2))
+    line[0::2, 0], line[0::2, 1] = x, y
+    line[1::2, 0], line[1::2, 1] = x[1:], y[:-1]
+    return line
+
+
+def best_state(scores: np.ndarray, optima: np.ndarray) -> int:
+    """The earliest state with the lowest score of those that share the last state's optimum."""
+    if len(scores) == 0:
+        return 0
+    other = np.flatnonzero(optima != optima[-1])
+    first = int(other[-1]) + 1 if len(other) else 0
+    return first + int(np.argmin(scores[first:]))

@@ -1,0 +1,216 @@
+"""The figure: a mesh as a drawing, with its score, where it is in a history, and the score curve.
+
+Pictures and films are made from it; the window draws the same things in the same colours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app import curve
+from app.drawing import Area, Disc, Drawing, Line, Segments, Square, Text
+from app.markers import READABLE, Markers, label, markers
+from app.theme import Theme, theme
+from app.viewport import Viewport
+from meshcore import HalfEdgeMesh
+from meshcore.halfedge import ORIGIN, TWIN
+
+REFERENCE = 800.0
+"""Pixels of the shorter side of a figure whose lines and letters have their nominal size."""
+HEAD, FOOT = 64.0, 112.0
+"""Nominal height of the lines above the mesh, and of the score curve below it."""
+MARGIN = 24.0
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a figure shows. ``size`` in pixels; ``numbers`` inside the discs of irregular vertices;
+    ``score`` above the mesh; ``curve`` below it; ``changes`` since the moment before.
+    """
+
+    size: tuple[int, int] = (960, 720)
+    theme: str = "light"
+    numbers: bool = True
+    score: bool = True
+    curve: bool = True
+    changes: bool = True
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Where a mesh stands in its history.
+
+    ``title`` and ``detail`` are words; ``added`` and ``removed`` (n, 2, 2) are the edges, in the
+    plane, that the last step made and deleted; ``scores`` and ``optima`` (m,) are those of all
+    states, ``state`` is the present one.
+    """
+
+    title: str = ""
+    detail: str = ""
+    added: np.ndarray = field(default_factory=lambda: np.empty((0, 2, 2)))
+    removed: np.ndarray = field(default_factory=lambda: np.empty((0, 2, 2)))
+    scores: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
+    optima: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
+    state: int = 0
+
+
+def edges(mesh: HalfEdgeMesh) -> np.ndarray:
+    """Every edge once, as vertex ids (n, 2)."""
+    both = mesh.arrays.edge[: mesh.k * len(mesh.arrays.element_mark)]
+    origin, twin = both[:, ORIGIN].astype(np.int64), both[:, TWIN]
+    target = np.roll(origin.reshape(-1, mesh.k), -1, axis=1).ravel()
+    once = (origin >= 0) & ((twin < 0) | (twin > np.arange(len(twin))))
+    return np.column_stack([origin[once], target[once]])
+
+
+def fitted(mesh: HalfEdgeMesh, look: Look, moment: Moment | None = None) -> Viewport:
+    """The view that shows the whole mesh in what the figure leaves for it."""
+    width, height = look.size
+    unit = _unit(look)
+    head = HEAD * unit if look.score else 0.0
+    foot = FOOT * unit if _has_curve(look, moment) else 0.0
+    room = (width, max(int(height - head - foot), 16))
+    view = Viewport(size=room).fitted(mesh.points[mesh.vertices()], MARGIN * unit)
+    x, y = view.centre
+    return Viewport((x, y + (head - foot) / (2.0 * view.pixels)), view.pixels, (width, height))
+
+
+def figure(
+    mesh: HalfEdgeMesh,
+    look: Look | None = None,
+    moment: Moment | None = None,
+    viewport: Viewport | None = None,
+) -> Drawing:
+    """Draw ``mesh`` as it is now; ``viewport`` as fitted if None."""
+    look = look or Look()
+    view = viewport or fitted(mesh, look, moment)
+    colours, unit = theme(look.theme), _unit(look)
+    drawing = Drawing(look.size, colours.background, summary(mesh))
+    marks = markers(mesh)
+    pairs = edges(mesh)
+    drawing.add(Area([view.to_screen(loop) for loop in marks.loops], colours.fill))
+    if look.changes and moment is not None and len(moment.removed):
+        gone = view.to_screen(moment.removed)
+        drawing.add(Segments(gone, colours.faint, 1.3 * unit, dash=5.0 * unit))
+    width = _edge_width(mesh, pairs, view, unit)
+    drawing.add(Segments(view.to_screen(mesh.points[pairs]), colours.edge, width))
+    if look.changes and moment is not None and len(moment.added):
+        drawing.add(Segments(view.to_screen(moment.added), colours.accent, 2.6 * unit))
+    for loop in marks.loops:
+        drawing.add(Line(view.to_screen(loop), colours.boundary, max(2.0 * unit, 1.3 * width)))
+    _add_markers(drawing, marks, view, colours, unit, look.numbers)
+    if look.score:
+        _add_head(drawing, mesh, moment, colours, unit)
+    if moment is not None and _has_curve(look, moment):
+        _add_curve(drawing, moment, colours, unit)
+    return drawing
+
+
+def summary(mesh: HalfEdgeMesh) -> str:
+    """``s 8, optimum 5, 24 quads``."""
+    return f"s {mesh.score}, optimum {mesh.optimum}, {elements(mesh)}"
+
+
+def elements(mesh: HalfEdgeMesh) -> str:
+    """``24 quads``."""
+    noun = "quad" if mesh.k == 4 else "triangle"
+    return f"{mesh.n_elements:,} {noun}{'' if mesh.n_elements == 1 else 's'}"
+
+
+def _unit(look: Look) -> float:
+    return min(max(min(look.size) / REFERENCE, 0.45), 6.0)
+
+
+def _has_curve(look: Look, moment: Moment | None) -> bool:
+    return look.curve and moment is not None and len(moment.scores) > 1
+
+
+def _edge_width(mesh: HalfEdgeMesh, pairs: np.ndarray, view: Viewport, unit: float) -> float:
+    """Thin lines, and thinner ones where many of them must share the pixels."""
+    if len(pairs) == 0:
+        return unit
+    some = mesh.points[pairs[:: max(1, len(pairs) // 2000)], :2]
+    typical = float(np.median(np.hypot(*(some[:, 1] - some[:, 0]).T))) * view.pixels
+    return min(1.2 * unit, max(0.12 * typical, 0.34))
+
+
+def _add_markers(
+    drawing: Drawing, marks: Markers, view: Viewport, colours: Theme, unit: float, numbers: bool
+) -> None:
+    for x, y in view.to_screen(marks.corner_places).tolist():
+        drawing.add(Square((x, y), 3.5 * unit, colours.corner))
+    # radii are meant for the window: larger figures get larger discs
+    radii = marks.radii(Viewport(view.centre, view.pixels / unit, view.size)) * unit
+    places = view.to_screen(marks.places).tolist()
+    rows = zip(places, marks.delta.tolist(), radii.tolist(), marks.corners.tolist(), strict=True)
+    for (x, y), delta, radius, corner in rows:
+        if corner:
+            drawing.add(Square((x, y), radius, colours.corner))
+        drawing.add(
+            Disc((x, y), radius + 1.2 * unit, colours.background),
+            Disc((x, y), radius, colours.plus if delta > 0 else colours.minus),
+        )
+        if numbers and radius >= READABLE * unit:
+            drawing.add(Text(label(delta), (x, y), 1.15 * radius, colours.marker_text, "middle"))
+    for x, y in view.to_screen(marks.locked_places).tolist():
+        drawing.add(Disc((x, y), 12.0 * unit, colours.boundary, 1.5 * unit))
+
+
+def _add_head(
+    drawing: Drawing, mesh: HalfEdgeMesh, moment: Moment | None, colours: Theme, unit: float
+) -> None:
+    """Two lines at the left, words; two at the right, the score, as in the paper's figures."""
+    left, right = MARGIN * unit, drawing.size[0] - MARGIN * unit
+    first, second = 25.0 * unit, 48.0 * unit
+    title = moment.title if moment is not None else ""
+    detail = moment.detail if moment is not None else ""
+    drawing.add(
+        Text(title or elements(mesh), (left, first), 19.0 * unit, colours.text, "left", True),
+        Text(f"s {mesh.score:,}", (right, first), 22.0 * unit, colours.text, "right", True),
+    )
+    if detail:
+        drawing.add(Text(detail, (left, second), 13.5 * unit, colours.muted))
+    solved = mesh.score == mesh.optimum
+    words = "at the optimum" if solved else f"optimum {mesh.optimum:,}"
+    colour = colours.accent if solved else colours.muted
+    drawing.add(Text(words, (right, second), 13.5 * unit, colour, "right", solved))
+
+
+def _add_curve(drawing: Drawing, moment: Moment, colours: Theme, unit: float) -> None:
+    """Score against states: what is done in the accent, what is to come pale."""
+    width, height = drawing.size
+    left, right = (MARGIN + 40.0) * unit, width - (MARGIN + 4.0) * unit
+    top = height - (FOOT - 18.0) * unit
+    box = curve.frame(moment.scores, moment.optima, left, top, right - left, (FOOT - 46.0) * unit)
+    goal = float(box.y(moment.optima[moment.state]))
+    level = np.array([[[left, goal], [right, goal]]])
+    drawing.add(Segments(level, colours.muted, 1.0 * unit, dash=4.0 * unit))
+    size = 11.5 * unit
+    labels = {float(box.y(moment.scores[0])): f"{moment.scores[0]:,}"}
+    labels[goal] = f"{moment.optima[moment.state]:,}"
+    for y, text in labels.items():
+        drawing.add(Text(text, (left - 10.0 * unit, y), size, colours.muted, "right"))
+    x = float(box.x(moment.state))
+    line = curve.steps(moment.scores, box)
+    drawing.add(Line(line, colours.faint, 1.2 * unit))
+    done = line[line[:, 0] <= x + 1e-6]
+    here = (x, float(box.y(moment.scores[moment.state])))
+    # a step that is reached just now is the next point at the same place
+    done = np.vstack([done[: np.searchsorted(done[:, 0], x)], _ascent(line, x), [here]])
+    drawing.add(
+        Line(done, colours.accent, 2.0 * unit),
+        Disc(here, 6.0 * unit, colours.background),
+        Disc(here, 4.5 * unit, colours.accent),
+    )
+    drawing.add(Text("score", (left, height - 14.0 * unit), size, colours.muted))
+    last = len(moment.scores) - 1
+    words = f"step {moment.state:,} of {last:,}"
+    drawing.add(Text(words, (right, height - 14.0 * unit), size, colours.muted, "right"))
+
+
+def _ascent(line: np.ndarray, x: float) -> np.ndarray:
+    """The first point of ``line`` at ``x``: where the step before it ends; none at the start."""
+    at = np.flatnonzero(np.abs(line[:, 0] - x) < 1e-6)
+    return line[at[:1]]

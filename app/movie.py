@@ -1,0 +1,176 @@
+"""Moving pictures: frames into a GIF or an MP4 file, one at a time, whole or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.figure import Look
+from app.theme import Theme, theme
+from meshcore import atomic
+from meshcore.errors import MeshError
+
+ENDINGS = (".gif", ".mp4")
+RATE = 20
+"""Frames per second of an MP4; a figure that stays longer is repeated."""
+QUALITY = "18"
+"""The encoder's constant rate factor: lower is better and larger; 18 looks lossless."""
+LEVELS = 14
+"""Shades of a GIF between two colours that meet."""
+SHORTEST = 0.02
+"""Seconds: viewers of GIF slow down what is shorter."""
+
+Frames = Iterable[tuple[Any, float]]
+Progress = Callable[[int, int], None]
+
+
+def checked_ending(path: str | Path) -> str:
+    """The ending of a film's file in lower case; MeshError for one that cannot be written."""
+    ending = Path(path).suffix.lower()
+    if ending not in ENDINGS:
+        found = f"the ending {ending}" if ending else "a name without an ending"
+        raise MeshError(f"{path}: a film cannot have {found}; use {' or '.join(ENDINGS)}.")
+    return ending
+
+
+def write(
+    path: str | Path, frames: Frames, count: int, look: Look, progress: Progress | None = None
+) -> None:
+    """Write ``count`` frames, each a Pillow image of ``look.size`` and its seconds.
+
+    ``progress(done, count)`` is called after each; what it raises ends the work, and an old file
+    at ``path`` is as it was. Raises MeshError where the file cannot be written.
+    """
+    ending = checked_ending(path)
+    with atomic.replacing(path) as temporary:
+        followed = _followed(frames, count, progress)
+        if ending == ".gif":
+            _write_gif(temporary, followed, look)
+        else:
+            _write_mp4(temporary, followed, look, str(path))
+
+
+def _followed(frames: Frames, count: int, progress: Progress | None) -> Iterator[tuple[Any, float]]:
+    for done, frame in enumerate(frames, start=1):
+        yield frame
+        if progress is not None:
+            progress(done, count)
+
+
+# GIF
+
+
+def _write_gif(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
+    """Frames of one palette, each cut down to what differs from the one before it."""
+    from PIL import Image
+    from PIL.GifImagePlugin import getdata
+
+    colours = Image.new("P", (1, 1))
+    colours.putpalette(palette(theme(look.theme)))
+    before: Any = None
+    with path.open("wb") as file:
+        for image, seconds in frames:
+            small = image.quantize(palette=colours, dither=Image.Dither.NONE)
+            place, shown = (0, 0), small
+            if before is None:
+                file.write(_gif_header(small))
+            else:
+                box = _differing(small, before)
+                place, shown = box[:2], small.crop(box)
+            duration = round(1000 * max(seconds, SHORTEST))
+            for block in getdata(shown, place, duration=duration, disposal=1):
+                file.write(block)
+            before = small
+        file.write(b";")
+
+
+def _differing(image: Any, before: Any) -> tuple[int, int, int, int]:
+    """The box of the pixels that differ; one pixel where none does, for the time must pass."""
+    differs = np.asarray(image) != np.asarray(before)
+    rows, columns = np.flatnonzero(differs.any(axis=1)), np.flatnonzero(differs.any(axis=0))
+    if len(rows) == 0:
+        return 0, 0, 1, 1
+    return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
+
+
+def palette(colours: Theme) -> list[int]:
+    """256 colours as 768 numbers: those of a theme, and shades between those that meet."""
+    t = colours
+    meeting = (
+        (t.background, t.fill),
+        (t.fill, t.edge),
+        (t.fill, t.boundary),
+        (t.background, t.boundary),
+        (t.background, t.plus),
+        (t.background, t.minus),
+        (t.plus, t.marker_text),
+        (t.minus, t.marker_text),
+        (t.background, t.text),
+        (t.background, t.muted),
+        (t.background, t.accent),
+        (t.fill, t.accent),
+        (t.edge, t.accent),
+        (t.edge, t.boundary),
+        (t.boundary, t.accent),
+        (t.background, t.faint),
+        (t.fill, t.faint),
+        (t.background, t.line),
+    )
+    shares = np.linspace(0.0, 1.0, LEVELS)[:, None]
+    mixed = [(1 - shares) * _rgb(a) + shares * _rgb(b) for a, b in meeting]
+    rows = np.unique(np.round(np.concatenate(mixed)).astype(int), axis=0)[:256]
+    whole = np.zeros((256, 3), dtype=int)
+    whole[: len(rows)] = rows
+    return whole.ravel().tolist()
+
+
+def _rgb(colour: str) -> np.ndarray:
+    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)], dtype=float)
+
+
+def _gif_header(image: Any) -> bytes:
+    """Size, the palette that all frames share, and that the film begins again for ever."""
+    width, height = image.size
+    size = width.to_bytes(2, "little") + height.to_bytes(2, "little")
+    table = bytes(image.getpalette()[:768]).ljust(768, b"\0")
+    again = b"!\xff\x0bNETSCAPE2.0\x03\x01\x00\x00\x00"
+    return b"GIF89a" + size + b"\xf7\x00\x00" + table + again
+
+
+# MP4
+
+
+def _write_mp4(path: Path, frames: Iterator[tuple[Any, float]], look: Look, name: str) -> None:
+    """H.264 in colours that every player knows; sides are made even, as it asks."""
+    import av
+    from av.error import FFmpegError
+
+    try:
+        with av.open(str(path), "w", format="mp4", options={"movflags": "faststart"}) as file:
+            stream = file.add_stream("libx264", rate=RATE)
+            stream.width, stream.height = (side - side % 2 for side in look.size)
+            stream.pix_fmt = "yuv420p"
+            stream.options = {"crf": QUALITY, "preset": "veryfast", "tune": "animation"}
+            for image, times in _repeated(frames):
+                frame = av.VideoFrame.from_image(image.crop((0, 0, stream.width, stream.height)))
+                for _ in range(times):
+                    frame.pts = None
+                    file.mux(stream.encode(frame))
+            file.mux(stream.encode(None))
+    except (FFmpegError, ValueError) as error:
+        if isinstance(error, OSError):
+            raise
+        raise MeshError(f"{name}: the film cannot be encoded ({error}).") from error
+
+
+def _repeated(frames: Iterator[tuple[Any, float]]) -> Iterator[tuple[Any, int]]:
+    """How often each frame is shown, so that the sum of rounded times does not drift."""
+    due, shown = 0.0, 0
+    for image, seconds in frames:
+        due += seconds * RATE
+        times = max(1, round(due) - shown)
+        shown += times
+        yield image, times
