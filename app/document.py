@@ -35,7 +35,9 @@ class Document:
     Events, all emitted in the caller's thread: ``replaced()`` another mesh is here;
     ``changed()`` connectivity, positions or flags changed; ``score_changed()``;
     ``history_changed()``; ``saved_changed()`` name, path or :attr:`modified` may differ;
-    ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others.
+    ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others. Before the others,
+    too, comes ``noted(event, number)``, for who keeps a record: ``"step"`` a row was appended,
+    ``"go"`` the cursor is at that number now, ``"branch"`` that branch was taken.
     """
 
     history: History
@@ -54,6 +56,7 @@ class Document:
         self.history_changed = Signal()
         self.saved_changed = Signal()
         self.hover_changed = Signal()
+        self.noted = Signal()
         self.auto_smooth = True
         self.revision = 0
         self._adopt(mesh, name, path)
@@ -260,6 +263,20 @@ class Document:
         cursor = min(max(cursor, 0), len(self.history))
         if cursor == self.history.cursor:
             return
+        self._walk(cursor)
+        self._moved_on("go", cursor)
+
+    def take_branch(self, index: int) -> None:
+        """Go to the end of ``history.branches[index]``; the rows left for it become a branch."""
+        mesh = self._need()
+        if not 0 <= index < len(self.history.branches):
+            raise MeshError(f"There is no branch {index} in this history.")
+        self._walk(self.history.branches[index].at)
+        mesh.graft_redo(self.history.take(index, mesh.cut_redo()))
+        self._walk(len(self.history))
+        self._moved_on("branch", index)
+
+    def _walk(self, cursor: int) -> None:
         mesh = self._need()
         while self.history.cursor > cursor:
             mesh.undo()
@@ -267,7 +284,6 @@ class Document:
         while self.history.cursor < cursor:
             mesh.redo()
             self.history.step_forward()
-        self._moved_on()
 
     # Inside
 
@@ -281,17 +297,25 @@ class Document:
     ) -> Result:
         mesh = self._need()
         steps, before = mesh.steps, mesh.score
-        with mesh.transaction():
-            result = work()
+        undone = mesh.cut_redo()
+        try:
+            with mesh.transaction():
+                result = work()
+        except BaseException:
+            mesh.graft_redo(undone)
+            raise
         if mesh.steps == steps:
+            mesh.graft_redo(undone)
             return result  # nothing to do was nothing done: no row, no event
-        self.history.append(action, title, halfedge, by, before, mesh.score, mesh.optimum)
-        self._moved_on()
+        self.history.append(action, title, halfedge, by, before, mesh.score, mesh.optimum, undone)
+        mesh.trim()
+        self._moved_on("step", self.history.cursor)
         return result
 
-    def _moved_on(self) -> None:
+    def _moved_on(self, event: str, number: int) -> None:
         self.revision += 1
         mesh = self._need()
+        self.noted.emit(event, number)
         if self._hover >= 0 and not mesh.live(self._hover):
             self.hover = -1
         self._emit_all()

@@ -1,7 +1,10 @@
 """The history: one row per undoable step, and the scores that follow from the rows."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+
+from app.branches import Branch, Branches, pruned
+from meshcore.steps import Steps
 
 YOU = "you"
 """Author of the steps that a person takes; a policy's steps carry the policy's name."""
@@ -36,14 +39,37 @@ class Row:
 
 
 class History:
-    """Rows with a cursor: rows before it are done, rows from it on are undone."""
+    """Rows with a cursor: rows before it are done, rows from it on are undone.
+
+    Rows that were undone when another one was appended are kept as a branch.
+    """
 
     def __init__(self, score: int, optimum: int) -> None:
+        """`score` and `optimum` are those of the mesh before its first row."""
         self._rows: list[Row] = []
+        self._branches: Branches = ()
         self._cursor = 0
         self._serial = 0
+        self._made = 0
         self._score = score
         self._optimum = optimum
+
+    @classmethod
+    def of(
+        cls,
+        score: int,
+        optimum: int,
+        rows: Sequence[Row],
+        cursor: int,
+        branches: Branches = (),
+        serial: int = 0,
+        made: int = 0,
+    ) -> "History":
+        """A history as it was kept: ``serial`` and ``made`` are the last ones given away."""
+        history = cls(score, optimum)
+        history._rows, history._cursor, history._branches = list(rows), cursor, branches
+        history._serial, history._made = serial, made
+        return history
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -68,6 +94,21 @@ class History:
     def mark(self) -> int:
         """A number that names the present state: the last done row's serial, 0 at the start."""
         return self.last.serial if self.last else 0
+
+    @property
+    def first(self) -> tuple[int, int]:
+        """s and s* before the first row."""
+        return self._score, self._optimum
+
+    @property
+    def given(self) -> tuple[int, int]:
+        """The last serial and the last branch's number that were given away."""
+        return self._serial, self._made
+
+    @property
+    def branches(self) -> Branches:
+        """What was undone and left: rows that fork from the present line."""
+        return self._branches
 
     @property
     def start_score(self) -> int:
@@ -98,8 +139,12 @@ class History:
         before: int,
         after: int,
         optimum: int,
+        undone: tuple[Steps, ...] = (),
     ) -> Row:
-        """Add a done row at the cursor; rows that were undone are dropped."""
+        """Add a done row at the cursor; rows that were undone become a branch.
+
+        ``undone`` are the mesh's steps of these rows.
+        """
         last = self.last
         same_task = optimum == (last.optimum if last else self._optimum) and action != "desired"
         self._serial += 1
@@ -115,10 +160,39 @@ class History:
             start=self.start_score if same_task else after,
             best=min(self.best_score, after) if same_task else after,
         )
+        if self.can_redo:
+            self._branches = pruned((*self._branches_here(), self._tail(undone)), self._made)
         del self._rows[self._cursor :]
         self._rows.append(row)
         self._cursor += 1
         return row
+
+    def take(self, index: int, undone: tuple[Steps, ...]) -> tuple[Steps, ...]:
+        """Change the rows from the cursor on for those of a branch that forks there.
+
+        ``undone`` are the mesh's steps of the former, the answer those of the latter.
+        """
+        taken = self._branches[index]
+        if taken.at != self._cursor:
+            raise ValueError(f"branch {index} forks at {taken.at}, not at {self._cursor}")
+        here = [
+            self._tail(undone) if branch is taken else branch
+            for branch in self._branches_here()
+            if branch is not taken or self.can_redo
+        ]
+        self._rows[self._cursor :] = taken.rows
+        self._branches = (*here, *taken.branches)
+        return taken.steps
+
+    def _branches_here(self) -> list[Branch]:
+        """Those that fork at the cursor or before it."""
+        return [branch for branch in self._branches if branch.at <= self._cursor]
+
+    def _tail(self, undone: tuple[Steps, ...]) -> Branch:
+        """The undone rows as a branch, with all that fork on them."""
+        self._made += 1
+        on_it = tuple(branch for branch in self._branches if branch.at > self._cursor)
+        return Branch(self._cursor, tuple(self._rows[self._cursor :]), undone, on_it, self._made)
 
     def step_back(self) -> None:
         """Move the cursor over one row towards the start; the caller has undone the mesh."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import numpy as np
 
 from meshcore import construct, journal, navigation, operations, refusals
+from meshcore.archive import Archive, cut_undone
 from meshcore.errors import MeshError, OperationRefused
 from meshcore.halfedge import (
     DESIRED,
@@ -30,6 +31,7 @@ from meshcore.halfedge import (
 )
 from meshcore.meshview import MeshView, Outline
 from meshcore.operations import Operation
+from meshcore.steps import Steps, last_done
 from meshcore.verdicts import YES, Edit, Verdict
 
 _GROUP = -1  # the operation code of a transaction's step
@@ -48,6 +50,7 @@ class HalfEdgeMesh(MeshView):
         self.degree_cap = degree_cap
         """The highest degree that an operation may bring about; 0 for no limit."""
         self._codes = operations.CODES[self.k]
+        self._archive = Archive()
 
     @classmethod
     def from_elements(
@@ -108,6 +111,7 @@ class HalfEdgeMesh(MeshView):
             raise OperationRefused(
                 f"{operation} at half-edge {h} is not allowed: {self.check(operation, h).reason}"
             )
+        self._archive.future.clear()
         if done[3] > 6:
             trace = self._arrays.trace
             ids = tuple(trace[TRACE_IDS : TRACE_IDS + int(trace[TOUCHED_COUNT])].tolist())
@@ -208,6 +212,7 @@ class HalfEdgeMesh(MeshView):
             raise MeshError(f"there is no vertex {vertex} in this mesh")
 
     def _make_room(self, entries: int) -> None:
+        self._archive.future.clear()
         while not journal.has_room(self._arrays, self.k, 0, 0, entries):
             self._enlarge()
 
@@ -216,7 +221,7 @@ class HalfEdgeMesh(MeshView):
     @property
     def steps(self) -> int:
         """Steps that can be undone."""
-        return int(self._arrays.counters[STEP])
+        return self._archive.done + int(self._arrays.counters[STEP])
 
     @property
     def can_undo(self) -> bool:
@@ -226,31 +231,67 @@ class HalfEdgeMesh(MeshView):
     @property
     def can_redo(self) -> bool:
         """Whether there is an undone step to do again."""
-        return bool(self._arrays.counters[STEP] < self._arrays.counters[STEP_END])
+        counters = self._arrays.counters
+        return bool(counters[STEP] < counters[STEP_END] or self._archive.future)
 
     def undo(self) -> bool:
         """Take back the last step, exact to the bit; False if there is none."""
-        return self._history(journal.undo)
+        self._refuse_in_transaction()
+        if self._archive.past and not self._arrays.counters[STEP]:
+            self._arrays = self._archive.trimmed(self._archive.fetch_past(self._arrays))
+        return bool(journal.undo(self._arrays))
 
     def redo(self) -> bool:
         """Do the last undone step again, exact to the bit; False if there is none."""
-        return self._history(journal.redo)
+        self._refuse_in_transaction()
+        counters = self._arrays.counters
+        if self._archive.future and counters[STEP] == counters[STEP_END]:
+            self._arrays = self._archive.trimmed(self._archive.fetch_future(self._arrays))
+        return bool(journal.redo(self._arrays))
 
-    def _history(self, kernel: Callable[[MeshArrays], bool]) -> bool:
+    def _refuse_in_transaction(self) -> None:
         if self._arrays.counters[GROUPED]:
             raise MeshError("a transaction is open: undo and redo must wait for its end")
-        return bool(kernel(self._arrays))
+
+    def cut_redo(self) -> tuple[Steps, ...]:
+        """Take the undone steps out of the history, to be kept for :meth:`graft_redo`."""
+        self._refuse_in_transaction()
+        cut = (*cut_undone(self._arrays), *self._archive.future)
+        self._archive.future.clear()
+        return cut
+
+    def graft_redo(self, undone: Sequence[Steps]) -> None:
+        """Make `undone` what can be done again, in place of what could be.
+
+        They must have been cut from this mesh, or a copy of it, in the very state it is in now.
+        """
+        self.cut_redo()
+        self._archive.future[:] = undone
+
+    def last_step(self) -> Steps:
+        """The last done step as :meth:`graft_redo` wants it after an undo; MeshError if none."""
+        if not self.steps:
+            raise MeshError("there is no step in the history")
+        if not self._arrays.counters[STEP]:
+            self._arrays = self._archive.fetch_past(self._arrays)
+        return last_done(self._arrays)
+
+    def trim(self) -> None:
+        """Pack the steps far from the present, which takes half their room; no step is lost."""
+        self._refuse_in_transaction()
+        self._arrays = self._archive.trimmed(self._arrays)
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
         """Make everything inside one undoable step; an exception rolls all of it back.
 
         Transactions within a transaction belong to the outermost one. One that changes nothing
-        leaves no step.
+        leaves no step. One that is rolled back or changes nothing leaves what can be redone.
         """
         if self._arrays.counters[GROUPED]:
             yield
             return
+        undone = self.cut_redo()
         self._make_room(0)
         journal.begin_step(self._arrays, _GROUP, -1)
         before = int(self._arrays.counters[JOURNAL_TOP])
@@ -260,10 +301,11 @@ class HalfEdgeMesh(MeshView):
         except BaseException:
             self._close_group()
             self.undo()
-            self._arrays.counters[STEP_END] = self._arrays.counters[STEP]
+            self.graft_redo(undone)
             raise
         if int(self._arrays.counters[JOURNAL_TOP]) == before:
             self._arrays.counters[GROUPED] = 0
+            self.graft_redo(undone)
         else:
             self._close_group()
 
@@ -273,14 +315,21 @@ class HalfEdgeMesh(MeshView):
 
     # -- whole mesh ------------------------------------------------------------------------------
 
-    def copy(self) -> HalfEdgeMesh:
-        """An independent mesh with the same ids and free slots, and no history."""
-        arrays = MeshArrays(*(array.copy() for array in self._arrays))._replace(
-            journal=np.zeros((1024, 2), np.int64), steps=np.zeros((64, STEP_COLUMNS), np.int64)
-        )
-        for counter in (JOURNAL_TOP, STEP, STEP_END, GROUPED):
-            arrays.counters[counter] = 0
-        return HalfEdgeMesh(arrays, list(self.outline), self.degree_cap)
+    def copy(self, history: bool = False) -> HalfEdgeMesh:
+        """An independent mesh with the same ids and free slots; by default without a history."""
+        arrays = MeshArrays(*(array.copy() for array in self._arrays))
+        if history:
+            self._refuse_in_transaction()
+        else:
+            arrays = arrays._replace(
+                journal=np.zeros((1024, 2), np.int64), steps=np.zeros((64, STEP_COLUMNS), np.int64)
+            )
+            for counter in (JOURNAL_TOP, STEP, STEP_END, GROUPED):
+                arrays.counters[counter] = 0
+        copied = HalfEdgeMesh(arrays, list(self.outline), self.degree_cap)
+        if history:
+            copied._archive = self._archive.copy()
+        return copied
 
     def compact(self) -> tuple[np.ndarray, np.ndarray]:
         """Renumber vertices and elements without gaps; the history is gone.
@@ -300,7 +349,7 @@ class HalfEdgeMesh(MeshView):
             rows[:, DESIRED],
         )
         arrays.vertex[: len(live), FLAGS] = rows[:, FLAGS]
-        self._arrays = arrays
+        self._arrays, self._archive = arrays, Archive()
         self.outline = [
             (
                 np.where(

@@ -86,7 +86,7 @@ def test_scores_and_normalised_return():
     assert normalised_return(4, 4, 4) == 1.0
 
 
-def test_history_keeps_the_best_on_the_way_and_drops_what_was_undone():
+def test_history_keeps_the_best_on_the_way_and_what_was_undone_as_a_branch():
     history = History(10, 2)
     for before, after in ((10, 8), (8, 6), (6, 9)):
         history.append("flip", "Flip", 0, "you", before, after, 2)
@@ -100,6 +100,9 @@ def test_history_keeps_the_best_on_the_way_and_drops_what_was_undone():
     history.append("flip", "Flip", 0, "you", 8, 7, 2)
     assert [row.after for row in history] == [8, 7]
     assert not history.can_redo
+    assert [(branch.at, [row.after for row in branch.rows]) for branch in history.branches] == [
+        (1, [6, 9])
+    ]
 
 
 def test_another_desired_degree_is_another_task(star):

@@ -1,0 +1,138 @@
+"""The far ends of a history: a journal holds the steps near the present, the others rest packed.
+
+One archive belongs to one mesh. Its `past` are done steps before the journal's first, its `future`
+undone steps after the journal's last; both are lists of :class:`~meshcore.steps.Steps` in order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshcore.errors import MeshError
+from meshcore.halfedge import (
+    JOURNAL_TOP,
+    STEP,
+    STEP_COLUMNS,
+    STEP_END,
+    STEP_START,
+    STEP_STOP,
+    MeshArrays,
+)
+from meshcore.steps import Steps, pack, unpack
+
+PIECE = 64
+"""Steps that are packed together."""
+LOOSE = 4 * PIECE
+"""Steps on either side of the present beyond which the farther ones are packed."""
+ENTRIES = 1 << 20
+"""Journal entries on either side beyond which they are packed too, however few the steps."""
+
+
+class Archive:
+    """Packed steps on both sides of those that a journal holds."""
+
+    def __init__(self, past: Sequence[Steps] = (), future: Sequence[Steps] = ()) -> None:
+        self.past = list(past)
+        self.future = list(future)
+
+    @property
+    def done(self) -> int:
+        """Steps of the past."""
+        return sum(map(len, self.past))
+
+    @property
+    def undone(self) -> int:
+        """Steps of the future."""
+        return sum(map(len, self.future))
+
+    def copy(self) -> Archive:
+        """Another archive of the same steps."""
+        return Archive(self.past, self.future)
+
+    # -- between archive and journal -------------------------------------------------------------
+
+    def fetch_past(self, m: MeshArrays) -> MeshArrays:
+        """Put the last steps of the past before the journal's first; there must be some."""
+        piece = self.past.pop()
+        rows, entries = held(m)
+        return _with(m, *_joined(piece, rows, entries), int(m.counters[STEP]) + len(piece))
+
+    def fetch_future(self, m: MeshArrays) -> MeshArrays:
+        """Put the first steps of the future after the journal's last; there must be some."""
+        rows, entries = held(m)
+        more_rows, more_entries = unpack(self.future.pop(0), len(entries))
+        rows, entries = np.concatenate([rows, more_rows]), np.concatenate([entries, more_entries])
+        return _with(m, rows, entries, int(m.counters[STEP]))
+
+    def trimmed(self, m: MeshArrays) -> MeshArrays:
+        """Pack what the journal holds too far from the present; the arrays with what is left."""
+        step, end = int(m.counters[STEP]), int(m.counters[STEP_END])
+        top = int(m.steps[step - 1, STEP_STOP]) if step else 0
+        all_entries = int(m.steps[end - 1, STEP_STOP]) if end else 0
+        first = step // 2 if step > LOOSE or (top > ENTRIES and step > 1) else 0
+        ahead = end - step
+        crowded = ahead > LOOSE or (all_entries - top > ENTRIES and ahead > 1)
+        last = step + ahead // 2 if crowded else end
+        if first == 0 and last == end:
+            return m
+        rows, entries = held(m)
+        self.past += _pieces(rows[:first], entries)
+        self.future[:0] = _pieces(rows[last:], entries)
+        kept = rows[first:last].copy()
+        start = int(kept[0, STEP_START])
+        stop = int(kept[-1, STEP_STOP])
+        kept[:, STEP_START : STEP_STOP + 1] -= start
+        return _with(m, kept, entries[start:stop], step - first)
+
+    def everything(self, m: MeshArrays) -> tuple[list[Steps], list[Steps]]:
+        """All done and all undone steps, those of the journal among them; nothing changes."""
+        rows, entries = held(m)
+        step = int(m.counters[STEP])
+        done = self.past + _pieces(rows[:step], entries)
+        return done, _pieces(rows[step:], entries) + self.future
+
+
+def held(m: MeshArrays) -> tuple[np.ndarray, np.ndarray]:
+    """Views of the rows and entries that the journal holds, undone ones included."""
+    end = int(m.counters[STEP_END])
+    return m.steps[:end], m.journal[: int(m.steps[end - 1, STEP_STOP]) if end else 0]
+
+
+def cut_undone(m: MeshArrays) -> list[Steps]:
+    """Take the undone steps out of the journal."""
+    rows, entries = held(m)
+    step = int(m.counters[STEP])
+    cut = _pieces(rows[step:], entries)
+    m.counters[STEP_END] = step
+    return cut
+
+
+def _pieces(rows: np.ndarray, entries: np.ndarray) -> list[Steps]:
+    """Rows of the journal with these entries, packed a few at a time."""
+    pieces = []
+    for first in range(0, len(rows), PIECE):
+        some = rows[first : first + PIECE]
+        pieces.append(pack(some, entries[some[0, STEP_START] : some[-1, STEP_STOP]]))
+    return pieces
+
+
+def _joined(piece: Steps, rows: np.ndarray, entries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    before_rows, before_entries = unpack(piece)
+    rows = rows.copy()
+    rows[:, STEP_START : STEP_STOP + 1] += len(before_entries)
+    return np.concatenate([before_rows, rows]), np.concatenate([before_entries, entries])
+
+
+def _with(m: MeshArrays, rows: np.ndarray, entries: np.ndarray, step: int) -> MeshArrays:
+    """The arrays with a journal of just these rows and entries, `step` of the rows done."""
+    if step > len(rows):
+        raise MeshError("a history cannot have more done steps than steps")
+    journal = np.zeros((max(1024, len(entries) * 5 // 4), 2), np.int64)
+    journal[: len(entries)] = entries
+    steps = np.zeros((max(64, len(rows) * 5 // 4), STEP_COLUMNS), np.int64)
+    steps[: len(rows)] = rows
+    m.counters[STEP], m.counters[STEP_END] = step, len(rows)
+    m.counters[JOURNAL_TOP] = int(rows[step - 1, STEP_STOP]) if step else 0
+    return m._replace(journal=journal, steps=steps)

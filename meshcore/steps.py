@@ -1,0 +1,147 @@
+"""Steps lifted out of a journal: what one undo or redo swaps, in half the room, exact to the bit.
+
+A journal holds 16 bytes for each write. A step at rest needs less: the place of a write and an
+integer take 4 bytes each, and a moved vertex is one place with its two coordinates (three off the
+plane z = 0). Done steps hold the values before them, undone steps the values after them, as in
+:mod:`meshcore.journal`; the order of writes is kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshcore.errors import MeshError
+from meshcore.halfedge import (
+    RESTORED,
+    STEP,
+    STEP_COLUMNS,
+    STEP_COUNTERS,
+    STEP_HALFEDGE,
+    STEP_OPERATION,
+    STEP_START,
+    STEP_STOP,
+    VERTEX_COLUMNS,
+    MeshArrays,
+)
+from meshcore.journal import EDGE_WRITE, LIST_WRITE, POINT_WRITE, VERTEX_WRITE
+
+WRITE_KINDS = 4
+LENGTH, OPERATION, HALFEDGE, COUNTERS = 0, 1, 2, 3
+COLUMNS = COUNTERS + RESTORED
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Steps:
+    """Consecutive steps of one journal, first one first; made by :func:`pack`."""
+
+    rows: np.ndarray
+    """(n, 13) int32: number of journal entries, operation, half-edge, the restored counters."""
+    places: np.ndarray
+    """(w,) int32: what each write was to; a moved vertex is one write, to its x."""
+    whole: np.ndarray
+    """(i,) int32: values of the writes that are no moves, in order."""
+    coordinates: np.ndarray
+    """(p, 2|3) float64: values of the moves, in order; without z where all z are 0."""
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the arrays."""
+        return int(
+            self.rows.nbytes + self.places.nbytes + self.whole.nbytes + self.coordinates.nbytes
+        )
+
+
+def pack(rows: np.ndarray, entries: np.ndarray) -> Steps:
+    """Steps from rows (n, 14) of a mesh's `steps` and the entries (j, 2) that they span.
+
+    Raises MeshError if moves are not written as x, y and z of one vertex after another.
+    """
+    writes = np.flatnonzero(entries[:, 0] % WRITE_KINDS == POINT_WRITE)
+    if len(writes) % 3:
+        raise MeshError("a move in the history is cut off")
+    moved = writes.reshape(-1, 3)
+    axes = entries[moved, 0] // WRITE_KINDS
+    triples = (moved == moved[:, :1] + np.arange(3)).all()
+    if not triples or not (axes == axes[:, :1] // 3 * 3 + np.arange(3)).all():
+        raise MeshError("a move in the history is not of one vertex")
+    single = np.ones(len(entries), bool)
+    single[moved.ravel()] = False
+    first = single.copy()
+    first[moved[:, 0]] = True
+    coordinates = entries[moved, 1].view(np.float64)
+    if not entries[moved[:, 2], 1].any():
+        coordinates = coordinates[:, :2].copy()
+    packed = np.empty((len(rows), COLUMNS), np.int32)
+    packed[:, LENGTH] = rows[:, STEP_STOP] - rows[:, STEP_START]
+    packed[:, OPERATION] = rows[:, STEP_OPERATION]
+    packed[:, HALFEDGE] = rows[:, STEP_HALFEDGE]
+    packed[:, COUNTERS:] = rows[:, STEP_COUNTERS:]
+    return Steps(
+        packed,
+        entries[first, 0].astype(np.int32),
+        entries[single, 1].astype(np.int32),
+        coordinates,
+    )
+
+
+def unpack(steps: Steps, start: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (n, 14) and entries (j, 2) as a mesh holds them, the first entry at place `start`.
+
+    Raises MeshError if the arrays do not fit together.
+    """
+    places = steps.places.astype(np.int64)
+    moved = places % WRITE_KINDS == POINT_WRITE
+    width = np.where(moved, 3, 1)
+    at = np.cumsum(width) - width
+    total = int(width.sum())
+    lengths = steps.rows[:, LENGTH].astype(np.int64)
+    moves = int(moved.sum())
+    if (lengths < 0).any() or lengths.sum() != total:
+        raise MeshError("a step of the history has another length than it says")
+    if len(steps.coordinates) != moves or len(steps.whole) != len(places) - moves:
+        raise MeshError("the history lacks some of its values")
+    entries = np.zeros((total, 2), np.int64)
+    entries[at[~moved], 0] = places[~moved]
+    entries[at[~moved], 1] = steps.whole
+    bits = np.ascontiguousarray(steps.coordinates).view(np.int64)
+    for axis in range(3):
+        entries[at[moved] + axis, 0] = places[moved] + axis * WRITE_KINDS
+        if axis < bits.shape[1]:
+            entries[at[moved] + axis, 1] = bits[:, axis]
+    stops = start + np.cumsum(lengths)
+    rows = np.empty((len(steps), STEP_COLUMNS), np.int64)
+    rows[:, STEP_START] = stops - lengths
+    rows[:, STEP_STOP] = stops
+    rows[:, STEP_OPERATION] = steps.rows[:, OPERATION]
+    rows[:, STEP_HALFEDGE] = steps.rows[:, HALFEDGE]
+    rows[:, STEP_COUNTERS:] = steps.rows[:, COUNTERS:]
+    return rows, entries
+
+
+def last_done(m: MeshArrays) -> Steps:
+    """The last done step with the values after it, as if it had just been undone.
+
+    A place that it wrote twice has the last value at both: swapped in and out, that comes to the
+    same.
+    """
+    row = m.steps[int(m.counters[STEP]) - 1]
+    entries = m.journal[row[STEP_START] : row[STEP_STOP]].copy()
+    index, written = entries[:, 0] // WRITE_KINDS, entries[:, 0] % WRITE_KINDS
+    for form, values, width in (
+        (EDGE_WRITE, m.edge, 2),
+        (VERTEX_WRITE, m.vertex, VERTEX_COLUMNS),
+        (POINT_WRITE, m.points.view(np.int64), 3),
+        (LIST_WRITE, m.irregular[:, None], 1),
+    ):
+        these = written == form
+        at = index[these]
+        entries[these, 1] = values[at // width, at % width]
+    after = row.copy()
+    after[STEP_START : STEP_STOP + 1] -= row[STEP_START]
+    after[STEP_COUNTERS:] = m.counters[:RESTORED]
+    return pack(after[None], entries)

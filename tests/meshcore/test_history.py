@@ -1,0 +1,177 @@
+"""Undo and redo far back, steps cut out and grafted on again; all exact to the bit."""
+
+import numpy as np
+import pytest
+
+from meshcore import HalfEdgeMesh, MeshError, OperationRefused, archive, generate, shapes
+from meshcore.operations import of_kind
+from meshcore.steps import pack, unpack
+
+
+def state(mesh: HalfEdgeMesh) -> list[bytes]:
+    """Every bit that an undo must bring back."""
+    arrays = mesh.arrays
+    ends = (mesh.k * int(arrays.counters[1]), mesh.slots)
+    return [
+        arrays.edge[: ends[0]].tobytes(),
+        arrays.vertex[: ends[1]].tobytes(),
+        mesh.points.tobytes(),
+        arrays.irregular[: mesh.irregular_count].tobytes(),
+        arrays.counters[:10].tobytes(),
+    ]
+
+
+def wander(mesh: HalfEdgeMesh, steps: int, seed: int = 0) -> list[list[bytes]]:
+    """So many random steps, moves among them; the state after each."""
+    rng = np.random.default_rng(seed)
+    infos = of_kind(mesh.kind)
+    states = []
+    while len(states) < steps:
+        h = int(rng.choice(mesh.element_ids())) * mesh.k + int(rng.integers(mesh.k))
+        operation = infos[rng.integers(len(infos))].operation
+        if rng.random() < 0.2:
+            some = rng.choice(mesh.vertices(), 3, replace=False)
+            mesh.move(some, mesh.points[some] + [1e-3, 1e-3, 0])
+        elif mesh.check(operation, h):
+            with mesh.transaction():
+                mesh.apply(operation, h)
+                some = mesh.vertices()[:2]
+                mesh.move(some, mesh.points[some] * 1.001)
+        else:
+            continue
+        states.append(state(mesh))
+    return states
+
+
+@pytest.fixture
+def small_pieces(monkeypatch):
+    monkeypatch.setattr(archive, "PIECE", 4)
+    monkeypatch.setattr(archive, "LOOSE", 16)
+
+
+@pytest.mark.usefixtures("small_pieces")
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+def test_packed_steps_are_undone_and_redone_to_the_bit(kind):
+    mesh = generate.mesh_domain(shapes.shape("star"), kind)
+    states = [state(mesh)]
+    for part in range(8):
+        states += wander(mesh, 15, part)
+        mesh.trim()
+    assert mesh.steps == 120
+    assert mesh.arrays.counters[13] < 40  # the others are packed
+    for back in range(119, -1, -1):
+        assert mesh.undo()
+        assert state(mesh) == states[back]
+    assert not mesh.undo()
+    for on in range(1, 121):
+        assert mesh.can_redo
+        assert mesh.redo()
+        assert state(mesh) == states[on]
+    assert not mesh.redo()
+    assert mesh.steps == 120
+    mesh.validate()
+
+
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+def test_what_was_undone_is_cut_out_and_grafted_on_again(kind):
+    mesh = generate.mesh_domain(shapes.shape("star"), kind)
+    wander(mesh, 10)
+    fork, end = state(mesh), wander(mesh, 20, 1)[-1]
+    for _ in range(20):
+        mesh.undo()
+    kept = mesh.cut_redo()
+    assert not mesh.can_redo
+    assert sum(map(len, kept)) == 20
+    other = wander(mesh, 5, 2)[-1]
+    for _ in range(5):
+        mesh.undo()
+    assert state(mesh) == fork
+    second = mesh.cut_redo()
+    mesh.graft_redo(kept)
+    while mesh.redo():
+        pass
+    assert state(mesh) == end
+    for _ in range(20):
+        mesh.undo()
+    mesh.graft_redo(second)
+    while mesh.redo():
+        pass
+    assert state(mesh) == other
+    mesh.validate()
+
+
+def test_the_last_step_can_be_done_again_on_another_copy():
+    mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+    other = mesh.copy()
+    other.reserve(50, 50)
+    for seed in range(30):
+        after = wander(mesh, 1, seed)[-1]
+        before = state(other)
+        other.graft_redo([mesh.last_step()])
+        other.redo()
+        assert state(other) == after
+        other.undo()
+        assert state(other) == before
+        other.redo()
+
+
+def test_a_refused_or_idle_edit_leaves_what_can_be_redone():
+    mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+    end = wander(mesh, 6)[-1]
+    for _ in range(4):
+        mesh.undo()
+    with mesh.transaction():
+        pass
+    boundary = int(np.flatnonzero(mesh.arrays.edge[:, 1] < 0)[0])
+    with pytest.raises(OperationRefused):
+        mesh.apply("flip_left", boundary)
+
+    def fail() -> None:
+        with mesh.transaction():
+            mesh.move([0], mesh.points[:1] + 1.0)
+            mesh.apply("flip_left", boundary)
+
+    with pytest.raises(OperationRefused):
+        fail()
+    while mesh.redo():
+        pass
+    assert state(mesh) == end
+
+
+def test_an_edit_drops_what_was_grafted():
+    mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+    wander(mesh, 4)
+    for _ in range(4):
+        mesh.undo()
+    mesh.graft_redo(mesh.cut_redo())
+    assert mesh.can_redo
+    wander(mesh, 1, 7)
+    assert not mesh.can_redo
+
+
+def test_a_copy_may_have_the_history():
+    mesh = generate.mesh_domain(shapes.shape("star"), "tri")
+    first, last = state(mesh), wander(mesh, 30)[-1]
+    copy = mesh.copy(history=True)
+    while copy.undo():
+        pass
+    assert state(copy) == first
+    assert state(mesh) == last
+    assert mesh.copy().steps == 0
+
+
+def test_packing_keeps_what_is_off_the_plane_and_refuses_what_does_not_fit():
+    mesh = generate.mesh_domain(shapes.shape("star"), "tri")
+    mesh.move([3, 5], np.array([(0.5, 0.25, -0.0), (0.5, 0.5, 2.0)]))
+    steps = mesh.last_step()
+    assert steps.coordinates.shape == (2, 3)
+    rows, entries = unpack(steps)
+    assert rows[0, :2].tolist() == [0, 6]
+    with pytest.raises(MeshError, match="cut off"):
+        pack(rows, entries[:5])
+    with pytest.raises(MeshError, match="not of one vertex"):
+        pack(rows, entries[[0, 2, 1, 3, 4, 5]])
+    with pytest.raises(MeshError, match="another length"):
+        unpack(type(steps)(steps.rows[:0], steps.places, steps.whole, steps.coordinates))
+    with pytest.raises(MeshError, match="no step"):
+        mesh.copy().last_step()
