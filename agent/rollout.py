@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import torch
 
+from agent.choices import Insight
+from agent.insight import insight
 from agent.policies import Policy, PolicyError
 from agent.ppo import decide
 from agent.selection import LONGEST_CUT
@@ -46,6 +48,7 @@ class Runner:
         """Why the run is over, in words; empty while it goes on."""
         self.last: Observation | None = None
         """What the last decision looked at."""
+        self._next: tuple[Observation, int] | None = None
 
     @property
     def score(self) -> int:
@@ -57,34 +60,52 @@ class Runner:
         """Whether there is nothing more to do."""
         return bool(self.reason)
 
+    def look(self) -> Insight | None:
+        """What the policy sees now, and will do at the next step; None when finished.
+
+        Looking makes the next decision, but does not carry it out: a run that is looked at is the
+        same run.
+        """
+        if self._next is None:
+            self._next = self._decide()
+        return None if self._next is None else insight(self.mesh.arrays, self.policy, *self._next)
+
     def step(self) -> Step:
         """Decide and do the next operation; returns it and the clean-ups that follow, or [] at the
         end.
         """
-        if self._ended():
+        decision = self._next or self._decide()
+        self._next = None
+        if decision is None:
             return []
-        self._make_room()
-        arrays, task = self.mesh.arrays, self._task
-        seen = observe(arrays, task, self._bounds, self._rng, self._scratch)
-        self.last = seen
-        if seen is None:
-            self.reason = "no operation that the policy may use is allowed here"
-            return []
-        seen.state[0] = (
-            (self.mesh.score - self.mesh.optimum) / 10.0,
-            1.0 - self.steps / max(self.max_steps, 1),
-            1.0,
-        )
-        action = int(decide(self.policy.network, seen, self._generator)[0][0])
+        seen, action = decision
+        task, scratch = self._task, self._scratch
         h = int(seen.chosen[0, action // task.operations])
         code = task.first_operation + action % task.operations
-        scratch = self._scratch
+        arrays = self.mesh.arrays
         count = transition(arrays, code, h, task.cap, scratch.touched, scratch.cleaned)
         self.steps += 1
         self.best_score = min(self.best_score, self.mesh.score)
         cleaned = scratch.cleaned[:count].tolist()
         self._ended()
         return [(NAMES[code], h)] + [(Operation.CLEANUP, line) for line in cleaned]
+
+    def _decide(self) -> tuple[Observation, int] | None:
+        """What the next decision looks at, and the action; None at the end."""
+        if self._ended():
+            return None
+        self._make_room()
+        seen = observe(self.mesh.arrays, self._task, self._bounds, self._rng, self._scratch)
+        self.last = seen
+        if seen is None:
+            self.reason = "no operation that the policy may use is allowed here"
+            return None
+        seen.state[0] = (
+            (self.mesh.score - self.mesh.optimum) / 10.0,
+            1.0 - self.steps / max(self.max_steps, 1),
+            1.0,
+        )
+        return seen, int(decide(self.policy.network, seen, self._generator)[0][0])
 
     def _ended(self) -> bool:
         if not self.reason and self.mesh.score == self.mesh.optimum:
