@@ -1,4 +1,4 @@
-"""What is measured of the window, in a process of its own: ``python -m`` this ``WHAT BEGAN N SEED``.
+"""Measurements of the window in a process of its own: ``python -m`` this, WHAT, BEGAN, numbers.
 
 Prints one JSON object.
 """

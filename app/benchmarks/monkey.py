@@ -1,0 +1,309 @@
+"""A monkey at the window: random mouse and key events, and whether anything breaks.
+
+The monkey moves, clicks, drags and turns the wheel at random places, and presses the keys of the
+table of actions and others, in the window, its dialogs and menus, while the agent may be running.
+It never quits and never names a file.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from app.benchmarks.desktop.display import display
+from app.report import Update
+
+SUMMARY = "random mouse and key events at the window: exceptions, threads, timers, the mesh"
+EVENTS, QUICK_EVENTS = 20_000, 400
+LONGEST = 3600.0
+LARGEST = 4000
+"""A mesh that has grown beyond this many elements gives way to the star."""
+STUCK = 20.0
+"""Seconds without a turn of the event loop after which the window counts as dead."""
+ENDING = 30.0
+"""Seconds that threads get to end after the window was closed."""
+
+
+def run(
+    seed: int = 0, quick: bool = False, update: Update = lambda done, remark: None
+) -> dict[str, Any]:
+    """Send 20,000 events (``quick``: 400) to a window on the star and report what went wrong.
+
+    Keys: ``events``, ``exceptions`` (their last lines), ``operations`` (steps that the history was
+    given), ``dialogs`` (how many were opened), ``slowest_ms`` (the longest time that the event loop
+    was held), ``threads`` and ``timers`` that outlived the window, ``valid`` (is the mesh valid at
+    the end?), ``undone`` (did undoing everything lead back to the first state?). Raises
+    RuntimeError without a display and if the window dies.
+    """
+    with display() as environment, tempfile.TemporaryDirectory() as home:
+        apart = {**environment, "XDG_CONFIG_HOME": home, "XDG_STATE_HOME": home}
+        command = [sys.executable, "-m", __name__, str(seed)]
+        command.append(str(QUICK_EVENTS if quick else EVENTS))
+        done = subprocess.run(
+            command, env=apart, cwd=home, capture_output=True, text=True, timeout=LONGEST
+        )
+    lines = done.stdout.splitlines()
+    if done.returncode != 0 or not lines:
+        last = (done.stderr.strip() or f"it ended with code {done.returncode}").splitlines()[-1]
+        raise RuntimeError(f"The window died under seed {seed}: {last}")
+    result: dict[str, Any] = json.loads(lines[-1])
+    return result
+
+
+class Monkey:
+    """Sends ``events`` random events to ``window`` from within the event loop.
+
+    One timer shot, one event; the next shot is ordered before the event is sent, because an event
+    that opens a dialog returns only when the dialog is closed.
+    """
+
+    def __init__(self, window: Any, seed: int, events: int) -> None:
+        from app.desktop.actions import ACTIONS
+
+        self.window, self.left, self.sent = window, events, 0
+        self.rng = np.random.default_rng(seed)
+        self.slowest = 0.0
+        self.dialogs: set[str] = set()
+        self.operations = 0
+        self.busy: list[Any] = []  # the dialog or menu that was open when each event was sent
+        self.shortcuts = [
+            keys for action in ACTIONS for keys in action.shortcuts if action.id != "quit"
+        ]
+        self.keys = ["Tab", "Return", "Esc", "Space", "Up", "Down", "Left", "Right", "Backspace"]
+        self.keys += list("0123456789abcxyz-.,")
+
+    def shoot(self) -> None:
+        """Order the next shot, then send one event if the last one has been dealt with."""
+        from qtpy.QtCore import QTimer
+        from qtpy.QtWidgets import QApplication
+
+        if self.left <= 0:
+            self._finish()
+            return
+        QTimer.singleShot(1, self.shoot)
+        open_now = QApplication.activePopupWidget() or QApplication.activeModalWidget()
+        if self.busy and self.busy[-1] is open_now:
+            return  # QTest lets the event loop run before it returns
+        self.left -= 1
+        self.sent += 1
+        self.busy.append(open_now)
+        began = time.perf_counter()
+        try:
+            self._send(open_now)
+        finally:
+            self.busy.pop()
+        if open_now is None and not QApplication.activeModalWidget():
+            self.slowest = max(self.slowest, time.perf_counter() - began)
+
+    def _pick(self, things: Sequence[Any]) -> Any:
+        return things[int(self.rng.integers(len(things)))]
+
+    def _finish(self) -> None:
+        from qtpy.QtCore import QTimer
+        from qtpy.QtWidgets import QApplication
+
+        over = QApplication.activePopupWidget() or QApplication.activeModalWidget()
+        if over is not None:
+            over.close()
+            QTimer.singleShot(10, self._finish)
+        elif self.busy:
+            QTimer.singleShot(10, self._finish)
+        else:
+            QApplication.exit(0)
+
+    def _send(self, open_now: Any) -> None:
+        from qtpy.QtWidgets import QDialog, QFileDialog
+
+        document = self.window.document
+        self.operations = max(self.operations, len(document.history))
+        if document.mesh is None or document.mesh.n_elements > LARGEST:
+            document.replace(_star(self._pick(["tri", "quad"])), "star")
+            return
+        if isinstance(open_now, QFileDialog):
+            open_now.reject()  # no file is named, opened or written
+            return
+        if isinstance(open_now, QDialog):
+            self.dialogs.add(type(open_now).__name__)
+        target = open_now or self.window
+        if self.rng.random() < 0.6:
+            self._mouse(target)
+        else:
+            self._key(target)
+
+    def _mouse(self, target: Any) -> None:
+        from qtpy.QtCore import QPoint, Qt
+        from qtpy.QtTest import QTest
+
+        rng = self.rng
+        if target is self.window and rng.random() < 0.7 and self.window.canvas.plotter is not None:
+            widget = self.window.canvas.plotter
+        else:
+            at = QPoint(*(int(rng.integers(max(n, 1))) for n in (target.width(), target.height())))
+            widget = target.childAt(at) or target
+        if not widget.isVisible():
+            return
+
+        def place() -> QPoint:
+            size = (widget.width(), widget.height())
+            return QPoint(*(int(rng.integers(max(n, 1))) for n in size))
+
+        left, right = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
+        button = self._pick([left, left, left, left, right])
+        none, shift = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
+        alt, control = Qt.KeyboardModifier.AltModifier, Qt.KeyboardModifier.ControlModifier
+        modifier = self._pick([none, none, none, none, shift, shift | alt, control])
+        what = rng.random()
+        if what < 0.35:
+            QTest.mouseMove(widget, place())
+        elif what < 0.7:
+            QTest.mouseClick(widget, button, modifier, place())
+        elif what < 0.75:
+            QTest.mouseDClick(widget, button, modifier, place())
+        elif what < 0.9:
+            start, end = place(), place()
+            QTest.mousePress(widget, button, modifier, start)
+            for share in (0.2, 0.5, 0.8):
+                QTest.mouseMove(widget, start + (end - start) * share)
+            QTest.mouseRelease(widget, button, modifier, end)
+        else:
+            self._wheel(widget, place())
+
+    def _wheel(self, widget: Any, at: Any) -> None:
+        from qtpy.QtCore import QPoint, Qt
+        from qtpy.QtGui import QWheelEvent
+        from qtpy.QtWidgets import QApplication
+
+        event = QWheelEvent(
+            at.toPointF(),
+            widget.mapToGlobal(at).toPointF(),
+            QPoint(),
+            QPoint(0, self._pick([-240, -120, 120, 240])),
+            Qt.MouseButton.NoButton,
+            Qt.KeyboardModifier.NoModifier,
+            Qt.ScrollPhase.NoScrollPhase,
+            False,
+        )
+        QApplication.sendEvent(widget, event)
+
+    def _key(self, target: Any) -> None:
+        from qtpy.QtGui import QKeySequence
+        from qtpy.QtTest import QTest
+
+        name = self._pick(self.shortcuts if self.rng.random() < 0.7 else self.keys)
+        combination = QKeySequence(name)[0]
+        widget = target.focusWidget() or target
+        if widget.isVisible():
+            QTest.keyClick(widget, combination.key(), combination.keyboardModifiers())
+
+
+def _star(kind: str) -> Any:
+    from meshcore import generate, shapes
+
+    return generate.mesh_domain(shapes.shape("star"), kind)
+
+
+def _play(seed: int, events: int) -> dict[str, Any]:
+    """Open a window, let the monkey at it, close it, and look what is left."""
+    from qtpy.QtCore import QTimer
+    from qtpy.QtWidgets import QApplication
+
+    from app.desktop.application import application
+    from app.desktop.window import MainWindow
+    from app.document import Document
+    from meshcore import compiled
+
+    compiled.warm()
+    exceptions: list[str] = []
+
+    def note(kind: Any, value: Any, trace: Any) -> None:
+        while trace is not None and trace.tb_next is not None:
+            trace = trace.tb_next
+        where = f" ({trace.tb_frame.f_code.co_filename}:{trace.tb_lineno})" if trace else ""
+        exceptions.append(f"{kind.__name__}: {value}{where}")
+
+    sys.excepthook = note
+    threading.excepthook = lambda given: note(given.exc_type, given.exc_value, given.exc_traceback)
+    app = application()
+    app.setQuitOnLastWindowClosed(False)
+    before = {thread.name for thread in threading.enumerate()}
+    window = MainWindow(Document(_star("quad"), "star"), ready=True)
+    window.show()
+    window.activateWindow()
+    monkey = Monkey(window, seed, events)
+    window.opened.connect(lambda: QTimer.singleShot(0, monkey.shoot))
+    beat = [time.monotonic()]
+    pulse = QTimer()
+    pulse.timeout.connect(lambda: beat.__setitem__(0, time.monotonic()))
+    pulse.start(200)
+    threading.Thread(target=_watch, args=(beat, monkey), daemon=True, name="watch").start()
+    app.exec()
+    beat[0] = float("inf")
+    pulse.stop()
+    document = window.document
+    result = {
+        "events": monkey.sent,
+        "dialogs": sorted(monkey.dialogs),
+        "operations": monkey.operations,
+        "slowest_ms": 1000.0 * monkey.slowest,
+        **_sound(document),
+        **_ended(app, window, before),
+        "exceptions": exceptions,
+    }
+    QApplication.processEvents()
+    return result
+
+
+def _watch(beat: list[float], monkey: Monkey) -> None:
+    """End the process if the event loop stands still."""
+    import faulthandler
+    import os
+
+    while True:
+        time.sleep(1.0)
+        if time.monotonic() - beat[0] > STUCK:
+            faulthandler.dump_traceback(all_threads=True)
+            sys.stderr.write(f"\nthe event loop stood still after {monkey.sent} events\n")
+            sys.stderr.flush()
+            os._exit(3)
+
+
+def _ended(app: Any, window: Any, before: set[str]) -> dict[str, Any]:
+    """Close the window without saving; threads and timers that are still there afterwards."""
+    from qtpy.QtCore import QTimer
+
+    window.document.replace(None)  # nothing is unsaved, so nothing is asked
+    window.close()
+    end = time.monotonic() + ENDING
+    ours = before | {"watch", "MainThread"}
+    threads = sorted(t.name for t in threading.enumerate() if t.name not in ours)
+    while threads and time.monotonic() < end:
+        app.processEvents()
+        time.sleep(0.05)
+        threads = sorted(t.name for t in threading.enumerate() if t.name not in ours)
+    timers = [t for t in window.findChildren(QTimer) if t.isActive()]
+    return {"threads": threads, "timers": len(timers), "closed": not window.isVisible()}
+
+
+def _sound(document: Any) -> dict[str, bool]:
+    """Is the mesh valid, and does undoing everything lead back to a valid first state?"""
+    if document.mesh is None:
+        return {"valid": True, "undone": True}
+    document.mesh.validate()
+    end = document.mesh.elements()
+    steps = document.history.cursor
+    document.go_to(0)
+    document.mesh.validate()
+    document.go_to(steps)
+    return {"valid": True, "undone": bool(np.array_equal(document.mesh.elements(), end))}
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps(_play(int(sys.argv[1]), int(sys.argv[2]))) + "\n")
