@@ -20,7 +20,6 @@ from app.history import YOU, Row
 from app.markers import label
 from app.viewport import Viewport
 from meshcore import HalfEdgeMesh, MeshError, Operation
-from meshcore.halfedge import MeshArrays
 
 SAMPLES = 2
 """Frames are drawn this many times larger: a still picture takes more care."""
@@ -40,14 +39,10 @@ class Film:
             raise MeshError(NO_MESH)
         self.name = document.name
         self.rows: tuple[Row, ...] = tuple(document.history)
-        self._mesh = HalfEdgeMesh(
-            MeshArrays(*(array.copy() for array in mesh.arrays)),
-            list(mesh.outline),
-            mesh.degree_cap,
-        )
+        self._mesh = mesh.copy(history=True)
         self._state = document.history.cursor
         track = Track()
-        track.follow(document.history, mesh.score, mesh.optimum)
+        track.follow(document.history)
         self.scores, self.optima = track.scores, track.optima
 
     @classmethod
