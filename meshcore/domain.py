@@ -96,23 +96,28 @@ class Domain:
         self.hole_corners: tuple[Flags, ...] = tuple(marked[1:])
 
     @classmethod
-    def from_json(cls, source: str | os.PathLike[str] | Mapping[str, Any]) -> Domain:
+    def from_json(
+        cls,
+        source: str | os.PathLike[str] | Mapping[str, Any],
+        corner_angle: float = CORNER_ANGLE,
+    ) -> Domain:
         """Read a domain from a JSON file, or from what such a file holds.
 
         The form is ``{"outline": [[x, y], ...], "holes": [[[x, y], ...], ...]}``, either
         orientation, with optional ``"name"``, ``"corners"`` (a list of booleans, one for each
-        outline point) and ``"hole_corners"`` (such a list, or null, for each hole).
+        outline point) and ``"hole_corners"`` (such a list, or null, for each hole). Where they are
+        left out, corners are where the boundary turns by more than `corner_angle` degrees.
 
         Raises:
             MeshError: the file is missing or not JSON (with the line), or its content is no
                 domain; the message begins with the file's name.
         """
         if isinstance(source, Mapping):
-            return _from_mapping(source)
+            return _from_mapping(source, corner_angle)
         path = Path(source)
-        content = _load(path)
+        content = load_json(path)
         try:
-            domain = _from_mapping(content)
+            domain = _from_mapping(content, corner_angle)
         except MeshError as error:
             raise MeshError(f"{path}: {error}") from error
         domain.name = domain.name or path.stem
@@ -296,7 +301,8 @@ def _capital(text: str) -> str:
     return text[0].upper() + text[1:]
 
 
-def _load(path: Path) -> Any:
+def load_json(path: Path) -> Any:
+    """Return what a JSON file holds; MeshError that begins with the path if there is none."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
@@ -323,7 +329,7 @@ def _reason(error: Exception) -> str:
     return text[:1].lower() + text[1:].strip().rstrip(".")
 
 
-def _from_mapping(content: Any) -> Domain:
+def _from_mapping(content: Any, corner_angle: float) -> Domain:
     if not isinstance(content, Mapping):
         raise MeshError('A domain is a JSON object with an "outline".')
     if "outline" not in content:
@@ -342,7 +348,7 @@ def _from_mapping(content: Any) -> Domain:
     name = content.get("name", "")
     if not isinstance(name, str):
         raise MeshError('"name" is not a text.')
-    return Domain(outline, rings, content.get("corners"), hole_corners, name)
+    return Domain(outline, rings, content.get("corners"), hole_corners, name, corner_angle)
 
 
 def _pairs(ring: Any, what: str) -> list[list[float]]:
