@@ -4,7 +4,7 @@ Irregular vertices are the only loud thing (vermilion and blue that colour-blind
 apart); controls have one accent. All distances are multiples of :data:`GRID`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 GRID = 8
 """Pixels: margins and gaps are multiples of this, or half of it inside small controls."""
@@ -99,12 +99,22 @@ DARK = Theme(
 
 THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
 
+COLOURS = {
+    "vermilion": ("Vermilion and blue", "#d55e00", "#0072b2"),
+    "gold": ("Gold and violet", "#a66f00", "#8a63d2"),
+    "strong": ("Red and navy, stronger", "#b3261e", "#1f4fa3"),
+}
+"""Pairs for degrees above and below, with their names. In each, one is warm and one is cold, which
+colour-blind people can tell apart, and white numbers can be read on both.
+"""
 
-def theme(name: str) -> Theme:
-    """The theme called ``name``: ``"light"`` or ``"dark"``."""
+
+def theme(name: str, colours: str = "vermilion") -> Theme:
+    """The theme called ``name``, ``"light"`` or ``"dark"``, with one of :data:`COLOURS`."""
     if name not in THEMES:
         raise ValueError(f"There is no theme '{name}'; choose one of {', '.join(THEMES)}.")
-    return THEMES[name]
+    _, plus, minus = COLOURS[colours]
+    return replace(THEMES[name], plus=plus, minus=minus)
 
 
 def style_sheet(theme: Theme) -> str:
@@ -164,6 +174,16 @@ QPushButton#Primary:hover {{ background: {t.accent_hover}; border-color: {t.acce
 QPushButton#Primary:disabled {{ background: {t.pressed}; border-color: {t.pressed};
                                color: {t.faint}; }}
 QPushButton#Link {{ background: transparent; border: 0; color: {t.accent}; padding: 4px; }}
+QPushButton#Chip {{ background: transparent; border: 0; border-radius: 4px; padding: 2px 6px;
+                   font-size: 11px; color: {t.muted}; }}
+QPushButton#Chip:hover {{ background: {t.hover}; }}
+QPushButton#Chip:checked {{ background: {t.accent_soft}; color: {t.accent}; font-weight: 600; }}
+QPushButton#Chip:focus {{ border: 1px solid {t.accent}; padding: 1px 5px; }}
+QPushButton#ValueLink {{ background: transparent; border: 0; padding: 0; font-weight: 600;
+                        color: {t.accent}; text-decoration: underline; }}
+QPushButton#ValueLink:hover {{ color: {t.accent_hover}; }}
+QPushButton#ValueLink:disabled {{ color: {t.text}; text-decoration: none; }}
+QPushButton#ValueLink[warns="true"] {{ color: {t.warning}; }}
 QPushButton#Segment {{ border-radius: 0; padding: 6px 16px; }}
 QPushButton#Segment:checked {{ background: {t.accent_soft}; border-color: {t.accent};
                               color: {t.accent}; font-weight: 600; }}

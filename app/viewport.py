@@ -68,3 +68,15 @@ class Viewport:
         centre = (float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0)
         pixels = float(np.clip((room / extent).min(), NEAREST, FARTHEST))
         return replace(self, centre=centre, pixels=pixels)
+
+    def around(self, points: np.ndarray, least: float = 72.0) -> "Viewport":
+        """The view centred on ``points`` (n, 2 or 3), so close that they are ``least`` pixels wide
+        or high; a view that shows them larger already, and fully, keeps its scale.
+        """
+        points = np.asarray(points, dtype=float)
+        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        extent = max(float((high - low).max()), 1e-12 + 1e-9 * float(np.abs(high).max()))
+        room = 0.8 * min(self.size)
+        pixels = min(max(self.pixels, least / extent), max(room, least) / extent)
+        centre = (float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0)
+        return replace(self, centre=centre, pixels=float(np.clip(pixels, NEAREST, FARTHEST)))

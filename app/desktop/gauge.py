@@ -12,11 +12,14 @@ from meshcore import HalfEdgeMesh
 
 PAUSE = 120
 """Milliseconds from a change to the measuring; more changes meanwhile do not put it off."""
+LATE = 400
+"""Milliseconds without a new measure after which the old one is called stale, so that a played run
+does not make the panels flicker."""
 
 
 class Gauge(QObject):
-    """Follows ``document``. ``aged()`` when what was measured is no longer of this mesh,
-    ``measured()`` when :attr:`summary` is new.
+    """Follows ``document``. ``measured()`` when :attr:`summary` is new or none, ``aged()`` when it
+    has been of an earlier state of the mesh for a while.
 
     A change costs the editing a timer's start and nothing else; the copy of the mesh is made in
     the pause. One thread at a time: a change while it works calls it off.
@@ -31,6 +34,8 @@ class Gauge(QObject):
         self.summary: QualitySummary | None = None
         self.fresh = False
         """True while :attr:`summary` is that of the mesh as it is."""
+        self.stale = True
+        """True while it is not, and has not been for a while."""
         self._dispatch = Dispatcher()
         self._thread: threading.Thread | None = None
         self._cancel = threading.Event()
@@ -38,6 +43,10 @@ class Gauge(QObject):
         self._pause.setSingleShot(True)
         self._pause.setInterval(PAUSE)
         self._pause.timeout.connect(self._on_pause)
+        self._late = QTimer(self)
+        self._late.setSingleShot(True)
+        self._late.setInterval(LATE)
+        self._late.timeout.connect(self._on_late)
         document.replaced.connect(self._on_replaced)
         document.changed.connect(self._on_changed)
         self._on_replaced()
@@ -47,24 +56,31 @@ class Gauge(QObject):
         self._document.replaced.disconnect(self._on_replaced)
         self._document.changed.disconnect(self._on_changed)
         self._pause.stop()
+        self._late.stop()
         self._cancel.set()
         if self._thread is not None:
             self._thread.join()
             self._thread = None
 
     def _on_replaced(self) -> None:
-        self.summary = None
+        self.summary, self.stale = None, True
         self._on_changed()
+        self.measured.emit()
 
     def _on_changed(self) -> None:
         self._cancel.set()
-        if self.fresh or self.summary is None:
-            self.fresh = False
-            self.aged.emit()
+        self.fresh = False
         if self._document.empty:
             self._pause.stop()
-        elif not self._pause.isActive():
-            self._pause.start()
+            self._late.stop()
+            return
+        for timer in (self._pause, self._late):
+            if not timer.isActive():
+                timer.start()
+
+    def _on_late(self) -> None:
+        self.stale = True
+        self.aged.emit()
 
     def _on_pause(self) -> None:
         mesh = self._document.mesh
@@ -92,5 +108,6 @@ class Gauge(QObject):
             if not self._document.empty and not self._pause.isActive():
                 self._pause.start()
         elif summary is not None:
-            self.summary, self.fresh = summary, True
+            self.summary, self.fresh, self.stale = summary, True, False
+            self._late.stop()
             self.measured.emit()

@@ -1,19 +1,32 @@
-"""The score panel: s, s*, the gap between them, and the counts of the mesh."""
+"""The dashboard: s, s*, the gap between them, irregular vertices, and the counts of the mesh."""
 
-from qtpy.QtCore import Qt
+from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from app.desktop.widgets import Bar, Fact, Optimal, Tally, named, tabular
+from app.desktop.gauge import Gauge
+from app.desktop.tally import Tally
+from app.desktop.widgets import Bar, Fact, Link, Optimal, named, tabular
 from app.document import Document
 from app.theme import GRID, Theme
 
+_NONE = "\u2013"
+_STALE = "\u2026"
+
 
 class ScorePanel(QWidget):
-    """Follows the document's score."""
+    """Follows the document's score at once, and what ``gauge`` measures when it is there.
 
-    def __init__(self, document: Document, theme: Theme) -> None:
+    ``delta_chosen(delta)`` when a column of the tally is clicked, ``inverted_chosen()`` when the
+    count of inverted elements is.
+    """
+
+    delta_chosen = Signal(int)
+    inverted_chosen = Signal()
+
+    def __init__(self, document: Document, gauge: Gauge, theme: Theme) -> None:
         super().__init__()
         self._document = document
+        self._gauge = gauge
         self.score = named("", "Big")
         self.score.setFont(tabular(self.score.font()))
         self.score.setToolTip("s: the sum of |degree \u2212 desired degree| over all vertices")
@@ -21,13 +34,20 @@ class ScorePanel(QWidget):
         self.goal.setToolTip("s*: no connectivity can have a lower score")
         self.gap = named("", "Label")
         self.bar = Bar(theme)
+        self.bar.setToolTip("How much of the way from the start to the optimum is done")
         self.optimal = Optimal(theme)
+        self.irregular = Fact("Irregular vertices", "Vertices whose degree is not the desired one")
+        self.tally = Tally(theme)
         self.gained = Fact("Normalised return", "(start \u2212 best) / (start \u2212 optimum)")
         self.way = Fact("Start and best", "Score at the start, and the lowest one since")
-        self.irregular = Tally(theme)
-        self.counts = Fact("Mesh")
+        self.elements = Fact("Elements", "Elements; quads fall into blocks, each a regular grid")
+        self.inverted = Link("Inverted elements", "Elements folded over; click to go to them")
         self._arrange()
+        self.tally.chosen.connect(self.delta_chosen)
+        self.inverted.clicked.connect(self.inverted_chosen)
         document.score_changed.connect(self._on_score_changed)
+        gauge.aged.connect(self._on_measured)
+        gauge.measured.connect(self._on_measured)
         self._on_score_changed()
 
     def release(self) -> None:
@@ -36,13 +56,13 @@ class ScorePanel(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in other colours."""
-        for part in (self.bar, self.optimal, self.irregular):
+        for part in (self.bar, self.optimal, self.tally):
             part.set_theme(theme)
 
     def _arrange(self) -> None:
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(GRID)
+        layout.setSpacing(6)
         layout.addWidget(named("SCORE", "Heading"))
         line = QHBoxLayout()
         line.setSpacing(2 * GRID)
@@ -54,20 +74,17 @@ class ScorePanel(QWidget):
         words.addWidget(self.goal)
         words.addWidget(self.gap)
         words.addStretch(1)
-        line.addWidget(self.score)
+        line.addWidget(self.score, 0, Qt.AlignmentFlag.AlignVCenter)
         line.addWidget(self.words, 1)
         line.addWidget(self.optimal, 1)
         layout.addLayout(line)
         layout.addWidget(self.bar)
         layout.addSpacing(GRID // 2)
-        layout.addWidget(self.gained)
-        layout.addWidget(self.way)
-        tally = QHBoxLayout()
-        tally.addWidget(named("Irregular vertices", "Label"))
-        tally.addStretch(1)
-        tally.addWidget(self.irregular, 0, Qt.AlignmentFlag.AlignRight)
-        layout.addLayout(tally)
-        layout.addWidget(self.counts)
+        layout.addWidget(self.irregular)
+        layout.addWidget(self.tally)
+        layout.addSpacing(GRID // 2)
+        for fact in (self.gained, self.way, self.elements, self.inverted):
+            layout.addWidget(fact)
 
     def _on_score_changed(self) -> None:
         document, mesh = self._document, self._document.mesh
@@ -75,15 +92,15 @@ class ScorePanel(QWidget):
         for part in (self.words, self.bar):
             part.setVisible(not document.at_optimum)
         self.score.setVisible(mesh is not None)
+        self._on_measured()
         if mesh is None:
             self.goal.setText("No mesh")
             self.gap.setText("")
-            for fact in (self.gained, self.way, self.counts):
-                fact.text = "\u2013"
-            self.irregular.set_counts(0, 0)
+            for fact in (self.gained, self.way, self.irregular):
+                fact.text = _NONE
+            self.tally.clear()
             self.bar.share = 0.0
             return
-        delta = mesh.irregularity()
         self.score.setText(f"{mesh.score:,}")
         self.goal.setText(f"Optimum {mesh.optimum:,}")
         gap = mesh.score - mesh.optimum
@@ -91,6 +108,27 @@ class ScorePanel(QWidget):
         self.bar.share = document.normalised_return
         self.gained.text = f"{document.normalised_return:.2f}"
         self.way.text = f"{document.start_score:,} \u2192 {document.best_score:,}"
-        self.irregular.set_counts(int((delta > 0).sum()), int((delta < 0).sum()))
-        noun = "quads" if mesh.k == 4 else "triangles"
-        self.counts.text = f"{mesh.n_elements:,} {noun}, {mesh.n_vertices:,} vertices"
+        self.irregular.text = f"{mesh.irregular_count:,} of {mesh.n_vertices:,}"
+        self.tally.show_deltas(mesh.irregularity())
+
+    def _on_measured(self) -> None:
+        """Blocks and inverted elements; an ellipsis while they are not yet of this mesh."""
+        mesh, summary = self._document.mesh, self._gauge.summary
+        if mesh is None:
+            self.elements.text = _NONE
+            self.inverted.show_value(_NONE)
+            return
+        if mesh.k == 4:
+            blocks = "blocks"
+            number = _STALE
+            if not self._gauge.stale and summary is not None and summary.blocks is not None:
+                number = f"{summary.blocks:,}"
+                blocks = "block" if summary.blocks == 1 else blocks
+            self.elements.text = f"{mesh.n_elements:,} quads in {number} {blocks}"
+        else:
+            self.elements.text = f"{mesh.n_elements:,} triangles"
+        if summary is None:
+            self.inverted.show_value(_STALE)
+            return
+        count = len(summary.inverted)
+        self.inverted.show_value(f"{count:,}", leads=count > 0, warns=count > 0)

@@ -67,6 +67,10 @@ class Tally(QWidget):
         )
         self.update()
 
+    def clear(self) -> None:
+        """No mesh."""
+        self.show_deltas(np.empty(0, dtype=int))
+
     def column(self, delta: int) -> QRectF:
         """Where the whole column of ``delta`` is, its number and label included."""
         columns = self.columns

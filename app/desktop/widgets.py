@@ -1,8 +1,16 @@
 """Small widgets that the panels are made of."""
 
-from qtpy.QtCore import QRectF, QSize, Qt
-from qtpy.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
-from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtCore import QRectF, Qt, Signal
+from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent
+from qtpy.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.desktop import icons
 from app.theme import GRID, Theme
@@ -99,68 +107,50 @@ class Bar(QWidget):
         painter.end()
 
 
-class Tally(QWidget):
-    """Counts of irregular vertices by the sign of delta, each behind a disc of its colour."""
+class Link(QWidget):
+    """One line like :class:`Fact` whose value can be clicked to be taken there.
 
-    def __init__(self, theme: Theme) -> None:
+    ``clicked()`` comes only while there is somewhere to go.
+    """
+
+    clicked = Signal()
+
+    def __init__(self, title: str, tooltip: str = "") -> None:
         super().__init__()
-        self._theme = theme
-        self._plus = self._minus = 0
-        self.setFont(tabular(self.font()))
-        self.setFixedHeight(20)
-
-    def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
-        self._theme = theme
-        self.update()
+        self._title = title
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        self._value = QPushButton()
+        self._value.setObjectName("ValueLink")
+        self._value.setFont(tabular(self._value.font()))
+        self._value.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self._value.clicked.connect(lambda checked=False: self.clicked.emit())
+        layout.addWidget(named(title, "Label"))
+        layout.addStretch(1)
+        layout.addWidget(self._value)
+        self.setToolTip(tooltip)
+        self.show_value("\u2013")
 
     @property
-    def counts(self) -> tuple[int, int]:
-        """Vertices above and below their desired degree."""
-        return self._plus, self._minus
+    def text(self) -> str:
+        """What the value says."""
+        return str(self._value.text())
 
-    def set_counts(self, plus: int, minus: int) -> None:
-        """Show these numbers."""
-        self._plus, self._minus = plus, minus
-        self.setToolTip(f"{plus:,} above their desired degree (+), {minus:,} below it (\u2212)")
-        self.updateGeometry()
-        self.update()
+    @property
+    def button(self) -> QPushButton:
+        """What is clicked."""
+        return self._value
 
-    def sizeHint(self) -> QSize:  # noqa: N802
-        """Room for both counts."""
-        metrics = QFontMetrics(self._bold())
-        width = sum(metrics.horizontalAdvance(f"{n:,}") for n in self.counts)
-        return QSize(width + 2 * 22 + 2 * GRID, 20)
-
-    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint two discs with a sign in them, and the counts."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        bold = self._bold()
-        x, middle = 0.0, self.height() / 2.0
-        for sign, count, colour in (
-            ("+", self._plus, self._theme.plus),
-            ("\u2212", self._minus, self._theme.minus),
-        ):
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(colour))
-            disc = QRectF(x, middle - 8, 16, 16)
-            painter.drawEllipse(disc)
-            painter.setFont(bold)
-            painter.setPen(QColor(self._theme.marker_text))
-            painter.drawText(disc, Qt.AlignmentFlag.AlignCenter, sign)
-            painter.setPen(QColor(self._theme.text))
-            width = QFontMetrics(bold).horizontalAdvance(f"{count:,}")
-            box = QRectF(x + 22, 0, width + 4, self.height())
-            painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, f"{count:,}")
-            x += 22 + width + 2 * GRID
-        painter.end()
-
-    def _bold(self) -> QFont:
-        font = tabular(QFont(self.font()))
-        font.setPixelSize(13)
-        font.setWeight(QFont.Weight.DemiBold)
-        return font
+    def show_value(self, text: str, leads: bool = False, warns: bool = False) -> None:
+        """Show ``text``; ``leads`` somewhere when clicked; ``warns`` in the colour of warnings."""
+        self._value.setText(f"\u26a0 {text}" if warns else text)
+        self._value.setEnabled(leads)
+        shape = Qt.CursorShape.PointingHandCursor if leads else Qt.CursorShape.ArrowCursor
+        self._value.setCursor(shape)
+        self._value.setAccessibleName(f"{self._title}: {text}")
+        if self._value.property("warns") != warns:
+            self._value.setProperty("warns", warns)
+            self._value.style().polish(self._value)
 
 
 class Notice(QFrame):
@@ -211,8 +201,10 @@ class Optimal(QFrame):
         head.setSpacing(6)
         self._mark = QLabel()
         head.addWidget(self._mark)
-        head.addWidget(named("At the optimum", "OptimalTitle"), 1)
-        proof = named("Provably no better connectivity under these desired degrees.", "OptimalText")
+        head.addWidget(named("Provably optimal", "OptimalTitle"), 1)
+        proof = named(
+            "s = s*: no connectivity is better under these desired degrees.", "OptimalText"
+        )
         proof.setWordWrap(True)
         layout.addLayout(head)
         layout.addWidget(proof)

@@ -20,19 +20,20 @@ from app.desktop import actions, pages
 from app.desktop.agent import AgentControl
 from app.desktop.agent_panel import AgentPanel
 from app.desktop.canvas import Canvas
+from app.desktop.dashboard import Dashboard
 from app.desktop.dispatch import Dispatcher
 from app.desktop.editing import Editing
 from app.desktop.files import Files
 from app.desktop.film import Film
 from app.desktop.guide import Guide
 from app.desktop.operations_panel import OperationsPanel
-from app.desktop.score_panel import ScorePanel
+from app.desktop.preferences import Preferences
 from app.desktop.settings import Settings
 from app.desktop.sidebar import sidebar
 from app.desktop.warmup import Warmup
 from app.desktop.widgets import Notice
 from app.document import Document
-from app.theme import THEMES, style_sheet, theme
+from app.theme import style_sheet, theme
 
 
 class MainWindow(QMainWindow):
@@ -47,7 +48,6 @@ class MainWindow(QMainWindow):
     def __init__(
         self,
         document: Document,
-        theme_name: str = "light",
         assistant: Assistant | None = None,
         ready: bool = False,
         settings: Settings | None = None,
@@ -55,15 +55,24 @@ class MainWindow(QMainWindow):
         super().__init__()
         self.document = document
         self.settings = settings or Settings()
-        self.theme = theme(theme_name)
+        self.theme = theme("light", self.settings.colours)
         self.assistant = assistant or Assistant(document, Dispatcher())
         self.ready = self.agent_ready = ready
         self.files, self.editing, self.film = Files(self), Editing(self), Film(self)
         self.agent, self.guide = AgentControl(self), Guide(self)
-        self.controllers = (self.files, self.editing, self.film, self.agent, self.guide)
+        self.dashboard, self.preferences = Dashboard(self), Preferences(self)
+        self.controllers = (
+            self.files,
+            self.editing,
+            self.film,
+            self.agent,
+            self.guide,
+            self.dashboard,
+            self.preferences,
+        )
         self.canvas = Canvas(document, self.theme)
         self.actions_by_id = actions.ActionSet(self)
-        self.score_panel = ScorePanel(document, self.theme)
+        self.score_panel = self.dashboard.score
         self.agent_panel = AgentPanel(document, self.assistant, self.actions_by_id, self.theme)
         self.operations_panel = OperationsPanel(document)
         self.operations_panel.ready = ready
@@ -71,7 +80,6 @@ class MainWindow(QMainWindow):
         self.warmup = Warmup(self)
         self._arrange()
         self._connect()
-        self.set_theme(theme_name)
         self._on_replaced()
 
     # Putting it together
@@ -99,7 +107,11 @@ class MainWindow(QMainWindow):
         self.row.setContentsMargins(0, 0, 0, 0)
         self.row.setSpacing(0)
         self.row.addWidget(middle, 1)
-        self.row.addWidget(sidebar(self.score_panel, self.agent_panel, self.operations_panel))
+        self.row.addWidget(
+            sidebar(
+                self.score_panel, self.agent_panel, self.operations_panel, self.dashboard.quality
+            )
+        )
         self.setCentralWidget(whole)
         self.said = QLabel()
         self.pointed = QLabel()
@@ -155,7 +167,6 @@ class MainWindow(QMainWindow):
         for part in (
             *self.controllers,
             self.canvas,
-            self.score_panel,
             self.agent_panel,
             self.operations_panel,
         ):
@@ -190,17 +201,12 @@ class MainWindow(QMainWindow):
         self.said.setText(sentence)
 
     def set_theme(self, name: str) -> None:
-        """``"light"`` or ``"dark"``."""
-        self.theme = theme(name)
+        """``"light"`` or ``"dark"``, in the colours that the settings say."""
+        self.theme = theme(name, self.settings.colours)
         self.setStyleSheet(style_sheet(self.theme))
         self.actions_by_id.set_theme(self.theme)
-        for part in (self.canvas, self.score_panel, self.agent_panel, self.notice):
+        for part in (self.canvas, self.dashboard, self.agent_panel, self.notice):
             part.set_theme(self.theme)
-
-    def toggle_theme(self) -> None:
-        """The other theme."""
-        names = list(THEMES)
-        self.set_theme(names[1 - names.index(self.theme.name)])
 
     def refresh(self) -> None:
         """Enable what makes sense now."""

@@ -139,12 +139,14 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
     from app.assistant import Assistant
     from app.desktop.application import application
     from app.desktop.dispatch import Dispatcher
+    from app.desktop.settings import Settings
     from app.desktop.window import MainWindow
     from app.document import Document
     from meshcore import compiled
 
     compiled.warm()
     application()
+    Settings().clear()
     windows = []
 
     def build(mesh: HalfEdgeMesh | None = None, ready: bool = True, **options: int) -> MainWindow:
@@ -173,6 +175,6 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
         window.close()
         assert not [t for t in window.findChildren(QTimer) if t.isActive()]
     for thread in threading.enumerate():
-        if thread.name.startswith(("assistant", "warmup")):
+        if thread.name.startswith(("assistant", "warmup", "quality")):
             thread.join(10)
             assert not thread.is_alive()

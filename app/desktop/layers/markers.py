@@ -21,9 +21,21 @@ class MarkersLayer(Layer):
         self._font = QFont(font)
         self._font.setWeight(QFont.Weight.DemiBold)
         self._discs = np.empty((0, 5))  # x, y, radius, delta, corner? of visible irregular vertices
+        self._numbers = True
         self._corners = np.empty((0, 2))
         self._rings = np.empty((0, 2))
         self._outline = QPainterPath()
+
+    @property
+    def numbers(self) -> bool:
+        """Whether discs carry their number, where it can be read."""
+        return self._numbers
+
+    @numbers.setter
+    def numbers(self, shown: bool) -> None:
+        if shown != self._numbers:
+            self._numbers = shown
+            self.changed()
 
     def show(self, marks: Markers | None, viewport: Viewport, crowd: bool, outlined: bool) -> None:
         """Paint these markers as seen through ``viewport``.
@@ -85,7 +97,7 @@ class MarkersLayer(Layer):
             painter.setPen(halo if r > 4 else Qt.PenStyle.NoPen)
             painter.setBrush(plus if delta > 0 else minus)
             painter.drawEllipse(QPointF(x, y), r, r)
-            if r >= READABLE:
+            if self._numbers and r >= READABLE:
                 font.setPixelSize(max(8, round(1.2 * r)))
                 painter.setFont(font)
                 painter.setPen(QColor(self.theme.marker_text))

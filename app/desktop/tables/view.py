@@ -20,7 +20,7 @@ ACTIONS: tuple[Action, ...] = (
         "theme",
         "Light or dark",
         "Switch between the light and the dark theme",
-        lambda window: window.toggle_theme(),
+        lambda window: window.preferences.toggle_theme(),
         ("Ctrl+T",),
         menu="View",
         icon="theme",

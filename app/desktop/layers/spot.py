@@ -1,0 +1,63 @@
+"""A frame around what one has been taken to, for a few seconds."""
+
+import numpy as np
+from qtpy.QtCore import QObject, QPointF, QRect, QRectF, Qt, QTimer
+from qtpy.QtGui import QPainter, QPolygonF
+
+from app.desktop.layers.layer import Layer, pen
+from app.theme import Theme
+
+SECONDS = 4.0
+_RING = 20.0
+_SLACK = 6.0
+
+
+class SpotLayer(Layer):
+    """Outlines an element, or rings a vertex."""
+
+    def __init__(self, theme: Theme, parent: QObject) -> None:
+        super().__init__(theme)
+        self._places: np.ndarray | None = None
+        self._timer = QTimer(parent)
+        self._timer.setSingleShot(True)
+        self._timer.timeout.connect(self.clear)
+
+    @property
+    def places(self) -> np.ndarray | None:
+        """(n, 2) in the plane what is framed: one point, or the corners of an element."""
+        return self._places
+
+    def show(self, places: np.ndarray) -> None:
+        """Frame ``places`` (n, 2 or 3) in the plane."""
+        before = self._rect()
+        self._places = np.asarray(places, dtype=float)[:, :2]
+        self._timer.start(int(SECONDS * 1000))
+        self.changed(before.united(self._rect()))
+
+    def clear(self) -> None:
+        """Take the frame away."""
+        self._timer.stop()
+        if self._places is not None:
+            before = self._rect()
+            self._places = None
+            self.changed(before)
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """A line in the accent's colour on a halo."""
+        if self._places is None:
+            return
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        points = [QPointF(x, y) for x, y in self.viewport.to_screen(self._places).tolist()]
+        for colour, width in ((self.theme.background, 6.0), (self.theme.accent, 2.5)):
+            painter.setPen(pen(colour, width))
+            if len(points) == 1:
+                painter.drawEllipse(points[0], _RING, _RING)
+            else:
+                painter.drawPolygon(QPolygonF(points))
+
+    def _rect(self) -> QRectF:
+        if self._places is None:
+            return QRectF()
+        at = self.viewport.to_screen(self._places)
+        low, high = at.min(axis=0) - _RING - _SLACK, at.max(axis=0) + _RING + _SLACK
+        return QRectF(QPointF(*low.tolist()), QPointF(*high.tolist()))
