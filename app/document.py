@@ -6,11 +6,12 @@ one row of the history, so that both undo together.
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from app.history import YOU, History, Row, normalised_return
+from app.selection import Selection
 from app.signals import Signal
 from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict, io
 from meshcore.operations import CATALOGUE
@@ -60,6 +61,7 @@ class Document:
         self.auto_smooth = True
         self.revision = 0
         self._adopt(mesh, name, path)
+        self.selection = Selection(self)
 
     # What is here
 
@@ -206,32 +208,51 @@ class Document:
 
         return self._do("clean_all", "Clean all", -1, by, work)
 
-    def smooth(self, by: str = YOU) -> None:
-        """Smooth and untangle the whole mesh as one step."""
+    def smooth(self, by: str = YOU, vertices: np.ndarray | None = None) -> None:
+        """Smooth and untangle the whole mesh, or ``vertices`` (n,) alone, as one step."""
         mesh = self._need()
-        self._do("smooth", "Smooth", -1, by, lambda: _relax(mesh, None))
+        if vertices is None:
+            self._do("smooth", "Smooth", -1, by, lambda: _relax(mesh, None))
+        else:
+            chosen = vertices
+            self._do("smooth", "Smooth here", -1, by, lambda: _tidy(mesh, chosen))
+
+    def untangle(self, by: str = YOU) -> tuple[int, int]:
+        """Mend inverted elements as one step; returns how many there were, and how many stay."""
+        mesh = self._need()
+        return self._do("untangle", "Untangle", -1, by, lambda: _mend(mesh))
 
     def move(self, vertices: np.ndarray, positions: np.ndarray, by: str = YOU) -> None:
         """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step."""
         mesh = self._need()
         self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions))
 
-    def set_desired(self, vertex: int, degree: int) -> None:
-        """Ask for another degree at ``vertex``; s* and the normalised return start again."""
-        mesh = self._need()
-        self._do("desired", "Desired degree", -1, YOU, lambda: mesh.set_desired(vertex, degree))
+    def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
+        """Ask for another degree at one vertex or several (n,), as one step.
 
-    def set_geometric(self, vertex: int, flag: bool) -> None:
-        """Mark ``vertex`` as a corner that stays, or no longer."""
+        s* and the normalised return start again.
+        """
         mesh = self._need()
-        title = "Make corner" if flag else "Free corner"
-        self._do("geometric", title, -1, YOU, lambda: mesh.set_geometric(vertex, flag))
+        now = mesh.desired()
+        wanted = [v for v in _ids(vertices) if now[v] != degree]
+        title = _counted("Desired degree", wanted)
+        self._do("desired", title, -1, YOU, lambda: _each(wanted, mesh.set_desired, degree))
 
-    def set_locked(self, vertex: int, flag: bool) -> None:
-        """Lock ``vertex``, or unlock it."""
+    def set_geometric(self, vertices: int | np.ndarray, flag: bool) -> None:
+        """Mark one vertex or several (n,) as corners that stay, or no longer, as one step."""
         mesh = self._need()
-        title = "Lock" if flag else "Unlock"
-        self._do("locked", title, -1, YOU, lambda: mesh.set_locked(vertex, flag))
+        now = mesh.geometric()
+        wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
+        title = _counted("Make corner" if flag else "Free corner", wanted)
+        self._do("geometric", title, -1, YOU, lambda: _each(wanted, mesh.set_geometric, flag))
+
+    def set_locked(self, vertices: int | np.ndarray, flag: bool) -> None:
+        """Lock one vertex or several (n,), or unlock them, as one step."""
+        mesh = self._need()
+        now = mesh.locked()
+        wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
+        title = _counted("Lock" if flag else "Unlock", wanted)
+        self._do("locked", title, -1, YOU, lambda: _each(wanted, mesh.set_locked, flag))
 
     # Going back and forth
 
@@ -335,3 +356,31 @@ def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None) -> None:
         relax(mesh)
     else:
         relax(mesh, around=around)
+
+
+def _tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
+    """As :func:`_relax` for exactly these vertices; imported late, too."""
+    from app.tidying import tidy
+
+    tidy(mesh, vertices)
+
+
+def _mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
+    """Untangle what is inverted; imported late, too."""
+    from app.tidying import mend
+
+    return mend(mesh)
+
+
+def _ids(vertices: int | np.ndarray) -> list[int]:
+    return [int(v) for v in np.atleast_1d(np.asarray(vertices)).tolist()]
+
+
+def _counted(title: str, vertices: list[int]) -> str:
+    """``Lock``, or ``Lock, 12 vertices``."""
+    return title if len(vertices) < 2 else f"{title}, {len(vertices):,} vertices"
+
+
+def _each(vertices: list[int], change: Callable[[int, Any], None], value: int | bool) -> None:
+    for vertex in vertices:
+        change(vertex, value)

@@ -1,0 +1,47 @@
+"""Better positions for chosen vertices, and for what is folded; imported late, for scipy is slow
+to come.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshcore import HalfEdgeMesh
+from meshcore.quality import inverted
+from meshcore.region import chosen, elements_at
+from meshcore.smoothing import relax, smooth
+from meshcore.untangle import untangle
+
+
+def tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
+    """Smooth ``vertices`` (n,), and untangle them where an element at them is folded.
+
+    No other vertex moves; corners and locked ones stay. Writes to the mesh's journal.
+    """
+    _move(mesh, *smooth(mesh, vertices.tolist()))
+    if len(chosen(mesh, vertices.tolist()).inverted()):
+        done = untangle(mesh, vertices.tolist())
+        _move(mesh, done.vertices, done.positions)
+
+
+def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
+    """Untangle around the inverted elements, place after place; the rest stays where it is.
+
+    Returns how many elements were inverted, and how many still are. Writes to the mesh's journal.
+    """
+    pending = dict.fromkeys(inverted(mesh).tolist())
+    count = len(pending)
+    while pending:
+        element = next(iter(pending))
+        del pending[element]
+        halfedges = mesh.k * element + np.arange(mesh.k)
+        corners = mesh.arrays.edge[halfedges, 0].astype(np.int64)
+        relax(mesh, corners.tolist())
+        for near in elements_at(mesh, corners).tolist():
+            pending.pop(near, None)
+    return count, len(inverted(mesh)) if count else 0
+
+
+def _move(mesh: HalfEdgeMesh, vertices: np.ndarray, positions: np.ndarray) -> None:
+    if len(vertices):
+        mesh.move(vertices, positions)

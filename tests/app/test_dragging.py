@@ -1,0 +1,73 @@
+"""Dragging vertices: where they may go."""
+
+import numpy as np
+import pytest
+
+from app.document import Document
+from app.dragging import CORNER, LOCK, Drag, refusal
+from meshcore import HalfEdgeMesh, generate, shapes
+
+
+@pytest.fixture
+def board() -> HalfEdgeMesh:
+    """Four by four unit quads; vertex i + 5 j at (i, j)."""
+    points = np.array([(i, j) for j in range(5) for i in range(5)], float)
+    corners = [i + 5 * j for j in range(4) for i in range(4)]
+    return HalfEdgeMesh.from_elements(points, [(c, c + 1, c + 6, c + 5) for c in corners])
+
+
+def test_a_vertex_inside_goes_where_the_mouse_is_and_the_mesh_waits(board):
+    drag = Drag(board, [12], 12)
+    assert not drag.moved
+    drag.to(2.4, 1.7)
+    assert drag.moved
+    assert drag.places.tolist() == [[2.4, 1.7, 0.0]]
+    assert board.points[12].tolist() == [2.0, 2.0, 0.0]
+    assert len(drag.segments) == 4
+    assert len(drag.folded) == 0
+    drag.to(3.4, 3.3)
+    assert len(drag.folded) > 0
+    document = Document(board)
+    document.move(drag.vertices, drag.places)
+    assert board.points[12].tolist() == [3.4, 3.3, 0.0]
+    document.undo()
+    assert board.points[12].tolist() == [2.0, 2.0, 0.0]
+
+
+def test_a_boundary_vertex_stays_on_its_side_and_between_its_neighbours(board):
+    drag = Drag(board, [2], 2)
+    drag.to(2.3, 1.5)
+    assert drag.places.tolist() == [[2.3, 0.0, 0.0]]
+    drag.to(9.0, -4.0)
+    assert 2.9 < drag.places[0, 0] < 3.0 and drag.places[0, 1] == 0.0
+    assert len(drag.folded) == 0
+
+
+def test_on_a_curve_it_follows_the_curve():
+    mesh = generate.mesh_domain(shapes.shape("disc"), "quad")
+    slides = mesh.boundary() & ~mesh.geometric()
+    vertex = int(np.flatnonzero(slides)[0])
+    drag = Drag(mesh, [vertex], vertex)
+    x, y = mesh.points[vertex, :2]
+    drag.to(x - 0.05 * y, y + 0.05 * x)
+    assert drag.moved
+    radius = np.hypot(*mesh.points[vertex, :2])
+    assert abs(np.hypot(*drag.places[0, :2]) - radius) < 0.02 * radius
+
+
+def test_corners_and_locked_vertices_stay_and_say_so(board):
+    assert refusal(board, 0) == CORNER
+    board.set_locked(12)
+    assert refusal(board, 12) == LOCK
+    assert refusal(board, 6) == refusal(board, 2) == ""
+
+
+def test_a_selection_moves_as_one_without_those_that_stay(board):
+    board.set_locked(13)
+    drag = Drag(board, [0, 1, 2, 6, 7, 12, 13], 7)
+    assert drag.vertices.tolist() == [1, 2, 6, 7, 12]
+    drag.to(2.2, 1.1)
+    moved = dict(zip(drag.vertices.tolist(), drag.places.tolist(), strict=True))
+    assert moved[6] == pytest.approx([1.2, 1.1, 0.0])
+    assert moved[12] == pytest.approx([2.2, 2.1, 0.0])
+    assert moved[1] == pytest.approx([1.2, 0.0, 0.0]) and moved[2] == pytest.approx([2.2, 0.0, 0.0])

@@ -1,0 +1,67 @@
+"""Ghosts and numbers of what operations would do."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from app.preview import best, choices, following, ghost
+from meshcore import OperationRefused
+
+
+@pytest.mark.parametrize("kind", ["quad", "tri"])
+def test_the_numbers_are_those_of_the_operations(kind, star, triangles):
+    mesh = star if kind == "quad" else triangles
+    mesh.apply(*next((c.operation, h) for h in range(12) for c in choices(mesh, h) if c.allowed))
+    for e in mesh.element_ids()[::3].tolist():
+        for halfedge in range(mesh.k * e, mesh.k * e + mesh.k):
+            offered = choices(mesh, halfedge)
+            for choice in offered:
+                assert choice.allowed == (choice.change is not None)
+                if choice.allowed:
+                    seen = ghost(mesh, choice.operation, halfedge)
+                    edit = mesh.apply(choice.operation, halfedge)
+                    mesh.undo()
+                    assert choice.change == seen.change == edit.score_change
+            chosen = best(offered)
+            assert chosen is None or chosen.change == min(c.change for c in offered if c.allowed)
+
+
+def test_a_ghost_lies_in_the_plane_and_within_its_bounds(star):
+    halfedge = next(h for h in range(40) if star.check("global_split", h))
+    seen = ghost(star, "global_split", halfedge)
+    assert seen.added.shape[1:] == (2, 2)
+    low, high = np.array(seen.bounds[:2]), np.array(seen.bounds[2:])
+    assert (seen.added.reshape(-1, 2) >= low).all() and (seen.places <= high).all()
+    assert len(seen.places) == len(seen.delta) > 0
+
+
+def test_walking_through_what_is_allowed(star):
+    halfedge = next(h for h in range(40) if sum(c.allowed for c in choices(star, h)) > 2)
+    offered = choices(star, halfedge)
+    allowed = [choice.operation for choice in offered if choice.allowed]
+    at, met = None, []
+    for _ in allowed:
+        at = following(offered, at, 1).operation
+        met.append(at)
+    assert met == allowed
+    assert following(offered, at, 1).operation == allowed[0]
+    assert following(offered, allowed[0], -1).operation == allowed[-1]
+    assert following((), None, 1) is None
+
+
+def test_refused_ones_have_no_ghost(star):
+    boundary = next(h for h in range(40) if star.twin(h) < 0)
+    with pytest.raises(OperationRefused):
+        ghost(star, "flip_left", boundary)
+
+
+@pytest.mark.parametrize("module", ["app.preview", "app.selection", "app.dragging"])
+def test_import_brings_neither_qt_nor_torch(module):
+    code = (
+        f"import sys, {module}; "
+        "sys.exit(any(m.split('.')[0] in ('torch', 'qtpy', 'PySide6', 'agent') "
+        "for m in sys.modules))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0
