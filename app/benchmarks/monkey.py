@@ -132,8 +132,15 @@ class Monkey:
             return
         if isinstance(open_now, QDialog):
             self.dialogs.add(type(open_now).__name__)
+        elif open_now is None:
+            self.window.activateWindow()  # there may be no window manager to do it
         target = open_now or self.window
-        if self.rng.random() < 0.6:
+        what = self.rng.random()
+        if open_now is not None and what < 0.1:
+            self._press(target, "Esc")
+        elif open_now is None and what < 0.3:
+            self._edit()
+        elif what < 0.7:
             self._mouse(target)
         else:
             self._key(target)
@@ -193,11 +200,31 @@ class Monkey:
         )
         QApplication.sendEvent(widget, event)
 
+    def _edit(self) -> None:
+        """Point somewhere on the canvas and press the key of an operation."""
+        from qtpy.QtCore import QPoint
+        from qtpy.QtTest import QTest
+
+        from meshcore.operations import of_kind
+
+        canvas, mesh = self.window.canvas, self.window.document.mesh
+        if canvas.plotter is None or not canvas.isVisible():
+            return
+        place = mesh.points[self._pick(mesh.vertices())]
+        x, y = canvas.viewport.to_screen(place) + self.rng.normal(0.0, 12.0, 2)
+        if not canvas.rect().contains(round(x), round(y)):
+            self._press(self.window, "Home")
+            return
+        QTest.mouseMove(canvas.plotter, QPoint(round(x), round(y)))
+        self._press(self.window, self._pick(of_kind(mesh.kind)).key)
+
     def _key(self, target: Any) -> None:
+        self._press(target, self._pick(self.shortcuts if self.rng.random() < 0.7 else self.keys))
+
+    def _press(self, target: Any, name: str) -> None:
         from qtpy.QtGui import QKeySequence
         from qtpy.QtTest import QTest
 
-        name = self._pick(self.shortcuts if self.rng.random() < 0.7 else self.keys)
         combination = QKeySequence(name)[0]
         widget = target.focusWidget() or target
         if widget.isVisible():
