@@ -156,7 +156,15 @@ class Domain:
     def diameter(self) -> float:
         """The largest distance between two points of the outline."""
         hull = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(self.outline)))
-        return float(np.sqrt(((hull[:, None] - hull[None]) ** 2).sum(-1).max()))
+        hull = hull[:-1][::-1] if len(hull) > 3 else hull
+        # the farthest two lie on parallel lines around the hull, one of them along an edge: opposite
+        # that edge is the point where the edges begin to run back
+        angle = np.unwrap(np.arctan2(*np.diff(hull, axis=0, append=hull[:1]).T[::-1]))
+        opposite = np.searchsorted(np.append(angle, angle + 2 * np.pi), angle + np.pi)
+        ends = np.arange(len(hull))[:, None, None] + np.arange(2)[None, :, None]
+        others = opposite[:, None, None] + np.arange(-1, 2)[None, None, :]
+        apart = hull[ends % len(hull)] - hull[others % len(hull)]
+        return float(np.sqrt((apart**2).sum(-1).max()))
 
     def __repr__(self) -> str:
         """Say how large the domain is."""

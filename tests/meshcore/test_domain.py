@@ -169,3 +169,20 @@ def test_random_polygons_are_domains(sides, seed, turned):
     assert 0 < domain.area < np.pi
     assert 0.5 < domain.diameter <= 2.0
     assert len(domain.outline) == sides
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 24, 101])
+def test_diameter_is_the_largest_of_all_distances(count):
+    angle = 2 * np.pi * np.arange(count) / count
+    for outline in (
+        np.column_stack([np.cos(angle), np.sin(angle)]),
+        np.column_stack([3 * np.cos(angle + 0.3), np.sin(angle)]),
+        shapes.random_corners(count, np.random.default_rng(count)),
+    ):
+        apart = outline[:, None] - outline[None]
+        assert Domain(outline).diameter == np.sqrt((apart**2).sum(-1)).max()
+
+
+def test_diameter_of_a_fine_circle_takes_little_memory():
+    angle = 2 * np.pi * np.arange(20_000) / 20_000
+    assert Domain(np.column_stack([np.cos(angle), np.sin(angle)])).diameter == pytest.approx(2)
