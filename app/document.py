@@ -10,7 +10,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from app import project
 from app.history import YOU, History, Row, normalised_return
+from app.keeping import Kept
 from app.selection import Selection
 from app.signals import Signal
 from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict, io
@@ -46,7 +48,7 @@ class Document:
     _name: str
     _path: Path | None
     _hover: int
-    _saved_mark: int
+    _saved: tuple[int, int]
 
     def __init__(
         self, mesh: HalfEdgeMesh | None = None, name: str = "", path: str | Path | None = None
@@ -59,6 +61,8 @@ class Document:
         self.hover_changed = Signal()
         self.noted = Signal()
         self.auto_smooth = True
+        self.settings: dict[str, Any] = {}
+        """What the views want to find again in a project: plain values that JSON can hold."""
         self.revision = 0
         self._adopt(mesh, name, path)
         self.selection = Selection(self)
@@ -92,8 +96,18 @@ class Document:
 
     @property
     def modified(self) -> bool:
-        """True if the mesh differs from the file, or from the shape it began as."""
-        return self.history.mark != self._saved_mark
+        """True if the mesh differs from the file, or from the shape it began as.
+
+        A project keeps the history too: there a step counts even when it has been undone.
+        """
+        mark, given = self.saved_state
+        keeps_all = self._path is not None and project.is_project(self._path)
+        return mark != self._saved[0] or (keeps_all and given != self._saved[1])
+
+    @property
+    def saved_state(self) -> tuple[int, int]:
+        """Two numbers that tell the present state from others: where it is, and all there is."""
+        return self.history.mark, self.history.given[0]
 
     @property
     def hover(self) -> int:
@@ -150,18 +164,42 @@ class Document:
         self._emit_all()
 
     def open(self, path: str | Path) -> None:
-        """Read a mesh file; on MeshError or OSError the document stays as it was."""
+        """Read a mesh file or a project; on MeshError or OSError the document stays as it was."""
         path = Path(path)
-        self.replace(io.read(path), path.stem, path)
+        if project.is_project(path):
+            self.adopt(project.read(path))
+        else:
+            self.replace(io.read(path), path.stem, path)
+
+    def adopt(self, kept: Kept) -> None:
+        """Go on with what was kept: a mesh with its history, where it had come to."""
+        self._adopt(kept.mesh, kept.name, kept.path)
+        self.history, self._saved = kept.history, kept.saved
+        self.settings = dict(kept.settings)
+        self.revision += 1
+        self.replaced.emit()
+        self._emit_all()
+
+    def kept(self) -> Kept:
+        """What there is to keep of the document; its mesh goes on changing."""
+        return Kept(
+            self._need(), self.history, self._name, self._path, self._saved, dict(self.settings)
+        )
 
     def save(self, path: str | Path | None = None) -> Path:
-        """Write the mesh to ``path`` or where it came from; returns where it is now."""
+        """Write the mesh to ``path`` or where it came from; returns where it is now.
+
+        A path that ends in ``.meshwright`` gets the whole history too.
+        """
         target = Path(path) if path is not None else self._path
         if target is None:
             raise MeshError("This mesh has no file yet: choose a name with 'Save as'.")
-        io.write(target, self._need())
+        if project.is_project(target):
+            project.write(target, self.kept())
+        else:
+            io.write(target, self._need())
         self._path, self._name = target, target.stem
-        self._saved_mark = self.history.mark
+        self._saved = self.saved_state
         self.saved_changed.emit()
         return target
 
@@ -171,7 +209,8 @@ class Document:
         self._path = Path(path) if path is not None else None
         self._hover = -1
         self.history = History(self.score, self.optimum)
-        self._saved_mark = 0
+        self._saved = (0, 0)
+        self.settings = {}
 
     # Changing the mesh
 

@@ -20,7 +20,7 @@ from meshcore.halfedge import (
     STEP_STOP,
     MeshArrays,
 )
-from meshcore.steps import Steps, pack, unpack
+from meshcore.steps import Steps, pieces, unpack
 
 PIECE = 64
 """Steps that are packed together."""
@@ -78,8 +78,8 @@ class Archive:
         if first == 0 and last == end:
             return m
         rows, entries = held(m)
-        self.past += _pieces(rows[:first], entries)
-        self.future[:0] = _pieces(rows[last:], entries)
+        self.past += pieces(rows[:first], entries, PIECE)
+        self.future[:0] = pieces(rows[last:], entries, PIECE)
         kept = rows[first:last].copy()
         start = int(kept[0, STEP_START])
         stop = int(kept[-1, STEP_STOP])
@@ -90,8 +90,8 @@ class Archive:
         """All done and all undone steps, those of the journal among them; nothing changes."""
         rows, entries = held(m)
         step = int(m.counters[STEP])
-        done = self.past + _pieces(rows[:step], entries)
-        return done, _pieces(rows[step:], entries) + self.future
+        done = self.past + pieces(rows[:step], entries, PIECE)
+        return done, pieces(rows[step:], entries, PIECE) + self.future
 
 
 def held(m: MeshArrays) -> tuple[np.ndarray, np.ndarray]:
@@ -104,18 +104,9 @@ def cut_undone(m: MeshArrays) -> list[Steps]:
     """Take the undone steps out of the journal."""
     rows, entries = held(m)
     step = int(m.counters[STEP])
-    cut = _pieces(rows[step:], entries)
+    cut = pieces(rows[step:], entries, PIECE)
     m.counters[STEP_END] = step
     return cut
-
-
-def _pieces(rows: np.ndarray, entries: np.ndarray) -> list[Steps]:
-    """Rows of the journal with these entries, packed a few at a time."""
-    pieces = []
-    for first in range(0, len(rows), PIECE):
-        some = rows[first : first + PIECE]
-        pieces.append(pack(some, entries[some[0, STEP_START] : some[-1, STEP_STOP]]))
-    return pieces
 
 
 def _joined(piece: Steps, rows: np.ndarray, entries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -276,6 +276,18 @@ class HalfEdgeMesh(MeshView):
             self._arrays = self._archive.fetch_past(self._arrays)
         return last_done(self._arrays)
 
+    def packed_steps(self) -> tuple[list[Steps], list[Steps]]:
+        """All steps that can be undone, and all that can be done again; nothing changes."""
+        self._refuse_in_transaction()
+        return self._archive.everything(self._arrays)
+
+    def adopt_steps(self, done: Sequence[Steps], undone: Sequence[Steps]) -> None:
+        """Have this history in place of its own: steps that were packed in this very state."""
+        self.cut_redo()
+        counters = self._arrays.counters
+        counters[STEP] = counters[STEP_END] = counters[JOURNAL_TOP] = 0
+        self._archive = Archive(done, undone)
+
     def trim(self) -> None:
         """Pack the steps far from the present, which takes half their room; no step is lost."""
         self._refuse_in_transaction()

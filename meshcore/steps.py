@@ -8,6 +8,7 @@ plane z = 0). Done steps hold the values before them, undone steps the values af
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -145,3 +146,34 @@ def last_done(m: MeshArrays) -> Steps:
     after[STEP_START : STEP_STOP + 1] -= row[STEP_START]
     after[STEP_COUNTERS:] = m.counters[:RESTORED]
     return pack(after[None], entries)
+
+
+def joined(parts: Sequence[Steps]) -> Steps:
+    """All steps of `parts` as one."""
+    deep = max((piece.coordinates.shape[1] for piece in parts), default=2)
+    return Steps(
+        np.concatenate([np.zeros((0, COLUMNS), np.int32), *(piece.rows for piece in parts)]),
+        np.concatenate([np.zeros(0, np.int32), *(piece.places for piece in parts)]),
+        np.concatenate([np.zeros(0, np.int32), *(piece.whole for piece in parts)]),
+        np.concatenate([np.zeros((0, deep)), *(_deep(piece, deep) for piece in parts)]),
+    )
+
+
+def _deep(piece: Steps, width: int) -> np.ndarray:
+    coordinates = np.zeros((len(piece.coordinates), width))
+    coordinates[:, : piece.coordinates.shape[1]] = piece.coordinates
+    return coordinates
+
+
+def divided(steps: Steps, size: int) -> list[Steps]:
+    """The same steps in pieces of up to `size`; MeshError if the arrays do not fit together."""
+    return pieces(*unpack(steps), size)
+
+
+def pieces(rows: np.ndarray, entries: np.ndarray, size: int) -> list[Steps]:
+    """Rows of a journal with these entries, packed up to `size` at a time."""
+    packed = []
+    for first in range(0, len(rows), size):
+        some = rows[first : first + size]
+        packed.append(pack(some, entries[some[0, STEP_START] : some[-1, STEP_STOP]]))
+    return packed

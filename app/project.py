@@ -1,0 +1,125 @@
+"""The project file, ``.meshwright``: a mesh with its whole history, branches, and settings.
+
+It is a zip archive, as ``numpy.load`` reads it: ``project.json`` and one ``.npy`` for each array
+(:mod:`meshcore.snapshot` tells which). Nothing in it is ever run.
+"""
+
+import io
+import json
+import math
+import os
+import struct
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from app import keeping
+from app.keeping import Kept
+from meshcore import MeshError
+from meshcore.atomic import reason, replacing
+from meshcore.snapshot import Arrays
+
+ENDING = ".meshwright"
+_HEADER = "project.json"
+_FORMAT = "Meshwright project"
+_KINDS = (np.dtype(np.int32), np.dtype(np.int64), np.dtype(np.float64))
+_MOST_BYTES = 8 << 30
+_SWIFT = 1  # how hard to compress: the next levels take twice as long for a tenth less
+_BROKEN = (
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    EOFError,
+    KeyError,
+    ValueError,
+    NotImplementedError,
+    RuntimeError,
+    RecursionError,
+    OverflowError,
+    MemoryError,
+)
+
+
+def is_project(path: str | os.PathLike[str]) -> bool:
+    """Whether the file's ending says that it is a project."""
+    return Path(path).suffix.lower() == ENDING
+
+
+def write(path: str | os.PathLike[str], kept: Kept) -> None:
+    """Write a project, whole or not at all.
+
+    Raises MeshError, one sentence that begins with the path, where the system refuses; an old file
+    is then as it was.
+    """
+    header, arrays = keeping.taken(kept)
+    text = json.dumps({"format": _FORMAT, **header}, ensure_ascii=False)
+    with (
+        replacing(path) as temporary,
+        zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED, compresslevel=_SWIFT) as archive,
+    ):
+        archive.writestr(_HEADER, text)
+        for name, array in arrays.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                plain = np.ascontiguousarray(array)
+                np.lib.format.write_array(member, plain, (1, 0), allow_pickle=False)
+
+
+def read(path: str | os.PathLike[str]) -> Kept:
+    """Read a project; its `path` is where it was read from.
+
+    Raises MeshError, one sentence that begins with the path: the file is missing, no project, cut
+    off, or holds what is no mesh.
+    """
+    place = Path(path)
+    try:
+        header, arrays = _members(place)
+        if not isinstance(header, dict) or header.get("format") != _FORMAT:
+            raise MeshError("it is not a Meshwright project")
+        kept = keeping.restored(header, arrays)
+    except MeshError as error:
+        raise MeshError(f"{place}: {str(error).rstrip('.')}.") from error
+    except FileNotFoundError as error:
+        raise MeshError(f"{place}: there is no such file.") from error
+    except OSError as error:
+        raise MeshError(f"{place}: it cannot be read ({reason(error)}).") from error
+    except _BROKEN as error:
+        raise MeshError(f"{place}: it is not a Meshwright project, or not a whole one.") from error
+    return Kept(
+        kept.mesh,
+        kept.history,
+        place.stem,
+        place,
+        (kept.history.mark, kept.history.given[0]),
+        kept.settings,
+    )
+
+
+def _members(place: Path) -> tuple[object, Arrays]:
+    with zipfile.ZipFile(place) as archive:
+        members = {info.filename: info for info in archive.infolist()}
+        if sum(info.file_size for info in members.values()) > _MOST_BYTES:
+            raise MeshError("it is too large")
+        header = json.loads(archive.read(_HEADER))
+        arrays = {
+            name.removesuffix(".npy"): _array(archive.read(name))
+            for name in members
+            if name.endswith(".npy")
+        }
+    return header, arrays
+
+
+def _array(data: bytes) -> np.ndarray:
+    """The array in the bytes of an .npy file of version 1; ValueError if it is none of ours."""
+    stream = io.BytesIO(data)
+    if np.lib.format.read_magic(stream) != (1, 0):
+        raise ValueError("an array of another version")
+    shape, by_columns, kind = np.lib.format.read_array_header_1_0(stream)
+    native = kind.newbyteorder("=")
+    if native not in _KINDS or (by_columns and len(shape) > 1):
+        raise ValueError("an array of another kind")
+    if math.prod(shape) * kind.itemsize != len(data) - stream.tell():
+        raise ValueError("an array of another length")
+    found = np.frombuffer(data, kind, offset=stream.tell()).reshape(shape)
+    return found.astype(native, copy=False)

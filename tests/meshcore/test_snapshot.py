@@ -1,0 +1,120 @@
+"""A mesh with its history as arrays and back; arrays that lie are refused in words."""
+
+import numpy as np
+import pytest
+from test_history import state, wander
+
+from meshcore import HalfEdgeMesh, MeshError, archive, generate, shapes, snapshot
+from meshcore.steps import WRITE_KINDS
+
+
+@pytest.fixture(params=["tri", "quad"])
+def mesh(request, monkeypatch) -> HalfEdgeMesh:
+    """In the middle of a long history, part of it packed."""
+    monkeypatch.setattr(archive, "PIECE", 4)
+    monkeypatch.setattr(archive, "LOOSE", 16)
+    made = generate.mesh_domain(shapes.shape("square-with-hole"), request.param)
+    made.degree_cap = 9
+    for part in range(4):
+        wander(made, 15, part)
+        made.trim()
+    for _ in range(20):
+        made.undo()
+    made.set_locked(int(made.vertices()[3]))
+    made.undo()
+    wander(made, 10, 9)
+    for _ in range(5):
+        made.undo()
+    return made
+
+
+def copied(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    return {name: array.copy() for name, array in arrays.items()}
+
+
+def test_everything_is_there_again(mesh):
+    other = snapshot.restored(copied(snapshot.taken(mesh)))
+    assert state(other) == state(mesh)
+    assert (other.steps, other.can_redo, other.degree_cap) == (mesh.steps, True, 9)
+    for (ids, points), (ids_too, points_too) in zip(mesh.outline, other.outline, strict=True):
+        assert np.array_equal(ids, ids_too)
+        assert np.array_equal(points, points_too)
+    for walk in ("redo", "undo", "redo"):
+        while getattr(mesh, walk)():
+            assert getattr(other, walk)()
+            assert state(other) == state(mesh)
+        assert not getattr(other, walk)()
+        other.validate()
+    for array, other_array in zip(mesh.arrays[:4], other.arrays[:4], strict=True):
+        assert np.array_equal(array, other_array)
+    assert wander(mesh, 5, 3) == wander(other, 5, 3)
+
+
+def test_every_array_is_missed(mesh):
+    whole = snapshot.taken(mesh)
+    for name in whole:
+        with pytest.raises(MeshError, match="lacks"):
+            snapshot.restored({key: array for key, array in whole.items() if key != name})
+        for wrong in (whole[name].astype(np.float32), whole[name][None], whole[name][:-1]):
+            if len(whole[name]):
+                with pytest.raises(MeshError):
+                    snapshot.restored({**whole, name: wrong})
+
+
+def test_numbers_that_lie_are_refused_or_do_no_harm(mesh):
+    """One number of one array at a time is turned into something else."""
+    whole = snapshot.taken(mesh)
+    rng = np.random.default_rng(2)
+    refused = 0
+    for trial in range(400):
+        arrays = copied(whole)
+        name = list(arrays)[trial % len(arrays)]
+        flat = arrays[name].reshape(-1)
+        if not len(flat):
+            continue
+        at = int(rng.integers(len(flat)))
+        flat[at] = rng.choice([-(1 << 31), -7, -1, 0, 1, 5, 1000, (1 << 31) - 1, flat[at] + 1])
+        try:
+            got = snapshot.restored(arrays)
+        except MeshError as error:
+            refused += 1
+            assert "\n" not in str(error)
+            continue
+        got.validate()
+        while got.undo():
+            pass
+        while got.redo():
+            pass
+    assert refused > 200
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "words"),
+    [
+        ("points", lambda a: a.__setitem__((0, 0), np.nan), "not a finite"),
+        ("edge", lambda a: a.__setitem__((0, 0), 1 << 30), "does not exist"),
+        ("edge", lambda a: a.__setitem__((0, 1), a[1, 1]), "disagree"),
+        ("vertex", lambda a: a.__setitem__((0, 1), 77), "degree"),
+        ("counters", lambda a: a.__setitem__(7, 1), "scores"),
+        ("done.places", lambda a: a.__setitem__(0, 1 << 30), "beyond|lacks|length"),
+        ("done.rows", lambda a: a.__setitem__((0, 0), 1 << 20), "length"),
+        ("done.rows", lambda a: a.__setitem__((0, 3), 1 << 20), "impossible"),
+        ("outline.ids", lambda a: a.__setitem__(0, 1 << 40), "outline"),
+        ("sizes", lambda a: a.__setitem__(0, 5), "sizes"),
+        ("sizes", lambda a: a.__setitem__(2, 1 << 27), "room"),
+    ],
+)
+def test_words_for_what_is_wrong(mesh, name, change, words):
+    arrays = copied(snapshot.taken(mesh))
+    change(arrays[name])
+    with pytest.raises(MeshError, match=words):
+        snapshot.restored(arrays)
+
+
+def test_a_write_to_the_scratch_of_the_checks_is_refused(mesh):
+    arrays = copied(snapshot.taken(mesh))
+    places = arrays["done.places"]
+    vertex_write = int(np.flatnonzero(places % WRITE_KINDS == 1)[0])
+    places[vertex_write] = 5 * WRITE_KINDS + 1
+    with pytest.raises(MeshError, match="beyond the mesh"):
+        snapshot.restored(arrays)
