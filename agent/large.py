@@ -28,7 +28,7 @@ from agent.policies import Policy, PolicyError
 from agent.ppo import decide
 from agent.selection import LOOKED_AT
 from agent.task import Task
-from meshcore.halfedge import JOURNALLING, STEP_COLUMNS, allocate
+from meshcore.halfedge import JOURNALLING, ORIGIN, STEP_COLUMNS, allocate
 from meshcore.mesh import HalfEdgeMesh
 from meshcore.operations import NAMES, Operation
 
@@ -109,6 +109,7 @@ def improve_large(
     seconds: float | None = None,
     max_steps: int | None = None,
     seed: int = 0,
+    within: np.ndarray | None = None,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> LargeRun:
@@ -116,8 +117,9 @@ def improve_large(
 
     Ends when nothing is left that is worth a visit, after `seconds`, after `max_steps` decisions of
     the policy, or when `cancelled()` says so, and then keeps what it has.
-    `progress(operations, s)` is called now and then. Raises PolicyError if the policy is for the
-    other kind of mesh.
+    `progress(operations, s)` is called now and then. within (N,): ids of the only elements that may
+    change; their rim must be locked. Raises PolicyError if the policy is for the other kind of
+    mesh.
     """
     if mesh.kind != policy.kind:
         raise PolicyError(
@@ -125,6 +127,8 @@ def improve_large(
         )
     began = time.perf_counter()
     work = _Work(mesh, policy, seed)
+    if within is not None:
+        work.confine(within)
 
     def stop() -> str:
         if work.mesh.score == work.mesh.optimum:
@@ -137,7 +141,7 @@ def improve_large(
             return f"its {max_steps} decisions are used up"
         return ""
 
-    reason = work.descend(stop)
+    reason = work.descend(stop) if within is None else stop()
     descent = work.count
     if progress is not None:
         progress(work.count, work.mesh.score)
@@ -241,6 +245,16 @@ class _Work:
         sizes = len(mesh.arrays.vertex), len(mesh.arrays.element_mark)
         if sizes != (len(self.agenda.queue), len(self.agenda.place)):
             self.agenda = enlarged(self.agenda, *sizes)
+
+    def confine(self, elements: np.ndarray) -> None:
+        """Leave alone all but `elements` (N,): the others belong to a patch that never ends.
+
+        The descent, which looks around vertices and not within patches, must not be used then.
+        """
+        mesh, k = self.mesh, self.mesh.k
+        inside = (k * elements[:, None] + np.arange(k)).ravel()
+        outside = np.setdiff1d(mesh.vertices(), mesh.arrays.edge[inside, ORIGIN])
+        self.agenda.owner[outside] = -1
 
     def _note(self, operations: np.ndarray, halfedges: np.ndarray) -> None:
         self._operations.append(operations)

@@ -1,0 +1,289 @@
+"""Search in a part of a mesh: what is outside keeps its connectivity, and the rim its vertices.
+
+The part is cut out as a mesh of its own in which the rim is locked and every vertex has the Delta
+that it has in the whole, so that a lower s there is a lower s of the whole. What leaves the part is
+not allowed: global splits, whose cuts would run on, and splits of edges of the rim.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from agent.agenda import agenda
+from agent.annealing import WEIGHTS, Annealer, Operations, with_room
+from agent.batch import Batch
+from agent.cutout import MOST_TAKEN, cut_out, mask_rim
+from agent.large import improve_large
+from agent.policies import Policy, PolicyError
+from agent.ppo import decide
+from agent.shortening import shorten
+from agent.solver import prepare
+from agent.task import MOST_CLEANUPS, transition
+from meshcore.enclosure import enclose
+from meshcore.halfedge import (
+    ELEMENT_SLOTS,
+    FLAGS,
+    FREE_ELEMENT,
+    LOCKED,
+    ORIGIN,
+    TWIN,
+    MeshArrays,
+    allocate,
+)
+from meshcore.mesh import HalfEdgeMesh
+from meshcore.operations import CODES, NAMES, Operation
+
+MANY = 128
+"""Irregular vertices above which a part is repaired patch by patch first."""
+SIDE_BY_SIDE = 16
+"""Rollouts that are played at the same time."""
+POLISH = 0.15
+"""Share of the time that is kept for leaving out operations that are not needed."""
+SHORTENING = 0.3
+"""The most seconds of that where only a number of rollouts is asked for."""
+
+
+@dataclass
+class Confined:
+    """The best that was found for a part of a mesh."""
+
+    operations: Operations
+    """Operations and half-edges of the whole mesh, to be applied in this order, while the vertices
+    that the part does not own are held (:func:`meshcore.enclosure.holding`)."""
+    score: int
+    """s of the whole mesh after them."""
+    optimum: int
+    """The lowest s that the whole mesh can have when only this part is changed."""
+    rollouts: int = 0
+    seconds: float = 0.0
+
+
+def solve_within(
+    mesh: HalfEdgeMesh,
+    policy: Policy,
+    elements: np.ndarray,
+    *,
+    rollouts: int | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Confined:
+    """The best state found from `mesh`, which is not changed, by changing only `elements` (n,).
+
+    The best of so many rollouts of the policy, within `seconds` if given; with `seconds` alone
+    rollouts, and for quads annealing, in turn; with neither SIDE_BY_SIDE rollouts. Ends early where
+    s can be proved to be as low as it can be, and when `cancelled()` says so, with the best so far.
+    `progress(rollouts done, best s of the whole mesh)` is called now and then. Raises PolicyError
+    if the policy is for the other kind of mesh, MeshError if no vertex lies inside the part.
+    """
+    if mesh.kind != policy.kind:
+        raise PolicyError(
+            f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
+        )
+    prepare(policy)
+    search = _Search(mesh, policy, elements, rollouts, seconds, seed, progress, cancelled)
+    search.repair()
+    search.look()
+    return search.answer()
+
+
+class _Part:
+    """A part as a mesh of its own, and where its elements are in the whole."""
+
+    def __init__(self, mesh: HalfEdgeMesh, elements: np.ndarray) -> None:
+        arrays, k, count = mesh.arrays, mesh.k, len(elements)
+        scratch = agenda(len(arrays.vertex), len(arrays.element_mark))
+        scratch.place[elements] = np.arange(1, count + 1)
+        out = allocate(k, k * count, count, 1, 1)
+        cut_out(arrays, scratch, k, elements, k == 4, out, np.zeros(k * count, np.int64))
+        self.mesh, self.elements = HalfEdgeMesh(out, []), elements
+
+    def put_back(self, whole: HalfEdgeMesh, operations: Operations) -> Operations:
+        """Do on `whole` what the operations do on the part, as far as it is the same there and up
+        to its lowest s; returns that with the half-edges of the whole.
+        """
+        part, k = self.mesh.copy(), whole.k
+        place = dict(enumerate(self.elements.tolist()))
+        trial = whole.copy()
+        done: Operations = []
+        best, kept = trial.score, 0
+        for operation, h in operations:
+            there = place[h // k] * k + h % k
+            if not trial.check(operation, there):
+                break
+            new = zip(_coming(part.arrays, k), _coming(trial.arrays, k), strict=True)
+            place.update(new)
+            changed = trial.apply(operation, there).score_change
+            if changed != part.apply(operation, h).score_change:
+                break
+            done.append((operation, there))
+            if trial.score < best:
+                best, kept = trial.score, len(done)
+        for operation, h in done[:kept]:
+            whole.apply(operation, h)
+        return done[:kept]
+
+
+def _coming(arrays: MeshArrays, k: int) -> list[int]:
+    """The element slots that a local operation will take, in their order."""
+    e, unused = int(arrays.counters[FREE_ELEMENT]), int(arrays.counters[ELEMENT_SLOTS])
+    slots = []
+    for _ in range(MOST_TAKEN):
+        if e >= 0:
+            slots.append(e)
+            e = int(arrays.edge[e * k, TWIN])
+        else:
+            slots.append(unused)
+            unused += 1
+    return slots
+
+
+class _Search:
+    """The whole mesh as far as it is improved, the part, and the time."""
+
+    def __init__(
+        self,
+        mesh: HalfEdgeMesh,
+        policy: Policy,
+        elements: np.ndarray,
+        rollouts: int | None,
+        seconds: float | None,
+        seed: int,
+        progress: Callable[[int, int], None] | None,
+        cancelled: Callable[[], bool] | None,
+    ) -> None:
+        self.began = time.perf_counter()
+        self.policy, self.task, self.seed = policy, policy.task, seed
+        self.seconds = seconds
+        self.wanted = SIDE_BY_SIDE if rollouts is None and seconds is None else rollouts
+        self.rng = np.random.default_rng(seed)
+        self.generator = torch.Generator().manual_seed(seed)
+        self._progress, self._cancelled = progress, cancelled
+        enclosure = enclose(mesh, elements)
+        self.mesh = mesh.copy()
+        self.mesh.arrays.vertex[enclosure.held, FLAGS] |= LOCKED
+        self.outside = np.setdiff1d(mesh.element_ids(), enclosure.elements, assume_unique=True)
+        self._ends = self._outside_ends()
+        self.operations: Operations = []
+        self.part = _Part(self.mesh, enclosure.elements)
+        self.optimum = mesh.score - self.part.mesh.score + self.part.mesh.optimum
+        self.done = 0
+        self.best: Operations = []
+        self.best_score = self.part.mesh.score
+
+    def _outside_ends(self) -> np.ndarray:
+        k = self.mesh.k
+        halfedges = (k * self.outside[:, None] + np.arange(k)).ravel()
+        return self.mesh.arrays.edge[halfedges, ORIGIN].copy()
+
+    def over(self, share: float = 1.0) -> bool:
+        """Whether that share of the time is used up, or somebody said stop."""
+        if self._cancelled is not None and self._cancelled():
+            return True
+        return self.seconds is not None and self._seconds() > share * self.seconds
+
+    def _seconds(self) -> float:
+        return time.perf_counter() - self.began
+
+    def _tell(self) -> None:
+        if self._progress is not None:
+            gained = self.part.mesh.score - self.best_score
+            self._progress(self.done, self.mesh.score - gained)
+
+    def repair(self) -> None:
+        """Where much of the part is irregular, repair it patch by patch first."""
+        if self.part.mesh.irregular_count <= MANY:
+            return
+        run = improve_large(
+            self.mesh, self.policy, seconds=None if self.seconds is None else 0.6 * self.seconds,
+            seed=self.seed, cancelled=self._cancelled, within=self.part.elements,
+            progress=None if self._progress is None else self._progress,
+        )  # fmt: skip
+        self.operations = run.steps()
+        self.mesh = run.mesh
+        here = np.setdiff1d(self.mesh.element_ids(), self.outside, assume_unique=True)
+        self.part = _Part(self.mesh, here)
+        self.best_score = self.part.mesh.score
+
+    def look(self) -> None:
+        """Rollouts, and for quads annealing, until the optimum, the end of the time or of the
+        rollouts.
+        """
+        goal = self.part.mesh.optimum
+        while self.best_score > goal and not self.over(1.0 - POLISH):
+            left = SIDE_BY_SIDE if self.wanted is None else self.wanted - self.done
+            if left <= 0:
+                break
+            began = self._seconds()
+            self._roll(min(left, SIDE_BY_SIDE))
+            if self.wanted is None and self.mesh.k == 4 and self.best_score > goal:
+                self._anneal(self._seconds() + max(0.1, self._seconds() - began))
+
+    def _roll(self, size: int) -> None:
+        """So many rollouts side by side."""
+        task, mesh = self.task, self.part.mesh
+        batch = Batch(task, [mesh] * size, size, self.rng, endless=False)
+        operations, halfedges = [], []
+        lowest = self.best_score
+        while batch.active.any() and lowest > mesh.optimum and not self.over(1.0 - POLISH):
+            seen = batch.observe()
+            if task.kind == "quad":
+                seen.mask[:, :, -1] = False  # a global split does not end at the rim
+            else:
+                mask_rim(batch.meshes, seen.chosen, seen.mask)
+            actions = decide(self.policy.network, seen, self.generator)[0]
+            rows = np.maximum(actions // task.operations, 0)
+            operations.append(task.first_operation + actions % task.operations)
+            halfedges.append(seen.chosen[np.arange(size), rows])
+            batch.step(seen, actions)
+            lowest = min(lowest, int(batch.best.min()))
+        self.done += size
+        at = int(np.lexsort((batch.best_step, batch.best))[0])
+        count = int(batch.best_step[at])
+        codes = [int(row[at]) for row in operations[:count]]
+        self._offer(self._played(codes, [int(row[at]) for row in halfedges[:count]]))
+
+    def _played(self, codes: list[int], halfedges: list[int]) -> Operations:
+        """What a rollout did, with the clean-ups that followed by themselves."""
+        arrays = with_room(self.part.mesh, 3 * self.part.mesh.n_elements)
+        touched, cleaned = np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64)
+        found: Operations = []
+        for code, h in zip(codes, halfedges, strict=True):
+            count = transition(arrays, code, h, self.task.cap, touched, cleaned)
+            found.append((NAMES[code], h))
+            found += [(Operation.CLEANUP, line) for line in cleaned[:count].tolist()]
+        return found
+
+    def _anneal(self, until: float) -> None:
+        weights = list(WEIGHTS["quad"])
+        weights[CODES[4][Operation.GLOBAL_SPLIT] - CODES[4][Operation.FLIP_LEFT]] = 0.0
+        annealer = Annealer(self.part.mesh, int(self.rng.integers(1 << 31)), weights=tuple(weights))
+        while not annealer.finished and self._seconds() < until and not self.over(1.0 - POLISH):
+            annealer.run()
+        self._offer(annealer.operations())
+
+    def _offer(self, operations: Operations) -> None:
+        reached = self.part.mesh.copy()
+        for operation, h in operations:
+            reached.apply(operation, h)
+        fewer = len(operations) < len(self.best)
+        if (reached.score, not fewer) < (self.best_score, True):
+            self.best, self.best_score = operations, reached.score
+        self._tell()
+
+    def answer(self) -> Confined:
+        """The best that was found, short, and on the whole mesh."""
+        left = SHORTENING if self.seconds is None else self.seconds - self._seconds()
+        found = shorten(
+            self.part.mesh, self.best, seconds=max(0.0, left), cancelled=self._cancelled
+        )
+        self.operations += self.part.put_back(self.mesh, found)
+        if not np.array_equal(self._ends, self._outside_ends()):
+            raise RuntimeError("a search within a region has changed what is outside")
+        return Confined(self.operations, self.mesh.score, self.optimum, self.done, self._seconds())

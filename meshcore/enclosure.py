@@ -1,0 +1,129 @@
+"""An enclosure: a part of a mesh in which things may change while everything outside stays.
+
+Its rim, the vertices that it shares with elements outside, stays where it is too: an element
+outside keeps its corners and their places. What may change at the rim is the number of edges that
+reach it from within.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from meshcore.errors import MeshError
+from meshcore.halfedge import ELEMENT_SLOTS, FLAGS, LOCKED, ORIGIN, TWIN
+
+if TYPE_CHECKING:
+    from meshcore.mesh import HalfEdgeMesh
+
+
+class Enclosure(NamedTuple):
+    """A part of one mesh in one state."""
+
+    elements: np.ndarray
+    """(n,) ids, ascending, of its elements; none of its vertices is pinched."""
+    free: np.ndarray
+    """(f,) ids, ascending, of the vertices all of whose elements lie in it."""
+    held: np.ndarray
+    """(m,) ids, ascending, of all other live vertices of the mesh: the rim, and what is outside."""
+
+
+def enclose(mesh: HalfEdgeMesh, elements: np.ndarray) -> Enclosure:
+    """The enclosure of `elements` (n,), ids of live ones.
+
+    Where they meet in a vertex alone only one group there is kept, that of the largest connected
+    part, since no mesh of its own could be made of all. Raises MeshError where nothing is left in
+    which a vertex is free.
+    """
+    k = mesh.k
+    inside = np.zeros(int(mesh.arrays.counters[ELEMENT_SLOTS]), bool)
+    inside[elements] = True
+    while len(pinched := _pinched(mesh, inside)):
+        size = _sizes(mesh, inside)
+        for vertex in pinched.tolist():
+            groups = _groups(mesh, inside, vertex)
+            groups.sort(key=lambda group: (size[group[0]], len(group)))
+            for group in groups[:-1]:
+                inside[group] = False
+    kept = np.flatnonzero(inside)
+    corner = np.zeros(mesh.slots, bool)
+    live = mesh.vertices()
+    corner[live] = True
+    outer = mesh.element_ids()
+    outer = outer[~inside[outer]]
+    corner[_origins(mesh, outer, k)] = False
+    free = np.flatnonzero(corner)
+    if not len(free):
+        raise MeshError(
+            "No vertex lies inside this region: select at least one with all elements around it."
+        )
+    return Enclosure(kept, free, live[~corner[live]])
+
+
+def _origins(mesh: HalfEdgeMesh, elements: np.ndarray, k: int) -> np.ndarray:
+    halfedges = (k * elements[:, None] + np.arange(k)).ravel()
+    return mesh.arrays.edge[halfedges, ORIGIN].astype(np.int64)
+
+
+def _pinched(mesh: HalfEdgeMesh, inside: np.ndarray) -> np.ndarray:
+    """The vertices at which the elements `inside` (slots,) form more than one group."""
+    k, edge = mesh.k, mesh.arrays.edge
+    halfedges = (k * np.flatnonzero(inside)[:, None] + np.arange(k)).ravel()
+    twins = edge[halfedges, TWIN]
+    rim = (twins < 0) | ~inside[np.maximum(twins, 0) // k]
+    # each group that is not the whole star of a vertex has one half-edge of the rim that leaves it
+    leaving = np.bincount(edge[halfedges[rim], ORIGIN], minlength=1)
+    return np.flatnonzero(leaving > 1)
+
+
+def _sizes(mesh: HalfEdgeMesh, inside: np.ndarray) -> dict[int, int]:
+    """For each element `inside` the size of its part, connected over edges."""
+    k, edge = mesh.k, mesh.arrays.edge
+    size: dict[int, int] = {}
+    for seed in np.flatnonzero(inside).tolist():
+        if seed in size:
+            continue
+        part, size[seed] = [seed], 0
+        for element in part:
+            for twin in edge[k * element : k * element + k, TWIN].tolist():
+                if twin >= 0 and inside[twin // k] and twin // k not in size:
+                    size[twin // k] = 0
+                    part.append(twin // k)
+        size.update(dict.fromkeys(part, len(part)))
+    return size
+
+
+def _groups(mesh: HalfEdgeMesh, inside: np.ndarray, vertex: int) -> list[list[int]]:
+    """The elements `inside` at a vertex, those together that are joined by edges at it."""
+    elements = [h // mesh.k for h in mesh.outgoing(vertex)]
+    groups: list[list[int]] = []
+    joined = False
+    for element in elements:
+        if inside[element] and joined:
+            groups[-1].append(element)
+        elif inside[element]:
+            groups.append([element])
+        joined = bool(inside[element])
+    closed = not mesh.is_boundary(vertex)
+    if closed and len(groups) > 1 and inside[elements[0]] and inside[elements[-1]]:
+        groups[0] = groups.pop() + groups[0]
+    return groups
+
+
+@contextmanager
+def holding(mesh: HalfEdgeMesh, vertices: np.ndarray) -> Iterator[None]:
+    """Lock `vertices` (n,) for a while: within, operations and smoothing leave them in their place.
+
+    The journal knows nothing of these locks, so no undo brings them back. None is left behind, also
+    not by an exception, nor is a lock undone that was there before.
+    """
+    flags = mesh.arrays.vertex[vertices, FLAGS]
+    ours = vertices[(flags & LOCKED) == 0]
+    mesh.arrays.vertex[ours, FLAGS] |= LOCKED
+    try:
+        yield
+    finally:
+        mesh.arrays.vertex[ours, FLAGS] &= ~LOCKED

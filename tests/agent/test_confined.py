@@ -1,0 +1,107 @@
+"""A search within a region lowers s there, and leaves everything else as it was."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from agent import policies
+from agent.confined import solve_within
+from agent.policies import PolicyError
+from meshcore import MeshError, generate, shapes
+from meshcore.enclosure import enclose, holding
+from meshcore.halfedge import ORIGIN
+from meshcore.region import rings
+
+
+@pytest.fixture(params=["quad", "tri"])
+def case(request):
+    """A policy, a mesh, and a region around an irregular vertex in its middle."""
+    domain = shapes.random_polygon(16, np.random.default_rng(7))
+    mesh = generate.mesh_domain(domain, request.param, max_edge=0.14)
+    return policies.load(request.param), mesh, region(mesh, 3)
+
+
+def region(mesh, reach):
+    irregular = np.flatnonzero(mesh.irregularity())
+    centre = mesh.points[mesh.vertices()].mean(axis=0)
+    away = np.linalg.norm(mesh.points[irregular] - centre, axis=1)
+    chosen = rings(mesh, irregular[[int(away.argmin())]], reach)
+    return mesh.element_ids()[np.isin(mesh.elements(), chosen).all(axis=1)]
+
+
+def outside_of(mesh, elements):
+    """Ends and twins of the half-edges outside, but for twins that lie in the region."""
+    kept = np.setdiff1d(mesh.element_ids(), elements)
+    halfedges = (mesh.k * kept[:, None] + np.arange(mesh.k)).ravel()
+    return halfedges, mesh.arrays.edge[halfedges, ORIGIN].copy()
+
+
+def test_it_replays_lowers_s_and_leaves_the_rest(case):
+    policy, mesh, elements = case
+    before, copy = mesh.elements(), mesh.copy()
+    found = solve_within(mesh, policy, elements, rollouts=8, seed=1)
+    assert np.array_equal(before, mesh.elements()) and not mesh.locked().any()
+    assert found.optimum <= found.score < mesh.score
+    halfedges, ends = outside_of(copy, elements)
+    inside = enclose(copy, elements)
+    places = copy.points[inside.held].copy()
+    with holding(copy, inside.held):
+        for operation, h in found.operations:
+            copy.apply(operation, h)
+    assert copy.score == found.score
+    assert np.array_equal(copy.arrays.edge[halfedges, ORIGIN], ends)
+    assert np.array_equal(copy.points[inside.held], places)
+    copy.validate()
+
+
+def test_it_knows_when_nothing_more_can_be_gained():
+    mesh = generate.grid("quad", 64)
+    h = 4 * 27
+    mesh.apply("flip_left", h)
+    elements = mesh.element_ids()
+    found = solve_within(mesh, policies.load("quad"), elements, seconds=20.0)
+    assert found.score == found.optimum == 0 and found.seconds < 10.0
+    again = mesh.copy()
+    for operation, at in found.operations:
+        again.apply(operation, at)
+    assert again.score == 0
+
+
+def test_a_region_with_much_to_repair_goes_patch_by_patch(monkeypatch):
+    mesh = generate.mesh_domain(shapes.shape("gear"), "tri", max_edge=0.05)
+    elements = region(mesh, 12)
+    monkeypatch.setattr("agent.confined.MANY", 8)
+    halfedges, ends = outside_of(mesh, elements)
+    found = solve_within(mesh, policies.load("tri"), elements, rollouts=2, seed=2)
+    assert found.score < mesh.score
+    inside = enclose(mesh, elements)
+    with holding(mesh, inside.held):
+        for operation, h in found.operations:
+            mesh.apply(operation, h)
+    assert mesh.score == found.score
+    assert np.array_equal(mesh.arrays.edge[halfedges, ORIGIN], ends)
+    mesh.validate()
+
+
+def test_it_tells_how_far_it_is_and_stops_when_told(case):
+    policy, mesh, elements = case
+    told = []
+    found = solve_within(
+        mesh, policy, elements, rollouts=32, seed=3, progress=lambda *a: told.append(a)
+    )
+    assert told[-1][0] == found.rollouts <= 32
+    assert found.score <= told[-1][1] <= mesh.score
+    enough = threading.Event()
+    enough.set()
+    stopped = solve_within(mesh, policy, elements, seconds=60.0, cancelled=enough.is_set)
+    assert stopped.operations == [] and stopped.score == mesh.score
+
+
+def test_what_makes_no_sense_is_refused(case):
+    policy, mesh, elements = case
+    with pytest.raises(MeshError, match="No vertex lies inside"):
+        solve_within(mesh, policy, elements[:1])
+    other = policies.load("tri" if mesh.kind == "quad" else "quad")
+    with pytest.raises(PolicyError):
+        solve_within(mesh, other, elements)
