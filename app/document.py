@@ -5,6 +5,7 @@ one row of the history, so that both undo together.
 """
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,6 +17,7 @@ from app.keeping import Kept
 from app.selection import Selection
 from app.signals import Signal
 from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict, io
+from meshcore.enclosure import holding
 from meshcore.operations import CATALOGUE
 
 Result = TypeVar("Result")
@@ -222,15 +224,25 @@ class Document:
         """A verdict for every operation of the mesh's kind at one half-edge."""
         return self._need().allowed(halfedge)
 
-    def submit(self, operation: Operation | str, halfedge: int, by: str = YOU) -> Edit:
-        """Apply one operation and smooth around it, as one step; OperationRefused if refused."""
+    def submit(
+        self,
+        operation: Operation | str,
+        halfedge: int,
+        by: str = YOU,
+        held: np.ndarray | None = None,
+    ) -> Edit:
+        """Apply one operation and smooth around it, as one step; OperationRefused if refused.
+
+        held (n,): vertices that count as locked meanwhile, and so stay where they are.
+        """
         mesh = self._need()
 
         def work() -> Edit:
-            edit = mesh.apply(operation, halfedge)
-            if self.auto_smooth:
-                _relax(mesh, edit.touched)
-            return edit
+            with holding(mesh, held) if held is not None else nullcontext():
+                edit = mesh.apply(operation, halfedge)
+                if self.auto_smooth:
+                    _relax(mesh, edit.touched)
+                return edit
 
         action = Operation(operation)
         return self._do(action.value, title_of(action, mesh.kind), halfedge, by, work)
