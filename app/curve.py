@@ -32,12 +32,11 @@ class Track:
         """(n,) s* of each state."""
         return self._values[: self._count, 1]
 
-    def follow(self, history: History, score: int, optimum: int) -> int:
+    def follow(self, history: History) -> int:
         """Take over what ``history`` holds now; returns the first state that may be new.
 
-        ``score`` and ``optimum`` are those of the state at the cursor. A row is never changed, and
-        it comes after the same rows always: where the last known row is still in its place, so is
-        everything before it.
+        A row is never changed, and it comes after the same rows always: where the last known row
+        is still in its place, so is everything before it.
         """
         known = self._count - 1  # rows
         same = 0 < known <= len(history) and history[known - 1] is self._last
@@ -51,8 +50,7 @@ class Track:
         if rows:
             self._values[first + 1 : self._count] = [(row.after, row.optimum) for row in rows]
         if not same:
-            begin = history[0] if len(history) else None
-            self._values[0] = (begin.before, begin.optimum) if begin else (score, optimum)
+            self._values[0] = history.first
         self._last = history[len(history) - 1] if len(history) else None
         return first + 1 if same else 0
 

@@ -27,7 +27,8 @@ MARGIN = 24.0
 @dataclass(frozen=True)
 class Look:
     """What a figure shows. ``size`` in pixels; ``numbers`` inside the discs of irregular vertices;
-    ``score`` above the mesh; ``curve`` below it; ``changes`` since the moment before.
+    ``score`` above the mesh; ``curve`` below it; ``changes`` since the moment before. ``theme`` and
+    ``colours`` are what :func:`app.theme.theme` takes.
     """
 
     size: tuple[int, int] = (960, 720)
@@ -36,6 +37,12 @@ class Look:
     score: bool = True
     curve: bool = True
     changes: bool = True
+    colours: str = "vermilion"
+
+    @property
+    def palette(self) -> Theme:
+        """The colours themselves."""
+        return theme(self.theme, self.colours)
 
 
 @dataclass(frozen=True)
@@ -86,7 +93,7 @@ def figure(
     """Draw ``mesh`` as it is now; ``viewport`` as fitted if None."""
     look = look or Look()
     view = viewport or fitted(mesh, look, moment)
-    colours, unit = theme(look.theme), _unit(look)
+    colours, unit = look.palette, _unit(look)
     drawing = Drawing(look.size, colours.background, summary(mesh))
     marks = markers(mesh)
     pairs = edges(mesh)

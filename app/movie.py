@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from app.figure import Look
-from app.theme import Theme, theme
+from app.theme import Theme
 from meshcore import atomic
 from meshcore.errors import MeshError
 
@@ -69,7 +69,7 @@ def _write_gif(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> N
     from PIL.GifImagePlugin import getdata
 
     colours = Image.new("P", (1, 1))
-    colours.putpalette(palette(theme(look.theme)))
+    colours.putpalette(palette(look.palette))
     before: Any = None
     with path.open("wb") as file:
         for image, seconds in frames:

@@ -216,6 +216,17 @@ QStatusBar QLabel {{ color: {t.muted}; font-size: 12px; padding: 0 8px; }}
 #EmptyTitle {{ font-size: 22px; font-weight: 600; }}
 #EmptyText {{ color: {t.muted}; font-size: 14px; }}
 
+#Timeline {{ background: {t.panel}; border: 0; border-top: 1px solid {t.line}; }}
+#HistoryPanel {{ background: {t.panel}; border: 0; border-right: 1px solid {t.line}; }}
+#ExportBar {{ background: {t.panel}; border: 0; border-top: 1px solid {t.line}; }}
+#History {{ background: transparent; border: 0; }}
+QToolButton#Walk {{ padding: 5px; }}
+QToolButton#Walk:hover {{ background: {t.hover}; }}
+QToolButton#Walk:pressed {{ background: {t.pressed}; }}
+QToolButton#Walk:focus {{ background: {t.hover}; }}
+QProgressBar {{ background: {t.pressed}; border: 0; border-radius: 3px; }}
+QProgressBar::chunk {{ background: {t.accent}; border-radius: 3px; }}
+
 QListWidget {{ background: {t.background}; border: 1px solid {t.line}; border-radius: 8px;
               padding: 8px; }}
 QListWidget::item {{ border-radius: 6px; padding: 8px; color: {t.text}; }}
@@ -227,6 +238,6 @@ QScrollBar::handle:vertical {{ background: {t.pressed}; border-radius: 4px; min-
                               margin: 1px; }}
 QScrollBar::add-line, QScrollBar::sub-line {{ height: 0; width: 0; }}
 QScrollBar::add-page, QScrollBar::sub-page {{ background: transparent; }}
-QLineEdit, QSpinBox {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 6px;
-                      padding: 6px 8px; }}
+QLineEdit, QSpinBox, QDoubleSpinBox {{ background: {t.raised}; border: 1px solid {t.line};
+                                      border-radius: 6px; padding: 6px 8px; }}
 """

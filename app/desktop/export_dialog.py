@@ -1,0 +1,217 @@
+"""The dialog that asks what to export: film or picture, its size, its pace, what is in it."""
+
+from dataclasses import replace
+
+from qtpy.QtCore import Qt, QTimer
+from qtpy.QtGui import QImage, QPixmap
+from qtpy.QtWidgets import (
+    QAbstractSpinBox,
+    QButtonGroup,
+    QCheckBox,
+    QComboBox,
+    QDialog,
+    QDoubleSpinBox,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSpinBox,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.desktop.widgets import named
+from app.drawing import raster
+from app.figure import figure
+from app.film import FIRST, LAST, Film
+from app.pictures import SIZES, Order
+from app.theme import GRID, THEMES
+
+FORMATS = (
+    (".gif", "Film, GIF", "Plays anywhere, also inside a README or a slide"),
+    (".mp4", "Film, MP4", "Smaller and sharper; for talks and web pages"),
+    (".png", "Picture, PNG", "The present state as pixels"),
+    (".svg", "Picture, SVG", "The present state as lines and letters that stay sharp in print"),
+)
+PARTS = (
+    ("score", "Score and step above the mesh"),
+    ("curve", "Score curve below the mesh"),
+    ("numbers", "Numbers in the discs"),
+    ("changes", "What each step changes"),
+)
+PREVIEW = (480, 360)
+LARGE = 20_000
+"""Elements beyond which a preview would make one wait."""
+LATER = 80
+"""Milliseconds after a change until the preview follows."""
+
+
+class ExportDialog(QDialog):
+    """Asks for an :class:`app.pictures.Order`, and shows the state where ``film`` stands."""
+
+    def __init__(self, film: Film, order: Order, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle("Export film or picture")
+        self._film = film
+        self._state = film.state
+        self._moment = film.moment(film.state)
+        if len(film.rows) == 0 and order.moving:
+            order = replace(order, ending=".png")  # there is nothing that moves
+        self.order = order
+        self.formats = QButtonGroup(self)
+        self.size_box = QComboBox()
+        self.theme_box = QComboBox()
+        self.seconds = QDoubleSpinBox()
+        self.every = QSpinBox()
+        self.parts: dict[str, QCheckBox] = {}
+        self.length = named("", "Hint")
+        self.note = named("", "Hint")
+        self.preview = QLabel()
+        self._later = QTimer(self, singleShot=True, interval=LATER)
+        self._later.timeout.connect(self._draw)
+        self._fill()
+        self._arrange()
+        self._on_changed()
+        self._draw()
+
+    def _fill(self) -> None:
+        order = self.order
+        for ending, title, hint in FORMATS:
+            button = QPushButton(title)
+            button.setObjectName("Segment")
+            button.setCheckable(True)
+            button.setAutoDefault(False)
+            button.setToolTip(hint)
+            button.setProperty("ending", ending)
+            button.setChecked(ending == order.ending)
+            self.formats.addButton(button)
+        for width, height in SIZES:
+            self.size_box.addItem(f"{width} \u00d7 {height}", (width, height))
+        self.size_box.setCurrentIndex(SIZES.index(order.size) if order.size in SIZES else 1)
+        for name in THEMES:
+            self.theme_box.addItem(name.capitalize(), name)
+        self.theme_box.setCurrentIndex(list(THEMES).index(order.theme))
+        self.seconds.setRange(0.05, 5.0)
+        self.seconds.setSingleStep(0.05)
+        self.seconds.setSuffix(" s")
+        self.seconds.setValue(order.seconds)
+        self.every.setRange(1, max(len(self._film.rows), 1))
+        self.every.setValue(order.stride(self._film))
+        for name, title in PARTS:
+            self.parts[name] = QCheckBox(title)
+            self.parts[name].setChecked(getattr(order, name))
+            self.parts[name].toggled.connect(self._on_changed)
+        self.formats.buttonClicked.connect(self._on_changed)
+        for box in (self.size_box, self.theme_box):
+            box.currentIndexChanged.connect(self._on_changed)
+        for spin in (self.seconds, self.every):
+            spin.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
+            spin.valueChanged.connect(self._on_changed)
+
+    def _arrange(self) -> None:
+        formats = QHBoxLayout()
+        formats.setSpacing(0)
+        for button in self.formats.buttons():
+            formats.addWidget(button, 1)
+        grid = QGridLayout()
+        grid.setHorizontalSpacing(2 * GRID)
+        grid.setVerticalSpacing(GRID)
+        self._pace = [named("Each frame stays", "Label"), named("One frame for every", "Label")]
+        rows = (
+            (named("Size", "Label"), self.size_box),
+            (named("Theme", "Label"), self.theme_box),
+            (self._pace[0], self.seconds),
+            (self._pace[1], self.every),
+        )
+        for part in (*self._pace, self.seconds, self.every):
+            policy = part.sizePolicy()
+            policy.setRetainSizeWhenHidden(True)
+            part.setSizePolicy(policy)
+        for number, (label, field) in enumerate(rows):
+            label.setBuddy(field)
+            grid.addWidget(label, number, 0)
+            grid.addWidget(field, number, 1)
+        fields = QVBoxLayout()
+        fields.setSpacing(GRID)
+        fields.addLayout(grid)
+        fields.addSpacing(GRID)
+        for box in self.parts.values():
+            fields.addWidget(box)
+        fields.addStretch(1)
+        self.length.setWordWrap(True)
+        self.length.setMinimumHeight(36)
+        self.length.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom)
+        fields.addWidget(self.length)
+        self.preview.setFixedSize(*PREVIEW)
+        self.preview.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.preview.setAccessibleName("Preview")
+        middle = QHBoxLayout()
+        middle.setSpacing(3 * GRID)
+        middle.addWidget(self.preview)
+        middle.addLayout(fields, 1)
+        self.cancel, self.export = QPushButton("Cancel"), QPushButton("Export\u2026")
+        self.export.setObjectName("Primary")
+        self.export.setDefault(True)
+        self.cancel.clicked.connect(self.reject)
+        self.export.clicked.connect(self.accept)
+        buttons = QHBoxLayout()
+        buttons.setSpacing(GRID)
+        buttons.addWidget(self.note, 1)
+        buttons.addWidget(self.cancel)
+        buttons.addWidget(self.export)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
+        layout.setSpacing(2 * GRID)
+        layout.addLayout(formats)
+        layout.addLayout(middle, 1)
+        layout.addLayout(buttons)
+
+    def _on_changed(self) -> None:
+        """Take over what the fields say."""
+        chosen = self.formats.checkedButton()
+        self.order = replace(
+            self.order,
+            ending=str(chosen.property("ending")),
+            size=tuple(self.size_box.currentData()),
+            theme=str(self.theme_box.currentData()),
+            seconds=round(self.seconds.value(), 2),
+            every=self.every.value(),
+            **{name: box.isChecked() for name, box in self.parts.items()},
+        )
+        moving = self.order.moving
+        for part in (*self._pace, self.seconds, self.every):
+            part.setVisible(moving)
+        self.every.setSuffix(" step" if self.every.value() == 1 else " steps")
+        self.note.setText(str(chosen.toolTip()) + ".")
+        self.length.setText(self._words())
+        self.export.setEnabled(not moving or len(self._film.rows) > 0)
+        self._later.start()
+
+    def _words(self) -> str:
+        """How long a film will be."""
+        if not self.order.moving:
+            return f"The state after step {self._state:,}." if self._state else "The start."
+        if len(self._film.rows) == 0:
+            return "There are no steps yet: nothing would move."
+        frames = len(self._film.stops(self.order.every))
+        inside = max(frames - 2, 0) * self.order.seconds
+        ends = max(FIRST, self.order.seconds) + max(LAST, self.order.seconds)
+        return f"{frames:,} frames, {inside + ends:.0f} seconds."
+
+    def _draw(self) -> None:
+        """Show the present state as the export will."""
+        if self._film.mesh.n_elements > LARGE:
+            self.preview.setText("No preview of so many elements.")
+            return
+        order = self.order
+        image = raster(figure(self._film.mesh, order.look, self._moment), samples=2)
+        ratio = self.devicePixelRatioF()
+        scale = min(PREVIEW[0] / image.width, PREVIEW[1] / image.height) * ratio
+        image = image.resize((round(image.width * scale), round(image.height * scale)))
+        data = image.tobytes()
+        pixels = QImage(
+            data, image.width, image.height, 3 * image.width, QImage.Format.Format_RGB888
+        )
+        shown = QPixmap.fromImage(pixels.copy())
+        shown.setDevicePixelRatio(ratio)
+        self.preview.setPixmap(shown)

@@ -1,0 +1,183 @@
+"""Exporting: the dialog, then a thread that writes, with a bar that tells how far it is."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import Signal
+from qtpy.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QProgressBar, QPushButton
+
+from app.desktop.dispatch import Dispatcher
+from app.desktop.widgets import named
+from app.pictures import Order, write_order
+from app.theme import GRID, Theme
+from meshcore.errors import MeshError
+
+if TYPE_CHECKING:
+    from app.desktop.window import MainWindow
+    from app.film import Film
+
+
+_log = logging.getLogger(__name__)
+
+
+class Stopped(Exception):
+    """A person does not want the file any more."""
+
+
+class ExportBar(QFrame):
+    """One line between canvas and timeline while a file is written; ``cancelled()``."""
+
+    cancelled = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("ExportBar")
+        self._words = named("", "Label")
+        self.progress = QProgressBar()
+        self.progress.setTextVisible(False)
+        self.progress.setFixedHeight(6)
+        self.progress.setAccessibleName("Progress of the export")
+        self.cancel = QPushButton("Cancel")
+        self.cancel.clicked.connect(self.cancelled)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(2 * GRID, GRID // 2, 2 * GRID, GRID // 2)
+        layout.setSpacing(2 * GRID)
+        layout.addWidget(self._words)
+        layout.addWidget(self.progress, 1)
+        layout.addWidget(self.cancel)
+        self.hide()
+
+    @property
+    def words(self) -> str:
+        """What the bar says."""
+        return str(self._words.text())
+
+    def tell(self, name: str, done: int, total: int) -> None:
+        """Say how many frames are written."""
+        noun = "frame" if total > 1 else "picture"
+        count = f", {noun} {done:,} of {total:,}" if total > 1 else ""
+        self._words.setText(f"Writing {name}{count}")
+        self.progress.setMaximum(total)
+        self.progress.setValue(done)
+        self.show()
+
+    def set_theme(self, theme: Theme) -> None:
+        """The style sheet has all colours."""
+
+
+class Exporting:
+    """Asks for an order and carries it out, one at a time, off the main thread."""
+
+    def __init__(self, window: MainWindow) -> None:
+        self._window = window
+        self._dispatch = Dispatcher()
+        self._thread: threading.Thread | None = None
+        self._stop = threading.Event()
+        self._order = Order()
+        self.bar = ExportBar()
+        self.bar.cancelled.connect(self.cancel)
+
+    @property
+    def running(self) -> bool:
+        """True while a file is written."""
+        return self._thread is not None
+
+    def ask(self) -> None:
+        """Show the dialog, ask for a file, begin."""
+        from app.desktop.export_dialog import ExportDialog
+        from app.film import Film
+
+        if self.running:
+            self._window.say("A film is being written already: wait, or cancel it.")
+            return
+        document = self._window.document
+        film = Film(document)
+        colours = self._window.settings.colours
+        order = replace(self._order, theme=self._window.theme.name, colours=colours)
+        dialog = ExportDialog(film, order, self._window)
+        accepted = bool(dialog.exec())
+        self._order = dialog.order
+        dialog.deleteLater()
+        if not accepted:
+            return
+        path = self._ask_path(self._order)
+        if path:
+            self.start(film, self._order, path)
+
+    def _ask_path(self, order: Order) -> str:
+        document = self._window.document
+        folder = document.path.parent if document.path else Path()
+        name = folder / f"{document.name or 'mesh'}{order.ending}"
+        kind = order.ending[1:].upper()
+        path, _ = QFileDialog.getSaveFileName(
+            self._window, f"Export as {kind}", str(name), f"{kind} (*{order.ending})"
+        )
+        if path and not path.lower().endswith(order.ending):
+            path += order.ending
+        return str(path)
+
+    def start(self, film: Film, order: Order, path: str) -> None:
+        """Write ``order`` to ``path`` in the background; ends in one sentence."""
+        self._stop.clear()
+        self.bar.tell(Path(path).name, 0, 1)
+        self._thread = threading.Thread(
+            target=self._work, args=(film, order, path), name="film-export", daemon=True
+        )
+        self._thread.start()
+
+    def cancel(self) -> None:
+        """Write no further; nothing is left of the file."""
+        self._stop.set()
+
+    def close(self) -> None:
+        """Cancel, and wait for the frame that is being drawn."""
+        self.cancel()
+        if self._thread is not None:
+            self._thread.join(10.0)
+            self._thread = None
+
+    def _work(self, film: Film, order: Order, path: str) -> None:
+        """In the thread: everything that is said goes through the dispatcher."""
+        name = Path(path).name
+
+        def progress(done: int, total: int) -> None:
+            if self._stop.is_set():
+                raise Stopped
+            self._dispatch(partial(self._on_progress, name, done, total))
+
+        try:
+            frames = write_order(film, order, path, progress)
+        except Stopped:
+            self._dispatch(partial(self._finish, f"Cancelled: {name} was not written.", False))
+        except MeshError as error:
+            self._dispatch(partial(self._finish, str(error), True))
+        except Exception as error:  # whatever it is, the bar must not stay for ever
+            _log.exception("an export broke off")
+            words = f"{name} was not written: {type(error).__name__}: {error}"
+            self._dispatch(partial(self._finish, words, True))
+        else:
+            size = Path(path).stat().st_size / 1e6
+            count = f"{frames:,} frames, " if frames > 1 else ""
+            words = f"Written: {name} ({count}{size:.1f} MB)."
+            self._dispatch(partial(self._finish, words, False))
+
+    def _on_progress(self, name: str, done: int, total: int) -> None:
+        if self.running and not self._stop.is_set():
+            self.bar.tell(name, done, total)
+
+    def _finish(self, words: str, failed: bool) -> None:
+        if self._thread is None:
+            return  # the window has closed
+        self._thread.join()
+        self._thread = None
+        self.bar.hide()
+        if failed:
+            self._window.notice.tell(words)
+        else:
+            self._window.say(words)

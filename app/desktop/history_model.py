@@ -1,0 +1,104 @@
+"""The history as a list of lines: the start, every step, and the branches where they fork."""
+
+from bisect import bisect_left
+from dataclasses import dataclass
+
+from qtpy.QtCore import QAbstractListModel, QModelIndex, Qt
+
+from app.branches import Branches
+from app.desktop.score_curve import branch_words, row_words
+from app.history import History, Row
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of the list: a state, or with ``branch`` >= 0 a branch that forks at ``state``."""
+
+    state: int
+    row: Row | None
+    branch: int = -1
+
+
+class HistoryModel(QAbstractListModel):
+    """Follows a history; a line is found by arithmetic, so that 10,000 cost as much as ten."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._history = History(0, 0)
+        self._branches: Branches = ()
+        self._order: list[int] = []
+        self._places: list[int] = []
+        self._rows = 0
+        self._last: Row | None = None
+        self._empty = True
+
+    def rowCount(self, parent: QModelIndex | None = None) -> int:  # noqa: N802
+        """Lines there are; a line has none below it."""
+        if self._empty or (parent is not None and parent.isValid()):
+            return 0
+        return self._rows + 1 + len(self._places)
+
+    def line(self, place: int) -> Line:
+        """What stands at a place of the list."""
+        before = bisect_left(self._places, place)
+        if before < len(self._places) and self._places[before] == place:
+            branch = self._order[before]
+            return Line(self._branches[branch].at, None, branch)
+        state = place - before
+        return Line(state, self._history[state - 1] if state else None)
+
+    def place(self, state: int) -> int:
+        """Where in the list a state stands."""
+        return state + sum(1 for branch in self._branches if branch.at < state)
+
+    @property
+    def history(self) -> History:
+        """What is shown."""
+        return self._history
+
+    @property
+    def branches(self) -> Branches:
+        """The branches that are shown."""
+        return self._branches
+
+    def data(self, index: QModelIndex, role: int = Qt.ItemDataRole.DisplayRole) -> object:
+        """Words for people who hear the list, or point at it; the delegate paints from lines."""
+        if role not in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+            return None
+        if not 0 <= index.row() < self.rowCount():
+            return None
+        line = self.line(index.row())
+        if line.branch >= 0:
+            branch = self._branches[line.branch]
+            further = len(branch.branches)
+            more = f", and {further} more on it" if further else ""
+            return f"{branch_words(branch.rows)}, from step {branch.at:,}{more}"
+        if line.row is None:
+            return f"Start, s {self._history.first[0]:,}"
+        return f"Step {line.state:,}: {row_words(line.row)}, s {line.row.after:,}"
+
+    def follow(self, history: History, empty: bool) -> None:
+        """Take over what ``history`` holds now, with no more fuss than it needs."""
+        count = len(history)
+        same = history is self._history and empty == self._empty
+        same = same and self._branches is history.branches
+        # a row always comes after the same rows: see app.curve.Track
+        kept = same and (
+            self._rows == 0 or (self._rows <= count and history[self._rows - 1] is self._last)
+        )
+        if kept and count == self._rows:
+            return
+        if kept:
+            first = self.rowCount()
+            self.beginInsertRows(QModelIndex(), first, first + count - self._rows - 1)
+        else:
+            self.beginResetModel()
+        self._history, self._branches, self._empty = history, history.branches, empty
+        self._rows = count
+        self._last = history[count - 1] if count else None
+        self._order = sorted(range(len(self._branches)), key=lambda i: self._branches[i].at)
+        self._places = [self._branches[b].at + 1 + i for i, b in enumerate(self._order)]
+        if kept:
+            self.endInsertRows()
+        else:
+            self.endResetModel()

@@ -1,0 +1,332 @@
+"""The score curve: s of every state, where one stands, and where branches fork."""
+
+import numpy as np
+from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtGui import (
+    QColor,
+    QFont,
+    QFontMetricsF,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPixmap,
+    QPolygonF,
+    QResizeEvent,
+    QWheelEvent,
+)
+from qtpy.QtWidgets import QSizePolicy, QWidget
+
+from app import curve
+from app.branches import Branches
+from app.curve import Track
+from app.desktop.widgets import tabular
+from app.history import YOU, History, Row
+from app.markers import label
+from app.theme import GRID, Theme
+
+HEIGHT = 96
+LEFT, RIGHT, TOP, BOTTOM = 7 * GRID, 3 * GRID, 16, 36
+FORK_REACH = 7
+"""Pixels beside the mark of a branch that count as on it."""
+
+
+class ScoreCurve(QWidget):
+    """Paints a history; what a person asks for it says by ``asked(state)`` and
+    ``branch_asked(index)``.
+
+    The curve lies in a pixmap that is made anew only when the history, the size or the colours
+    change: the cursor and what is under the mouse are painted over it.
+    """
+
+    asked = Signal(int)
+    branch_asked = Signal(int)
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__()
+        self.setFixedHeight(HEIGHT)
+        self.setMinimumWidth(160)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setAccessibleName("Score curve of the history")
+        self.cursor_state = 0
+        self.hovered = -1
+        self.builds = 0
+        """How often the pixmap has been made."""
+        self._theme = theme
+        self._history = History(0, 0)
+        self._branches: Branches = ()
+        self._empty = True
+        self._track = Track()
+        self._frame = curve.frame(np.empty(0), np.empty(0), 0, 0, 1, 1)
+        self._best = 0
+        self._forks: list[float] = []
+        self._fork = -1
+        self._still: QPixmap | None = None
+        self._font = tabular(QFont(self.font()))
+        self._font.setPixelSize(11)
+
+    # What is shown
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._theme = theme
+        self._redraw()
+
+    def show_history(self, history: History, empty: bool) -> None:
+        """Show what ``history`` holds now; ``empty`` where there is no mesh."""
+        fresh = self._track.follow(history)
+        branches = history.branches
+        same = history is self._history and empty == self._empty and branches is self._branches
+        self._history, self._branches, self._empty = history, branches, empty
+        if not same or fresh < len(self._track.scores):
+            self._redraw()
+        self.set_cursor(history.cursor)
+
+    def set_cursor(self, state: int) -> None:
+        """Show that one stands at ``state``."""
+        self.cursor_state = state
+        self.setAccessibleDescription(self._words(state))
+        self.update()
+
+    def _redraw(self) -> None:
+        self._still = None
+        self.update()
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """As wide as there is room."""
+        return QSize(640, HEIGHT)
+
+    # Mouse and keys
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
+        """Go to the state under the mouse, or to the branch whose mark is there."""
+        if event.button() != Qt.MouseButton.LeftButton or self._empty:
+            return
+        self.setFocus(Qt.FocusReason.MouseFocusReason)
+        if self._fork >= 0:
+            self.branch_asked.emit(self._fork)
+        else:
+            self._ask(event.position())
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
+        """Tell what is under the mouse; with the button down go there."""
+        at = event.position()
+        pressed = bool(event.buttons() & Qt.MouseButton.LeftButton)
+        fork = -1 if pressed else self._fork_at(at)
+        hovered = -1 if self._empty or fork >= 0 else self._frame.state(at.x())
+        if (hovered, fork) != (self.hovered, self._fork):
+            self.hovered, self._fork = hovered, fork
+            pointing = Qt.CursorShape.PointingHandCursor
+            self.setCursor(pointing if fork >= 0 else Qt.CursorShape.ArrowCursor)
+            self.update()
+        if pressed and not self._empty:
+            self._ask(at)
+
+    def leaveEvent(self, event: object) -> None:  # noqa: N802
+        """Nothing is under the mouse."""
+        self.hovered = self._fork = -1
+        self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
+        """One step back or forward for each notch."""
+        turn = event.angleDelta().y() or event.angleDelta().x()
+        if turn and not self._empty:
+            self._go(self.cursor_state + (1 if turn < 0 else -1))
+        event.accept()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Arrows, page keys, Home and End walk through the history."""
+        page = max(1, len(self._history) // 20)
+        moves = {
+            Qt.Key.Key_Left: self.cursor_state - 1,
+            Qt.Key.Key_Right: self.cursor_state + 1,
+            Qt.Key.Key_PageUp: self.cursor_state - page,
+            Qt.Key.Key_PageDown: self.cursor_state + page,
+            Qt.Key.Key_Home: 0,
+            Qt.Key.Key_End: len(self._history),
+        }
+        if event.key() in moves and not event.modifiers() and not self._empty:
+            self._go(moves[event.key()])
+        else:
+            super().keyPressEvent(event)
+
+    def _ask(self, at: QPointF) -> None:
+        self._go(self._frame.state(at.x()))
+
+    def _go(self, state: int) -> None:
+        state = min(max(state, 0), len(self._history))
+        if state != self.cursor_state:
+            self.set_cursor(state)  # the line follows the mouse at once, the mesh comes after
+            self.asked.emit(state)
+
+    def _fork_at(self, at: QPointF) -> int:
+        """The branch whose mark is at this place, -1 for none."""
+        if not 0 <= at.y() - (self.height() - BOTTOM) <= 18 or not self._forks:
+            return -1
+        distance = np.abs(np.array(self._forks) - at.x())
+        nearest = int(np.argmin(distance))
+        return nearest if distance[nearest] <= FORK_REACH else -1
+
+    # Painting
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Another width: another curve."""
+        self._still = None
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """The pixmap, and over it what is yet to be done again, the cursor and the mouse."""
+        if self._still is None or self._still.devicePixelRatio() != self.devicePixelRatioF():
+            self._still = self._draw()
+        painter = QPainter(self)
+        painter.drawPixmap(0, 0, self._still)
+        if self._empty:
+            painter.end()
+            return
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setFont(self._font)
+        states = len(self._track.scores)
+        here = min(self.cursor_state, states - 1)
+        x = float(self._frame.x(here))
+        if here < states - 1:
+            veil = QColor(self._theme.panel)
+            veil.setAlphaF(0.65)
+            bottom = self.height() - BOTTOM
+            painter.fillRect(QRectF(x, 2, self.width() - x, bottom), veil)
+        if self.hovered >= 0:
+            self._paint_mark(painter, self.hovered, self._theme.muted, 3.0)
+        self._paint_mark(painter, here, self._theme.accent, 4.5)
+        if self._fork >= 0:
+            self._paint_words(painter, self._forks[self._fork], self._fork_words())
+        elif self.hovered >= 0:
+            at = float(self._frame.x(self.hovered))
+            self._paint_words(painter, at, self._words(self.hovered))
+        if self.hasFocus():
+            painter.setPen(QPen(QColor(self._theme.accent), 1.0))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1.5, 1.5, -1.5, -1.5), 4, 4)
+        painter.end()
+
+    def _paint_mark(self, painter: QPainter, state: int, colour: str, radius: float) -> None:
+        x = float(self._frame.x(state))
+        y = float(self._frame.y(self._track.scores[state]))
+        painter.setPen(QPen(QColor(colour), 1.0))
+        painter.drawLine(QPointF(x, TOP - 4), QPointF(x, self.height() - BOTTOM + 4))
+        painter.setPen(QPen(QColor(self._theme.panel), 1.5))
+        painter.setBrush(QColor(colour))
+        painter.drawEllipse(QPointF(x, y), radius, radius)
+
+    def _paint_words(self, painter: QPainter, x: float, words: str) -> None:
+        """A small card with ``words`` at the upper edge, near ``x``, inside the widget."""
+        width = QFontMetricsF(self._font).horizontalAdvance(words) + 2 * GRID
+        left = min(max(x - width / 2, 2.0), max(self.width() - width - 2.0, 2.0))
+        box = QRectF(left, 1.5, width, 18)
+        painter.setPen(QPen(QColor(self._theme.line), 1.0))
+        painter.setBrush(QColor(self._theme.raised))
+        painter.drawRoundedRect(box, 4, 4)
+        painter.setPen(QColor(self._theme.text))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)
+
+    def _draw(self) -> QPixmap:
+        """All that does not change while the mouse or the cursor moves."""
+        self.builds += 1
+        ratio = self.devicePixelRatioF()
+        made = QPixmap(self.size() * ratio)
+        made.setDevicePixelRatio(ratio)
+        made.fill(QColor(self._theme.panel))
+        if self._empty:
+            return made
+        scores, optima = self._track.scores, self._track.optima
+        width, height = self.width() - LEFT - RIGHT, self.height() - TOP - BOTTOM
+        self._frame = curve.frame(scores, optima, LEFT, TOP, max(width, 1), height)
+        self._best = curve.best_state(scores, optima)
+        painter = QPainter(made)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setFont(self._font)
+        self._draw_levels(painter)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(
+            QPen(QColor(self._theme.muted), 1.2, Qt.PenStyle.DashLine, Qt.PenCapStyle.FlatCap)
+        )
+        painter.drawPolyline(_polygon(curve.steps(optima, self._frame)))
+        painter.setPen(QPen(QColor(self._theme.accent), 1.8))
+        painter.drawPolyline(_polygon(curve.steps(scores, self._frame)))
+        self._draw_best(painter)
+        self._draw_forks(painter)
+        painter.end()
+        return made
+
+    def _draw_levels(self, painter: QPainter) -> None:
+        """The highest score and the optimum beside the curve, the steps below it."""
+        high, low = int(self._frame.high), int(self._track.optima[-1])
+        painter.setPen(QPen(QColor(self._theme.line), 1.0))
+        top = float(self._frame.y(high))
+        painter.drawLine(QPointF(LEFT, top), QPointF(self.width() - RIGHT, top))
+        painter.setPen(QColor(self._theme.muted))
+        right = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        for value in (high, low):
+            y = float(self._frame.y(value))
+            painter.drawText(QRectF(0, y - 8, LEFT - GRID, 16), right, f"{value:,}")
+        below = QRectF(LEFT, self.height() - 19, self.width() - LEFT - RIGHT, 16)
+        count = len(self._history)
+        steps = f"{count:,} step{'' if count == 1 else 's'}" if count else "No steps yet"
+        painter.drawText(below, right, steps)
+        left = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        painter.drawText(
+            below, left, "s, and the optimum s* (dashed)" if self.width() > 520 else "s"
+        )
+
+    def _draw_best(self, painter: QPainter) -> None:
+        """A diamond around the best state so far, where there is anything to tell."""
+        if len(self._history) == 0:
+            return
+        x = float(self._frame.x(self._best))
+        y = float(self._frame.y(self._track.scores[self._best]))
+        painter.setPen(QPen(QColor(self._theme.accent), 1.5))
+        painter.setBrush(QColor(self._theme.panel))
+        r = 5.5
+        painter.drawPolygon(
+            QPolygonF([QPointF(x, y - r), QPointF(x + r, y), QPointF(x, y + r), QPointF(x - r, y)])
+        )
+
+    def _draw_forks(self, painter: QPainter) -> None:
+        """A small fork below the curve where each branch begins."""
+        painter.setPen(QPen(QColor(self._theme.text), 1.4))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        self._forks = [float(self._frame.x(branch.at)) for branch in self._branches]
+        base = self.height() - BOTTOM + 3.0
+        for x in self._forks:
+            painter.drawPolyline(
+                QPolygonF([QPointF(x, base), QPointF(x, base + 4), QPointF(x + 5, base + 10)])
+            )
+            painter.drawLine(QPointF(x, base + 4), QPointF(x - 5, base + 10))
+
+    def _fork_words(self) -> str:
+        return branch_words(self._branches[self._fork].rows)
+
+    def _words(self, state: int) -> str:
+        if state == 0:
+            return f"Start:  s {self._history.first[0]:,}"
+        if state > len(self._history):
+            return ""
+        row = self._history[state - 1]
+        best = "  (best)" if state == self._best else ""
+        return f"{state:,}  {row_words(row)}:  s {row.after:,}{best}"
+
+
+def row_words(row: Row) -> str:
+    """``Flip left by quad-paper, -2``: what was done, by whom, and what came of it."""
+    who = "" if row.by == YOU else f" by {row.by}"
+    return f"{row.title}{who}, {label(row.change)}"
+
+
+def branch_words(rows: tuple[Row, ...]) -> str:
+    """``Branch: 12 steps to s 6``."""
+    count = len(rows)
+    return f"Branch: {count:,} step{'' if count == 1 else 's'} to s {rows[-1].after:,}"
+
+
+def _polygon(points: np.ndarray) -> QPolygonF:
+    return QPolygonF([QPointF(x, y) for x, y in points.tolist()])
