@@ -18,6 +18,7 @@ from app.selection import Selection
 from app.signals import Signal
 from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict, io
 from meshcore.enclosure import holding
+from meshcore.formats import SHAPES
 from meshcore.operations import CATALOGUE
 
 Result = TypeVar("Result")
@@ -166,10 +167,16 @@ class Document:
         self._emit_all()
 
     def open(self, path: str | Path) -> None:
-        """Read a mesh file or a project; on MeshError or OSError the document stays as it was."""
+        """Read a mesh file or a project, or mesh the shape in a geometry file.
+
+        On MeshError or OSError the document stays as it was. A shape gets elements of the kind
+        that is here now, quads if there is none; its file is not where the mesh is saved.
+        """
         path = Path(path)
         if project.is_project(path):
             self.adopt(project.read(path))
+        elif path.suffix.lower() in SHAPES:
+            self.replace(_meshed(path, self.kind or "quad"), path.stem)
         else:
             self.replace(io.read(path), path.stem, path)
 
@@ -397,6 +404,13 @@ class Document:
         self.score_changed.emit()
         self.history_changed.emit()
         self.saved_changed.emit()
+
+
+def _meshed(path: Path, kind: str) -> HalfEdgeMesh:
+    """Mesh the shape in a file; imported late, for few documents begin so."""
+    from meshcore import generate, geometry_files
+
+    return generate.mesh_domain(geometry_files.read_domain(path), kind)
 
 
 def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None) -> None:

@@ -39,15 +39,19 @@ def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
         return meshcore.read(path, corner_angle=corner_angle)
 
 
-def read_domain(shape: str) -> Domain:
-    """Return the domain with this name in the gallery, or in this polygon file (JSON)."""
-    from meshcore import shapes
-    from meshcore.domain import Domain
+def read_domain(shape: str, corner_angle: float | None = None) -> Domain:
+    """Return the domain with this name in the gallery, or in this geometry file.
+
+    ``corner_angle`` in degrees: a point where the boundary turns by more is a corner.
+    """
+    from meshcore import geometry_files, shapes
 
     if looks_like_path(shape) or Path(shape).exists():
         _require_file(shape)
         with _bad_input(shape):
-            return Domain.from_json(shape)
+            if corner_angle is None:
+                return geometry_files.read_domain(shape)
+            return geometry_files.read_domain(shape, corner_angle)
     with _bad_input(shape):
         return shapes.shape(shape)
 

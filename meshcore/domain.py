@@ -157,8 +157,8 @@ class Domain:
         """The largest distance between two points of the outline."""
         hull = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(self.outline)))
         hull = hull[:-1][::-1] if len(hull) > 3 else hull
-        # the farthest two lie on parallel lines around the hull, one of them along an edge: opposite
-        # that edge is the point where the edges begin to run back
+        # the farthest two lie on parallel lines around the hull, one of them along an edge:
+        # opposite to it is the point where the edges begin to run back
         angle = np.unwrap(np.arctan2(*np.diff(hull, axis=0, append=hull[:1]).T[::-1]))
         opposite = np.searchsorted(np.append(angle, angle + 2 * np.pi), angle + np.pi)
         ends = np.arange(len(hull))[:, None, None] + np.arange(2)[None, :, None]

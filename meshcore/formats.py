@@ -24,6 +24,9 @@ from meshcore import legacyvtk, textfiles
 from meshcore.errors import MeshError
 from meshcore.textfiles import Content
 
+SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json")
+"""Endings of files that hold a shape; see :mod:`meshcore.geometry_files`."""
+
 _ENDS = 1000
 """Empty reads at the end of a file after which its reader is taken to be stuck."""
 
@@ -58,8 +61,8 @@ def of(path: str | os.PathLike[str]) -> Format:
         MeshError: no format has this ending; the message does not name the path.
     """
     ending = Path(path).suffix.lower()
-    if ending == ".json":
-        raise MeshError("a .json file holds a domain (outline and holes), not a mesh")
+    if ending in SHAPES:
+        raise MeshError(f"a {ending} file holds a shape (outline and holes), not a mesh")
     if ending not in FORMATS:
         shown = f"the ending {ending!r} is not one of a mesh file" if ending else "no ending"
         raise MeshError(f"{shown}; there are {' '.join(FORMATS)}")

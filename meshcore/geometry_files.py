@@ -18,6 +18,7 @@ from meshcore.atomic import reason
 from meshcore.curves import CURVE_STEP, Piece
 from meshcore.domain import CORNER_ANGLE, Domain, load_json
 from meshcore.errors import MeshError
+from meshcore.formats import SHAPES
 from meshcore.tracing import traced
 
 MAX_BYTES = 256 * 2**20
@@ -39,12 +40,12 @@ Read = Callable[[bytes, float, float], list[Piece]]
 
 def endings() -> tuple[str, ...]:
     """Return the endings of geometry files, with their dots."""
-    return (*_READERS, ".json")
+    return SHAPES
 
 
 def is_geometry(path: str | os.PathLike[str]) -> bool:
     """Tell by its ending whether a file holds a shape, so that it must be meshed first."""
-    return Path(path).suffix.lower() in endings()
+    return Path(path).suffix.lower() in SHAPES
 
 
 def read_domain(

@@ -10,21 +10,31 @@ from app.report import Report
 
 SUMMARY = "make a triangle or quad mesh of a shape and write it to a file"
 DESCRIPTION = (
-    "Mesh a shape of the gallery, or a polygon in a JSON file "
-    '({"outline": [[x, y], ...], "holes": [[[x, y], ...], ...]}), and write the mesh.'
+    "Mesh a shape of the gallery, or the shape in a file: a drawing (.dxf, .svg), geometry "
+    '(.geojson, .wkt), or JSON as {"outline": [[x, y], ...], "holes": [[[x, y], ...], ...]}; '
+    "and write the mesh."
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Describe the shape, the kind and the size of the elements."""
-    parser.add_argument("shape", metavar="SHAPE-or-FILE", help="name of a shape, or polygon file")
+    parser.add_argument("shape", metavar="SHAPE-or-FILE", help="name of a shape, or file")
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="mesh file to write")
-    parser.add_argument("--kind", choices=("tri", "quad"), required=True, help="triangles or quads")
+    parser.add_argument(
+        "--kind", choices=("tri", "quad"), default="quad", help="triangles or quads (quad)"
+    )
     parser.add_argument(
         "--max-edge",
         metavar="H",
         type=inputs.positive_float,
         help="no edge longer than this, in the units of the shape",
+    )
+    parser.add_argument(
+        "--corner-angle",
+        metavar="DEGREES",
+        type=inputs.angle,
+        help="a point of a file's outline is a corner where it turns by more (0.01); raise it "
+        "where curved sides are drawn as short straight pieces",
     )
     parser.add_argument(
         "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
@@ -34,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Make the mesh, settle its positions, write it."""
     output = meshfile.checked_mesh_output(arguments.output, arguments.kind)
-    domain = inputs.read_domain(arguments.shape)
+    domain = inputs.read_domain(arguments.shape, arguments.corner_angle)
     start = time.perf_counter()
     with report.progress(f"meshing {domain.name or arguments.shape}"):
         mesh = inputs.make_mesh(domain, arguments.kind, arguments.max_edge, arguments.seed)

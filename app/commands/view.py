@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "file",
         metavar="FILE-or-SHAPE",
         nargs="?",
-        help="mesh file, polygon file (.json) or name of a shape",
+        help="mesh file, file of a shape (.dxf .svg .geojson .wkt .json) or name of a shape",
     )
     parser.add_argument(
         "--kind", choices=("tri", "quad"), default="quad", help="how to mesh a shape (quad)"
@@ -59,12 +59,18 @@ def _document(arguments: argparse.Namespace) -> Document | None:
 
     path = Path(name)
     is_file = path.exists() or inputs.looks_like_path(name)
-    if is_file and path.suffix.lower() != ".json":
+    if is_file and not _holds_shape(path):
         return Document(inputs.read_mesh(name, arguments.corner_angle), path.name, path)
     if not is_file:
         _refuse_near_command(name)
-    domain = inputs.read_domain(name)
+    domain = inputs.read_domain(name, arguments.corner_angle)
     return Document(inputs.make_mesh(domain, arguments.kind), domain.name or path.stem)
+
+
+def _holds_shape(path: Path) -> bool:
+    from meshcore import geometry_files
+
+    return geometry_files.is_geometry(path)
 
 
 def _refuse_near_command(word: str) -> None:
