@@ -5,6 +5,9 @@ apart); controls have one accent. All distances are multiples of :data:`GRID`.
 """
 
 from dataclasses import dataclass, replace
+from pathlib import Path
+
+import assets
 
 GRID = 8
 """Pixels: margins and gaps are multiples of this, or half of it inside small controls."""
@@ -119,7 +122,7 @@ def theme(name: str, colours: str = "vermilion") -> Theme:
 
 def style_sheet(theme: Theme) -> str:
     """The Qt style sheet of the whole window."""
-    t = theme
+    t, icons = theme, (Path(assets.__file__).parent / "icons").as_posix()
     return f"""
 * {{ color: {t.text}; font-size: 13px; outline: 0; }}
 QMainWindow, QDialog {{ background: {t.panel}; }}
@@ -184,6 +187,27 @@ QPushButton#ValueLink {{ background: transparent; border: 0; padding: 0; font-we
 QPushButton#ValueLink:hover {{ color: {t.accent_hover}; }}
 QPushButton#ValueLink:disabled {{ color: {t.text}; text-decoration: none; }}
 QPushButton#ValueLink[warns="true"] {{ color: {t.warning}; }}
+#Palette {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 10px; }}
+#PaletteField {{ background: {t.background}; font-size: 15px; padding: 8px 12px; }}
+#PaletteField:focus {{ border-color: {t.accent}; }}
+#PaletteList {{ background: transparent; border: 0; padding: 0; }}
+#PaletteList::item, #PaletteList::item:hover, #PaletteList::item:selected {{
+    background: transparent; padding: 0; }}
+#CalloutTitle {{ font-size: 16px; font-weight: 600; }}
+#CalloutDone {{ color: {t.accent}; font-weight: 600; }}
+#Table {{ background: {t.background}; border: 1px solid {t.line}; border-radius: 6px;
+         selection-background-color: {t.accent_soft}; selection-color: {t.text}; }}
+#Table::item {{ padding: 2px 8px; }}
+QHeaderView, QHeaderView::section {{ background: {t.panel}; color: {t.muted}; border: 0;
+                                    padding: 4px 8px; font-size: 12px; }}
+#LicenceText {{ background: {t.background}; border: 1px solid {t.line}; border-radius: 6px;
+               padding: 4px; font-family: monospace; font-size: 12px; }}
+QCheckBox {{ spacing: 8px; }}
+QCheckBox::indicator {{ width: 16px; height: 16px; border-radius: 4px;
+                       border: 1px solid {t.faint}; background: {t.raised}; }}
+QCheckBox::indicator:checked {{ background: {t.accent}; border-color: {t.accent};
+                               image: url({icons}/check-{t.name}.svg); }}
+QCheckBox::indicator:hover, QCheckBox:focus::indicator {{ border-color: {t.accent}; }}
 QPushButton#Segment {{ border-radius: 0; padding: 6px 16px; }}
 QPushButton#Segment:checked {{ background: {t.accent_soft}; border-color: {t.accent};
                               color: {t.accent}; font-weight: 600; }}

@@ -23,7 +23,8 @@ class Action:
 
     ``menu`` is the menu that lists it; ``icon`` its icon in the toolbar, empty for none there;
     ``word`` is written beside the icon. One with ``checked`` is a switch that is on or off.
-    ``repeats`` says that a key held down does it again and again.
+    ``repeats`` says that a key held down does it again and again. ``needs`` tells, as a sentence,
+    what is missing while it is not enabled; the conditions below have their own.
     """
 
     id: str
@@ -37,6 +38,7 @@ class Action:
     word: str = ""
     checked: When | None = None
     repeats: bool = True
+    needs: str = ""
 
 
 def tooltip(action: Action) -> str:
@@ -69,3 +71,16 @@ def can_run(window: MainWindow) -> bool:
 def is_active(window: MainWindow) -> bool:
     """A run is under way, or held."""
     return window.assistant.running or window.assistant.state is State.PAUSED
+
+
+NEEDS: dict[When, str] = {
+    has_mesh: "Needs a mesh.",
+    has_quads: "Needs a quad mesh.",
+    can_run: "Needs a mesh, and an agent that is ready.",
+    is_active: "Nothing is running.",
+}
+
+
+def needs(action: Action) -> str:
+    """What is missing while ``action`` is not enabled, as a sentence."""
+    return action.needs or NEEDS.get(action.enabled, "") or "Not possible now."

@@ -34,7 +34,7 @@ TOOLBAR = (
     ("undo", "redo"),
     ("clean_all", "smooth", "fit"),
     (),  # what follows stands at the right
-    ("theme", "help"),
+    ("palette", "theme", "help"),
 )
 
 

@@ -205,7 +205,14 @@ class MainWindow(QMainWindow):
         self.theme = theme(name, self.settings.colours)
         self.setStyleSheet(style_sheet(self.theme))
         self.actions_by_id.set_theme(self.theme)
-        for part in (self.canvas, self.dashboard, self.film, self.agent_panel, self.notice):
+        for part in (
+            self.canvas,
+            self.dashboard,
+            self.film,
+            self.guide,
+            self.agent_panel,
+            self.notice,
+        ):
             part.set_theme(self.theme)
 
     def refresh(self) -> None:

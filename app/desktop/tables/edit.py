@@ -14,6 +14,7 @@ ACTIONS: tuple[Action, ...] = (
         lambda window: window.document.can_undo,
         menu="Edit",
         icon="undo",
+        needs="There is nothing to take back.",
     ),
     Action(
         "redo",
@@ -24,5 +25,6 @@ ACTIONS: tuple[Action, ...] = (
         lambda window: window.document.can_redo,
         menu="Edit",
         icon="redo",
+        needs="Nothing has been taken back.",
     ),
 )

@@ -6,6 +6,16 @@ from app.desktop.action import Action
 
 ACTIONS: tuple[Action, ...] = (
     Action(
+        "palette",
+        "Find a command\u2026",
+        "Every command, found by a few letters",
+        lambda window: window.guide.show_palette(),
+        ("Ctrl+K", "Ctrl+Shift+P"),
+        menu="Help",
+        icon="search",
+        repeats=False,
+    ),
+    Action(
         "help",
         "Keys and mouse",
         "All keys, and what the mouse does",
@@ -13,6 +23,13 @@ ACTIONS: tuple[Action, ...] = (
         ("F1",),
         menu="Help",
         icon="help",
+    ),
+    Action(
+        "tour",
+        "Show the tour",
+        "Five steps around the window",
+        lambda window: window.guide.show_tour(),
+        menu="Help",
     ),
     Action(
         "about",

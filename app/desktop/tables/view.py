@@ -25,4 +25,20 @@ ACTIONS: tuple[Action, ...] = (
         menu="View",
         icon="theme",
     ),
+    Action(
+        "auto_smooth",
+        "Smooth after every operation",
+        "Move the vertices near an operation, so that the picture stays readable",
+        lambda window: window.preferences.toggle_auto_smooth(),
+        menu="Edit",
+        checked=lambda window: window.settings.auto_smooth,
+    ),
+    Action(
+        "preferences",
+        "Preferences\u2026",
+        "Theme, colours, smoothing, autosave",
+        lambda window: window.preferences.show(),
+        ("Ctrl+,",),
+        menu="Edit",
+    ),
 )

@@ -1,0 +1,162 @@
+"""A callout: a small card beside a place of the window, with an arrow to it."""
+
+from qtpy.QtCore import QPoint, QPointF, QRect, QRectF, Qt, Signal
+from qtpy.QtGui import QColor, QPainter, QPainterPath, QPaintEvent, QPen
+from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from app.desktop.widgets import named
+from app.theme import GRID, Theme
+
+WIDTH = 320
+_TIP = 12
+"""Pixels that the arrow stands out, and half of its width."""
+_GAP = 6
+"""Pixels between the arrow's tip and what it points at."""
+_SHADE = 3
+
+
+class Callout(QWidget):
+    """Heading, text and the buttons of a tour. It never takes the keyboard by itself.
+
+    ``went(step)`` with -1 for *Back* and 1 for *Next*; ``ended()`` for *Skip* and the last *Done*.
+    """
+
+    went = Signal(int)
+    ended = Signal()
+
+    def __init__(self, theme: Theme, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._theme = theme
+        self._side = "left"
+        self._tip = QPointF()
+        self.setObjectName("Callout")
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.count = named("", "Hint")
+        self.heading = named("", "CalloutTitle")
+        self.text = named("", "CalloutText")
+        self.text.setWordWrap(True)
+        self.done = named("", "CalloutDone")
+        self.done.setWordWrap(True)
+        self.skip = self._button("Skip", "Chip", "End the tour; Help shows it again")
+        self.back = self._button("Back", "", "The step before")
+        self.next = self._button("Next", "Primary", "The next step")
+        self.skip.clicked.connect(lambda checked=False: self.ended.emit())
+        self.back.clicked.connect(lambda checked=False: self.went.emit(-1))
+        self.next.clicked.connect(lambda checked=False: self.went.emit(1))
+        self._card = QWidget(self)
+        self._card.setFixedWidth(WIDTH)
+        layout = QVBoxLayout(self._card)
+        layout.setContentsMargins(2 * GRID, 12, 2 * GRID, 2 * GRID)
+        layout.setSpacing(6)
+        line = QHBoxLayout()
+        line.addWidget(self.count, 1)
+        line.addWidget(self.skip)
+        layout.addLayout(line)
+        layout.addWidget(self.heading)
+        layout.addWidget(self.text)
+        layout.addWidget(self.done)
+        layout.addSpacing(6)
+        buttons = QHBoxLayout()
+        buttons.setSpacing(GRID)
+        buttons.addStretch(1)
+        buttons.addWidget(self.back)
+        buttons.addWidget(self.next)
+        layout.addLayout(buttons)
+        self.hide()
+
+    def _button(self, text: str, name: str, tooltip: str) -> QPushButton:
+        made = QPushButton(text)
+        made.setObjectName(name)
+        made.setToolTip(tooltip)
+        made.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keyboard to the canvas
+        return made
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._theme = theme
+        self.update()
+
+    def tell(self, number: int, total: int, heading: str, text: str, done: str = "") -> None:
+        """Show step ``number`` of ``total``, from 1; ``done`` says that it has been done."""
+        self.count.setText(f"{number} of {total}")
+        self.heading.setText(heading)
+        self.text.setText(text)
+        self.done.setText(f"\u2713 {done}" if done else "")
+        self.done.setVisible(bool(done))
+        self.back.setEnabled(number > 1)
+        self.next.setText("Done" if number == total else "Next")
+        self.setAccessibleName(heading)
+        self.setAccessibleDescription(text)
+
+    def point_at(self, target: QRect, outside: bool) -> None:
+        """Stand beside ``target``, in the parent's pixels, where there is most room, or where the
+        target is so large that there is none, inside it; ``outside`` for targets at an edge.
+        """
+        self._card.adjustSize()
+        width, height = self._card.width() + 2 * _TIP, self._card.height() + 2 * _TIP
+        self.resize(width, height)
+        room = self.parentWidget().rect()
+        rooms = {
+            "left": target.left() - room.left() - width,
+            "right": room.right() - target.right() - width,
+            "above": target.top() - room.top() - height,
+            "below": room.bottom() - target.bottom() - height,
+        }
+        order = ("left", "right", "above", "below")
+        fitting = [side for side in order if rooms[side] >= _GAP]
+        self._side = fitting[0] if outside and fitting else max(order, key=lambda s: rooms[s])
+        middle = target.center()
+        if self._side in ("left", "right"):
+            tip_x = target.left() - _GAP if self._side == "left" else target.right() + _GAP
+            tip_y = min(max(middle.y(), room.top() + 40), room.bottom() - 40)
+            x = tip_x - width if self._side == "left" else tip_x
+            y = min(max(tip_y - height // 3, room.top() + GRID), room.bottom() - height - GRID)
+        else:
+            tip_y = target.top() - _GAP if self._side == "above" else target.bottom() + _GAP
+            tip_x = min(max(middle.x(), room.left() + 40), room.right() - 40)
+            y = tip_y - height if self._side == "above" else tip_y
+            x = min(max(tip_x - width // 2, room.left() + GRID), room.right() - width - GRID)
+        self.move(x, y)
+        self._tip = QPointF(QPoint(tip_x, tip_y) - QPoint(x, y))
+        self._card.move(_TIP, _TIP)
+        self.show()
+        self.raise_()
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """The card, its arrow and a soft shade."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        card = QRectF(self._card.geometry())
+        outline = QPainterPath()
+        outline.addRoundedRect(card, GRID, GRID)
+        outline = outline.united(self._arrow(card))
+        shade = QColor(0, 0, 0)
+        painter.setPen(Qt.PenStyle.NoPen)
+        for step in range(_SHADE, 0, -1):
+            shade.setAlpha(10)
+            painter.setBrush(shade)
+            around = card.adjusted(-step, -step + 1, step, step + 1)
+            painter.drawRoundedRect(around, GRID + step, GRID + step)
+        painter.setPen(QPen(QColor(self._theme.accent), 1.5))
+        painter.setBrush(QColor(self._theme.raised))
+        painter.drawPath(outline)
+        painter.end()
+
+    def _arrow(self, card: QRectF) -> QPainterPath:
+        tip, path = self._tip, QPainterPath()
+        if self._side in ("left", "right"):
+            x = card.right() - 2 if self._side == "left" else card.left() + 2
+            y = min(max(tip.y(), card.top() + 2 * _TIP), card.bottom() - 2 * _TIP)
+            ends = (QPointF(x, y - _TIP), QPointF(x, y + _TIP))
+            tip = QPointF(tip.x(), y)
+        else:
+            y = card.bottom() - 2 if self._side == "above" else card.top() + 2
+            x = min(max(tip.x(), card.left() + 2 * _TIP), card.right() - 2 * _TIP)
+            ends = (QPointF(x - _TIP, y), QPointF(x + _TIP, y))
+            tip = QPointF(x, tip.y())
+        path.moveTo(tip)
+        path.lineTo(ends[0])
+        path.lineTo(ends[1])
+        path.closeSubpath()
+        return path

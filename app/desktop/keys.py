@@ -1,0 +1,132 @@
+"""The page of keys: all that the table of actions binds, and what the mouse does."""
+
+from collections.abc import Sequence
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import (
+    QDialog,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QPushButton,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.desktop.action import Action, key_text
+from app.desktop.widgets import named
+from app.theme import GRID
+
+COLUMNS = 3
+Block = tuple[str, list[tuple[str, str, str]]]
+"""A heading, and for each line the keys, what they do, and the whole story as a tooltip."""
+
+MOUSE = (
+    ("Move", "Point at the half-edge nearest to the mouse"),
+    ("Click", "Operations of the half-edge"),
+    ("Right click", "Desired degree, corner and lock of a vertex"),
+    ("Drag", "Move the picture; from a vertex, the vertex"),
+    ("Wheel", "Zoom at the mouse"),
+    ("Shift click", "Add a vertex to the selection"),
+    ("Shift drag", "Select by a box; with Alt by a lasso"),
+)
+
+
+class KeysDialog(QDialog):
+    """All keys in columns; stays open beside the window."""
+
+    def __init__(self, groups: Sequence[tuple[str, Sequence[Action]]], parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setWindowTitle("Keys and mouse")
+        body = QWidget()
+        body.setObjectName("SidebarBody")
+        columns = QHBoxLayout(body)
+        columns.setContentsMargins(4 * GRID, 3 * GRID, 4 * GRID, 2 * GRID)
+        columns.setSpacing(5 * GRID)
+        for blocks in spread(key_blocks(groups), COLUMNS):
+            column = QVBoxLayout()
+            column.setSpacing(2 * GRID)
+            for title, lines in blocks:
+                column.addLayout(_block(title, lines))
+            column.addStretch(1)
+            columns.addLayout(column, 1)
+        area = QScrollArea()
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(body)
+        area.setAccessibleName("Keys and mouse")
+        close = QPushButton("Close")
+        close.setToolTip("Close this page")
+        close.setDefault(True)
+        close.clicked.connect(self.accept)
+        line = QHBoxLayout()
+        line.setContentsMargins(4 * GRID, GRID, 4 * GRID, 2 * GRID)
+        line.addStretch(1)
+        line.addWidget(close)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addWidget(area, 1)
+        layout.addLayout(line)
+        room = parent.window().size()
+        wanted = body.sizeHint()
+        width = min(max(wanted.width() + 2 * GRID, 880), room.width() - 4 * GRID)
+        self.resize(width, min(wanted.height() + 8 * GRID, room.height() - 8 * GRID))
+
+
+def key_blocks(groups: Sequence[tuple[str, Sequence[Action]]]) -> list[Block]:
+    """What the page shows: a block for each menu with keys, then the mouse."""
+    blocks: list[Block] = []
+    for menu, members in groups:
+        lines = [
+            (key_text(action.shortcuts[0]), action.title.rstrip("\u2026"), action.tooltip)
+            for action in members
+            if action.shortcuts
+        ]
+        if lines:
+            blocks.append((menu, lines))
+    blocks.append(("Mouse", [(gesture, text, text) for gesture, text in MOUSE]))
+    return blocks
+
+
+def spread(blocks: Sequence[Block], columns: int) -> list[list[Block]]:
+    """The blocks in their order in ``columns`` columns, the highest as low as can be."""
+    heights = [len(lines) + 2 for _, lines in blocks]
+    low, high = max(heights), sum(heights)
+    while low < high:
+        middle = (low + high) // 2
+        if len(_filled(blocks, heights, middle)) <= columns:
+            high = middle
+        else:
+            low = middle + 1
+    return _filled(blocks, heights, low)
+
+
+def _filled(blocks: Sequence[Block], heights: Sequence[int], most: int) -> list[list[Block]]:
+    made: list[list[Block]] = [[]]
+    height = 0
+    for block, lines in zip(blocks, heights, strict=True):
+        if made[-1] and height + lines > most:
+            made.append([])
+            height = 0
+        made[-1].append(block)
+        height += lines
+    return made
+
+
+def _block(title: str, lines: Sequence[tuple[str, str, str]]) -> QGridLayout:
+    grid = QGridLayout()
+    grid.setHorizontalSpacing(12)
+    grid.setVerticalSpacing(6)
+    grid.setColumnStretch(1, 1)
+    grid.addWidget(named(title.upper(), "Heading"), 0, 0, 1, 2)
+    for row, (keys, text, tooltip) in enumerate(lines, start=1):
+        key = named(keys, "Key")
+        key.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        what = named(text, "Operation")
+        what.setToolTip(tooltip)
+        grid.addWidget(key, row, 0)
+        grid.addWidget(what, row, 1)
+    return grid

@@ -1,0 +1,98 @@
+"""The licences of everything that is installed because Meshwright needs it."""
+
+import re
+from dataclasses import dataclass
+from importlib.metadata import Distribution, PackageNotFoundError, distribution
+
+NAME = "meshwright"
+UNKNOWN = "not stated"
+_LONGEST = 60
+"""A licence field longer than this is the licence's text, not its name."""
+_FILES = re.compile(r"(^|/)(licen[cs]e|copying|notice)[^/]*$", re.IGNORECASE)
+_REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
+_CLASSIFIER = "License :: "
+
+
+@dataclass(frozen=True)
+class Licence:
+    """A package, its version, the name of its licence, and where that can be read."""
+
+    package: str
+    version: str
+    licence: str
+    url: str
+
+    def text(self) -> str:
+        """The texts of its licence as they were installed; empty if there are none."""
+        return licence_text(self.package)
+
+
+def licences() -> list[Licence]:
+    """All packages that Meshwright needs, directly or through others, by name; itself not."""
+    seen: dict[str, Licence] = {}
+    waiting = [NAME]
+    while waiting:
+        name = waiting.pop()
+        key = _key(name)
+        found = _distribution(name)
+        if key in seen or found is None:
+            continue  # not needed on this machine
+        seen[key] = Licence(
+            found.metadata["Name"] or name, found.version, licence_name(found), _url(found)
+        )
+        for requirement in found.requires or []:
+            named = _REQUIREMENT.match(requirement)
+            if named and "extra ==" not in requirement.partition(";")[2]:
+                waiting.append(named.group(1))
+    seen.pop(_key(NAME), None)
+    return sorted(seen.values(), key=lambda one: one.package.lower())
+
+
+def licence_name(found: Distribution) -> str:
+    """What a package's metadata call its licence."""
+    metadata = found.metadata
+    expression = metadata["License-Expression"]
+    if expression:
+        return str(expression)
+    stated = " ".join(str(metadata["License"] or "").split())
+    if stated and len(stated) <= _LONGEST and stated.upper() != "UNKNOWN":
+        return stated
+    classes = [one for one in metadata.get_all("Classifier") or [] if one.startswith(_CLASSIFIER)]
+    names = [one.rpartition(" :: ")[2] for one in classes]
+    return ", ".join(dict.fromkeys(names)) or UNKNOWN
+
+
+def licence_text(package: str) -> str:
+    """The texts of a package's licence as they were installed; empty if there are none."""
+    found = _distribution(package)
+    texts = []
+    for path in (found.files or []) if found is not None else []:
+        if _FILES.search(str(path)) and path.suffix.lower() in ("", ".txt", ".md", ".rst"):
+            try:
+                texts.append(path.read_text(encoding="utf-8"))
+            except (OSError, UnicodeDecodeError):
+                continue  # listed but not there, or not a text: its name is still told
+    return "\n\n".join(dict.fromkeys(text.strip() for text in texts if text.strip()))
+
+
+def _distribution(name: str) -> Distribution | None:
+    try:
+        return distribution(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _key(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def _url(found: Distribution) -> str:
+    """The address of a package's home; empty if it tells none."""
+    home = found.metadata["Home-page"]
+    if home and str(home).startswith("http"):
+        return str(home)
+    for line in found.metadata.get_all("Project-URL") or []:
+        word, _, address = str(line).partition(",")
+        if word.strip().lower() in ("homepage", "repository", "source", "source code", "home"):
+            return address.strip()
+    return ""
