@@ -20,6 +20,7 @@ from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict, io
 from meshcore.enclosure import holding
 from meshcore.formats import SHAPES
 from meshcore.operations import CATALOGUE
+from meshcore.steps import Steps
 
 Result = TypeVar("Result")
 
@@ -43,7 +44,7 @@ class Document:
     ``history_changed()``; ``saved_changed()`` name, path or :attr:`modified` may differ;
     ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others. Before the others,
     too, comes ``noted(event, number)``, for who keeps a record: ``"step"`` a row was appended,
-    ``"go"`` the cursor is at that number now, ``"branch"`` that branch was taken.
+    ``"go"`` the cursor is at that number now, ``"branch"`` that branch was taken, ``"saved"``.
     """
 
     history: History
@@ -209,6 +210,7 @@ class Document:
             io.write(target, self._need())
         self._path, self._name = target, target.stem
         self._saved = self.saved_state
+        self.noted.emit("saved", 0)
         self.saved_changed.emit()
         return target
 
@@ -311,6 +313,27 @@ class Document:
         wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
         title = _counted("Lock" if flag else "Unlock", wanted)
         self._do("locked", title, -1, YOU, lambda: _each(wanted, mesh.set_locked, flag))
+
+    def again(self, row: Row, steps: tuple[Steps, ...]) -> None:
+        """Do a step that was done here once before, as its row and the mesh's record say.
+
+        Raises MeshError, and leaves the document as it was, if it does not follow from here.
+        """
+        mesh = self._need()
+        if [len(piece) for piece in steps] != [1]:
+            raise MeshError("A record of a step must be one step.")
+        before, undone = mesh.score, mesh.cut_redo()
+        mesh.graft_redo(steps)
+        mesh.redo()
+        if (before, mesh.score, mesh.optimum) != (row.before, row.after, row.optimum):
+            mesh.undo()
+            mesh.graft_redo(undone)
+            raise MeshError("A step of the record does not follow from the one before it.")
+        self.history.append(
+            row.action, row.title, row.halfedge, row.by, row.before, row.after, row.optimum, undone
+        )
+        mesh.trim()
+        self._moved_on("step", self.history.cursor)
 
     # Going back and forth
 

@@ -168,6 +168,10 @@ class HalfEdgeMesh(MeshView):
             0,
         )
 
+    def room_for(self, vertices: int, elements: int) -> None:
+        """Make room for so many vertices and elements in all, dead ones counted."""
+        self._arrays = enlarge(self._arrays, vertices, elements, 0, 0)
+
     # -- other journalled changes ----------------------------------------------------------------
 
     def move(self, vertices: np.ndarray | Sequence[int], positions: np.ndarray) -> None:

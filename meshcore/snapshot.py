@@ -37,7 +37,8 @@ from meshcore.steps import COLUMNS, Steps, divided, joined
 Arrays = dict[str, np.ndarray]
 
 _COLUMNS = MARK  # columns of a vertex before its mark
-_MOST = 1 << 28  # slots: places of their writes fit 32 bits
+MOST = 1 << 28
+"""Slots of vertices or elements: places of their writes fit 32 bits."""
 _PARTS = ("rows", "places", "whole", "coordinates")
 
 
@@ -69,7 +70,7 @@ def restored(arrays: Mapping[str, np.ndarray]) -> HalfEdgeMesh:
     """
     sizes = _array(arrays, "sizes", np.int64, (4,))
     k, vertices, elements, cap = sizes.tolist()
-    if k not in (3, 4) or not (0 < vertices <= _MOST and 0 < elements <= _MOST):
+    if k not in (3, 4) or not (0 < vertices <= MOST and 0 < elements <= MOST):
         raise MeshError("its sizes are no sizes of a mesh")
     if elements > 64 * (vertices + 64):
         raise MeshError("it wants room for more elements than its vertices can have")

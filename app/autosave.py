@@ -1,0 +1,215 @@
+"""Autosave: every step is written down at once, so that a killed process loses at most the last.
+
+The first step after a mesh has come or has been saved writes the whole document; each later event
+appends what it changed. Saving and closing remove the file. What a process that died has left
+behind is found by :mod:`app.recovery`.
+"""
+
+import errno
+import os
+import secrets
+import time
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+from app import filelock, keeping
+from app.document import Document
+from app.journalfile import encoded
+from app.signals import Signal
+from meshcore import snapshot
+from meshcore.atomic import reason
+from meshcore.snapshot import Arrays
+
+ENDING = ".journal"
+WAITING_BYTES = 256 << 20
+"""Records that could not be written wait for the next event, up to so many bytes."""
+_PATIENCE = 20
+"""A whole document that could not be written is tried again after so many times as long."""
+
+Buffers = list[bytes | memoryview]
+
+
+def folder() -> Path:
+    """Where the files are; `MESHWRIGHT_STATE_DIR` overrides the user's folder for such things."""
+    chosen = os.environ.get("MESHWRIGHT_STATE_DIR")
+    return Path(chosen or platformdirs.user_state_path("meshwright")) / "autosave"
+
+
+class Autosave:
+    """Follows one document until :meth:`close` or :meth:`leave`.
+
+    ``failed(sentence)`` is emitted when writing fails for the first time; editing goes on, and it
+    is tried again with every later event. ``said(sentence)`` when it has worked again.
+    """
+
+    def __init__(self, document: Document, where: Path | None = None) -> None:
+        self.failed = Signal()
+        self.said = Signal()
+        self._document = document
+        self._folder = where if where is not None else folder()
+        self._enabled = True
+        self._path: Path | None = None
+        self._descriptor: int | None = None
+        self._length = 0
+        self._waiting: list[Buffers] = []
+        self._failing = False
+        self._not_before = 0.0
+        document.noted.connect(self._on_noted)
+        document.replaced.connect(self._remove)
+
+    @property
+    def path(self) -> Path | None:
+        """The file, None while there is nothing to lose."""
+        return self._path
+
+    @property
+    def enabled(self) -> bool:
+        """Whether steps are written down."""
+        return self._enabled
+
+    @enabled.setter
+    def enabled(self, enabled: bool) -> None:
+        self._enabled = enabled
+        if not enabled:
+            self._remove()
+
+    def begin(self) -> bool:
+        """Write the whole document now, as after a recovery; True if that went well."""
+        return self._enabled and self._begin()
+
+    def close(self) -> None:
+        """Nothing is left to lose: remove the file, let go of the document."""
+        self._disconnect()
+        self._remove()
+
+    def leave(self) -> None:
+        """Let go of the document, and leave the file for the next start."""
+        self._disconnect()
+        if self._descriptor is not None:
+            filelock.let_go(self._descriptor)
+        self._path = self._descriptor = None
+
+    # Events
+
+    def _on_noted(self, event: str, number: int) -> None:
+        if event == "saved":
+            self._remove()
+        elif self._enabled and self._path is None:
+            self._begin()
+        elif self._enabled:
+            self._append(*self._record(event, number))
+
+    def _record(self, event: str, number: int) -> tuple[dict[str, Any], Arrays]:
+        header: dict[str, Any] = {"event": event, "number": number, "now": self._now()}
+        mesh, row = self._document.mesh, self._document.history.last
+        if event != "step" or mesh is None or row is None:
+            return header, {}
+        header["row"] = keeping.row_record(row)
+        header["room"] = [len(mesh.arrays.vertex), len(mesh.arrays.element_mark)]
+        return header, snapshot.steps_arrays([mesh.last_step()], "step")
+
+    def _now(self) -> dict[str, Any]:
+        """What a person is told of the work when it is offered again."""
+        document = self._document
+        return {
+            "steps": document.history.cursor,
+            "score": document.score,
+            "optimum": document.optimum,
+            "elements": document.mesh.n_elements if document.mesh is not None else 0,
+            "kind": document.kind,
+        }
+
+    # The file
+
+    def _begin(self) -> bool:
+        """A new file with the whole document in it."""
+        begun = time.monotonic()
+        if begun < self._not_before:
+            return False
+        header, arrays = keeping.taken(self._document.kept())
+        path = self._folder / f"{os.getpid()}-{secrets.token_hex(6)}{ENDING}"
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            descriptor = filelock.hold(path, fresh=True)
+        except OSError as error:
+            self._tell(error)
+            return False
+        self._path, self._descriptor, self._length = path, descriptor, 0
+        self._append({"event": "document", "now": self._now(), **header}, arrays)
+        if not self._waiting:
+            return True
+        self._remove()
+        self._not_before = begun + _PATIENCE * (time.monotonic() - begun)
+        return False
+
+    def _append(self, header: dict[str, Any], arrays: Arrays) -> None:
+        self._waiting.append(encoded(header, arrays))
+        try:
+            while self._waiting:
+                self._write(self._waiting[0])
+                del self._waiting[0]
+        except OSError as error:
+            self._cut()
+            self._tell(error)
+            if sum(len(part) for record in self._waiting for part in record) > WAITING_BYTES:
+                self._remove()  # the next event begins again with the whole document
+        else:
+            if self._failing:
+                self._failing = False
+                self.said.emit("Autosave works again.")
+
+    def _write(self, buffers: Buffers) -> None:
+        """Write one record whole; a small one by a single call of the system."""
+        if self._descriptor is None:
+            raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+        if sum(map(len, buffers)) < 1 << 16:
+            buffers = [b"".join(buffers)]
+        written = 0
+        for part in buffers:
+            view = memoryview(part)
+            while view:
+                count = os.write(self._descriptor, view)
+                written += count
+                view = view[count:]
+        self._length += written
+
+    def _cut(self) -> None:
+        """Take away what a failed write has left at the end."""
+        try:
+            if self._descriptor is not None:
+                os.ftruncate(self._descriptor, self._length)
+        except OSError:
+            self._remove()
+
+    def _tell(self, error: OSError) -> None:
+        if not self._failing:
+            self._failing = True
+            self.failed.emit(
+                f"Autosave cannot write to {self._folder} ({reason(error)}); it tries again with"
+                " every step. Save your work yourself until then."
+            )
+
+    def _remove(self) -> None:
+        """Forget the file: there is nothing in it to lose."""
+        path, descriptor = self._path, self._descriptor
+        self._path = self._descriptor = None
+        self._waiting.clear()
+        if descriptor is not None:
+            filelock.let_go(descriptor)
+        if path is not None:
+            remove(path)
+
+    def _disconnect(self) -> None:
+        self._document.noted.disconnect(self._on_noted)
+        self._document.replaced.disconnect(self._remove)
+
+
+def remove(path: Path) -> bool:
+    """Delete a file of autosave; False where the system refuses."""
+    try:
+        path.unlink(missing_ok=True)
+    except OSError:
+        return False
+    return True

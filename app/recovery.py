@@ -1,0 +1,145 @@
+"""Work that a process left behind when it died, as :mod:`app.autosave` wrote it down."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from app import autosave, filelock, keeping
+from app.document import Document
+from app.journalfile import Record, records
+from app.keeping import Kept
+from meshcore import MeshError, snapshot
+
+
+@dataclass
+class Lost:
+    """One document that can be recovered. It is held for this process until one of
+    :meth:`discard` and :meth:`release` is called.
+    """
+
+    path: Path
+    name: str
+    file: Path | None
+    """The file that it was opened from or saved to."""
+    when: float
+    """Time of the last step, in seconds since 1970."""
+    now: dict[str, Any]
+    """What :meth:`app.autosave.Autosave` notes with every event: ``steps``, ``score``,
+    ``optimum``, ``elements``, ``kind``.
+    """
+    _descriptor: int | None = None
+
+    def read(self) -> Kept:
+        """The document as it was after the last whole record; MeshError if it is not sound."""
+        try:
+            return _replayed(self.path)
+        except MeshError as error:
+            raise MeshError(
+                f"What was kept of {self.name or 'the mesh'} cannot be recovered: {error}."
+            ) from error
+        except OSError as error:
+            raise MeshError(
+                f"What was kept of {self.name or 'the mesh'} cannot be read ({error.strerror})."
+            ) from error
+
+    def discard(self) -> None:
+        """Delete the file."""
+        self.release()
+        autosave.remove(self.path)
+
+    def release(self) -> None:
+        """Leave it for another start."""
+        if self._descriptor is not None:
+            filelock.let_go(self._descriptor)
+        self._descriptor = None
+
+
+def lost(where: Path | None = None) -> list[Lost]:
+    """What processes that are no longer alive have left, the latest first; held from here on."""
+    found = []
+    place = where if where is not None else autosave.folder()
+    try:
+        paths = sorted(place.glob(f"*{autosave.ENDING}"))
+    except OSError:
+        return []
+    for path in paths:
+        try:
+            descriptor = filelock.hold(path)
+            one = _look(path, descriptor) if descriptor is not None else None
+        except OSError:
+            continue  # it may have gone meanwhile, or belong to somebody else
+        if one is not None:
+            found.append(one)
+    return sorted(found, key=lambda one: one.when, reverse=True)
+
+
+def _look(path: Path, descriptor: int) -> Lost | None:
+    """Sum up a file from its headers; without a whole document in it there is nothing to offer."""
+    when = path.stat().st_mtime
+    headers = [record.header for record in records(path)]
+    if not headers or headers[0].get("event") != "document":
+        filelock.let_go(descriptor)
+        autosave.remove(path)
+        return None
+    first, now = headers[0], headers[-1].get("now")
+    file = first.get("path")
+    return Lost(
+        path,
+        str(first.get("name") or ""),
+        Path(file) if isinstance(file, str) else None,
+        when,
+        now if isinstance(now, dict) else {},
+        descriptor,
+    )
+
+
+def _replayed(path: Path) -> Kept:
+    """Read the whole document, then do again what came after it."""
+    document = Document()
+    for record in records(path):
+        if document.empty:
+            document.adopt(keeping.restored(record.header, record.arrays))
+        else:
+            try:
+                _again(document, record)
+            except MeshError:
+                break  # what came before is sound
+    if document.empty:
+        raise MeshError("there is no whole document in it")
+    return document.kept()
+
+
+def _again(document: Document, record: Record) -> None:
+    event, number = record.header.get("event"), record.header.get("number")
+    if type(number) is not int:
+        raise MeshError("an event of the record is none")
+    if event == "go":
+        document.go_to(number)
+    elif event == "branch":
+        document.take_branch(number)
+    elif event == "step":
+        _make_room(document, record.header.get("room"))
+        mesh = document.mesh
+        steps = snapshot.restored_steps(record.arrays, "step", mesh) if mesh else ()
+        document.again(keeping.row_of(record.header.get("row")), steps)
+    else:
+        raise MeshError("an event of the record is unknown")
+
+
+def _make_room(document: Document, room: object) -> None:
+    """Have as much room as the mesh had then; MeshError for what is no room."""
+    mesh = document.mesh
+    if mesh is None:
+        return
+    if not isinstance(room, list) or len(room) != 2 or any(type(one) is not int for one in room):
+        raise MeshError("a step of the record lacks its room")
+    vertices, elements = (
+        wanted - have
+        for wanted, have in zip(
+            room, (len(mesh.arrays.vertex), len(mesh.arrays.element_mark)), strict=True
+        )
+    )
+    if max(vertices, elements) > snapshot.MOST:
+        raise MeshError("a step of the record wants too much room")
+    if max(vertices, elements) > 0:
+        mesh.room_for(*room)
