@@ -177,10 +177,14 @@ QPushButton#Primary:hover {{ background: {t.accent_hover}; border-color: {t.acce
 QPushButton#Primary:disabled {{ background: {t.pressed}; border-color: {t.pressed};
                                color: {t.faint}; }}
 QPushButton#Link {{ background: transparent; border: 0; color: {t.accent}; padding: 4px; }}
+QPushButton#Fold {{ background: transparent; border: 0; padding: 2px 6px 2px 0; text-align: left;
+                   color: {t.muted}; font-size: 11px; font-weight: 600; letter-spacing: 1px; }}
+QPushButton#Fold:hover {{ color: {t.text}; }}
+QPushButton#Fold:focus {{ color: {t.accent}; }}
 QPushButton#Chip {{ background: transparent; border: 0; border-radius: 4px; padding: 2px 6px;
                    font-size: 11px; color: {t.muted}; }}
 QPushButton#Chip:hover {{ background: {t.hover}; }}
-QPushButton#Chip:checked {{ background: {t.accent_soft}; color: {t.accent}; font-weight: 600; }}
+QPushButton#Chip:checked {{ background: {t.accent_soft}; color: {t.accent}; }}
 QPushButton#Chip:focus {{ border: 1px solid {t.accent}; padding: 1px 5px; }}
 QPushButton#ValueLink {{ background: transparent; border: 0; padding: 0; font-weight: 600;
                         color: {t.accent}; text-decoration: underline; }}
@@ -199,7 +203,7 @@ QPushButton#ValueLink[warns="true"] {{ color: {t.warning}; }}
          selection-background-color: {t.accent_soft}; selection-color: {t.text}; }}
 #Table::item {{ padding: 2px 8px; }}
 QHeaderView, QHeaderView::section {{ background: {t.panel}; color: {t.muted}; border: 0;
-                                    padding: 4px 8px; font-size: 12px; }}
+                                    padding: 4px 3px; font-size: 12px; }}
 #LicenceText {{ background: {t.background}; border: 1px solid {t.line}; border-radius: 6px;
                padding: 4px; font-family: monospace; font-size: 12px; }}
 QCheckBox {{ spacing: 8px; }}
@@ -217,6 +221,7 @@ QComboBox {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 
 QComboBox:focus {{ border-color: {t.accent}; }}
 QComboBox:disabled {{ color: {t.faint}; }}
 QComboBox::drop-down {{ border: 0; width: 24px; }}
+QComboBox::down-arrow {{ image: url({icons}/down-{t.name}.svg); width: 14px; height: 14px; }}
 QComboBox QAbstractItemView {{ background: {t.raised}; border: 1px solid {t.line}; padding: 4px;
     selection-background-color: {t.accent_soft}; selection-color: {t.text}; }}
 QSlider {{ min-height: 20px; }}

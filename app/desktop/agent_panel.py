@@ -83,7 +83,6 @@ class AgentPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(GRID)
-        layout.addWidget(named("AGENT", "Heading"))
         layout.addWidget(self.policy)
         for pair in (
             (self.step, self.play),
@@ -139,14 +138,14 @@ class AgentPanel(QWidget):
 
 def progress(assistant: Assistant) -> str:
     """What the assistant is doing, in a few words."""
-    count = assistant.decisions
+    count = assistant.progress.decisions
     decisions = f"{count} decision{'' if count == 1 else 's'}"
     if assistant.loading:
         return "Loading the policy\u2026"
     if assistant.state is State.PAUSED:
         return f"Paused after {decisions}"
     if assistant.state is State.SEARCHING:
-        best = assistant.best_so_far
+        best = assistant.progress.best
         return "Searching\u2026" if best is None else f"Searching: s {best} is the best so far"
     if assistant.running:
         return f"{assistant.state.value.capitalize()}: {decisions}"

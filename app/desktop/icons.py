@@ -31,6 +31,8 @@ _STROKES = {
     "last": "M15 4.5v11 M5.5 4.5v11l6.5-5.5z",
     "film": "M3 4.5h14v11H3z M6.5 4.5v11 M13.5 4.5v11 M3 8.2h3.5 M3 11.8h3.5 M13.5 8.2H17 "
     "M13.5 11.8H17",
+    "down": "M5 7.5l5 5 5-5",
+    "right": "M7.5 5l5 5-5 5",
     "search": "M9 3.5a5.5 5.5 0 1 0 0 11a5.5 5.5 0 1 0 0-11z M13 13l4 4",
     "check": "M4 10.5l4 4 8-9",
     "close": "M5.5 5.5l9 9 M14.5 5.5l-9 9",
@@ -60,6 +62,16 @@ def icon(name: str, theme: Theme) -> QIcon:
     for ratio in (1.0, 2.0):
         made.addPixmap(pixmap(name, theme.text, ratio=ratio), QIcon.Mode.Normal)
         made.addPixmap(pixmap(name, theme.faint, ratio=ratio), QIcon.Mode.Disabled)
+    return made
+
+
+def fold(theme: Theme) -> QIcon:
+    """The mark of a heading: down while what is under it is shown, right while it is folded."""
+    made = QIcon()
+    for ratio in (1.0, 2.0):
+        for name, state in (("down", QIcon.State.On), ("right", QIcon.State.Off)):
+            drawn = pixmap(name, theme.muted, 16, ratio)
+            made.addPixmap(drawn, QIcon.Mode.Normal, state)
     return made
 
 

@@ -73,7 +73,7 @@ class KeysDialog(QDialog):
         room = parent.window().size()
         wanted = body.sizeHint()
         width = min(max(wanted.width() + 2 * GRID, 880), room.width() - 4 * GRID)
-        self.resize(width, min(wanted.height() + 8 * GRID, room.height() - 8 * GRID))
+        self.resize(width, min(wanted.height() + 10 * GRID, room.height() - 8 * GRID))
 
 
 def key_blocks(groups: Sequence[tuple[str, Sequence[Action]]]) -> list[Block]:
@@ -120,6 +120,7 @@ def _block(title: str, lines: Sequence[tuple[str, str, str]]) -> QGridLayout:
     grid = QGridLayout()
     grid.setHorizontalSpacing(12)
     grid.setVerticalSpacing(6)
+    grid.setColumnMinimumWidth(0, 12 * GRID)
     grid.setColumnStretch(1, 1)
     grid.addWidget(named(title.upper(), "Heading"), 0, 0, 1, 2)
     for row, (keys, text, tooltip) in enumerate(lines, start=1):
@@ -127,6 +128,7 @@ def _block(title: str, lines: Sequence[tuple[str, str, str]]) -> QGridLayout:
         key.setAlignment(Qt.AlignmentFlag.AlignCenter)
         what = named(text, "Operation")
         what.setToolTip(tooltip)
-        grid.addWidget(key, row, 0)
+        key.setFixedHeight(20)
+        grid.addWidget(key, row, 0, Qt.AlignmentFlag.AlignLeft)
         grid.addWidget(what, row, 1)
     return grid

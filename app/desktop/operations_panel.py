@@ -1,75 +1,193 @@
-"""The operations of the mesh's kind with their keys, dimmed where the half-edge refuses them."""
+"""The operations of the mesh's kind: their keys, what each would change here, and which is armed."""
 
-from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
+from qtpy.QtCore import QRectF, QSize, Qt, Signal
+from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
+from qtpy.QtWidgets import QAbstractButton, QVBoxLayout, QWidget
 
-from app.desktop.widgets import named, sentence
+from app.desktop.layers.ghost import change_colour
+from app.desktop.widgets import named, sentence, tabular
 from app.document import Document
-from app.theme import GRID
-from meshcore.operations import Operation, of_kind
+from app.markers import label
+from app.preview import Choice
+from app.theme import GRID, Theme
+from meshcore.operations import Operation, OperationInfo, of_kind
+
+HEIGHT = 26
+POINT = "Point at a half-edge: its operations and how each would change s."
+ARMED = "{}: a click on a half-edge does it. Esc puts it down."
+EMPTY = "Operations appear here when there is a mesh."
 
 
 class OperationsPanel(QWidget):
-    """Follows the document's kind and hover. ``ready`` is set once verdicts can be asked for."""
+    """A row for each operation; ``chosen(operation)`` when one is clicked on."""
 
-    def __init__(self, document: Document) -> None:
+    chosen = Signal(object)
+
+    def __init__(self, document: Document, theme: Theme) -> None:
         super().__init__()
         self._document = document
-        self.ready = False
+        self._theme = theme
         self._kind = ""
-        self._labels: dict[Operation, tuple[QLabel, QLabel]] = {}
+        self._armed: Operation | None = None
+        self.rows: list[OperationButton] = []
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(GRID)
         layout.addWidget(named("OPERATIONS", "Heading"))
-        self._hint = named("", "Hint")
+        self._hint = named(EMPTY, "Hint")
         self._hint.setWordWrap(True)
         layout.addWidget(self._hint)
         self._body = QWidget()
         layout.addWidget(self._body)
         document.replaced.connect(self._on_replaced)
-        document.hover_changed.connect(self._on_hover_changed)
         self._on_replaced()
 
     def release(self) -> None:
         """Let go of the document."""
         self._document.replaced.disconnect(self._on_replaced)
-        self._document.hover_changed.disconnect(self._on_hover_changed)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._theme = theme
+        for row in self.rows:
+            row.set_theme(theme)
+
+    def offer(self, choices: tuple[Choice, ...], current: Operation | None) -> None:
+        """Show what is allowed at the half-edge that is pointed at; nothing is pointed at for ()."""
+        by_operation = {choice.operation: choice for choice in choices}
+        for row in self.rows:
+            row.offer(by_operation.get(row.info.operation), row.info.operation == current)
+
+    def arm(self, operation: Operation | None) -> None:
+        """Mark the operation that a click would do, if any."""
+        self._armed = operation
+        for row in self.rows:
+            row.setChecked(row.info.operation == operation)
+        self._tell()
+
+    def _tell(self) -> None:
+        titles = {row.info.operation: row.info.title for row in self.rows}
+        if self._armed in titles:
+            self._hint.setText(ARMED.format(titles[self._armed]))
+        else:
+            self._hint.setText(POINT if self._kind else EMPTY)
 
     def _on_replaced(self) -> None:
         kind = self._document.kind
-        self._hint.setText(
-            "Point at a half-edge, press a key or click."
-            if kind
-            else "Operations appear here when there is a mesh."
-        )
-        if kind == self._kind:
-            return
-        self._kind = kind
+        if kind != self._kind:
+            self._kind = kind
+            self._fill()
+        self._tell()
+
+    def _fill(self) -> None:
         body = QWidget()
-        grid = QGridLayout(body)
-        grid.setContentsMargins(0, 0, 0, 0)
-        grid.setHorizontalSpacing(GRID)
-        grid.setVerticalSpacing(GRID)
-        grid.setColumnStretch(1, 1)
-        grid.setColumnStretch(3, 1)
-        self._labels = {}
-        for number, info in enumerate(of_kind(kind)):
-            row, column = number // 2, 2 * (number % 2)
-            key, title = named(info.key.upper(), "Key"), named(info.title, "Operation")
-            key.setAlignment(Qt.AlignmentFlag.AlignCenter)
-            key.setMinimumWidth(24)
-            title.setToolTip(sentence(info.summary))
-            grid.addWidget(key, row, column)
-            grid.addWidget(title, row, column + 1)
-            self._labels[info.operation] = (key, title)
+        column = QVBoxLayout(body)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        self.rows = [OperationButton(info, self._theme) for info in of_kind(self._kind)]
+        for row in self.rows:
+            row.clicked.connect(self._on_clicked)
+            column.addWidget(row)
         self.layout().replaceWidget(self._body, body)
         self._body.deleteLater()
         self._body = body
 
-    def _on_hover_changed(self, halfedge: int) -> None:
-        verdicts = self._document.allowed(halfedge) if self.ready and halfedge >= 0 else {}
-        for operation, labels in self._labels.items():
-            enabled = bool(verdicts.get(operation, True))
-            for part in labels:
-                part.setEnabled(enabled)
+    def _on_clicked(self) -> None:
+        row = self.sender()
+        row.setChecked(row.info.operation == self._armed)  # whether it is armed is told by arm()
+        self.chosen.emit(row.info.operation)
+
+
+class OperationButton(QAbstractButton):
+    """One row: key, title, and how s would change at the half-edge that is pointed at."""
+
+    def __init__(self, info: OperationInfo, theme: Theme) -> None:
+        super().__init__()
+        self.info = info
+        self._theme = theme
+        self._choice: Choice | None = None
+        self._current = False
+        self.setText(info.title)
+        self.setCheckable(True)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self._describe()
+
+    @property
+    def change(self) -> str:
+        """What the row says of s: a signed number, empty where nothing can be said."""
+        change = self._choice.change if self._choice is not None else None
+        return "" if change is None else label(change)
+
+    @property
+    def allowed(self) -> bool:
+        """False where the half-edge that is pointed at refuses it."""
+        return self._choice is None or self._choice.allowed
+
+    def offer(self, choice: Choice | None, current: bool) -> None:
+        """What is known of it where one points; ``current`` is the one whose ghost is shown."""
+        if choice != self._choice or current != self._current:
+            self._choice, self._current = choice, current
+            self._describe()
+            self.update()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._theme = theme
+        self.update()
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """As wide as there is room, one line high."""
+        return QSize(200, HEIGHT)
+
+    def _describe(self) -> None:
+        text = sentence(self.info.summary)
+        if not self.allowed and self._choice is not None:
+            text = f"{text}\nNot here: {self._choice.verdict.reason}."
+        else:
+            text += "\nClick to arm it: then each click on the mesh does it."
+        self.setToolTip(text)
+        self.setAccessibleDescription(text)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """Key in a frame, title, change of s at the right."""
+        theme = self._theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self._paint_back(painter)
+        allowed = self.allowed
+        key = QRectF(4.0, (self.height() - 18.0) / 2.0, 22.0, 18.0)
+        painter.setPen(QPen(QColor(theme.line), 1.0))
+        painter.setBrush(QColor(theme.raised))
+        painter.drawRoundedRect(key.adjusted(0.5, 0.5, -0.5, -0.5), 4.0, 4.0)
+        font = tabular(QFont(self.font()))
+        font.setPixelSize(11)
+        painter.setFont(font)
+        painter.setPen(QColor(theme.muted if allowed else theme.faint))
+        painter.drawText(key, Qt.AlignmentFlag.AlignCenter, self.info.key.upper())
+        font.setPixelSize(13)
+        font.setWeight(QFont.Weight.DemiBold if self._current else QFont.Weight.Normal)
+        painter.setFont(font)
+        painter.setPen(QColor(theme.text if allowed else theme.faint))
+        inner = QRectF(self.rect()).adjusted(36, 0, -8, 0)
+        middle = Qt.AlignmentFlag.AlignVCenter
+        painter.drawText(inner, Qt.AlignmentFlag.AlignLeft | middle, self.info.title)
+        if self._choice is not None and self._choice.change is not None:
+            painter.setPen(QColor(change_colour(self._choice.change, theme)))
+            painter.drawText(inner, Qt.AlignmentFlag.AlignRight | middle, self.change)
+        painter.end()
+
+    def _paint_back(self, painter: QPainter) -> None:
+        back = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        if self.isChecked():
+            painter.setPen(QPen(QColor(self._theme.accent), 1.5))
+            painter.setBrush(QColor(self._theme.accent_soft))
+        elif self._current or self.underMouse():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(
+                QColor(self._theme.accent_soft if self._current else self._theme.hover)
+            )
+        else:
+            return
+        painter.drawRoundedRect(back, 5.0, 5.0)

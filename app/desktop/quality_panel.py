@@ -8,7 +8,7 @@ from qtpy.QtWidgets import QButtonGroup, QHBoxLayout, QPushButton, QVBoxLayout, 
 from app.desktop.gauge import Gauge
 from app.desktop.histogram import Histogram
 from app.desktop.settings import Settings
-from app.desktop.widgets import Link, named
+from app.desktop.widgets import Link
 from app.quality_summary import QualitySummary, Spread
 from app.theme import Theme
 
@@ -31,6 +31,7 @@ class QualityPanel(QWidget):
         self._settings = settings
         self.histogram = Histogram(theme)
         self.worst = Link("Worst element", "The lowest value; click to go to the element")
+        self.measures = QWidget()  # stands beside the heading
         self.switches: dict[str, QPushButton] = {}
         self._group = QButtonGroup(self)
         for name, word, tooltip, _ in _MEASURES:
@@ -79,12 +80,11 @@ class QualityPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(6)
-        line = QHBoxLayout()
+        line = QHBoxLayout(self.measures)
+        line.setContentsMargins(0, 0, 0, 0)
         line.setSpacing(2)
-        line.addWidget(named("QUALITY", "Heading"), 1)
         for switch in self.switches.values():
             line.addWidget(switch)
-        layout.addLayout(line)
         layout.addWidget(self.histogram)
         layout.addWidget(self.worst)
 

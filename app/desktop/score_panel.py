@@ -63,7 +63,6 @@ class ScorePanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(6)
-        layout.addWidget(named("SCORE", "Heading"))
         line = QHBoxLayout()
         line.setSpacing(2 * GRID)
         self.words = QWidget()

@@ -27,12 +27,21 @@ class Stop:
     text: str
     target: Callable[[MainWindow], QRect | None]
     done: str = ""
+    panel: Callable[[MainWindow], QWidget] | None = None
+    """The panel of the sidebar that it is about, which is unfolded."""
 
 
 def _widget(window: MainWindow, widget: QWidget | None) -> QRect | None:
     if widget is None or not widget.isVisible():
         return None
     return QRect(widget.mapTo(window, QPoint(0, 0)), widget.size())
+
+
+def _panel(window: MainWindow, panel: QWidget) -> QRect | None:
+    """The part of a panel of the sidebar that is to be seen."""
+    whole = _widget(window, panel)
+    seen = _widget(window, window.sidebar)
+    return whole.intersected(seen) if whole is not None and seen is not None else None
 
 
 def _halfedge(window: MainWindow) -> QRect | None:
@@ -68,20 +77,23 @@ STOPS = (
         "Do an operation",
         "While you point, press one of these keys, or click for a menu with all of them. "
         "Ctrl+Z takes everything back.",
-        lambda window: _widget(window, window.operations_panel),
+        lambda window: _panel(window, window.operations_panel),
         "Done. The mesh has changed, and it is still a mesh.",
+        panel=lambda window: window.operations_panel,
     ),
     Stop(
         "Watch the score",
         "s adds up how far all degrees are from the desired ones. It can never fall below the "
         "optimum s*: where they meet, the connectivity is provably optimal.",
-        lambda window: _widget(window, window.score_panel),
+        lambda window: _panel(window, window.score_panel),
+        panel=lambda window: window.score_panel,
     ),
     Stop(
         "Let the agent help",
         "Step takes one operation, Play goes on, Complete searches for the optimum. Edit or stop "
         "at any time: what it has done stays.",
-        lambda window: _widget(window, window.agent_panel),
+        lambda window: _panel(window, window.agent_panel),
+        panel=lambda window: window.agent_panel,
     ),
     Stop(
         "Nothing is lost",
@@ -168,6 +180,8 @@ class Tour(QObject):
 
     def _show(self) -> None:
         stop = self._stops[self._at]
+        if stop.panel is not None:
+            self._window.sidebar.reveal(stop.panel(self._window))
         done = stop.done if self._did[self._at] else ""
         self.callout.tell(self._at + 1, len(self._stops), stop.heading, stop.text, done)
         self._place()

@@ -29,7 +29,7 @@ from app.desktop.guide import Guide
 from app.desktop.operations_panel import OperationsPanel
 from app.desktop.preferences import Preferences
 from app.desktop.settings import Settings
-from app.desktop.sidebar import sidebar
+from app.desktop.sidebar import Section, Sidebar
 from app.desktop.warmup import Warmup
 from app.desktop.widgets import Notice
 from app.document import Document
@@ -107,11 +107,8 @@ class MainWindow(QMainWindow):
         self.row.setContentsMargins(0, 0, 0, 0)
         self.row.setSpacing(0)
         self.row.addWidget(middle, 1)
-        self.row.addWidget(
-            sidebar(
-                self.score_panel, self.agent_panel, self.operations_panel, self.dashboard.quality
-            )
-        )
+        self.sidebar = self._make_sidebar()
+        self.row.addWidget(self.sidebar)
         self.setCentralWidget(whole)
         self.said = QLabel()
         self.pointed = QLabel()
@@ -121,6 +118,17 @@ class MainWindow(QMainWindow):
         bar.addWidget(self.said, 1)
         bar.addPermanentWidget(self.preparing)
         bar.addPermanentWidget(self.pointed)
+
+    def _make_sidebar(self) -> Sidebar:
+        settings, quality = self.settings, self.dashboard.quality
+        return Sidebar(
+            (
+                Section("Score", self.score_panel, settings, self.theme),
+                Section("Agent", self.agent_panel, settings, self.theme),
+                Section("Operations", self.operations_panel, settings, self.theme),
+                Section("Quality", quality, settings, self.theme, quality.measures),
+            )
+        )
 
     def _make_toolbar(self) -> QToolBar:
         bar = QToolBar("Tools")
@@ -210,6 +218,7 @@ class MainWindow(QMainWindow):
             self.dashboard,
             self.film,
             self.guide,
+            self.sidebar,
             self.agent_panel,
             self.notice,
         ):
