@@ -1,148 +1,87 @@
-"""The assistant: runs of a policy on the document, step by step, played, or to the end.
+"""The assistant: a policy's runs on the document, and its hints.
 
-Neither Qt nor torch is imported here; the first run brings torch in, on the worker thread. The
-worker works on a copy of the mesh and never touches the document: what it decides is handed to
-``dispatch``, which calls it in the document's thread. The worker then waits until the decision has
-been applied, so that decisions never pile up and a cancelled run leaves nothing behind.
+Neither Qt nor torch is imported here; the first run brings torch in, on the worker's thread. The
+worker (:mod:`app.worker`) plays on a copy of the mesh; what it decides is applied here, in the
+thread that owns the document.
 """
 
-import logging
-import threading
+from __future__ import annotations
+
 import time
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
-from enum import StrEnum
 from functools import partial
-from typing import Any, Protocol
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from app.document import Document
+from app.hinting import Hinting
+from app.progress import Progress
+from app.runs import Decided, Question, Run, Runner, State
 from app.searching import Effort, SearchRunner
 from app.signals import Signal
-from meshcore import HalfEdgeMesh, MeshError, Operation
+from app.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, Worker
+from meshcore import MeshError
+from meshcore.enclosure import enclose
+
+if TYPE_CHECKING:
+    from agent.choices import Choice, Insight
 
 APPLY_BUDGET = 0.02
 """Seconds of applying operations after which the window gets its turn."""
-BATCH_SECONDS = 0.03
-"""Seconds for which a search gathers its operations before it hands them over."""
 SLOWEST, FASTEST = 0.5, 60.0
 """Bounds of :attr:`Assistant.speed` in decisions per second."""
 
-Step = list[tuple[Operation, int]]
-Dispatch = Callable[[Callable[[], None]], None]
-Search = Callable[
-    [HalfEdgeMesh, Any, int, Effort, threading.Event, Callable[[int, int], None]], "Runner"
-]
-
-_log = logging.getLogger(__name__)
-
-
-class Runner(Protocol):
-    """What the assistant needs of ``agent.rollout.Runner``."""
-
-    @property
-    def finished(self) -> bool:
-        """True once there is nothing more to decide."""
-        ...
-
-    @property
-    def reason(self) -> str:
-        """Why it is finished, in words; empty before."""
-        ...
-
-    def step(self) -> Step:
-        """The next operation and the clean-ups that follow it; empty when finished."""
-        ...
-
-
-class State(StrEnum):
-    """What the assistant is doing."""
-
-    IDLE = "idle"
-    STEPPING = "stepping"
-    PLAYING = "playing"
-    PAUSED = "paused"
-    SEARCHING = "searching"
-
-
-@dataclass
-class _Run:
-    """One run: shared by the document's thread and the worker; ``lock`` guards the flags."""
-
-    state: State
-    policy: str
-    seed: int
-    mesh: HalfEdgeMesh | None
-    first: int
-    effort: Effort | None = None
-    runner: Runner | None = None
-    in_step: bool = False
-    decisions: int = 0
-    lock: threading.Lock = field(default_factory=threading.Lock)
-    stop: threading.Event = field(default_factory=threading.Event)
-    applied: threading.Event = field(default_factory=threading.Event)
-    wake: threading.Event = field(default_factory=threading.Event)
-    enough: threading.Event = field(default_factory=threading.Event)
-
-    def end(self) -> bool:
-        """Stop the worker; True if the runner stands exactly where the document stands."""
-        with self.lock:
-            self.stop.set()
-            in_step = self.in_step
-        self.applied.set()
-        self.wake.set()
-        self.enough.set()
-        return not in_step and self.runner is not None
+__all__ = ["FASTEST", "SLOWEST", "Assistant", "State"]
 
 
 class Assistant:
-    """Runs a policy on ``document``.
+    """Runs a policy on ``document``, and asks it for hints.
 
-    ``dispatch(call)`` must call ``call()`` in the document's thread, soon and in order.
-    ``load(name)`` returns a policy, ``make_runner(mesh, policy, seed)`` a :class:`Runner` that
-    works on its own copy, ``make_search`` one as :class:`app.searching.SearchRunner` is; all are
-    called on the worker thread.
+    ``dispatch(call)`` must call ``call()`` in the document's thread, soon and in order; the other
+    parameters are those of :class:`app.worker.Worker`.
 
     Events, emitted in the document's thread: ``changed()`` state, policy or progress differ;
-    ``said(sentence)`` something a person wants to know; ``failed(sentence)`` the run broke off.
+    ``looked()`` :attr:`insight` is another; ``said(sentence)`` something a person wants to know;
+    ``failed(sentence)`` a run broke off.
     """
 
     def __init__(
         self,
         document: Document,
         dispatch: Dispatch,
-        load: Callable[[str], Any] | None = None,
-        make_runner: Callable[[HalfEdgeMesh, Any, int], Runner] | None = None,
-        make_search: Search = SearchRunner,
+        load: Load | None = None,
+        make_runner: MakeRunner | None = None,
+        make_search: MakeSearch = SearchRunner,
+        ask: Ask | None = None,
     ) -> None:
         self.changed = Signal()
+        self.looked = Signal()
         self.said = Signal()
         self.failed = Signal()
         self._document = document
         self._dispatch = dispatch
-        self._load = load or _load_policy
-        self._make_runner = make_runner or _make_runner
-        self._make_search = make_search
-        self._best_so_far: int | None = None
+        self._worker = Worker(self, dispatch, load, make_runner, make_search, ask)
         self._state = State.IDLE
         self._policy = ""
         self._speed = 4.0
         self._seed = 0
-        self._policies: dict[str, Any] = {}
         self._loading = False
-        self._run: _Run | None = None
+        self._watch = False
+        self._look_due = False
+        self._run: Run | None = None
         self._runner: Runner | None = None
         self._runner_at = -1
         self._applying = False
-        self._decisions = 0
-        self._pool: ThreadPoolExecutor | None = None
+        self._insight: Insight | None = None
+        self.progress = Progress()
+        self.hinting = Hinting(document, self._worker)
         document.changed.connect(self._on_document_changed)
 
     # What it is doing
 
     @property
     def state(self) -> State:
-        """Idle, stepping, playing, paused or searching."""
+        """Idle, looking, stepping, playing, paused or searching."""
         return self._state
 
     @property
@@ -156,11 +95,6 @@ class Assistant:
         return self._loading
 
     @property
-    def decisions(self) -> int:
-        """Decisions applied since the run began; a paused run that goes on counts on."""
-        return self._decisions
-
-    @property
     def policy(self) -> str:
         """Name (or file) of the policy; empty while none is chosen."""
         return self._policy
@@ -169,9 +103,11 @@ class Assistant:
     def policy(self, name: str) -> None:
         if name != self._policy:
             self.cancel()
-            self._policy = name
-            self._runner = None
+            self.hinting.forget()
+            self._policy, self._runner = name, None
+            self._see(None)
             self.changed.emit()
+            self._look_soon()
 
     @property
     def speed(self) -> float:
@@ -182,17 +118,57 @@ class Assistant:
     def speed(self, value: float) -> None:
         self._speed = min(max(value, SLOWEST), FASTEST)
         if self._run is not None:
+            self._run.speed = self._speed
             self._run.wake.set()
         self.changed.emit()
+
+    @property
+    def watch(self) -> bool:
+        """Whether :attr:`insight` follows the policy, and the person's edits."""
+        return self._watch
+
+    @watch.setter
+    def watch(self, watch: bool) -> None:
+        if watch == self._watch:
+            return
+        self._watch = watch
+        if self._run is not None:
+            self._run.watch = watch
+        if watch:
+            self._look_soon()
+        else:
+            self._see(None)
+        self.changed.emit()
+
+    @property
+    def insight(self) -> Insight | None:
+        """What the policy sees in the present state, and will do next; None if not known."""
+        return self._insight
 
     # What a person asks for
 
     def prepare(self) -> None:
         """Load the policy ahead of the first run."""
-        if self._policy and self._policy not in self._policies:
+        if self._policy and not self._worker.has(self._policy):
             self._loading = True
-            self._worker().submit(self._prepare, self._policy)
+            self._worker.prepare(self._policy)
             self.changed.emit()
+
+    def hint(self, near: np.ndarray | None = None) -> None:
+        """Ask the policy for its best few operations, near vertices (n,) if given.
+
+        A run that plays is held; one that searches goes on, and nothing is asked.
+        """
+        if self._state is State.SEARCHING:
+            return
+        if self._run is not None:
+            self._end(State.PAUSED if self._state is State.PLAYING else self._run.after)
+        mesh = self._document.mesh
+        if not self._can_work() or mesh is None:
+            return
+        self._loading = not self._worker.has(self._policy)
+        self.hinting.ask(self._policy, near)
+        self.changed.emit()
 
     def step(self) -> None:
         """Take one decision (an operation and the clean-ups that follow it)."""
@@ -211,18 +187,19 @@ class Assistant:
         """Look for the best state within `effort` and go there by the shortest way found."""
         self._begin(State.SEARCHING, effort or Effort())
 
-    @property
-    def best_so_far(self) -> int | None:
-        """The lowest s that the search under way has found; None before, and without a search."""
-        return self._best_so_far
-
     def stop(self) -> None:
         """End the run now; a search still does what it has found, unless asked once more."""
         run = self._run
         if run is not None and run.state is State.SEARCHING and not run.enough.is_set():
             run.enough.set()
+            self.changed.emit()
         else:
             self.cancel()
+
+    @property
+    def stopping(self) -> bool:
+        """True once a search has been told to come to its end."""
+        return self._run is not None and self._run.enough.is_set()
 
     def cancel(self) -> None:
         """End the run now; what has been applied stays."""
@@ -232,88 +209,72 @@ class Assistant:
     def close(self) -> None:
         """Cancel, and let the worker thread end. The assistant cannot run again."""
         self._document.changed.disconnect(self._on_document_changed)
+        self._watch = False
+        self.hinting.forget()
         if self._run is not None:
             self._end(State.IDLE)
-        if self._pool is not None:
-            self._pool.shutdown(wait=False, cancel_futures=True)
+        self._worker.close()
 
-    # The document's thread
+    # Beginning and ending
+
+    def _can_work(self) -> bool:
+        """Whether there is something to do, and somebody to do it; else it says so."""
+        if self._document.mesh is None:
+            self.said.emit("There is no mesh to work on.")
+        elif not self._policy:
+            self.said.emit("Choose a policy.")
+        elif self._document.at_optimum:
+            self.said.emit("Already at the optimum: nothing is left to improve.")
+        else:
+            return True
+        return False
 
     def _begin(self, state: State, effort: Effort | None = None) -> None:
-        mesh = self._document.mesh
         if self._run is not None:
             if self._run.state is state:
                 return
-            self._end(State.PAUSED)  # one run gives way to the next, its progress is kept
-        if mesh is None or not self._policy:
-            self.said.emit("There is no mesh to work on." if mesh is None else "Choose a policy.")
-            return
-        if self._document.at_optimum:
+            # one run gives way to the next, its progress is kept
+            looks = self._run.state is State.LOOKING
+            self._end(self._run.after if looks else State.PAUSED)
+        mesh = self._document.mesh
+        if not self._can_work() or mesh is None:
             self._finish_state(State.IDLE)
-            self.said.emit("Already at the optimum: nothing is left to improve.")
             return
-        if self._state is State.IDLE:
-            self._decisions = 0
+        try:
+            held = self._held(effort)
+        except MeshError as error:
+            self._finish_state(State.IDLE)
+            self.said.emit(str(error))
+            return
         synced = self._runner is not None and self._runner_at == self._document.revision
         if self._runner is None or not synced or self._runner.finished or effort is not None:
             self._runner = None
             self._seed += 1
-        self._best_so_far = None
-        run = _Run(
+        run = Run(
             state=state,
             policy=self._policy,
             seed=self._seed,
             mesh=mesh.copy() if self._runner is None else None,
-            first=self._document.history.cursor,
-            effort=effort,
+            speed=self._speed,
+            watch=self._watch and effort is None,
             runner=self._runner,
+            effort=effort,
+            held=held,
+            after=self._state,
         )
+        if state is not State.LOOKING:
+            self.progress.begin(run, self._state is State.IDLE or effort is not None)
         self._run, self._state = run, state
-        self._loading = self._policy not in self._policies
-        self._worker().submit(self._work, run)
+        self._loading = not self._worker.has(self._policy)
+        self._worker.begin(run)
         self.changed.emit()
 
-    def _apply(self, run: _Run, operations: Step, finished: bool, decisions: int) -> None:
-        """Submit what the worker decided; gives the event loop its turn in between."""
-        if run is not self._run:
-            return
-        deadline = time.monotonic() + APPLY_BUDGET
-        try:
-            self._applying = True
-            while operations:
-                operation, halfedge = operations.pop(0)
-                self._document.submit(operation, halfedge, by=run.policy)
-                if operations and time.monotonic() > deadline:
-                    self._dispatch(partial(self._apply, run, operations, finished, decisions))
-                    return
-        except MeshError as error:
-            self._break_off(run, f"The policy's operation was refused: {error}")
-            return
-        finally:
-            self._applying = False
-        self._decisions += decisions
-        run.decisions += decisions
-        with run.lock:
-            run.in_step = False
-        if finished:
-            self._finish(run)
-        elif run.state is State.STEPPING:
-            self._end(State.PAUSED)
-        else:
-            run.applied.set()
-            self.changed.emit()
-
-    def _finish(self, run: _Run) -> None:
-        document = self._document
-        reason = run.runner.reason if run.runner is not None else ""
-        self._end(State.IDLE)
-        if run.effort is not None and run.decisions:
-            # what smoothing around each operation has folded on the way, the whole unfolds
-            document.smooth(by=run.policy)
-        if document.at_optimum:
-            self.said.emit(f"At the optimum after {_count(self._decisions, 'decision')}.")
-        else:
-            self.said.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
+    def _held(self, effort: Effort | None) -> np.ndarray | None:
+        """The vertices that stay where they are, where only a region is worked on."""
+        mesh = self._document.mesh
+        if mesh is None or effort is None or effort.elements is None:
+            return None
+        return enclose(mesh, effort.elements).held
 
     def _end(self, state: State) -> None:
         run, self._run = self._run, None
@@ -321,6 +282,7 @@ class Assistant:
             exact = run.end()
             self._runner = run.runner if exact and run.effort is None else None
             self._runner_at = self._document.revision
+            self.progress.end()
         self._loading = False
         self._finish_state(state)
 
@@ -328,114 +290,132 @@ class Assistant:
         self._state = state
         self.changed.emit()
 
-    def _break_off(self, run: _Run | None, sentence: str) -> None:
-        if run is not self._run:
-            return
-        self._end(State.IDLE)
-        self._runner = None
-        self.failed.emit(sentence)
+    def _see(self, insight: Insight | None) -> None:
+        if insight is not None or self._insight is not None:
+            self._insight = insight
+            self.looked.emit()
 
-    def _on_progress(self, run: _Run, best: int) -> None:
-        if run is self._run and best != self._best_so_far:
-            self._best_so_far = best
-            self.changed.emit()
+    def _look_soon(self) -> None:
+        """Look again once the event loop has had its turn; many edits are one look."""
+        if self._watch and not self._look_due:
+            self._look_due = True
+            self._dispatch(self._look)
 
-    def _loaded(self, name: str, policy: Any) -> None:
-        self._policies[name] = policy
+    def _look(self) -> None:
+        self._look_due = False
+        ready = self._policy and not self._document.empty and not self._document.at_optimum
+        if self._watch and ready and self._run is None and self._insight is None:
+            self._begin(State.LOOKING)
+
+    def _on_document_changed(self) -> None:
+        self.hinting.forget()
+        self._see(None)
+        if not self._applying:
+            self.cancel()  # a person took over; the next run starts from what is there then
+            self._look_soon()
+
+    # What the worker says (:class:`app.worker.Listener`)
+
+    def loaded(self, name: str) -> None:
+        """A policy is there."""
         self._loading = False
         self.changed.emit()
 
-    def _on_document_changed(self) -> None:
-        if not self._applying:
-            self.cancel()  # a person took over; the next run starts from what is there then
+    def broke(self, cause: Run | Question | None, sentence: str) -> None:
+        """A run, a question, or the loading of a policy came to nothing."""
+        if isinstance(cause, Question):
+            if not self.hinting.close(cause):
+                return
+            self._loading = False
+            self.changed.emit()
+        elif cause is not self._run:
+            return
+        else:
+            self._end(State.IDLE)
+            self._runner = None
+        self.failed.emit(sentence)
 
-    def _worker(self) -> ThreadPoolExecutor:
-        if self._pool is None:
-            self._pool = ThreadPoolExecutor(max_workers=1, thread_name_prefix="assistant")
-        return self._pool
+    def looked_at(self, run: Run, insight: Insight | None) -> None:
+        """What the policy sees before its first decision."""
+        if run is not self._run:
+            return
+        if run.state is State.LOOKING:
+            self._end(run.after)
+        if self._watch:
+            self._see(insight)
 
-    # The worker thread
+    def progressed(self, run: Run, done: int, best: int) -> None:
+        """So many rollouts are done, and this is the lowest s so far."""
+        if run is self._run and self.progress.found(done, best):
+            self.changed.emit()
 
-    def _prepare(self, name: str) -> None:
+    def answered(self, question: Question, choices: tuple[Choice, ...]) -> None:
+        """The policy's best few operations."""
+        if not self.hinting.close(question):
+            return
+        self.hinting.show(choices)
+        self.changed.emit()
+        if not choices:
+            self.said.emit("The policy finds no operation that it may do here.")
+
+    def decided(self, run: Run, decided: Decided) -> None:
+        """Submit what the worker decided; gives the event loop its turn in between."""
+        if run is not self._run:
+            return
+        deadline = time.monotonic() + APPLY_BUDGET
         try:
-            self._policy_of(name)
-        except Exception as error:  # a thread's boundary: whatever broke is told to the person
-            self._dispatch(partial(self._break_off, None, _sentence(error)))
-
-    def _policy_of(self, name: str) -> Any:
-        if name not in self._policies:
-            policy = self._load(name)
-            self._policies[name] = policy
-            self._dispatch(partial(self._loaded, name, policy))
-        return self._policies[name]
-
-    def _work(self, run: _Run) -> None:
-        try:
-            policy = self._policy_of(run.policy)
-            if run.mesh is not None:
-                run.runner = self._runner_of(run, run.mesh, policy)
-                run.mesh = None
-            while run.runner is not None and self._decide(run, run.runner):
-                pass
-        except Exception as error:  # a thread's boundary: whatever broke is told to the person
-            self._dispatch(partial(self._break_off, run, _sentence(error)))
-
-    def _runner_of(self, run: _Run, mesh: HalfEdgeMesh, policy: Any) -> Runner:
-        if run.effort is None:
-            return self._make_runner(mesh, policy, run.seed)
-
-        def progress(done: int, best: int) -> None:
-            self._dispatch(partial(self._on_progress, run, best))
-
-        return self._make_search(mesh, policy, run.seed, run.effort, run.enough, progress)
-
-    def _decide(self, run: _Run, runner: Runner) -> bool:
-        """Take one decision, or a batch of them, and wait until applied; False when over."""
-        begun = time.monotonic()
+            self._applying = True
+            while decided.operations:
+                operation, halfedge = decided.operations.pop(0)
+                self._document.submit(operation, halfedge, by=run.policy, held=run.held)
+                if decided.operations and time.monotonic() > deadline:
+                    self._dispatch(partial(self.decided, run, decided))
+                    return
+        except MeshError as error:
+            self.broke(run, f"The policy's operation was refused: {error}")
+            return
+        finally:
+            self._applying = False
+        run.decisions += decided.decisions
+        self.progress.done(decided.decisions, self._document.score)
         with run.lock:
-            if run.stop.is_set():
-                return False
-            run.in_step = True
-            run.applied.clear()
-        operations: Step = []
-        decisions = 0
-        while not runner.finished and not run.stop.is_set():
-            step = runner.step()
-            operations += step
-            decisions += bool(step)
-            if run.state is not State.SEARCHING or time.monotonic() - begun > BATCH_SECONDS:
-                break
-        self._dispatch(partial(self._apply, run, operations, runner.finished, decisions))
-        run.applied.wait()
-        while run.state is State.PLAYING and not run.stop.is_set():
-            run.wake.clear()  # set again when the speed changes or the run ends
-            if run.stop.is_set():
-                break
-            left = begun + 1.0 / self._speed - time.monotonic()
-            if left <= 0 or not run.wake.wait(left):
-                break
-        return not run.stop.is_set() and not runner.finished
+            run.in_step = False
+        if decided.finished:
+            self._finish(run)
+        elif run.state is State.STEPPING:
+            self._end(State.PAUSED)
+        if self._watch and not decided.finished:
+            self._see(decided.insight)
+        if run is self._run:
+            run.applied.set()
+            self.changed.emit()
 
+    def _finish(self, run: Run) -> None:
+        document = self._document
+        reason = run.runner.reason if run.runner is not None else ""
+        self._end(State.IDLE)
+        if run.effort is not None and run.decisions:
+            self._tidy(run)
+        where = "" if run.held is None else "The region is finished: "
+        if document.at_optimum:
+            self.said.emit(f"At the optimum after {_count(self.progress.decisions, 'decision')}.")
+        elif where:
+            self.said.emit(f"{where}s {document.score}{'; ' + reason if reason else ''}.")
+        else:
+            self.said.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
 
-def _sentence(error: Exception) -> str:
-    if isinstance(error, (ValueError, OSError)):
-        return str(error)
-    _log.error("the policy run broke off", exc_info=error)
-    return f"The policy run broke off ({type(error).__name__}: {error})."
+    def _tidy(self, run: Run) -> None:
+        """What smoothing around each operation has folded on the way, the whole unfolds."""
+        mesh = self._document.mesh
+        if mesh is None:
+            return
+        self._applying = True
+        try:
+            free = None if run.held is None else np.setdiff1d(mesh.vertices(), run.held)
+            self._document.smooth(by=run.policy, vertices=free)
+        finally:
+            self._applying = False
 
 
 def _count(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
-def _load_policy(name: str) -> Any:
-    from agent import policies
-
-    policies.decide_on_one_thread()
-    return policies.load(name)
-
-
-def _make_runner(mesh: HalfEdgeMesh, policy: Any, seed: int) -> Runner:
-    from agent.rollout import Runner as PolicyRunner
-
-    return PolicyRunner(mesh, policy, seed)

@@ -5,11 +5,16 @@ Neither Qt nor torch is imported here; the first step brings torch in, on the as
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from threading import Event
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from meshcore import HalfEdgeMesh, Operation
+
+if TYPE_CHECKING:
+    from agent.choices import Insight
 
 COMPLETE_SECONDS = 3.0
 """How long *Complete* searches when the optimum does not come sooner."""
@@ -17,10 +22,12 @@ COMPLETE_SECONDS = 3.0
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard to search: so many rollouts, or so many seconds."""
+    """How hard to search: so many rollouts, or so many seconds; and where."""
 
     rollouts: int | None = None
     seconds: float | None = COMPLETE_SECONDS
+    elements: np.ndarray | None = field(default=None, compare=False)
+    """(n,) ids of the only elements that may change; None: all."""
 
 
 class SearchRunner:
@@ -50,6 +57,10 @@ class SearchRunner:
         """Whether all operations have been handed out."""
         return self._left is not None and not self._left
 
+    def look(self) -> "Insight | None":
+        """Nothing: a search is not one policy's decision."""
+        return None
+
     def step(self) -> list[tuple[Operation, int]]:
         """The next operation, once the search is over; the first call waits for that."""
         if self._left is None:
@@ -57,6 +68,8 @@ class SearchRunner:
         return [self._left.pop(0)] if self._left else []
 
     def _search(self) -> list[tuple[Operation, int]]:
+        if self._effort.elements is not None:
+            return self._search_within(self._effort.elements)
         from agent.solver import solve
 
         solution = solve(
@@ -72,3 +85,22 @@ class SearchRunner:
         if not solution.operations:
             self.reason = f"nothing better was found in {solution.seconds:.0f} s"
         return list(solution.operations)
+
+    def _search_within(self, elements: np.ndarray) -> list[tuple[Operation, int]]:
+        from agent.confined import solve_within
+
+        found = solve_within(
+            self._mesh,
+            self._policy,
+            elements,
+            rollouts=self._effort.rollouts,
+            seconds=self._effort.seconds,
+            seed=self._seed,
+            progress=self._progress,
+            cancelled=self._enough.is_set,
+        )
+        if found.score == found.optimum:
+            self.reason = "nothing lower is possible by changing this region alone"
+        elif not found.operations:
+            self.reason = f"nothing better was found in {found.seconds:.0f} s"
+        return list(found.operations)

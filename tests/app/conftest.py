@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from agent.choices import Choice, Insight
 from meshcore import HalfEdgeMesh, Operation, generate, shapes
 from meshcore.operations import of_kind
 
@@ -23,14 +24,50 @@ class Greedy:
         self.longest = longest
         self.steps = 0
         self.rng = np.random.default_rng(4)
+        self.choices: list[Choice] = []
+        self.wanted: Choice | None = None
         self.finished = False
         self.reason = ""
 
+    def look(self) -> Insight | None:
+        """Sees all of the best operations, each as likely as the others."""
+        wanted = self._choose()
+        if wanted is None:
+            return None
+        halfedges = np.array(sorted({choice.halfedge for choice in self.choices}))
+        ends = [self.mesh.origin(wanted.halfedge), self.mesh.target(wanted.halfedge)]
+        return Insight(
+            choices=tuple(self.choices),
+            wanted=wanted,
+            halfedges=halfedges,
+            weights=np.full(len(halfedges), 1.0 / len(halfedges)),
+            template=np.array([(v, slot, 0) for slot, v in enumerate(ends)]),
+            missing=0,
+            field=np.array([(wanted.halfedge // self.mesh.k, 0)]),
+            value=0.5,
+        )
+
     def step(self) -> list[tuple[Operation, int]]:
+        wanted, self.wanted = self._choose(), None
+        if wanted is None:
+            return []
+        self.mesh.apply(wanted.operation, wanted.halfedge)
+        self.steps += 1
+        if self.mesh.score == self.mesh.optimum:
+            self._finish("the optimum is reached")
+        elif self.steps == self.longest:
+            self._finish("out of steps")
+        return [(wanted.operation, wanted.halfedge)]
+
+    def _choose(self) -> Choice | None:
+        if self.wanted is not None:
+            return self.wanted
         if self.mesh.score == self.mesh.optimum and not self.bad_steps:
-            return self._finish("the optimum is reached")
+            self._finish("the optimum is reached")
+            return None
         if self.steps == self.longest:
-            return self._finish("out of steps")
+            self._finish("out of steps")
+            return None
         changes = []
         for halfedge in (self.mesh.element_ids()[:, None] * self.mesh.k + range(self.mesh.k)).flat:
             for info in of_kind(self.mesh.kind):
@@ -40,18 +77,18 @@ class Greedy:
                     changes.append((edit.score_change, info.operation, int(halfedge)))
         wanted = (max if self.steps < self.bad_steps else min)(change[0] for change in changes)
         changes = [change for change in changes if change[0] == wanted]
-        _, operation, halfedge = changes[self.rng.integers(len(changes))]
-        self.mesh.apply(operation, halfedge)
-        self.steps += 1
-        if self.mesh.score == self.mesh.optimum:
-            self._finish("the optimum is reached")
-        elif self.steps == self.longest:
-            self._finish("out of steps")
-        return [(operation, halfedge)]
+        self.choices = [Choice(o, h, 1.0 / len(changes), change) for change, o, h in changes]
+        self.wanted = self.choices[self.rng.integers(len(changes))]
+        return self.wanted
 
-    def _finish(self, reason: str) -> list[tuple[Operation, int]]:
+    def _finish(self, reason: str) -> None:
         self.finished, self.reason = True, reason
-        return []
+
+
+def ask_greedy(mesh: HalfEdgeMesh, policy: str, near: np.ndarray | None) -> tuple[Choice, ...]:
+    """Stands in for ``agent.insight.hints``: the first five of the best operations."""
+    insight = Greedy(mesh).look()
+    return () if insight is None else insight.choices[:5]
 
 
 class Desk:
@@ -157,6 +194,7 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
             load=lambda name: name,
             make_runner=lambda mesh, policy, seed: greedy(mesh, **options),
             make_search=lambda mesh, *_: greedy(mesh, **options),
+            ask=ask_greedy,
         )
         window = MainWindow(document, assistant=assistant, ready=ready)
         window.resize(1000, 700)

@@ -13,7 +13,9 @@ from app.searching import Effort
 def make(desk, greedy):
     made = []
 
-    def build(document, load=lambda name: name, patient=False, **options):
+    def build(
+        document, load=lambda name: name, patient=False, make_runner=None, ask=None, **options
+    ):
         def search(mesh, policy, seed, effort, enough, progress):
             """Find what the greedy run finds; a patient one then waits to be told to stop."""
             found = greedy(mesh, **options)
@@ -26,8 +28,9 @@ def make(desk, greedy):
             document,
             desk.dispatch,
             load=load,
-            make_runner=lambda mesh, policy, seed: greedy(mesh, **options),
+            make_runner=make_runner or (lambda mesh, policy, seed: greedy(mesh, **options)),
             make_search=search,
+            ask=ask or (lambda mesh, policy, near: greedy(mesh).look().choices[:5]),
         )
         assistant.policy = "greedy"
         assistant.heard = []
@@ -54,17 +57,21 @@ def test_step_takes_one_operation_in_the_name_of_the_policy(make, desk, star):
     desk.until(lambda: not assistant.running)
     assert document.history.cursor == 1
     assert document.history.last.by == "greedy"
-    assert assistant.decisions == 1
+    assert assistant.progress.decisions == 1
     assistant.step()
     desk.until(lambda: not assistant.running)
-    assert assistant.decisions == document.history.cursor == 2
+    assert assistant.progress.decisions == document.history.cursor == 2
 
 
 def test_the_runner_goes_on_from_where_it_was_unless_a_person_edited(make, desk, star, greedy):
     document = Document(star)
-    assistant = make(document)
     runners = []
-    assistant._make_runner = lambda mesh, policy, seed: runners.append(greedy(mesh)) or runners[-1]
+
+    def make_runner(mesh, policy, seed):
+        runners.append(greedy(mesh))
+        return runners[-1]
+
+    assistant = make(document, make_runner=make_runner)
     for _ in range(2):
         assistant.step()
         desk.until(lambda: not assistant.running)
@@ -93,8 +100,8 @@ def test_a_search_tells_its_best_and_stops_with_it(make, desk, star):
     document = Document(star)
     assistant = make(document, patient=True)
     assistant.search(Effort(seconds=60.0))
-    desk.until(lambda: assistant.best_so_far is not None)
-    assert assistant.best_so_far < document.score and document.history.cursor == 0
+    desk.until(lambda: assistant.progress.best is not None)
+    assert assistant.progress.best < document.score and document.history.cursor == 0
     assistant.stop()
     assert assistant.running  # what it has found is still to be done
     desk.until(lambda: not assistant.running)
@@ -130,7 +137,7 @@ def test_play_pause_and_go_on(make, desk, star):
     assert document.history.cursor == kept + 1
     assistant.play()
     desk.until(lambda: document.history.cursor >= kept + 3)
-    assert assistant.decisions == document.history.cursor
+    assert assistant.progress.decisions == document.history.cursor
     assistant.cancel()
     assert assistant.state is State.IDLE
 
@@ -228,3 +235,138 @@ def test_prepare_loads_without_running(make, desk, star):
     assistant.step()
     desk.until(lambda: not assistant.running)
     assert loaded == ["greedy"]
+
+
+def hinted(assistant, desk):
+    desk.until(lambda: not assistant.hinting.asking)
+    return assistant.hinting.hints
+
+
+def test_hints_hold_until_the_document_changes(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    told = []
+    assistant.hinting.changed.connect(lambda: told.append(assistant.hinting.hints))
+    assistant.hint()
+    assert assistant.hinting.asking and assistant.hinting.hints == ()
+    hints = hinted(assistant, desk)
+    assert 1 <= len(hints) <= 5 and told == [hints]
+    assert assistant.state is State.IDLE and document.history.cursor == 0
+    document.submit(hints[0].operation, hints[0].halfedge)
+    assert document.history.last.change == hints[0].change
+    assert assistant.hinting.hints == () and told[-1] == ()
+
+
+def test_a_hint_that_comes_too_late_is_dropped(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    assistant.hint()
+    document.set_locked(0, True)
+    assert not assistant.hinting.asking
+    assistant.close()
+    desk.work()
+    assert assistant.hinting.hints == ()
+
+
+def test_a_hint_holds_a_run_that_plays_but_not_a_search(make, desk, star):
+    document = Document(star)
+    assistant = make(document, longest=100, bad_steps=100)
+    assistant.speed = 60
+    assistant.play()
+    desk.until(lambda: document.history.cursor >= 2)
+    assistant.hint()
+    assert assistant.state is State.PAUSED
+    assert hinted(assistant, desk)
+    assistant = make(Document(star.copy()), patient=True)
+    assistant.search()
+    assistant.hint()
+    assert assistant.state is State.SEARCHING and not assistant.hinting.asking
+
+
+def test_hints_that_cannot_be_had_are_one_sentence(make, desk, star):
+    def ask(mesh, policy, near):
+        raise ValueError("This policy is for other meshes.")
+
+    assistant = make(Document(star), ask=ask)
+    assistant.hint()
+    assert hinted(assistant, desk) == ()
+    assert assistant.heard == ["This policy is for other meshes."]
+    assistant = make(Document(star), ask=lambda *_: ())
+    assistant.hint()
+    assert hinted(assistant, desk) == ()
+    assert "no operation" in assistant.heard[-1]
+
+
+def test_watching_shows_what_is_done_next(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    assistant.watch = True
+    desk.until(lambda: assistant.insight is not None)
+    assert assistant.state is State.IDLE and document.history.cursor == 0
+    for count in (1, 2):
+        wanted = assistant.insight.wanted
+        assistant.step()
+        desk.until(lambda: not assistant.running)
+        assert document.history.cursor == count
+        assert document.history.last.halfedge == wanted.halfedge
+        assert assistant.insight.wanted is not wanted
+    assistant.watch = False
+    assert assistant.insight is None
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert assistant.insight is None
+
+
+def test_watching_follows_a_persons_edits(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    assistant.watch = True
+    desk.until(lambda: assistant.insight is not None)
+    seen = []
+    assistant.looked.connect(lambda: seen.append(assistant.insight))
+    choice = assistant.insight.choices[0]
+    document.submit(choice.operation, choice.halfedge)
+    assert assistant.insight is None
+    desk.until(lambda: assistant.insight is not None)
+    document.undo()
+    desk.until(lambda: assistant.insight is not None)
+    assert [insight is None for insight in seen] == [True, False, True, False]
+
+
+def test_a_played_run_that_is_watched_is_held_with_its_next_decision(make, desk, star):
+    document = Document(star)
+    assistant = make(document, longest=100, bad_steps=100)
+    assistant.speed = 60
+    assistant.watch = True
+    assistant.play()
+    desk.until(lambda: document.history.cursor >= 3)
+    assistant.pause()
+    wanted = assistant.insight.wanted
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert document.history.last.halfedge == wanted.halfedge
+    assistant.cancel()
+    desk.work()
+    assert not assistant.running
+
+
+def test_progress_of_runs_and_searches(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    assert assistant.progress.share is None and assistant.progress.best is None
+    assistant.speed = 60
+    assistant.play()
+    desk.until(lambda: document.history.cursor >= 2)
+    assert assistant.progress.best == document.best_score and assistant.progress.elapsed > 0
+    assistant.pause()
+    held = assistant.progress.elapsed
+    assert assistant.progress.elapsed == held
+    document.undo()
+    assistant = make(document, patient=True)
+    assistant.search(Effort(rollouts=4, seconds=None))
+    desk.until(lambda: assistant.progress.rollouts == 1)
+    assert assistant.progress.share == 0.25 and not assistant.stopping
+    assistant.stop()
+    assert assistant.stopping
+    desk.until(lambda: not assistant.running)
+    assert assistant.progress.share is None
