@@ -1,0 +1,222 @@
+"""New meshes from requests, so that they can be made and looked at in a process of their own.
+
+Triangle and the readers of foreign files hold the interpreter until they are done; a window that
+made meshes in a thread would stand still meanwhile. `serve` is what such a process runs: it reads
+requests on stdin, one JSON object a line, and writes a frame for each on stdout (`frame`,
+`unframed`).
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+
+from meshcore.errors import MeshError
+
+if TYPE_CHECKING:
+    from meshcore import HalfEdgeMesh
+    from meshcore.domain import Domain
+
+MOST = 2_000_000
+"""Elements that a new mesh may have."""
+
+_PER_AREA = {"tri": 4.9, "quad": 3.7, "pairing": 2.6}
+"""Elements for each square of the longest edge, measured on shapes of the gallery."""
+
+_LENGTH = 8
+"""Bytes that say how long a frame is."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """A mesh as arrays, and what there is to say and to draw about it.
+
+    Attributes:
+        name: what to call the mesh.
+        path: the mesh file that it was read from, empty for a mesh that was made.
+        kind: "tri" or "quad".
+        score, optimum: s and s*.
+        points: (n, 3).
+        elements: (m, 3 or 4).
+        geometric: (n,) whether a vertex is a corner.
+        desired: (n,) desired degrees.
+        delta: (n,) degree less desired degree.
+        reach: (n,) length of the shortest edge at a vertex, seen from above.
+        edges: (e, 2) inner edges by vertex.
+        rim: (b,) boundary vertices, loop after loop.
+        sizes: (l,) how many of them each loop has.
+    """
+
+    name: str
+    path: str
+    kind: str
+    score: int
+    optimum: int
+    points: np.ndarray
+    elements: np.ndarray
+    geometric: np.ndarray
+    desired: np.ndarray
+    delta: np.ndarray
+    reach: np.ndarray
+    edges: np.ndarray
+    rim: np.ndarray
+    sizes: np.ndarray
+
+    @property
+    def loops(self) -> list[np.ndarray]:
+        """Vertices of each loop of the boundary, in order."""
+        return np.split(self.rim, np.cumsum(self.sizes)[:-1])
+
+    def mesh(self) -> HalfEdgeMesh:
+        """The mesh itself, built anew."""
+        from meshcore import HalfEdgeMesh
+
+        return HalfEdgeMesh.from_elements(self.points, self.elements, self.geometric, self.desired)
+
+
+def make(request: Mapping[str, Any]) -> Made:
+    """Return the mesh that a request asks for.
+
+    Args:
+        request: ``"source"`` is one of ``{"shape": name}``, ``{"polygon": sides, "seed": n}``,
+            ``{"part": corners, "seed": n}``, ``{"domain": as in Domain.to_json}`` and
+            ``{"file": path, "corner_angle": degrees, "curve_step": degrees}``; besides there are
+            ``"kind"``, and, each null for what suits the shape, ``"max_edge"``, ``"min_angle"``
+            (degrees) and ``"quads"`` ("catmull-clark" or "pairing"). A mesh file is read as it is.
+
+    Raises:
+        MeshError: one sentence.
+    """
+    from meshcore import generate, geometry_files, read
+
+    source = request["source"]
+    path = source.get("file", "")
+    if path and not geometry_files.is_geometry(path):
+        mesh = read(path, source["corner_angle"])
+        _refuse_many(mesh.n_elements, "has")
+        return _made(mesh, Path(path).stem, path)
+    domain = _domain(source)
+    kind, max_edge = request["kind"], request["max_edge"]
+    quads = request["quads"] or "catmull-clark"
+    if max_edge:
+        rule = "pairing" if kind == "quad" and quads == "pairing" else kind
+        _refuse_many(int(_PER_AREA[rule] * domain.area / max_edge**2), "would need about")
+    mesh = generate.mesh_domain(domain, kind, max_edge, request["min_angle"], quads=quads)
+    _refuse_many(mesh.n_elements, "would have")
+    return _made(mesh, domain.name or "drawing", "")
+
+
+def frame(result: Made | str) -> bytes:
+    """Return a mesh, or the sentence that says why there is none, as bytes with their length."""
+    arrays: dict[str, Any] = {}
+    if isinstance(result, str):
+        arrays["refusal"] = np.array(result)
+    else:
+        arrays = {field.name: np.asarray(getattr(result, field.name)) for field in fields(Made)}
+    content = io.BytesIO()
+    np.savez(content, **arrays)
+    return len(content.getvalue()).to_bytes(_LENGTH, "little") + content.getvalue()
+
+
+def unframed(content: bytes) -> tuple[Made | str, bytes] | None:
+    """Return the first whole frame's mesh or refusal and what follows it; None if none is whole."""
+    end = _LENGTH + int.from_bytes(content[:_LENGTH], "little")
+    if len(content) < _LENGTH or len(content) < end:
+        return None
+    with np.load(io.BytesIO(content[_LENGTH:end]), allow_pickle=False) as arrays:
+        if "refusal" in arrays:
+            return str(arrays["refusal"]), content[end:]
+        values = {name: array[()] for name, array in arrays.items()}
+    for name in ("name", "path", "kind"):
+        values[name] = str(values[name])
+    for name in ("score", "optimum"):
+        values[name] = int(values[name])
+    return Made(**values), content[end:]
+
+
+def serve() -> None:
+    """Answer requests until stdin ends: when the window is gone, so is this process."""
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    # what a library prints must not come between the frames
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    _answer(sys.stdin.buffer, answers)
+
+
+def _answer(requests: BinaryIO, answers: BinaryIO) -> None:
+    for line in requests:
+        try:
+            result: Made | str = make(json.loads(line))
+        except MeshError as error:
+            result = str(error)
+        except MemoryError:
+            result = "There is not enough memory for this mesh."
+        answers.write(frame(result))
+        answers.flush()
+
+
+def _domain(source: Mapping[str, Any]) -> Domain:
+    from meshcore import geometry_files, parts, shapes
+    from meshcore.domain import Domain
+
+    if "shape" in source:
+        return shapes.shape(source["shape"])
+    if "domain" in source:
+        return Domain.from_json(source["domain"])
+    if "file" in source:
+        return geometry_files.read_domain(
+            source["file"], source["corner_angle"], source["curve_step"]
+        )
+    rng = np.random.default_rng(source["seed"])
+    if "part" in source:
+        return parts.random_part(source["part"], rng)
+    return shapes.random_polygon(source["polygon"], rng)
+
+
+def _refuse_many(count: int, verb: str) -> None:
+    if count > MOST:
+        if verb == "would need about":
+            count = int(float(f"{count:.2g}"))
+        raise MeshError(
+            f"This mesh {verb} {count:,} elements, and {MOST:,} are the most: ask for longer edges."
+        )
+
+
+def _made(mesh: HalfEdgeMesh, name: str, path: str) -> Made:
+    elements = mesh.elements().astype(np.int32)
+    ends = np.stack([elements, np.roll(elements, -1, axis=1)], axis=2).reshape(-1, 2)
+    ends.sort(axis=1)
+    key = ends[:, 0].astype(np.int64) * len(mesh.points) + ends[:, 1]
+    _, first, uses = np.unique(key, return_index=True, return_counts=True)
+    steps = mesh.points[ends[first, 0], :2] - mesh.points[ends[first, 1], :2]
+    reach = np.full(len(mesh.points), np.inf)
+    for side in (0, 1):
+        np.minimum.at(reach, ends[first, side], np.hypot(*steps.T))
+    loops = [np.asarray(loop, np.int64) for loop in mesh.boundary_loops()]
+    return Made(
+        name=name,
+        path=path,
+        kind=mesh.kind,
+        score=mesh.score,
+        optimum=mesh.optimum,
+        points=mesh.points,
+        elements=elements,
+        geometric=mesh.geometric(),
+        desired=mesh.desired(),
+        delta=mesh.irregularity().astype(np.int32),
+        reach=reach,
+        edges=ends[first[uses == 2]],
+        rim=np.concatenate(loops) if loops else np.empty(0, np.int64),
+        sizes=np.array([len(loop) for loop in loops], np.int64),
+    )
+
+
+if __name__ == "__main__":
+    serve()
