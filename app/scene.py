@@ -28,6 +28,7 @@ CLASSES = 4
 SAMPLES = 2
 """Pictures are drawn this many times larger and scaled down, for smooth lines."""
 OFF_SCREEN = "vtkEGLRenderWindow"
+_NOWHERE = np.zeros((0, 3))
 
 
 class Scene:
@@ -47,7 +48,7 @@ class Scene:
         self._short_outlines = short_outlines
         self._surface: Any = None
         self._outline: Any = None
-        self._discs: list[Any] = []
+        self._discs: dict[int, Any] = {}
         self._depth = 1.0
         self.markers: Markers | None = None
         self.crowd = False
@@ -72,11 +73,11 @@ class Scene:
 
     def show(self, mesh: HalfEdgeMesh | None) -> None:
         """Show another mesh, or none: all actors are made anew."""
-        for actor in (self._surface, self._outline, *self._discs):
+        for actor in (self._surface, self._outline, *self._discs.values()):
             if actor is not None:
                 self._plotter.remove_actor(actor, render=False, reset_camera=False)
         self._surface = self._outline = self.markers = None
-        self._discs = []
+        self._discs = {}
         if mesh is None:
             return
         self.markers = markers(mesh)
@@ -144,25 +145,31 @@ class Scene:
         return length > (LONG if self._short_outlines else 0)
 
     def _mark_crowd(self, mesh: HalfEdgeMesh) -> None:
-        for actor in self._discs:
-            self._plotter.remove_actor(actor, render=False, reset_camera=False)
-        self._discs = []
-        if not self.crowd or self.markers is None:
-            return
-        size = np.minimum(np.abs(self.markers.delta), CLASSES) * np.sign(self.markers.delta)
-        for value in np.unique(size):
-            points = mesh.points[self.markers.vertices[size == value]]
-            actor = self._plotter.add_points(
-                points * (1.0, 1.0, 0.0) + (0.0, 0.0, 2.0 * self._depth),
-                color=self._theme.plus if value > 0 else self._theme.minus,
-                point_size=self._width * (3.0 + 2.0 * abs(int(value))),
-                render_points_as_spheres=True,
-                lighting=False,
-                reset_camera=False,
-                render=False,
-                pickable=False,
-            )
-            self._discs.append(actor)
+        """One actor of discs for each sign and size of delta; an actor once made is kept."""
+        size = np.zeros(0, int)
+        if self.crowd and self.markers is not None:
+            size = np.clip(self.markers.delta, -CLASSES, CLASSES)
+        for value in {*np.unique(size).tolist(), *self._discs}:
+            places = mesh.points[self.markers.vertices[size == value]] if len(size) else _NOWHERE
+            places = places * (1.0, 1.0, 0.0) + (0.0, 0.0, 2.0 * self._depth)
+            if value not in self._discs:
+                self._discs[value] = self._add_discs(places, value)
+            elif len(places) or self._discs[value].GetVisibility():
+                self._discs[value].mapper.dataset = _points(places)
+            self._discs[value].SetVisibility(len(places) > 0)
+
+    def _add_discs(self, places: np.ndarray, value: int) -> Any:
+        return self._plotter.add_mesh(
+            _points(places),
+            color=self._theme.plus if value > 0 else self._theme.minus,
+            style="points",
+            point_size=self._width * (3.0 + 2.0 * abs(value)),
+            render_points_as_spheres=True,
+            lighting=False,
+            reset_camera=False,
+            render=False,
+            pickable=False,
+        )
 
 
 def picture(
@@ -227,6 +234,12 @@ def _surface(mesh: HalfEdgeMesh) -> Any:
     import pyvista
 
     return pyvista.PolyData.from_regular_faces(mesh.points, mesh.elements())
+
+
+def _points(places: np.ndarray) -> Any:
+    import pyvista
+
+    return pyvista.PolyData(places)
 
 
 def _outline(marks: Markers) -> Any:

@@ -34,8 +34,9 @@ def run(
     ``quick`` leaves out the agent and takes the smallest mesh only; ``seed`` scrambles the meshes.
     Keys: ``start`` (``first_paint_s``, ``mesh_drawn_s``, ``kernels_ready_s``, and what was loaded
     at the first paint), ``answers`` by number of quads (``hover_ms``: mouse move to painted
-    half-edge, with the slowest; ``operation_ms``: key to drawn frame, split into the ``document``'s
-    share, ``prepare`` (scene and overlay) and ``frame``; ``frames_per_hover``, which shall be 0),
+    half-edge, with the slowest; ``operation_ms``: key to the frame on the screen, split into the
+    ``document``'s share, ``prepare`` (scene and overlay), ``frame`` (VTK) and ``show`` (Qt puts the
+    window together); ``frames_per_hover``, which shall be 0),
     ``play`` (operations and frames a second while the agent plays, and how long the window takes to
     answer a mouse move meanwhile), ``million`` (seconds to open, milliseconds to hover and edit).
     Raises RuntimeError without a display.
