@@ -15,6 +15,7 @@ import numpy as np
 
 from app.document import Document
 from app.hinting import Hinting
+from app.policy_files import label
 from app.progress import Progress
 from app.runs import Decided, Question, Run, Runner, State
 from app.searching import Effort, SearchRunner
@@ -62,7 +63,7 @@ class Assistant:
         self._dispatch = dispatch
         self._worker = Worker(self, dispatch, load, make_runner, make_search, ask)
         self._state = State.IDLE
-        self._policy = ""
+        self._policy = self._chosen = ""
         self._speed = 4.0
         self._seed = 0
         self._loading = False
@@ -153,6 +154,15 @@ class Assistant:
             self._loading = True
             self._worker.prepare(self._policy)
             self.changed.emit()
+
+    def choose(self, name: str) -> None:
+        """Load a policy, and take it once it is there; if it cannot be had nothing else changes."""
+        if self._worker.has(name):
+            self.policy = name
+            return
+        self._chosen, self._loading = name, True
+        self._worker.prepare(name)
+        self.changed.emit()
 
     def hint(self, near: np.ndarray | None = None) -> None:
         """Ask the policy for its best few operations, near vertices (n,) if given.
@@ -319,20 +329,24 @@ class Assistant:
     def loaded(self, name: str) -> None:
         """A policy is there."""
         self._loading = False
+        if name == self._chosen:
+            self._chosen = ""
+            self.policy = name
         self.changed.emit()
 
     def broke(self, cause: Run | Question | None, sentence: str) -> None:
         """A run, a question, or the loading of a policy came to nothing."""
-        if isinstance(cause, Question):
-            if not self.hinting.close(cause):
+        if isinstance(cause, Run):
+            if cause is not self._run:
                 return
-            self._loading = False
-            self.changed.emit()
-        elif cause is not self._run:
-            return
-        else:
             self._end(State.IDLE)
             self._runner = None
+        else:
+            if isinstance(cause, Question) and not self.hinting.close(cause):
+                return
+            self._chosen = ""
+            self._loading = False
+            self.changed.emit()
         self.failed.emit(sentence)
 
     def looked_at(self, run: Run, insight: Insight | None) -> None:
@@ -367,7 +381,7 @@ class Assistant:
             self._applying = True
             while decided.operations:
                 operation, halfedge = decided.operations.pop(0)
-                self._document.submit(operation, halfedge, by=run.policy, held=run.held)
+                self._document.submit(operation, halfedge, by=label(run.policy), held=run.held)
                 if decided.operations and time.monotonic() > deadline:
                     self._dispatch(partial(self.decided, run, decided))
                     return
@@ -412,7 +426,7 @@ class Assistant:
         self._applying = True
         try:
             free = None if run.held is None else np.setdiff1d(mesh.vertices(), run.held)
-            self._document.smooth(by=run.policy, vertices=free)
+            self._document.smooth(by=label(run.policy), vertices=free)
         finally:
             self._applying = False
 

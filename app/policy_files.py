@@ -1,8 +1,9 @@
-"""The policies that travel with the program, found without torch: by their files' headers."""
+"""Policies found without torch: those that travel with the program, and files of one's own."""
 
 import json
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from pathlib import Path
 
 ENDING = ".safetensors"
 _LONGEST_HEADER = 16 * 1024 * 1024
@@ -21,7 +22,28 @@ def shipped(kind: str) -> list[str]:
     return sorted(names)
 
 
-def _kind_of(entry: Traversable) -> str:
+def kind_of(path: str | Path) -> str:
+    """The kind of mesh, "tri" or "quad", that a policy file is for; the file may be bad further on.
+
+    Raises ValueError or OSError with one sentence where it is no policy file at all.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise ValueError(f"{path}: this is a folder, not a policy file.")
+    if not path.is_file():
+        raise ValueError(f"{path}: there is no such file.")
+    kind = _kind_of(path)
+    if kind not in ("tri", "quad"):
+        raise ValueError(f"{path.name}: this is no policy file of Meshwright.")
+    return kind
+
+
+def label(name: str) -> str:
+    """What a person calls a policy: a shipped one by its name, a file without folder and ending."""
+    return Path(name).name.removesuffix(ENDING) if name.endswith(ENDING) else name
+
+
+def _kind_of(entry: Traversable | Path) -> str:
     """The kind that the file's header names; empty if it is no policy."""
     with entry.open("rb") as stream:
         length = int.from_bytes(stream.read(8), "little")
@@ -29,7 +51,7 @@ def _kind_of(entry: Traversable) -> str:
             return ""
         try:
             header = json.loads(stream.read(length))
-        except ValueError:
+        except (ValueError, RecursionError):
             return ""
     values = header.get("__metadata__", {}) if isinstance(header, dict) else {}
     if "kind" in values:

@@ -370,3 +370,24 @@ def test_progress_of_runs_and_searches(make, desk, star):
     assert assistant.stopping
     desk.until(lambda: not assistant.running)
     assert assistant.progress.share is None
+
+
+def test_a_chosen_policy_is_taken_once_it_is_there(make, desk, star):
+    def load(name):
+        if "bad" in name:
+            raise ValueError(f"{name}: this is no policy file.")
+        return name
+
+    document = Document(star)
+    assistant = make(document, load=load)
+    assistant.choose("/somewhere/mine.safetensors")
+    assert assistant.loading and assistant.policy == "greedy"
+    desk.until(lambda: not assistant.loading)
+    assert assistant.policy == "/somewhere/mine.safetensors"
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert document.history.last.by == "mine"
+    assistant.choose("bad.safetensors")
+    desk.until(lambda: not assistant.loading)
+    assert assistant.policy == "/somewhere/mine.safetensors"
+    assert assistant.heard[-1] == "bad.safetensors: this is no policy file."

@@ -1,0 +1,52 @@
+"""Policy files looked at without torch."""
+
+import json
+
+import pytest
+
+from app.policy_files import kind_of, label, shipped
+
+
+def header(path, content):
+    text = json.dumps(content).encode()
+    path.write_bytes(len(text).to_bytes(8, "little") + text)
+    return path
+
+
+def test_shipped_ones_begin_with_the_kind():
+    assert shipped("quad")[0] == "quad" and shipped("tri")[0] == "tri"
+    assert all(name.startswith("quad") for name in shipped("quad"))
+
+
+def test_the_header_tells_the_kind(tmp_path):
+    good = header(tmp_path / "mine.safetensors", {"__metadata__": {"kind": "tri"}})
+    assert kind_of(good) == kind_of(str(good)) == "tri"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"hello",
+        b"\xff" * 64,
+        (5).to_bytes(8, "little") + b"[1,2]",
+        b"\x02" + b"\0" * 7 + b"{}",
+    ],
+)
+def test_what_is_no_policy_is_one_sentence(tmp_path, content):
+    bad = tmp_path / "bad.safetensors"
+    bad.write_bytes(content)
+    with pytest.raises(ValueError, match=r"bad\.safetensors: this is no policy file"):
+        kind_of(bad)
+
+
+def test_a_folder_and_nothing_at_all(tmp_path):
+    with pytest.raises(ValueError, match="a folder"):
+        kind_of(tmp_path)
+    with pytest.raises(ValueError, match="no such file"):
+        kind_of(tmp_path / "missing.safetensors")
+
+
+def test_labels():
+    assert label("quad-paper") == "quad-paper"
+    assert label("/home/somebody/runs/last.safetensors") == "last"
