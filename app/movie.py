@@ -20,6 +20,8 @@ QUALITY = "18"
 """The encoder's constant rate factor: lower is better and larger; 18 looks lossless."""
 LEVELS = 14
 """Shades of a GIF between two colours that meet."""
+NEAR = 4
+"""Shades that differ by less are one: there is room for 256 only."""
 SHORTEST = 0.02
 """Seconds: viewers of GIF slow down what is shorter."""
 
@@ -121,9 +123,14 @@ def palette(colours: Theme) -> list[int]:
     )
     shares = np.linspace(0.0, 1.0, LEVELS)[:, None]
     mixed = [(1 - shares) * _rgb(a) + shares * _rgb(b) for a, b in meeting]
-    rows = np.unique(np.round(np.concatenate(mixed)).astype(int), axis=0)[:256]
+    pure = [_rgb(colour)[None] for pair in meeting for colour in pair]
     whole = np.zeros((256, 3), dtype=int)
-    whole[: len(rows)] = rows
+    count = 0
+    for row in np.round(np.concatenate([*pure, *mixed])).astype(int):
+        if count < 256 and (count == 0 or np.abs(whole[:count] - row).max(axis=1).min() >= NEAR):
+            whole[count] = row
+            count += 1
+    whole[count:] = whole[0]
     return whole.ravel().tolist()
 
 

@@ -2,7 +2,16 @@
 
 from typing import Any
 
-from qtpy.QtCore import QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import (
+    QEvent,
+    QModelIndex,
+    QPersistentModelIndex,
+    QPointF,
+    QRectF,
+    QSize,
+    Qt,
+    Signal,
+)
 from qtpy.QtGui import QColor, QFont, QFontMetricsF, QKeyEvent, QPainter, QPen, QPolygonF
 from qtpy.QtWidgets import (
     QAbstractItemView,
@@ -23,6 +32,16 @@ from app.theme import GRID, Theme
 
 WIDTH = 224
 ROW = 26
+WALKING = (
+    Qt.Key.Key_Up,
+    Qt.Key.Key_Down,
+    Qt.Key.Key_PageUp,
+    Qt.Key.Key_PageDown,
+    Qt.Key.Key_Home,
+    Qt.Key.Key_End,
+    Qt.Key.Key_Return,
+    Qt.Key.Key_Enter,
+)
 GLYPH, CHANGE = 18, 26
 """Pixels of two columns; numbers take what they need, the title has the rest."""
 
@@ -155,6 +174,13 @@ class HistoryList(QListView):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setAccessibleName("History")
         self.clicked.connect(self._on_clicked)
+
+    def event(self, event: QEvent) -> bool:
+        """Keys that walk are the list's while it has the focus, not the window's shortcuts."""
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() in WALKING:
+            event.setAccepted(not event.modifiers())
+            return bool(event.isAccepted())
+        return bool(super().event(event))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Return goes to the line that has the focus; the rest is Qt's."""

@@ -1,7 +1,7 @@
 """The score curve: s of every state, where one stands, and where branches fork."""
 
 import numpy as np
-from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import (
     QColor,
     QFont,
@@ -28,6 +28,15 @@ from app.theme import GRID, Theme
 
 HEIGHT = 96
 LEFT, RIGHT, TOP, BOTTOM = 7 * GRID, 3 * GRID, 16, 36
+WALKING = (
+    Qt.Key.Key_Left,
+    Qt.Key.Key_Right,
+    Qt.Key.Key_PageUp,
+    Qt.Key.Key_PageDown,
+    Qt.Key.Key_Home,
+    Qt.Key.Key_End,
+)
+"""Keys: one step back and forward, many, all."""
 FORK_REACH = 7
 """Pixels beside the mark of a branch that count as on it."""
 
@@ -106,8 +115,9 @@ class ScoreCurve(QWidget):
         if event.button() != Qt.MouseButton.LeftButton or self._empty:
             return
         self.setFocus(Qt.FocusReason.MouseFocusReason)
-        if self._fork >= 0:
-            self.branch_asked.emit(self._fork)
+        fork = self._fork_at(event.position())
+        if fork >= 0:
+            self.branch_asked.emit(fork)
         else:
             self._ask(event.position())
 
@@ -137,21 +147,21 @@ class ScoreCurve(QWidget):
             self._go(self.cursor_state + (1 if turn < 0 else -1))
         event.accept()
 
+    def event(self, event: QEvent) -> bool:
+        """Keys that walk are the curve's while it has the focus, not the window's shortcuts."""
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() in WALKING:
+            event.setAccepted(not event.modifiers())
+            return bool(event.isAccepted())
+        return bool(super().event(event))
+
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Arrows, page keys, Home and End walk through the history."""
-        page = max(1, len(self._history) // 20)
-        moves = {
-            Qt.Key.Key_Left: self.cursor_state - 1,
-            Qt.Key.Key_Right: self.cursor_state + 1,
-            Qt.Key.Key_PageUp: self.cursor_state - page,
-            Qt.Key.Key_PageDown: self.cursor_state + page,
-            Qt.Key.Key_Home: 0,
-            Qt.Key.Key_End: len(self._history),
-        }
-        if event.key() in moves and not event.modifiers() and not self._empty:
-            self._go(moves[event.key()])
-        else:
+        if event.key() not in WALKING or event.modifiers() or self._empty:
             super().keyPressEvent(event)
+            return
+        page = max(1, len(self._history) // 20)
+        moves = (-1, 1, -page, page, -self.cursor_state, len(self._history))
+        self._go(self.cursor_state + moves[WALKING.index(event.key())])
 
     def _ask(self, at: QPointF) -> None:
         self._go(self._frame.state(at.x()))
