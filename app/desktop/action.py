@@ -24,7 +24,8 @@ class Action:
     ``menu`` is the menu that lists it; ``icon`` its icon in the toolbar, empty for none there;
     ``word`` is written beside the icon. One with ``checked`` is a switch that is on or off.
     ``repeats`` says that a key held down does it again and again. ``needs`` tells, as a sentence,
-    what is missing while it is not enabled; the conditions below have their own.
+    what is missing while it is not enabled; the conditions below have their own. The keys of one
+    ``on_canvas`` work while the canvas has the keyboard: elsewhere they mean other things.
     """
 
     id: str
@@ -39,6 +40,17 @@ class Action:
     checked: When | None = None
     repeats: bool = True
     needs: str = ""
+    on_canvas: bool = False
+
+
+def needing(words: str) -> Callable[[When], When]:
+    """A decorator for a condition: what is missing while it does not hold, as a sentence."""
+
+    def mark(condition: When) -> When:
+        condition.needs = words  # type: ignore[attr-defined]
+        return condition
+
+    return mark
 
 
 def tooltip(action: Action) -> str:
@@ -53,34 +65,30 @@ def key_text(keys: str) -> str:
     return str(QKeySequence(keys).toString(QKeySequence.SequenceFormat.NativeText))
 
 
+@needing("Needs a mesh.")
 def has_mesh(window: MainWindow) -> bool:
     """There is a mesh."""
     return not window.document.empty
 
 
+@needing("Needs a quad mesh.")
 def has_quads(window: MainWindow) -> bool:
     """There is a quad mesh."""
     return window.document.kind == "quad"
 
 
+@needing("Needs a mesh, and an agent that is ready.")
 def can_run(window: MainWindow) -> bool:
     """The agent could begin a run."""
     return has_mesh(window) and window.agent_ready and bool(window.assistant.policy)
 
 
+@needing("Nothing is running.")
 def is_active(window: MainWindow) -> bool:
     """A run is under way, or held."""
     return window.assistant.running or window.assistant.state is State.PAUSED
 
 
-NEEDS: dict[When, str] = {
-    has_mesh: "Needs a mesh.",
-    has_quads: "Needs a quad mesh.",
-    can_run: "Needs a mesh, and an agent that is ready.",
-    is_active: "Nothing is running.",
-}
-
-
 def needs(action: Action) -> str:
     """What is missing while ``action`` is not enabled, as a sentence."""
-    return action.needs or NEEDS.get(action.enabled, "") or "Not possible now."
+    return action.needs or getattr(action.enabled, "needs", "") or "Not possible now."

@@ -105,7 +105,7 @@ class Palette(QFrame):
         layout.addWidget(self.nothing)
         self.field.textChanged.connect(self._fill)
         self.list.itemClicked.connect(self._take)
-        self.list.itemEntered.connect(self.list.setCurrentItem)
+        self.list.viewport().installEventFilter(self)
         self.field.installEventFilter(self)
         parent.installEventFilter(self)
         self._fill("")
@@ -141,6 +141,10 @@ class Palette(QFrame):
                 self._place()
             return False
         kind = event.type()
+        if watched is self.list.viewport():
+            if kind == QEvent.Type.MouseMove:  # rows that scroll past a resting mouse are not meant
+                self.list.setCurrentItem(self.list.itemAt(event.position().toPoint()))
+            return False
         if kind == QEvent.Type.ShortcutOverride and _is_ours(event):
             event.accept()  # else a shortcut of the window would take it
             return True

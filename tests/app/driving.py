@@ -22,10 +22,13 @@ def beside(window, halfedge) -> QPoint:
 
 
 def point_at(qtbot, window, halfedge) -> None:
-    where = beside(window, halfedge)
-    qtbot.mouseMove(window.canvas.plotter, where + QPoint(3, 0))
-    qtbot.mouseMove(window.canvas.plotter, where)
-    qtbot.waitUntil(lambda: window.document.hover == halfedge, timeout=WAIT)
+    def arrives() -> bool:  # anew each time: a window that has just opened still finds its size
+        where = beside(window, halfedge)
+        qtbot.mouseMove(window.canvas.plotter, where + QPoint(3, 0))
+        qtbot.mouseMove(window.canvas.plotter, where)
+        return window.document.hover == halfedge
+
+    qtbot.waitUntil(arrives, timeout=WAIT)
 
 
 def press(qtbot, window, key, modifier=Qt.KeyboardModifier.NoModifier) -> None:

@@ -4,24 +4,28 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.desktop.action import Action, has_mesh
+from app.desktop.action import Action, has_mesh, needing
 
 if TYPE_CHECKING:
     from app.desktop.window import MainWindow
 
 
+@needing("This is the start.")
 def _can_go_back(window: MainWindow) -> bool:
     return window.ready and window.document.can_undo
 
 
+@needing("This is the end.")
 def _can_go_on(window: MainWindow) -> bool:
     return window.ready and window.document.can_redo
 
 
+@needing("There are no steps yet.")
 def _has_steps(window: MainWindow) -> bool:
     return window.ready and len(window.document.history) > 0
 
 
+@needing("There is no branch.")
 def _has_branches(window: MainWindow) -> bool:
     return window.ready and len(window.document.history.branches) > 0
 

@@ -1,0 +1,57 @@
+"""Licences of what is installed, and the pages of help that tell them."""
+
+import re
+
+from driving import press
+from qtpy.QtCore import Qt
+
+from app.desktop import actions
+from app.desktop.about import AboutDialog, own_version
+from app.desktop.keys import MOUSE, key_blocks, spread
+from app.licences import UNKNOWN, licences
+
+
+def test_every_package_that_is_needed_is_told_with_its_licence():
+    found = {re.sub("[-_.]+", "-", one.package).lower(): one for one in licences()}
+    for name in ("numpy", "numba", "scipy", "torch", "pyvista", "vtk", "triangle", "qtpy"):
+        assert found[name].licence not in ("", UNKNOWN)
+        assert found[name].version
+        assert len(found[name].licence) < 150
+    assert "LGPL" in found["pyside6-essentials"].licence
+    assert "meshwright" not in found
+    assert "pytest" not in found  # an extra
+
+
+def test_texts_are_those_that_were_installed():
+    found = {one.package.lower(): one for one in licences()}
+    assert "BSD" in found["numpy"].text() or "Redistribution" in found["numpy"].text()
+
+
+def test_about_shows_them_and_copies_versions(qtbot, open_window, star):
+    window = open_window(star)
+    page = AboutDialog(window)
+    qtbot.addWidget(page)
+    page.show()
+    assert page.table.rowCount() == len(licences())
+    names = [page.table.item(row, 0).text() for row in range(page.table.rowCount())]
+    page.table.setCurrentCell(names.index("numpy"), 0)
+    assert page.text.toPlainText().startswith("numpy ")
+    assert f"Meshwright {own_version()}" in page.details()
+    assert "numpy " in page.details()
+
+
+def test_the_page_of_keys_has_every_key_and_stays_open(qtbot, open_window, star):
+    window = open_window(star)
+    press(qtbot, window, Qt.Key.Key_F1)
+    assert window.guide.keys.isVisible()
+    window.activateWindow()
+    assert window.guide.keys.isVisible()
+    blocks = key_blocks(actions.groups(window))
+    told = {keys for _, lines in blocks for keys, *_ in lines}
+    assert {"Ctrl+Z", "F1", "Ctrl+K", "F"} <= told
+    assert len(blocks[-1][1]) == len(MOUSE)
+    columns = spread(blocks, 3)
+    assert [block for column in columns for block in column] == blocks
+    assert len(columns) <= 3
+    window.close()
+    assert window.guide.keys is None

@@ -1,0 +1,132 @@
+"""Preferences: kept in a store that may hold nonsense, applied at once, followed everywhere."""
+
+import pytest
+from driving import find, point_at, press
+from qtpy.QtCore import QSettings, Qt
+
+from app.desktop.preferences import system_theme
+from app.desktop.preferences_dialog import PreferencesDialog
+from app.desktop.settings import RECENT, Settings
+from app.theme import COLOURS, theme
+
+
+@pytest.fixture
+def store(tmp_path):
+    return str(tmp_path / "settings.ini")
+
+
+@pytest.fixture
+def dialog(qtbot, open_window, star):
+    window = open_window(star)
+    made = PreferencesDialog(window.settings, window)
+    qtbot.addWidget(made)
+    made.show()
+    return window, made
+
+
+def test_what_is_kept_is_there_at_the_next_start(store):
+    first = Settings(store)
+    first.theme, first.colours, first.auto_smooth = "dark", "gold", False
+    first.recent = ["a.vtk", "b.vtk", "a.vtk"]
+    second = Settings(store)
+    assert (second.theme, second.colours, second.auto_smooth) == ("dark", "gold", False)
+    assert second.recent == ["a.vtk", "b.vtk"]
+    second.clear()
+    third = Settings(store)
+    assert (third.theme, third.colours, third.auto_smooth) == ("system", "vermilion", True)
+    assert third.recent == []
+
+
+def test_a_store_full_of_nonsense_gives_the_defaults(store):
+    raw = QSettings(store, QSettings.Format.IniFormat)
+    for key in ("look/theme", "look/colours", "look/numbers", "editing/auto_smooth"):
+        raw.setValue(key, "mauve")
+    raw.setValue("window/geometry", 7)
+    raw.setValue("speed", "fast")
+    raw.sync()
+    settings = Settings(store)
+    assert (settings.theme, settings.colours) == ("system", "vermilion")
+    assert settings.numbers and settings.auto_smooth
+    assert settings.geometry.isEmpty()
+    assert settings.number("speed", 4.0) == 4.0
+
+
+def test_changes_are_told_once(store):
+    settings = Settings(store)
+    told = []
+    settings.changed.connect(told.append)
+    settings.theme = "dark"
+    settings.theme = "dark"
+    settings.clear("look")
+    assert told == ["look/theme", "look/theme"]
+
+
+def test_recent_files_are_few(store):
+    settings = Settings(store)
+    settings.recent = [f"{number}.vtk" for number in range(30)]
+    assert settings.recent == [f"{number}.vtk" for number in range(RECENT)]
+
+
+def test_the_theme_is_applied_and_kept_at_once(qtbot, dialog):
+    window, page = dialog
+    assert page.themes["system"].isChecked()
+    assert window.theme.name == system_theme()
+    for name in ("dark", "light"):
+        qtbot.mouseClick(page.themes[name], Qt.MouseButton.LeftButton)
+        assert window.theme == theme(name)
+        assert Settings().theme == name
+
+
+def test_the_toggle_is_the_same_setting(qtbot, open_window, star):
+    window = open_window(star)
+    press(qtbot, window, Qt.Key.Key_T, Qt.KeyboardModifier.ControlModifier)
+    assert window.theme.name == window.settings.theme == "dark"
+
+
+def test_colours_and_numbers_reach_the_canvas(qtbot, dialog):
+    window, page = dialog
+    page.colours.setCurrentIndex(1)
+    page.colours.activated.emit(1)
+    name = list(COLOURS)[1]
+    assert window.settings.colours == name
+    assert (window.theme.plus, window.theme.minus) == COLOURS[name][1:]
+    assert window.canvas.overlay.markers.theme.plus == COLOURS[name][1]
+    assert window.score_panel.tally._theme.plus == COLOURS[name][1]
+    assert window.canvas.overlay.markers.numbers
+    page.switches["numbers"].click()
+    assert not window.canvas.overlay.markers.numbers
+
+
+def test_without_auto_smooth_an_operation_moves_nothing(qtbot, open_window, star):
+    window = open_window(star)
+    window.actions_by_id["auto_smooth"].trigger()
+    assert not window.settings.auto_smooth
+    assert not window.document.auto_smooth
+    assert not window.actions_by_id["auto_smooth"].isChecked()
+    before = star.points.copy()
+    point_at(qtbot, window, find(star, "flip_left"))
+    press(qtbot, window, Qt.Key.Key_F)
+    assert (star.points == before).all()
+
+
+def test_defaults_come_back(qtbot, dialog):
+    window, page = dialog
+    page.themes["dark"].click()
+    page.switches["auto_smooth"].click()
+    page.switches["autosave"].click()
+    assert not window.settings.autosave
+    page._reset()
+    assert page.themes["system"].isChecked()
+    assert page.switches["auto_smooth"].isChecked()
+    assert window.document.auto_smooth
+    assert window.settings.autosave
+
+
+def test_the_window_comes_back_where_it_was(open_window, star):
+    window = open_window(star)
+    window.resize(930, 640)
+    window.close()
+    again = open_window(star.copy())
+    again.settings.geometry = window.settings.geometry
+    again.preferences.restore_place()
+    assert (again.width(), again.height()) == (930, 640)

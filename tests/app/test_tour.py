@@ -1,0 +1,96 @@
+"""The tour: five callouts that follow what a person does and leave the keyboard to the canvas."""
+
+import pytest
+from driving import WAIT, find, point_at, press
+from qtpy.QtCore import QPoint, QRect, Qt
+
+from app.desktop.tour import STOPS
+
+
+def click(qtbot, button):
+    qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+
+
+def test_the_window_alone_shows_no_tour(open_window, star):
+    assert open_window(star).guide.tour is None
+
+
+def test_it_is_shown_once_and_again_when_asked_for(qtbot, open_window, star):
+    window = open_window(star)
+    window.guide.welcome()
+    callout = window.guide.tour.callout
+    assert callout.isVisible()
+    assert callout.heading.text() == STOPS[0].heading
+    click(qtbot, callout.skip)
+    assert window.guide.tour is None
+    window.guide.welcome()
+    assert window.guide.tour is None
+    window.actions_by_id["tour"].trigger()
+    assert window.guide.tour.at == 0
+
+
+def test_without_a_mesh_it_waits_for_one(qtbot, open_window, star):
+    window = open_window()
+    window.guide.welcome()
+    assert window.guide.tour is None
+    window.document.replace(star, "star")
+    assert window.guide.tour.callout.isVisible()
+
+
+@pytest.mark.parametrize("size", [(880, 560), (1280, 800), (1900, 1000)])
+def test_five_steps_each_inside_the_window_and_beside_what_they_show(
+    qtbot, open_window, star, size
+):
+    window = open_window(star)
+    window.resize(*size)
+    qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
+    window.guide.show_tour()
+    callout = window.guide.tour.callout
+    for number, stop in enumerate(STOPS, start=1):
+        assert callout.count.text() == f"{number} of 5"
+        assert callout.heading.text() == stop.heading
+        assert window.rect().contains(callout.geometry())
+        target = stop.target(window)
+        assert target is not None
+        assert not QRect(target.center() - QPoint(2, 2), target.center()).intersects(
+            callout.geometry()
+        )
+        click(qtbot, callout.next)
+    assert window.guide.tour is None
+
+
+def test_it_sees_what_the_person_does_and_takes_no_keys(qtbot, open_window, star):
+    window = open_window(star)
+    window.guide.show_tour()
+    callout = window.guide.tour.callout
+    assert window.canvas.plotter.hasFocus()
+    assert not callout.done.isVisible()
+    halfedge = find(star, "flip_left")
+    point_at(qtbot, window, halfedge)
+    assert callout.done.isVisible()
+    click(qtbot, callout.next)
+    assert not callout.done.isVisible()
+    assert window.canvas.plotter.hasFocus()
+    press(qtbot, window, Qt.Key.Key_F)
+    assert window.document.history.last.action == "flip_left"
+    assert callout.done.isVisible()
+    click(qtbot, callout.back)
+    assert window.guide.tour.at == 0
+    assert window.canvas.plotter.hasFocus()
+
+
+def test_it_unfolds_what_it_points_at(qtbot, open_window, star):
+    window = open_window(star)
+    window.sidebar.sections[window.agent_panel].heading.setChecked(False)
+    window.guide.show_tour()
+    for _ in range(3):
+        click(qtbot, window.guide.tour.callout.next)
+    assert window.agent_panel.isVisible()
+
+
+def test_closing_the_window_ends_it(open_window, star):
+    window = open_window(star)
+    window.guide.show_tour()
+    window.close()
+    assert window.guide.tour is None
+    assert window.settings.toured
