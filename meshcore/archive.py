@@ -26,7 +26,7 @@ PIECE = 64
 """Steps that are packed together."""
 LOOSE = 4 * PIECE
 """Steps on either side of the present beyond which the farther ones are packed."""
-ENTRIES = 1 << 20
+ENTRIES = 1 << 17
 """Journal entries on either side beyond which they are packed too, however few the steps."""
 
 
