@@ -176,6 +176,8 @@ QPushButton#Primary {{ background: {t.accent}; color: {t.accent_text}; border-co
 QPushButton#Primary:hover {{ background: {t.accent_hover}; border-color: {t.accent_hover}; }}
 QPushButton#Primary:disabled {{ background: {t.pressed}; border-color: {t.pressed};
                                color: {t.faint}; }}
+QPushButton#HintRow {{ border-radius: 4px; padding: 0; }}
+QPushButton#HintRow:hover, QPushButton#HintRow:focus {{ background: {t.accent_soft}; }}
 QPushButton#Link {{ background: transparent; border: 0; color: {t.accent}; padding: 4px; }}
 QPushButton#Fold {{ background: transparent; border: 0; padding: 2px 6px 2px 0; text-align: left;
                    color: {t.muted}; font-size: 11px; font-weight: 600; letter-spacing: 1px; }}
@@ -269,4 +271,15 @@ QScrollBar::add-line, QScrollBar::sub-line {{ height: 0; width: 0; }}
 QScrollBar::add-page, QScrollBar::sub-page {{ background: transparent; }}
 QLineEdit, QSpinBox, QDoubleSpinBox {{ background: {t.raised}; border: 1px solid {t.line};
                                       border-radius: 6px; padding: 6px 8px; }}
+QLineEdit:focus, QSpinBox:focus, QDoubleSpinBox:focus {{ border-color: {t.accent}; }}
+QLineEdit:disabled, QSpinBox:disabled, QDoubleSpinBox:disabled {{ color: {t.faint}; }}
+QAbstractSpinBox {{ padding-right: 22px; }}
+QAbstractSpinBox::up-button {{ subcontrol-origin: border; subcontrol-position: top right;
+                              width: 20px; border: 0; margin: 2px 2px 0 0; }}
+QAbstractSpinBox::down-button {{ subcontrol-origin: border; subcontrol-position: bottom right;
+                                width: 20px; border: 0; margin: 0 2px 2px 0; }}
+QAbstractSpinBox::up-button:hover, QAbstractSpinBox::down-button:hover {{
+    background: {t.hover}; border-radius: 3px; }}
+QAbstractSpinBox::up-arrow {{ image: url({icons}/up-{t.name}.svg); width: 12px; height: 12px; }}
+QAbstractSpinBox::down-arrow {{ image: url({icons}/down-{t.name}.svg); width: 12px; height: 12px; }}
 """

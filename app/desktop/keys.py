@@ -18,18 +18,19 @@ from app.desktop.action import Action, key_text
 from app.desktop.widgets import named
 from app.theme import GRID
 
-COLUMNS = 3
+WIDE = 1240
+"""Pixels of a window that has room for four columns; others get three."""
 Block = tuple[str, list[tuple[str, str, str]]]
 """A heading, and for each line the keys, what they do, and the whole story as a tooltip."""
 
 MOUSE = (
-    ("Move", "Point at the half-edge nearest to the mouse"),
+    ("Move", "Point at a half-edge"),
     ("Click", "Operations of the half-edge"),
-    ("Right click", "Desired degree, corner and lock of a vertex"),
-    ("Drag", "Move the picture; from a vertex, the vertex"),
+    ("Right click", "Desired degree, corner, lock"),
+    ("Drag", "Move a vertex, or the picture"),
     ("Wheel", "Zoom at the mouse"),
-    ("Shift click", "Add a vertex to the selection"),
-    ("Shift drag", "Select by a box; with Alt by a lasso"),
+    ("Shift click", "Select a vertex too"),
+    ("Shift drag", "Box; with Alt a lasso"),
 )
 
 
@@ -43,8 +44,9 @@ class KeysDialog(QDialog):
         body.setObjectName("SidebarBody")
         columns = QHBoxLayout(body)
         columns.setContentsMargins(4 * GRID, 3 * GRID, 4 * GRID, 2 * GRID)
-        columns.setSpacing(5 * GRID)
-        for blocks in spread(key_blocks(groups), COLUMNS):
+        columns.setSpacing(4 * GRID)
+        room = parent.window().size()
+        for blocks in spread(key_blocks(groups), 4 if room.width() >= WIDE else 3):
             column = QVBoxLayout()
             column.setSpacing(2 * GRID)
             for title, lines in blocks:
@@ -70,7 +72,6 @@ class KeysDialog(QDialog):
         layout.setSpacing(0)
         layout.addWidget(area, 1)
         layout.addLayout(line)
-        room = parent.window().size()
         wanted = body.sizeHint()
         width = min(max(wanted.width() + 2 * GRID, 880), room.width() - 4 * GRID)
         self.resize(width, min(wanted.height() + 10 * GRID, room.height() - 8 * GRID))
@@ -119,8 +120,8 @@ def _filled(blocks: Sequence[Block], heights: Sequence[int], most: int) -> list[
 def _block(title: str, lines: Sequence[tuple[str, str, str]]) -> QGridLayout:
     grid = QGridLayout()
     grid.setHorizontalSpacing(12)
-    grid.setVerticalSpacing(6)
-    grid.setColumnMinimumWidth(0, 12 * GRID)
+    grid.setVerticalSpacing(4)
+    grid.setColumnMinimumWidth(0, 13 * GRID)
     grid.setColumnStretch(1, 1)
     grid.addWidget(named(title.upper(), "Heading"), 0, 0, 1, 2)
     for row, (keys, text, tooltip) in enumerate(lines, start=1):
