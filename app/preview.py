@@ -49,7 +49,9 @@ class Ghost:
     places: np.ndarray
     """(p, 2) where vertices would have another Delta than they have now."""
     delta: np.ndarray
-    """(p,) the Delta that they would have; 0 for those that become regular."""
+    """(p,) the Delta that they would have; 0 for those that become regular. New vertices that are
+    regular are no news.
+    """
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -67,14 +69,15 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
     The mesh stays as it is, to the bit. Raises OperationRefused where it is not allowed.
     """
     seen = trial(mesh, operation, halfedge)
+    told = (seen.delta != 0) | ~np.isin(seen.vertices, seen.new_vertices)
     return Ghost(
         operation=seen.operation,
         halfedge=halfedge,
         change=seen.score_change,
         added=seen.added[:, :, :2],
         removed=seen.removed[:, :, :2],
-        places=seen.places[:, :2],
-        delta=seen.delta,
+        places=seen.places[told, :2],
+        delta=seen.delta[told],
     )
 
 

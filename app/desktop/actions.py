@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from qtpy.QtCore import QObject
+from qtpy.QtCore import QObject, Qt
 from qtpy.QtGui import QAction, QKeySequence
 
 from app.desktop import icons
 from app.desktop.action import Action, tooltip
-from app.desktop.tables import agent, edit, files, help, history, mesh, view
+from app.desktop.tables import agent, edit, files, help, history, mesh, select, view, walk
 from app.desktop.tables.mesh import operation_id
 from app.theme import Theme
 from meshcore.operations import CATALOGUE
@@ -21,18 +21,21 @@ if TYPE_CHECKING:
 ACTIONS: tuple[Action, ...] = (
     *files.ACTIONS,
     *edit.ACTIONS,
+    *select.ACTIONS,
     *mesh.ACTIONS,
     *view.ACTIONS,
+    *walk.ACTIONS,
     *history.ACTIONS,
     *agent.ACTIONS,
     *help.ACTIONS,
 )
 
-MENUS = ("File", "Edit", "Select", "Mesh", "View", "History", "Agent", "Help")
+MENUS = ("File", "Edit", "Select", "Mesh", "View", "Go", "History", "Agent", "Help")
 TOOLBAR = (
     ("new", "open", "save"),
     ("undo", "redo"),
-    ("clean_all", "smooth", "fit"),
+    ("tool.edit", "tool.box", "tool.lasso"),
+    ("lines", "clean_all", "smooth", "fit"),
     (),  # what follows stands at the right
     ("palette", "theme", "help"),
 )
@@ -74,7 +77,11 @@ class ActionSet(QObject):
         made.setIconVisibleInMenu(False)
         made.setCheckable(action.checked is not None)
         made.triggered.connect(partial(self._run, action))
-        self._window.addAction(made)
+        if action.on_canvas:
+            made.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            self._window.canvas.addAction(made)
+        else:
+            self._window.addAction(made)
         return made
 
     def _run(self, action: Action, checked: bool = False) -> None:

@@ -1,10 +1,13 @@
 """The canvas: the mesh on the screen, the camera over it, and what lies under the mouse."""
 
+from collections.abc import Callable
+
 import numpy as np
 from qtpy.QtCore import QEvent, QObject, QPoint, QPointF, Qt, QTimer, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QVBoxLayout, QWidget
 
+from app.desktop.gestures import Gesture
 from app.desktop.mouse import Mouse
 from app.desktop.overlay import Overlay
 from app.document import Document
@@ -22,12 +25,15 @@ class Canvas(QWidget):
     """Shows ``document`` and follows the mouse; it never writes the mesh.
 
     The plotter is made by :meth:`build`, after the window has been shown, because its import takes
-    longer than all the rest. ``halfedge_chosen(halfedge, where)`` and ``vertex_chosen(vertex,
-    where)`` carry a place on the screen for a menu; ``drawn()`` follows every frame.
+    longer than all the rest. ``clicked(click)`` carries a :class:`~app.desktop.mouse.Click`,
+    ``pointed(at)`` where the mouse is now, None when it is gone; ``escaped()`` says that Escape has
+    been pressed and nothing was under way; ``drawn()`` follows every frame. What a drag with the
+    left button does is asked of :attr:`gesture_at`: None moves the picture.
     """
 
-    halfedge_chosen = Signal(int, QPoint)
-    vertex_chosen = Signal(int, QPoint)
+    clicked = Signal(object)
+    pointed = Signal(object)
+    escaped = Signal()
     drawn = Signal()
 
     def __init__(self, document: Document, theme: Theme) -> None:
@@ -43,12 +49,19 @@ class Canvas(QWidget):
         self._fitted = True
         self._stale = False
         self._at: QPointF | None = None  # where the mouse is
-        self._mouse = Mouse(self)
+        self._pinned = -1  # the half-edge that the keyboard points at
+        self.mouse = Mouse(self)
+        self.gesture_at: Callable[[QPointF, Qt.KeyboardModifier], Gesture | None]
+        self.gesture_at = lambda at, modifiers: None
         self._frozen = False
         self._refresh = QTimer(self)
         self._refresh.setSingleShot(True)
         self._refresh.setInterval(0)
         self._refresh.timeout.connect(self._on_refresh)
+        self._point_again = QTimer(self)
+        self._point_again.setSingleShot(True)
+        self._point_again.setInterval(0)
+        self._point_again.timeout.connect(self._on_point_again)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         document.replaced.connect(self._on_replaced)
@@ -80,6 +93,7 @@ class Canvas(QWidget):
         self.document.changed.disconnect(self._on_changed)
         self.document.hover_changed.disconnect(self._on_hover_changed)
         self._refresh.stop()
+        self._point_again.stop()
         self.overlay.card.hide()
         if self.plotter is not None:
             self.plotter.removeEventFilter(self)
@@ -127,6 +141,8 @@ class Canvas(QWidget):
     # Document
 
     def _on_replaced(self) -> None:
+        self.mouse.cancel()
+        self._pinned = -1
         self._picker = None
         self._stale = False
         if self.scene is not None:
@@ -135,6 +151,7 @@ class Canvas(QWidget):
             self._look()
 
     def _on_changed(self) -> None:
+        self.mouse.interrupt()
         self._picker = None
         self._stale = True
         self.overlay.card.hide()
@@ -146,19 +163,39 @@ class Canvas(QWidget):
             return
         self._stale = False
         self.scene.update(mesh)
-        if self._at is not None and not self._frozen:
-            self.point_at(self._at)
         self._look()
+        self._point_again.start()  # after the frame: a search tree of a large mesh takes longer
         self.drawn.emit()
+
+    def _on_point_again(self) -> None:
+        """Another half-edge may lie under the mouse than before the mesh changed."""
+        if self._frozen or self.mouse.dragging:
+            return
+        if self._at is not None:
+            self.point_at(self._at)
+        elif self._pinned >= 0:
+            self.pin(self._pinned)
 
     # Hover
 
     @property
     def under_mouse(self) -> int:
-        """The half-edge under the mouse now, -1 for none; looks at the mesh as it is now."""
+        """The half-edge under the mouse now, or the one that the keyboard points at, -1 for none;
+        looks at the mesh as it is now.
+        """
         if self._at is None:
-            return -1
+            mesh = self.document.mesh
+            return self._pinned if mesh is not None and mesh.live(self._pinned) else -1
         return self._halfedge_at(self._at)
+
+    def pin(self, halfedge: int) -> None:
+        """Point at a half-edge by keyboard, until the mouse moves; -1: at none."""
+        mesh = self.document.mesh
+        self._at = None
+        self._pinned = halfedge if mesh is not None and mesh.live(halfedge) else -1
+        self.overlay.card.hide()
+        self.document.hover = self._pinned
+        self.pointed.emit(None)
 
     def freeze(self, frozen: bool) -> None:
         """Keep the half-edge that is shown while a menu is open."""
@@ -196,17 +233,20 @@ class Canvas(QWidget):
         if check and not self.rect().contains(at.toPoint()):
             self.leave()
             return
-        self._at = at
+        self._at, self._pinned = at, -1
         self.document.hover = self._halfedge_at(at)
         self._tell_vertex(at)
+        self.pointed.emit(at)
 
     def leave(self) -> None:
         """The mouse is gone; while a menu is open that says nothing."""
         if self._frozen:
             return
         self._at = None
-        self.document.hover = -1
         self.overlay.card.hide()
+        if self._pinned < 0:
+            self.document.hover = -1
+            self.pointed.emit(None)
 
     def _tell_vertex(self, at: QPointF) -> None:
         mesh = self.document.mesh
@@ -248,4 +288,4 @@ class Canvas(QWidget):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Take the plotter's mouse and keys: VTK's own 3-D interaction is not wanted."""
-        return self._mouse.handle(event)
+        return self.mouse.handle(event)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QPoint, Qt
 
+from app.desktop.mouse import Click
 from app.desktop.operation_menu import OperationMenu
-from app.desktop.vertex_menu import vertex_menu
 from app.desktop.widgets import sentence
 from app.history import YOU, Row
 from app.markers import label
+from app.preview import choices
 from meshcore import Operation
-from meshcore.operations import of_kind
 
 if TYPE_CHECKING:
     from app.desktop.window import MainWindow
@@ -27,11 +28,13 @@ class Editing:
     def __init__(self, window: MainWindow) -> None:
         self._window = window
         self.menu: OperationMenu | None = None
+        self.takers: list[Callable[[Click], bool]] = []
+        """Asked first, in order, whether they have a use for a click on the canvas."""
 
     def connect(self) -> None:
         """Follow canvas and document."""
-        self._window.canvas.halfedge_chosen.connect(self.offer)
-        self._window.canvas.vertex_chosen.connect(self._offer_vertex)
+        self._window.canvas.clicked.connect(self._on_clicked)
+        self._window.canvas.escaped.connect(self._on_escaped)
         self._window.document.hover_changed.connect(self._on_hover_changed)
 
     def release(self) -> None:
@@ -40,31 +43,72 @@ class Editing:
             self.menu.close()
         self._window.document.hover_changed.disconnect(self._on_hover_changed)
 
+    # The mouse
+
+    def _on_clicked(self, click: Click) -> None:
+        """The first that has a use for the click takes it."""
+        window = self._window
+        takers = (*self.takers, window.selecting.take, self._take_armed, window.lines.take)
+        if not any(take(click) for take in takers) and click.halfedge >= 0:
+            self.offer(click.halfedge, click.where)
+
+    def _take_armed(self, click: Click) -> bool:
+        """Do the armed operation where a click says."""
+        armed = self._window.pointing.armed
+        if armed is None or click.button != Qt.MouseButton.LeftButton or click.halfedge < 0:
+            return False
+        if self.is_ready():
+            self.submit(armed, click.halfedge)
+        return True
+
+    def _on_escaped(self) -> None:
+        """Put down what is in hand, one thing at a time."""
+        window = self._window
+        if window.pointing.armed is not None:
+            window.pointing.disarm()
+        elif not window.selecting.put_down():
+            window.canvas.pin(-1)
+
+    # Operations
+
     def operate(self, operation: Operation) -> None:
         """Do ``operation`` on the half-edge under the mouse, or say why not."""
         halfedge = self._window.canvas.under_mouse
         if halfedge < 0:
             self._window.say(POINT_FIRST)
-        elif self._is_ready():
-            self._submit(operation, halfedge)
+        elif self.is_ready():
+            self.submit(operation, halfedge)
+
+    def operate_current(self) -> None:
+        """Do the operation whose ghost is shown."""
+        halfedge = self._window.canvas.under_mouse
+        if halfedge < 0:
+            self._window.say(POINT_FIRST)
+        elif self.is_ready():
+            self._window.pointing.refresh()
+            meant = self._window.pointing.current
+            if meant is None:
+                self._window.say("No operation is allowed here.")
+            else:
+                self.submit(meant.operation, halfedge)
 
     def offer(self, halfedge: int, where: QPoint) -> None:
         """Open the menu of operations of ``halfedge`` at ``where`` on the screen."""
         document = self._window.document
         mesh = document.mesh
-        if mesh is None or not self._is_ready():
+        if mesh is None or not self.is_ready():
             return
-        verdicts = document.allowed(halfedge)
-        offers = [(info, verdicts[info.operation]) for info in of_kind(mesh.kind)]
         ends = f"{mesh.origin(halfedge)} \u2192 {mesh.target(halfedge)}"
         revision = document.revision
-        self.menu = OperationMenu(f"Half-edge {ends}", offers, self._window)
+        offers = choices(mesh, halfedge)
+        self.menu = OperationMenu(f"Half-edge {ends}", offers, self._window.theme, self._window)
         self.menu.chosen.connect(lambda operation: self._take(operation, halfedge, revision))
+        self.menu.pointed.connect(self._window.pointing.preview)
         self.menu.closed.connect(self._on_menu_closed)
         self._window.canvas.freeze(True)
         self.menu.popup(where)
 
-    def _is_ready(self) -> bool:
+    def is_ready(self) -> bool:
         """True if operations can be done; else it says so."""
         if not self._window.ready:
             self._window.say(PREPARING)
@@ -73,9 +117,10 @@ class Editing:
 
     def _take(self, operation: Operation, halfedge: int, revision: int) -> None:
         if revision == self._window.document.revision:  # an agent may have gone on behind the menu
-            self._submit(operation, halfedge)
+            self.submit(operation, halfedge)
 
-    def _submit(self, operation: Operation, halfedge: int) -> None:
+    def submit(self, operation: Operation, halfedge: int) -> None:
+        """Do an operation, or say why it is refused."""
         document = self._window.document
         verdict = document.check(operation, halfedge)
         if not verdict:
@@ -87,12 +132,8 @@ class Editing:
 
     def _on_menu_closed(self) -> None:
         self.menu = None
+        self._window.pointing.preview(None)
         self._window.canvas.freeze(False)
-
-    def _offer_vertex(self, vertex: int, where: QPoint) -> None:
-        menu = vertex_menu(self._window.document, vertex, self._window.ready, self._window)
-        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.popup(where)
 
     def _on_hover_changed(self, halfedge: int) -> None:
         mesh = self._window.document.mesh
@@ -104,17 +145,45 @@ class Editing:
 
     def clean_all(self) -> None:
         """Remove all global lines that can be removed."""
-        if not self._is_ready():
+        if not self.is_ready():
             return
         count = self._window.document.clean_all()
-        lines = "1 line" if count == 1 else f"{count} lines"
-        self._window.say(f"Removed {lines}." if count else "There is no line that can be removed.")
+        removed = f"Removed {plural(count, 'line')}."
+        self._window.say(removed if count else "There is no line that can be removed.")
 
     def smooth(self) -> None:
         """Smooth the whole mesh."""
-        if self._is_ready():
+        if self.is_ready():
             self._window.document.smooth()
             self._window.say("Smoothed.")
+
+    def smooth_here(self) -> None:
+        """Smooth the selected vertices, and no others."""
+        vertices = self._window.document.selection.vertices
+        if not len(vertices):
+            self._window.say("Select vertices first: Shift+click, or Shift+drag a box.")
+        elif self.is_ready():
+            self._window.document.smooth(vertices=vertices)
+            self._window.say(f"Smoothed {plural(len(vertices), 'vertex', 'vertices')}.")
+
+    def untangle(self) -> None:
+        """Mend the inverted elements, and say how many there were."""
+        if not self.is_ready():
+            return
+        found, left = self._window.document.untangle()
+        if not found:
+            self._window.say("No element is inverted.")
+        elif not left:
+            self._window.say(
+                f"Untangled: {plural(found, 'element')} was inverted, none is now."
+                if found == 1
+                else f"Untangled: {found:,} elements were inverted, none is now."
+            )
+        else:
+            self._window.say(
+                f"{left:,} of {plural(found, 'element')} stay inverted: "
+                "no position of the free vertices was found that mends them."
+            )
 
     def undo(self) -> None:
         """Take back one step."""
@@ -127,6 +196,11 @@ class Editing:
         row = self._window.document.redo()
         if row is not None:
             self._window.say(f"Done again: {row.title}.")
+
+
+def plural(count: int, one: str, many: str = "") -> str:
+    """``1 element``, ``1,200 elements``."""
+    return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
 def told(row: Row | None) -> str:

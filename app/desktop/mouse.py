@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from qtpy.QtCore import QEvent, QPointF, Qt
-from qtpy.QtGui import QMouseEvent, QWheelEvent
+from qtpy.QtCore import QEvent, QPoint, QPointF, Qt
+from qtpy.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
+
+from app.desktop.gestures import Gesture, Pan
 
 if TYPE_CHECKING:
     from app.desktop.canvas import Canvas
@@ -15,13 +18,51 @@ DRAG = 4
 ZOOM_PER_STEP = 1.0015
 
 
+@dataclass(frozen=True)
+class Click:
+    """A click on the canvas: ``at`` in its pixels, ``where`` on the screen; what lies there."""
+
+    at: QPointF
+    where: QPoint
+    button: Qt.MouseButton
+    modifiers: Qt.KeyboardModifier
+    halfedge: int
+    vertex: int
+
+    @property
+    def shift(self) -> bool:
+        """Whether the shift key was down."""
+        return bool(self.modifiers & Qt.KeyboardModifier.ShiftModifier)
+
+
 class Mouse:
     """Turns the plotter's mouse events into the canvas's calls and signals."""
 
     def __init__(self, canvas: Canvas) -> None:
         self._canvas = canvas
         self._pressed: QPointF | None = None
-        self._panning = False
+        self._button = Qt.MouseButton.NoButton
+        self._modifiers = Qt.KeyboardModifier.NoModifier
+        self._gesture: Gesture | None = None
+
+    @property
+    def dragging(self) -> bool:
+        """True while a drag is under way."""
+        return self._gesture is not None
+
+    def cancel(self) -> bool:
+        """Call off the drag that is under way; True if there was one."""
+        gesture, self._gesture, self._pressed = self._gesture, None, None
+        if gesture is None:
+            return False
+        gesture.cancel()
+        self._canvas.plotter.unsetCursor()
+        return True
+
+    def interrupt(self) -> None:
+        """The mesh is another one: a drag that was about the former one is called off."""
+        if self._gesture is not None and self._gesture.of_mesh:
+            self.cancel()
 
     def handle(self, event: QEvent) -> bool:
         """Act on an event of the plotter; True if VTK shall not see it."""
@@ -34,47 +75,69 @@ class Mouse:
             self._release(event)
         elif kind == QEvent.Type.Wheel:
             self._wheel(event)
+        elif kind == QEvent.Type.KeyPress:
+            self._key(event)
         elif kind == QEvent.Type.Leave:
             self._canvas.leave()
-        elif kind not in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease, QEvent.Type.Enter):
+        elif kind not in (QEvent.Type.KeyRelease, QEvent.Type.Enter):
             return False
         return kind not in (QEvent.Type.Enter, QEvent.Type.Leave)
 
     def _move(self, event: QMouseEvent) -> None:
         at = event.position()
-        if self._pressed is not None:
-            step = at - self._pressed
-            if self._panning or step.manhattanLength() > DRAG:
-                self._panning = True
-                self._pressed = at
-                self._canvas.plotter.setCursor(Qt.CursorShape.ClosedHandCursor)
-                self._canvas.see(self._canvas.viewport.panned(step.x(), step.y()))
+        if self._pressed is None:
+            self._canvas.point_at(at)
+            return
+        if self._gesture is None:
+            if (at - self._pressed).manhattanLength() <= DRAG:
+                self._canvas.point_at(at)
                 return
-        self._canvas.point_at(at)
+            self._gesture = self._begin(self._pressed)
+            self._canvas.plotter.setCursor(self._gesture.cursor)
+        self._gesture.move(at)
+
+    def _begin(self, start: QPointF) -> Gesture:
+        if self._button == Qt.MouseButton.LeftButton:
+            gesture = self._canvas.gesture_at(start, self._modifiers)
+            if gesture is not None:
+                self._canvas.leave()
+                return gesture
+        return Pan(self._canvas, start)
 
     def _press(self, event: QMouseEvent) -> None:
         self._canvas.plotter.setFocus(Qt.FocusReason.MouseFocusReason)
-        if event.button() != Qt.MouseButton.RightButton:
+        if event.button() != Qt.MouseButton.RightButton and self._gesture is None:
             self._pressed = event.position()
-            self._panning = False
+            self._button, self._modifiers = event.button(), event.modifiers()
 
     def _release(self, event: QMouseEvent) -> None:
-        canvas = self._canvas
-        panned, self._panning, self._pressed = self._panning, False, None
-        canvas.plotter.unsetCursor()
-        at = event.position()
-        canvas.point_at(at)
-        if panned or event.button() == Qt.MouseButton.MiddleButton:
+        canvas, at = self._canvas, event.position()
+        if self._gesture is not None:
+            if event.button() != self._button:
+                return
+            gesture, self._gesture, self._pressed = self._gesture, None, None
+            canvas.plotter.unsetCursor()
+            gesture.end(at)
+            canvas.point_at(at)
             return
-        where = canvas.plotter.mapToGlobal(at.toPoint())
-        vertex = canvas.vertex_at(at) if event.button() == Qt.MouseButton.RightButton else -1
-        if vertex >= 0:
-            canvas.vertex_chosen.emit(vertex, where)
-        elif canvas.document.hover >= 0:
-            canvas.halfedge_chosen.emit(canvas.document.hover, where)
+        pressed, self._pressed = self._pressed, None
+        canvas.point_at(at)
+        if event.button() == Qt.MouseButton.LeftButton and pressed is None:
+            return  # the press was called off, or was not ours
+        if event.button() != Qt.MouseButton.MiddleButton:
+            where = canvas.plotter.mapToGlobal(at.toPoint())
+            modifiers = event.modifiers()
+            vertex = canvas.vertex_at(at)
+            halfedge = canvas.document.hover
+            canvas.clicked.emit(Click(at, where, event.button(), modifiers, halfedge, vertex))
 
     def _wheel(self, event: QWheelEvent) -> None:
         at = event.position()
         factor = ZOOM_PER_STEP ** event.angleDelta().y()
         self._canvas.see(self._canvas.viewport.zoomed(factor, at.x(), at.y()))
-        self._canvas.point_at(at)
+        if self._gesture is None:
+            self._canvas.point_at(at)
+
+    def _key(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_Escape and not self.cancel():
+            self._canvas.escaped.emit()

@@ -1,13 +1,15 @@
 """The menu at the cursor: the operations of one half-edge, and why some are not allowed."""
 
-from qtpy.QtCore import QPoint, Qt, Signal
+from qtpy.QtCore import QEvent, QPoint, Qt, Signal
 from qtpy.QtGui import QCloseEvent, QKeyEvent, QMouseEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from app.desktop.widgets import sentence
-from app.theme import GRID
-from meshcore import Operation, Verdict
-from meshcore.operations import OperationInfo
+from app.desktop.layers.ghost import change_colour
+from app.desktop.widgets import sentence, tabular
+from app.markers import label
+from app.preview import Choice
+from app.theme import GRID, Theme
+from meshcore import Operation
 
 WIDTH = 296
 
@@ -16,16 +18,19 @@ class OperationMenu(QFrame):
     """A popup with a row for each operation; a refused one is grey and tells its reason.
 
     ``chosen(operation)`` comes with an allowed operation, by mouse, arrows and Return, or its key;
-    ``closed()`` when the menu goes away.
+    ``pointed(operation)`` with the allowed one that is pointed at, None for none; ``closed()`` when
+    the menu goes away.
     """
 
     chosen = Signal(object)
+    pointed = Signal(object)
     closed = Signal()
 
     def __init__(
         self,
         title: str,
-        offers: list[tuple[OperationInfo, Verdict]],
+        offers: tuple[Choice, ...],
+        theme: Theme,
         parent: QWidget,
     ) -> None:
         super().__init__(parent, Qt.WindowType.Popup | Qt.WindowType.FramelessWindowHint)
@@ -40,8 +45,8 @@ class OperationMenu(QFrame):
         head.setContentsMargins(GRID, GRID // 2, GRID, GRID // 2)
         layout.addWidget(head)
         self.rows: list[OperationRow] = []
-        for info, verdict in offers:
-            row = OperationRow(info, verdict, self)
+        for choice in offers:
+            row = OperationRow(choice, theme, self)
             row.taken.connect(self._take)
             row.entered.connect(self._make_current)
             layout.addWidget(row)
@@ -56,6 +61,13 @@ class OperationMenu(QFrame):
         y = min(at.y() - GRID, room.bottom() - self.height())
         self.move(max(x, room.left()), max(y, room.top()))
         self.show()
+
+    def event(self, event: QEvent) -> bool:
+        """Keys are the menu's while it is open, not shortcuts of the window."""
+        if event.type() == QEvent.Type.ShortcutOverride:
+            event.accept()
+            return True
+        return bool(super().event(event))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Arrows and Return walk and choose; a key of an operation chooses it."""
@@ -88,6 +100,7 @@ class OperationMenu(QFrame):
             self._current.set_current(False)
         self._current = row
         row.set_current(True)
+        self.pointed.emit(row.info.operation if row.allowed else None)
 
     def _take(self, operation: Operation) -> None:
         row = next(row for row in self.rows if row.info.operation == operation)
@@ -97,17 +110,18 @@ class OperationMenu(QFrame):
 
 
 class OperationRow(QFrame):
-    """One operation: title and key, below them the reason where it is not allowed."""
+    """One operation: title, change of s and key, below them the reason where it is not allowed."""
 
     taken = Signal(object)
     entered = Signal(object)
 
-    def __init__(self, info: OperationInfo, verdict: Verdict, parent: QWidget) -> None:
+    def __init__(self, choice: Choice, theme: Theme, parent: QWidget) -> None:
         super().__init__(parent)
         self.setObjectName("Row")
-        self.info = info
-        self.allowed = bool(verdict)
-        self.reason = "" if verdict else verdict.reason
+        self.info = info = choice.info
+        self.allowed = choice.allowed
+        self.reason = "" if choice.allowed else choice.verdict.reason
+        self.change = "" if choice.change is None else label(choice.change)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(GRID, 6, GRID, 6)
@@ -117,8 +131,14 @@ class OperationRow(QFrame):
         title.setObjectName("RowTitle")
         key = QLabel(info.key.upper())
         key.setObjectName("Key")
+        line.setSpacing(GRID)
         line.addWidget(title)
         line.addStretch(1)
+        if choice.change is not None:
+            change = QLabel(self.change)
+            change.setFont(tabular(change.font()))
+            change.setStyleSheet(f"color: {change_colour(choice.change, theme)}; font-weight: 600;")
+            line.addWidget(change)
         line.addWidget(key)
         layout.addLayout(line)
         title.setEnabled(self.allowed)

@@ -1,4 +1,4 @@
-"""The operations of the mesh's kind: their keys, what each would change here, and which is armed."""
+"""The operations of the mesh's kind: keys, what each would change here, and which is armed."""
 
 from qtpy.QtCore import QRectF, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
@@ -33,7 +33,6 @@ class OperationsPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(GRID)
-        layout.addWidget(named("OPERATIONS", "Heading"))
         self._hint = named(EMPTY, "Hint")
         self._hint.setWordWrap(True)
         layout.addWidget(self._hint)
@@ -53,7 +52,7 @@ class OperationsPanel(QWidget):
             row.set_theme(theme)
 
     def offer(self, choices: tuple[Choice, ...], current: Operation | None) -> None:
-        """Show what is allowed at the half-edge that is pointed at; nothing is pointed at for ()."""
+        """Show what is allowed at the half-edge that is pointed at; (): nothing is."""
         by_operation = {choice.operation: choice for choice in choices}
         for row in self.rows:
             row.offer(by_operation.get(row.info.operation), row.info.operation == current)

@@ -1,38 +1,95 @@
-"""The menu of a vertex: its desired degree, corner or not, locked or not."""
+"""The menus of one vertex and of the selection: desired degree, corner, lock, and what else there
+is to do with them.
+"""
 
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
 from qtpy.QtGui import QAction
-from qtpy.QtWidgets import QMenu, QWidget
+from qtpy.QtWidgets import QMenu
 
-from app.document import Document
 from app.markers import label
+
+if TYPE_CHECKING:
+    from app.desktop.window import MainWindow
+    from app.document import Document
 
 DEGREES = range(2, 9)
 
 
-def vertex_menu(document: Document, vertex: int, ready: bool, parent: QWidget) -> QMenu:
-    """The menu of ``vertex``; what needs compiled kernels is grey until ``ready``."""
-    menu = QMenu(parent)
-    mesh = document.mesh
+def vertex_menu(window: MainWindow, vertex: int) -> QMenu:
+    """The menu of one vertex."""
+    menu = QMenu(window)
+    mesh = window.document.mesh
     if mesh is None:
         return menu
     degree, desired = int(mesh.degree()[vertex]), int(mesh.desired()[vertex])
-    head = menu.addAction(f"Vertex {vertex}: degree {degree}, \u0394 {label(degree - desired)}")
+    _head(menu, f"Vertex {vertex}: degree {degree}, \u0394 {label(degree - desired)}")
+    _fill(menu, window, np.array([vertex]))
+    menu.addSeparator()
+    selected = vertex in window.document.selection
+    choose = menu.addAction("Take out of the selection" if selected else "Add to the selection")
+    choose.triggered.connect(lambda checked=False: window.document.selection.toggle(vertex))
+    return menu
+
+
+def selection_menu(window: MainWindow) -> QMenu:
+    """The menu of all selected vertices."""
+    menu = QMenu(window)
+    document = window.document
+    selection, mesh = document.selection, document.mesh
+    if mesh is None:
+        return menu
+    total = int(np.abs(mesh.irregularity()[selection.vertices]).sum())
+    elements = len(selection.elements)
+    around = f", {elements:,} elements" if elements > 1 else ""
+    _head(menu, f"{len(selection):,} vertices{around}, s {total:,}")
+    _fill(menu, window, selection.vertices)
+    menu.addSeparator()
+    for action_id in ("select.grow", "select.shrink", "select.invert", "select.none"):
+        menu.addAction(window.actions_by_id[action_id])
+    return menu
+
+
+def _head(menu: QMenu, text: str) -> None:
+    head = menu.addAction(text)
     head.setEnabled(False)
     menu.addSeparator()
+
+
+def _fill(menu: QMenu, window: MainWindow, vertices: np.ndarray) -> None:
+    """Desired degree, corner, lock and smoothing of ``vertices`` (n,).
+
+    A switch is on where all of them have it on; where some do, the next click switches all on.
+    What needs compiled kernels is grey until they are ready.
+    """
+    document = window.document
+    mesh = document.mesh
+    if mesh is None:
+        return
     degrees = menu.addMenu("Desired degree")
-    for wanted in sorted({*DEGREES, desired}):
-        action = _checkable(degrees, str(wanted), wanted == desired)
-        action.triggered.connect(
-            lambda checked=False, wanted=wanted: document.set_desired(vertex, wanted)
-        )
-    geometric, locked = bool(mesh.geometric()[vertex]), bool(mesh.locked()[vertex])
-    corner = _checkable(menu, "Corner (stays where it is)", geometric)
-    corner.triggered.connect(lambda checked: document.set_geometric(vertex, checked))
-    lock = _checkable(menu, "Locked (nothing changes it)", locked)
-    lock.triggered.connect(lambda checked: document.set_locked(vertex, checked))
-    for part in (degrees, corner, lock):
-        part.setEnabled(ready)
-    return menu
+    present = set(mesh.desired()[vertices].tolist())
+    for wanted in sorted({*DEGREES, *present}):
+        action = _checkable(degrees, str(wanted), present == {wanted})
+        action.triggered.connect(partial(_set_desired, document, vertices, wanted))
+    geometric, locked = mesh.geometric()[vertices], mesh.locked()[vertices]
+    corner = _checkable(menu, "Corner (stays where it is)", bool(geometric.all()))
+    corner.triggered.connect(lambda checked: document.set_geometric(vertices, checked))
+    lock = _checkable(menu, "Locked (nothing changes it)", bool(locked.all()))
+    lock.triggered.connect(lambda checked: document.set_locked(vertices, checked))
+    smooth = menu.addAction("Smooth here")
+    smooth.triggered.connect(lambda checked=False: document.smooth(vertices=vertices))
+    for part in (degrees, corner, lock, smooth):
+        part.setEnabled(window.ready)
+
+
+def _set_desired(
+    document: Document, vertices: np.ndarray, degree: int, checked: bool = False
+) -> None:
+    document.set_desired(vertices, degree)
 
 
 def _checkable(menu: QMenu, title: str, checked: bool) -> QAction:

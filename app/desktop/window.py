@@ -25,11 +25,16 @@ from app.desktop.dispatch import Dispatcher
 from app.desktop.editing import Editing
 from app.desktop.files import Files
 from app.desktop.film import Film
+from app.desktop.glow import Lines
 from app.desktop.guide import Guide
+from app.desktop.inverted import Inverted
 from app.desktop.operations_panel import OperationsPanel
+from app.desktop.pointing import Pointing
 from app.desktop.preferences import Preferences
+from app.desktop.selecting import Selecting
 from app.desktop.settings import Settings
 from app.desktop.sidebar import Section, Sidebar
+from app.desktop.walking import Walking
 from app.desktop.warmup import Warmup
 from app.desktop.widgets import Notice
 from app.document import Document
@@ -61,9 +66,17 @@ class MainWindow(QMainWindow):
         self.files, self.editing, self.film = Files(self), Editing(self), Film(self)
         self.agent, self.guide = AgentControl(self), Guide(self)
         self.dashboard, self.preferences = Dashboard(self), Preferences(self)
+        self.pointing, self.selecting = Pointing(self), Selecting(self)
+        self.lines, self.walking = Lines(self), Walking(self)
+        self.inverted = Inverted(self)
         self.controllers = (
             self.files,
             self.editing,
+            self.pointing,
+            self.selecting,
+            self.lines,
+            self.walking,
+            self.inverted,
             self.film,
             self.agent,
             self.guide,
@@ -74,8 +87,7 @@ class MainWindow(QMainWindow):
         self.actions_by_id = actions.ActionSet(self)
         self.score_panel = self.dashboard.score
         self.agent_panel = AgentPanel(document, self.assistant, self.actions_by_id, self.theme)
-        self.operations_panel = OperationsPanel(document)
-        self.operations_panel.ready = ready
+        self.operations_panel = OperationsPanel(document, self.theme)
         self.notice = Notice(self.theme)
         self.warmup = Warmup(self)
         self._arrange()
@@ -124,8 +136,8 @@ class MainWindow(QMainWindow):
         return Sidebar(
             (
                 Section("Score", self.score_panel, settings, self.theme),
-                Section("Agent", self.agent_panel, settings, self.theme),
                 Section("Operations", self.operations_panel, settings, self.theme),
+                Section("Agent", self.agent_panel, settings, self.theme),
                 Section("Quality", quality, settings, self.theme, quality.measures),
             )
         )
@@ -220,6 +232,7 @@ class MainWindow(QMainWindow):
             self.guide,
             self.sidebar,
             self.agent_panel,
+            self.operations_panel,
             self.notice,
         ):
             part.set_theme(self.theme)
@@ -243,8 +256,10 @@ class MainWindow(QMainWindow):
         self.refresh()
 
     def _on_ready(self) -> None:
-        self.ready = self.operations_panel.ready = True
+        self.ready = True
         self.refresh()
+        self.pointing.refresh()
+        self.lines.find()
 
     def _on_agent_ready(self) -> None:
         self.agent_ready = True

@@ -47,4 +47,23 @@ ACTIONS: tuple[Action, ...] = (
         icon="smooth",
         word="Smooth",
     ),
+    Action(
+        "smooth_here",
+        "Smooth the selection",
+        "Smooth and untangle the selected vertices; no others move",
+        lambda window: window.editing.smooth_here(),
+        ("Ctrl+Shift+M",),
+        lambda window: len(window.document.selection) > 0,
+        menu="Mesh",
+        needs="Nothing is selected.",
+    ),
+    Action(
+        "untangle",
+        "Untangle",
+        "Mend inverted elements; what is not near them stays where it is",
+        lambda window: window.editing.untangle(),
+        ("Ctrl+U",),
+        has_mesh,
+        menu="Mesh",
+    ),
 )

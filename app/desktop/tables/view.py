@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.desktop.action import Action, has_mesh
+from app.desktop.action import Action, has_mesh, has_quads
 
 ACTIONS: tuple[Action, ...] = (
     Action(
@@ -15,6 +15,45 @@ ACTIONS: tuple[Action, ...] = (
         menu="View",
         icon="fit",
         word="Fit",
+    ),
+    Action(
+        "zoom_in",
+        "Zoom in",
+        "Look from closer by",
+        lambda window: window.walking.zoom(True),
+        ("+", "=", "Ctrl++"),
+        has_mesh,
+        menu="View",
+    ),
+    Action(
+        "zoom_out",
+        "Zoom out",
+        "Look from farther away",
+        lambda window: window.walking.zoom(False),
+        ("-", "Ctrl+-"),
+        has_mesh,
+        menu="View",
+    ),
+    Action(
+        "ghosts",
+        "Ghosts of operations",
+        "Show what an operation would do where one points",
+        lambda window: window.pointing.toggle_ghosts(),
+        ("Ctrl+G",),
+        has_mesh,
+        menu="View",
+        checked=lambda window: window.pointing.ghosts,
+    ),
+    Action(
+        "lines",
+        "Lines that can be removed",
+        "Let the global lines glow that can be removed: a click removes one",
+        lambda window: window.lines.toggle(),
+        ("L",),
+        has_quads,
+        menu="View",
+        icon="lines",
+        checked=lambda window: window.lines.shown,
     ),
     Action(
         "theme",

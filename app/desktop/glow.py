@@ -1,0 +1,148 @@
+"""The global lines that can be cleaned up: they glow while a switch is on, and a click deletes
+one.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from qtpy.QtCore import QPointF, Qt, QTimer
+
+from app.desktop.layers.lines import LinesLayer
+from app.desktop.mouse import Click
+from meshcore.operations import Operation
+
+if TYPE_CHECKING:
+    from app.desktop.window import MainWindow
+    from meshcore.lines import Line
+
+LINES = "editing/lines"
+"""The setting that makes lines glow."""
+PAUSE = 60
+"""Milliseconds from a change to the search for lines."""
+REACH = 7.0
+"""Pixels beside a line that count as on it."""
+
+
+class Lines:
+    """Finds the lines after a pause of edits, so that no operation waits for them."""
+
+    def __init__(self, window: MainWindow) -> None:
+        self._window = window
+        self._lines: list[Line] = []
+        self._edges = np.zeros(0, np.int64)  # sorted: ends of every edge on a line as one number
+        self._line_of = np.zeros(0, np.int64)
+        self._pause = QTimer(window)
+        self._pause.setSingleShot(True)
+        self._pause.setInterval(PAUSE)
+        self._pause.timeout.connect(self.find)
+        self.layer = LinesLayer(window.theme)
+
+    def connect(self) -> None:
+        """Follow document and mouse."""
+        window = self._window
+        overlay = window.canvas.overlay
+        overlay.add(self.layer, below=overlay.markers)
+        window.document.replaced.connect(self._on_changed)
+        window.document.changed.connect(self._on_changed)
+        window.settings.changed.connect(self._on_settings_changed)
+        window.canvas.pointed.connect(self._on_pointed)
+        self._on_changed()
+
+    def release(self) -> None:
+        """Let go of the document."""
+        window = self._window
+        self._pause.stop()
+        window.document.replaced.disconnect(self._on_changed)
+        window.document.changed.disconnect(self._on_changed)
+        window.settings.changed.disconnect(self._on_settings_changed)
+
+    @property
+    def shown(self) -> bool:
+        """Whether lines glow."""
+        return self._window.settings.flag(LINES, False)
+
+    def toggle(self) -> None:
+        """Let them glow, or not."""
+        self._window.settings.put(LINES, not self.shown)
+        if not self.shown:
+            self._window.say("Lines glow no more.")
+            return
+        self.find()
+        if self._window.document.kind == "quad" and not self._lines:
+            self._window.say("No line can be removed here.")
+        elif self._lines:
+            self._window.say("Click a glowing line to remove it, or Clean all.")
+
+    def find(self) -> None:
+        """Look for lines now."""
+        self._pause.stop()
+        mesh = self._window.document.mesh
+        self._lines = []
+        if mesh is not None and mesh.k == 4 and self.shown and self._window.ready:
+            from meshcore.lines import cleanable_lines
+
+            self._lines = cleanable_lines(mesh)
+        self._index()
+        points = mesh.points[:, :2] if mesh is not None else np.zeros((0, 2))
+        self.layer.show([points[line.vertices] for line in self._lines])
+
+    def _index(self) -> None:
+        ends = [
+            np.column_stack(
+                [line.vertices[:-1], line.vertices[1:], np.full(len(line.vertices) - 1, i)]
+            )
+            for i, line in enumerate(self._lines)
+        ]
+        rows = np.concatenate(ends) if ends else np.zeros((0, 3), np.int64)
+        keys = _key(rows[:, 0], rows[:, 1])
+        order = np.argsort(keys)
+        self._edges, self._line_of = keys[order], rows[order, 2]
+
+    def take(self, click: Click) -> bool:
+        """Delete the glowing line under a click; False if there is none."""
+        current = self.layer.current
+        if current < 0 or click.button != Qt.MouseButton.LeftButton:
+            return False
+        self._window.editing.submit(Operation.CLEANUP, self._lines[current].halfedge)
+        return True
+
+    def _on_pointed(self, at: QPointF | None) -> None:
+        if self._lines:
+            self.layer.point(self._line_at(at))
+
+    def _line_at(self, at: QPointF | None) -> int:
+        """The line within reach of pixel ``at``: of it is the edge that is pointed at."""
+        mesh, halfedge = self._window.document.mesh, self._window.document.hover
+        if mesh is None or at is None or halfedge < 0 or self._pause.isActive():
+            return -1
+        if self._window.pointing.armed is not None:
+            return -1
+        a, b = mesh.origin(halfedge), mesh.target(halfedge)
+        key = int(_key(np.array([a]), np.array([b]))[0])
+        place = int(np.searchsorted(self._edges, key))
+        if place == len(self._edges) or self._edges[place] != key:
+            return -1
+        ends = self._window.canvas.viewport.to_screen(mesh.points[[a, b]])
+        along, to = ends[1] - ends[0], np.array((at.x(), at.y())) - ends[0]
+        length = max(float(np.hypot(*along)), 1e-9)
+        away = abs(float(along[0] * to[1] - along[1] * to[0])) / length
+        return int(self._line_of[place]) if away <= REACH else -1
+
+    def _on_changed(self) -> None:
+        if self._lines:
+            self._lines = []
+            self.layer.show([])
+        if self.shown and not self._pause.isActive():
+            self._pause.start()
+
+    def _on_settings_changed(self, key: str) -> None:
+        if key == LINES:
+            self.find()
+            self._window.refresh()
+
+
+def _key(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    low, high = np.minimum(a, b).astype(np.int64), np.maximum(a, b).astype(np.int64)
+    return low << 32 | high

@@ -1,0 +1,167 @@
+"""The ghost of an operation: edges that there would be, dashed; edges that would go, faded; the new
+irregularities; the change of s.
+"""
+
+import numpy as np
+from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, Qt
+from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
+
+from app.desktop.layers.layer import Layer, pen
+from app.markers import label
+from app.preview import Ghost
+from app.theme import Theme
+
+DASHES = [4.0, 2.5]
+SLACK = 48.0
+"""Pixels around a ghost's edges that its numbers may take."""
+ROOM = 26.0
+"""Numbers are written where the edges at the half-edge are longer than this, in pixels."""
+MOST = 24
+"""More numbers than this are not written: a ghost is to be seen through."""
+
+
+class GhostLayer(Layer):
+    """Edges of the ghost; lies below the markers. Its numbers are :class:`GhostNumbers`."""
+
+    def __init__(self, theme: Theme, font: QFont) -> None:
+        super().__init__(theme)
+        self.ghost: Ghost | None = None
+        self.numbers = GhostNumbers(theme, font, self)
+
+    def show(self, ghost: Ghost | None, title: str = "", around: np.ndarray | None = None) -> None:
+        """Show ``ghost``, or none, with ``title`` beside the places ``around`` (n, 2)."""
+        if ghost is None and self.ghost is None:
+            return
+        before = self.rect().united(self.numbers.rect())
+        self.ghost = ghost
+        self.numbers.tell(title if ghost is not None else "", around)
+        self.changed(before.united(self.rect()).united(self.numbers.rect()))
+
+    def rect(self) -> QRectF:
+        """Where there is anything to paint, in pixels; empty without a ghost."""
+        if self.ghost is None:
+            return QRectF()
+        low_x, low_y, high_x, high_y = self.ghost.bounds
+        corners = self.viewport.to_screen(np.array([(low_x, high_y), (high_x, low_y)]))
+        box = QRectF(QPointF(*corners[0].tolist()), QPointF(*corners[1].tolist()))
+        width, height = self.viewport.size
+        seen = QRectF(0.0, 0.0, width, height)
+        return box.adjusted(-SLACK, -SLACK, SLACK, SLACK).intersected(seen)
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """What would go is painted over as the elements are, what would come is dashed."""
+        if self.ghost is None or not self.rect().intersects(QRectF(rect)):
+            return
+        over = QColor(self.theme.fill)
+        over.setAlpha(215)
+        fading = pen(self.theme.fill, 4.0)
+        fading.setColor(over)
+        painter.setPen(fading)
+        painter.drawLines(self._lines(self.ghost.removed))
+        halo = QColor(self.theme.background)
+        halo.setAlpha(200)
+        under = QPen(halo, 4.0, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap)
+        dashed = QPen(QColor(self.theme.arrow), 1.75, Qt.PenStyle.CustomDashLine)
+        dashed.setCapStyle(Qt.PenCapStyle.FlatCap)
+        dashed.setDashPattern(DASHES)
+        lines = self._lines(self.ghost.added)
+        for each in (under, dashed):
+            painter.setPen(each)
+            painter.drawLines(lines)
+
+    def _lines(self, segments: np.ndarray) -> list[QLineF]:
+        ends = self.viewport.to_screen(segments.reshape(-1, 2)).reshape(-1, 4)
+        x, y = np.sort(ends[:, ::2], axis=1), np.sort(ends[:, 1::2], axis=1)
+        width, height = self.viewport.size
+        seen = (x[:, 1] > 0) & (x[:, 0] < width) & (y[:, 1] > 0) & (y[:, 0] < height)
+        return [QLineF(*line) for line in ends[seen].tolist()]
+
+
+class GhostNumbers(Layer):
+    """The Delta that vertices would have, and a tag with the operation and the change of s."""
+
+    def __init__(self, theme: Theme, font: QFont, edges: GhostLayer) -> None:
+        super().__init__(theme)
+        self._edges = edges
+        self._font = QFont(font)
+        self._font.setWeight(QFont.Weight.DemiBold)
+        self._title = ""
+        self._around = np.zeros((1, 2))
+
+    @property
+    def text(self) -> str:
+        """What the tag says, empty without a ghost."""
+        ghost = self._edges.ghost
+        return "" if ghost is None else f"{self._title}  {label(ghost.change)}"
+
+    def tell(self, title: str, around: np.ndarray | None) -> None:
+        """The words of the tag, and the places (n, 2) in the plane that it stands beside."""
+        self._title = title
+        self._around = np.zeros((1, 2)) if around is None else around
+
+    def rect(self) -> QRectF:
+        """Where the tag is, in pixels."""
+        return self._tag().adjusted(-2, -2, 2, 2) if self._edges.ghost is not None else QRectF()
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """Small pills beside the vertices, then the tag."""
+        ghost = self._edges.ghost
+        if ghost is None:
+            return
+        size = np.ptp(self.viewport.to_screen(self._around), axis=0).max()
+        if size > ROOM and len(ghost.places) <= MOST:
+            self._paint_numbers(painter, ghost)
+        self._paint_tag(painter, ghost)
+
+    def _paint_numbers(self, painter: QPainter, ghost: Ghost) -> None:
+        font = QFont(self._font)
+        font.setPixelSize(11)
+        painter.setFont(font)
+        metrics = QFontMetricsF(font)
+        at = self.viewport.to_screen(ghost.places).tolist()
+        for (x, y), delta in zip(at, ghost.delta.tolist(), strict=True):
+            text = label(delta)
+            width = metrics.horizontalAdvance(text) + 8.0
+            pill = QRectF(x + 9.0, y - 23.0, width, 15.0)
+            colour = self.theme.plus if delta > 0 else self.theme.minus
+            rim = QPen(QColor(colour if delta else self.theme.faint), 1.25)
+            painter.setPen(rim)
+            painter.setBrush(QColor(self.theme.raised))
+            painter.drawRoundedRect(pill, 7.5, 7.5)
+            painter.setPen(QColor(self.theme.text))
+            painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, text)
+
+    def _paint_tag(self, painter: QPainter, ghost: Ghost) -> None:
+        tag = self._tag()
+        painter.setPen(QPen(QColor(self.theme.line), 1.0))
+        painter.setBrush(QColor(self.theme.raised))
+        painter.drawRoundedRect(tag, 6.0, 6.0)
+        painter.setFont(self._tag_font())
+        painter.setPen(QColor(self.theme.text))
+        inner = tag.adjusted(8, 0, -8, 0)
+        left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+        painter.drawText(inner, left, self._title)
+        painter.setPen(QColor(change_colour(ghost.change, self.theme)))
+        painter.drawText(inner, right, label(ghost.change))
+
+    def _tag_font(self) -> QFont:
+        font = QFont(self._font)
+        font.setPixelSize(12)
+        return font
+
+    def _tag(self) -> QRectF:
+        """Right of the elements and above them; inside the canvas."""
+        at = self.viewport.to_screen(self._around)
+        width = QFontMetricsF(self._tag_font()).horizontalAdvance(self.text) + 24.0
+        room, height = self.viewport.size
+        x = min(float(at[:, 0].max()) + 8.0, room - width - 8.0)
+        y = min(max(float(at[:, 1].min()) - 28.0, 8.0), height - 32.0)
+        return QRectF(max(x, 8.0), y, width, 24.0)
+
+
+def change_colour(change: int, theme: Theme) -> str:
+    """The colour of a change of s: the accent for better, that of warnings for worse."""
+    if change == 0:
+        return theme.muted
+    return theme.accent if change < 0 else theme.warning

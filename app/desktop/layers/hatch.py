@@ -1,0 +1,80 @@
+"""Hatched elements: those that are inverted, in plain sight."""
+
+import numpy as np
+from qtpy.QtCore import QPointF, QRect, Qt
+from qtpy.QtGui import QBrush, QColor, QPainter, QPolygonF
+
+from app.desktop.layers.layer import Layer, inside, pen
+from app.theme import Theme
+from app.viewport import Viewport
+
+SMALLEST = 9.0
+"""Elements narrower than this in pixels get a sign of warning beside the hatching."""
+MOST = 1500
+"""More visible ones than this are not all drawn: there is no overlooking them."""
+
+
+class HatchLayer(Layer):
+    """The inverted elements of a mesh; lies below the markers."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__(theme)
+        self._corners = np.zeros((0, 3, 2))
+        self._seen = np.zeros((0, 3, 2))
+
+    @property
+    def count(self) -> int:
+        """Elements that are hatched where they are in view."""
+        return len(self._corners)
+
+    def show(self, corners: np.ndarray) -> None:
+        """Hatch the elements with these corners (n, k, 2) in the plane."""
+        if len(corners) or len(self._corners):
+            self._corners = corners
+            self.look(self.viewport)
+            self.changed()
+
+    def look(self, viewport: Viewport) -> None:
+        """The view has moved."""
+        super().look(viewport)
+        corners = viewport.to_screen(self._corners)
+        middles = corners.mean(axis=1) if len(corners) else np.zeros((0, 2))
+        rows = np.column_stack([middles, np.arange(len(middles))])
+        self._seen = corners[inside(rows, viewport, 200.0)[:MOST, 2].astype(int)]
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """Hatching, and a sign where the element is too small to see it."""
+        if len(self._seen):
+            paint_hatched(painter, self._seen, self.theme)
+
+
+def paint_hatched(painter: QPainter, corners: np.ndarray, theme: Theme) -> None:
+    """Hatch polygons (n, k, 2) in pixels; small ones also carry an exclamation mark."""
+    painter.save()
+    strokes = QBrush(QColor(theme.warning), Qt.BrushStyle.BDiagPattern)
+    tint = QColor(theme.warning)
+    tint.setAlpha(46)
+    painter.setPen(pen(theme.warning, 1.5))
+    for polygon in corners.tolist():
+        shape = QPolygonF([QPointF(x, y) for x, y in polygon])
+        for brush in (QBrush(tint), strokes):
+            painter.setBrush(brush)
+            painter.drawPolygon(shape)
+    sizes = np.ptp(corners, axis=1).min(axis=1) if len(corners) else np.zeros(0)
+    for polygon in corners[sizes < SMALLEST].tolist():
+        _paint_sign(painter, np.mean(polygon, axis=0), theme)
+    painter.restore()
+
+
+def _paint_sign(painter: QPainter, at: np.ndarray, theme: Theme) -> None:
+    """A triangle with an exclamation mark, above and to the left of the place."""
+    x, y = (at + (-11.0, -13.0)).tolist()
+    sign = QPolygonF([QPointF(x, y - 8), QPointF(x + 9, y + 7), QPointF(x - 9, y + 7)])
+    painter.setPen(pen(theme.background, 3.0))
+    painter.setBrush(QColor(theme.warning))
+    painter.drawPolygon(sign)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.drawPolygon(sign)
+    painter.setPen(pen(theme.background, 1.75))
+    painter.drawLine(QPointF(x, y - 3), QPointF(x, y + 1.5))
+    painter.drawPoint(QPointF(x, y + 4.5))

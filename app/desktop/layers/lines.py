@@ -1,0 +1,108 @@
+"""The global lines that can be cleaned up, glowing; the one under the mouse more so."""
+
+import numpy as np
+from qtpy.QtCore import QPointF, QRect, QRectF, Qt
+from qtpy.QtGui import QColor, QImage, QPainter, QPen, QPolygonF
+
+from app.desktop.layers.layer import Layer, pen
+from app.theme import Theme
+from app.viewport import Viewport
+
+STEP = 6.0
+"""Pixels between the points that a line is drawn by: finer ones are left out."""
+
+
+class LinesLayer(Layer):
+    """Polylines in the plane. All of them lie in one picture that is made when the view moves."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__(theme)
+        self._lines: list[np.ndarray] = []
+        self._current = -1
+        self._picture: QImage | None = None
+
+    @property
+    def count(self) -> int:
+        """Lines that glow."""
+        return len(self._lines)
+
+    @property
+    def current(self) -> int:
+        """The number of the line under the mouse, -1 for none."""
+        return self._current
+
+    def show(self, lines: list[np.ndarray]) -> None:
+        """Show these polylines (n, 2)."""
+        if lines or self._lines:
+            self._lines, self._current, self._picture = lines, -1, None
+            self.changed()
+
+    def point(self, current: int) -> None:
+        """Let line ``current`` glow more, or none of them for -1."""
+        if current != self._current:
+            before = self._rect()
+            self._current = current
+            self.changed(before.united(self._rect()))
+
+    def set_theme(self, theme: Theme) -> None:
+        """Paint in other colours."""
+        super().set_theme(theme)
+        self._picture = None
+
+    def look(self, viewport: Viewport) -> None:
+        """The view has moved."""
+        super().look(viewport)
+        self._picture = None
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """Copy the picture, made anew where it is out of date; then the current line."""
+        if not self._lines:
+            return
+        ratio = painter.device().devicePixelRatioF()
+        if self._picture is None or self._picture.devicePixelRatio() != ratio:
+            self._picture = self._draw(ratio)
+        part = QRectF(rect)
+        source = QRectF(part.topLeft() * ratio, part.size() * ratio)
+        painter.drawImage(part, self._picture, source)
+        if 0 <= self._current < len(self._lines):
+            self._stroke(painter, self._lines[self._current], 110, 11.0, 3.0)
+
+    def _draw(self, ratio: float) -> QImage:
+        width, height = self.viewport.size
+        format_ = QImage.Format.Format_ARGB32_Premultiplied
+        image = QImage(round(width * ratio), round(height * ratio), format_)
+        image.setDevicePixelRatio(ratio)
+        image.fill(Qt.GlobalColor.transparent)
+        painter = QPainter(image)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for line in self._lines:
+            self._stroke(painter, line, 56, 8.0, 1.75)
+        painter.end()
+        return image
+
+    def _stroke(
+        self, painter: QPainter, line: np.ndarray, alpha: int, glow: float, core: float
+    ) -> None:
+        """A wide soft line under a thin one, with a dot at either end."""
+        at = self.viewport.to_screen(line)
+        mean = float(np.hypot(*np.diff(at, axis=0).T).mean())
+        step = max(1, int(STEP / max(mean, 1e-9)))
+        at = np.concatenate([at[:-1:step], at[-1:]])
+        shape = QPolygonF([QPointF(x, y) for x, y in at.tolist()])
+        soft = QColor(self.theme.accent)
+        soft.setAlpha(alpha)
+        painter.setPen(QPen(soft, glow, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
+        painter.drawPolyline(shape)
+        painter.setPen(pen(self.theme.accent, core, Qt.PenStyle.DotLine))
+        painter.drawPolyline(shape)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(self.theme.accent))
+        for end in (shape.first(), shape.last()):
+            painter.drawEllipse(end, core + 1.75, core + 1.75)
+
+    def _rect(self) -> QRectF:
+        if not 0 <= self._current < len(self._lines):
+            return QRectF()
+        at = self.viewport.to_screen(self._lines[self._current])
+        low, high = at.min(axis=0) - 8.0, at.max(axis=0) + 8.0
+        return QRectF(QPointF(*low.tolist()), QPointF(*high.tolist()))

@@ -1,0 +1,76 @@
+"""Vertices that are being dragged: their edges as they would be, folded elements hatched."""
+
+import numpy as np
+from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, Qt
+from qtpy.QtGui import QPainter
+
+from app.desktop.layers.hatch import paint_hatched
+from app.desktop.layers.layer import Layer, pen
+from app.theme import Theme
+
+SLACK = 12.0
+
+
+class RubberLayer(Layer):
+    """Follows a drag; lies below the markers."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__(theme)
+        self._before = np.zeros((0, 2, 2))
+        self._segments = np.zeros((0, 2, 2))
+        self._folded = np.zeros((0, 3, 2))
+        self._places = np.zeros((0, 2))
+
+    @property
+    def folded(self) -> int:
+        """Elements that would be inverted."""
+        return len(self._folded)
+
+    @property
+    def places(self) -> np.ndarray:
+        """(n, 2) where the dragged vertices would be, in the plane."""
+        return self._places
+
+    def begin(self, segments: np.ndarray) -> None:
+        """These edges (m, 2, 2) are going to move."""
+        self._before = segments
+        self.show(segments, np.zeros((0, 3, 2)), np.zeros((0, 2)))
+
+    def show(self, segments: np.ndarray, folded: np.ndarray, places: np.ndarray) -> None:
+        """The edges (m, 2, 2), folded elements (f, k, 2) and vertices (n, 2) as they are now."""
+        before = self._rect()
+        self._segments, self._folded, self._places = segments, folded, places
+        self.changed(before.united(self._rect()))
+
+    def clear(self) -> None:
+        """The drag is over."""
+        before = self._rect()
+        self._before = self._segments = np.zeros((0, 2, 2))
+        self._folded, self._places = np.zeros((0, 3, 2)), np.zeros((0, 2))
+        self.changed(before)
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """The edges as they were fade; then the new ones."""
+        if not len(self._segments):
+            return
+        painter.setPen(pen(self.theme.fill, 4.0))
+        painter.drawLines(self._lines(self._before))
+        paint_hatched(painter, self.viewport.to_screen(self._folded), self.theme)
+        painter.setPen(pen(self.theme.arrow, 1.75))
+        painter.drawLines(self._lines(self._segments))
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(pen(self.theme.arrow, 1.0).color())
+        for x, y in self.viewport.to_screen(self._places).tolist():
+            painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
+
+    def _lines(self, segments: np.ndarray) -> list[QLineF]:
+        ends = self.viewport.to_screen(segments.reshape(-1, 2)).reshape(-1, 4)
+        return [QLineF(*line) for line in ends.tolist()]
+
+    def _rect(self) -> QRectF:
+        ends = np.concatenate([self._before.reshape(-1, 2), self._segments.reshape(-1, 2)])
+        if not len(ends):
+            return QRectF()
+        at = self.viewport.to_screen(ends)
+        low, high = at.min(axis=0) - SLACK, at.max(axis=0) + SLACK
+        return QRectF(QPointF(*low.tolist()), QPointF(*high.tolist()))

@@ -1,0 +1,153 @@
+"""Going about by keyboard: the view, the irregular vertices, and from half-edge to half-edge."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app.markers import label
+
+if TYPE_CHECKING:
+    from app.desktop.window import MainWindow
+
+STRIDE = 64.0
+"""Pixels that an arrow key moves the picture."""
+ZOOM = 1.25
+SIZE = 120.0
+"""Pixels that the elements around a vertex are wide at least when it has been walked to."""
+_BITS = 16
+
+
+class Walking:
+    """What the keys do that move the view or the half-edge that is pointed at."""
+
+    def __init__(self, window: MainWindow) -> None:
+        self._window = window
+        self._vertex = -1
+
+    def connect(self) -> None:
+        """Follow the document."""
+        self._window.document.replaced.connect(self._on_replaced)
+
+    def release(self) -> None:
+        """Let go of the document."""
+        self._window.document.replaced.disconnect(self._on_replaced)
+
+    def _on_replaced(self) -> None:
+        self._vertex = -1
+
+    # The view
+
+    def pan(self, right: float, up: float) -> None:
+        """Look further right or up by so many strides."""
+        canvas = self._window.canvas
+        canvas.see(canvas.viewport.panned(-STRIDE * right, STRIDE * up))
+
+    def zoom(self, closer: bool) -> None:
+        """Look from closer by, or from farther away, at the middle of the view."""
+        canvas = self._window.canvas
+        width, height = canvas.viewport.size
+        factor = ZOOM if closer else 1.0 / ZOOM
+        canvas.see(canvas.viewport.zoomed(factor, width / 2.0, height / 2.0))
+
+    # Irregular vertices
+
+    def to_irregular(self, step: int) -> None:
+        """Look at the next irregular vertex (1) or the one before (-1) and point at an edge of it.
+
+        They come in an order in which those near each other follow one another.
+        """
+        mesh = self._window.document.mesh
+        if mesh is None:
+            return
+        delta = mesh.irregularity()
+        found = np.flatnonzero(delta)
+        if not len(found):
+            self._window.say("Every vertex is regular.")
+            return
+        found = found[np.argsort(_curve(mesh.points[found, :2]), kind="stable")]
+        at = np.flatnonzero(found == self._vertex)
+        place = (int(at[0]) + step) % len(found) if len(at) else (0 if step > 0 else -1)
+        self._vertex = vertex = int(found[place])
+        canvas = self._window.canvas
+        around = mesh.points[[vertex, *mesh.neighbours(vertex)]]
+        reach = float(np.abs(around - mesh.points[vertex])[:, :2].max())
+        box = mesh.points[vertex] + reach * np.array([(-1.0, -1.0, 0.0), (1.0, 1.0, 0.0)])
+        canvas.see(canvas.viewport.around(box, SIZE))
+        canvas.pin(mesh.outgoing(vertex)[0])
+        self._window.dashboard.spot.show(mesh.points[[vertex]])
+        self._window.say(
+            f"Vertex {vertex}: \u0394 {label(int(delta[vertex]))}, "
+            f"{place % len(found) + 1:,} of {len(found):,}."
+        )
+
+    # Half-edges
+
+    def turn(self, step: int) -> None:
+        """Point at the next half-edge around the vertex where this one starts (1), or back (-1)."""
+        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        if mesh is None or halfedge < 0:
+            self._begin()
+            return
+        fan = mesh.outgoing(mesh.origin(halfedge))
+        self._window.canvas.pin(fan[(fan.index(halfedge) + step) % len(fan)])
+        self._keep_in_view()
+
+    def along(self) -> None:
+        """Point at the half-edge that follows in the element."""
+        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        if mesh is None or halfedge < 0:
+            self._begin()
+            return
+        self._window.canvas.pin(mesh.next(halfedge))
+        self._keep_in_view()
+
+    def across(self) -> None:
+        """Point at the other half-edge of the edge."""
+        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        if mesh is None or halfedge < 0:
+            self._begin()
+        elif mesh.twin(halfedge) < 0:
+            self._window.say("The boundary has no other side.")
+        else:
+            self._window.canvas.pin(mesh.twin(halfedge))
+            self._keep_in_view()
+
+    def _begin(self) -> None:
+        """Point at the half-edge nearest to the middle of the view."""
+        mesh, canvas = self._window.document.mesh, self._window.canvas
+        if mesh is None:
+            return
+        elements = mesh.elements()
+        away = canvas.viewport.to_screen(mesh.points[elements].mean(axis=1))
+        away = away - np.array(canvas.viewport.size) / 2.0
+        row = int(np.argmin((away**2).sum(axis=1)))
+        canvas.pin(mesh.k * int(mesh.element_ids()[row]))
+        self._keep_in_view()
+
+    def _keep_in_view(self) -> None:
+        """Move the picture where what is pointed at lies beside it."""
+        mesh, canvas = self._window.document.mesh, self._window.canvas
+        halfedge = canvas.under_mouse
+        if mesh is None or halfedge < 0:
+            return
+        ends = mesh.points[[mesh.origin(halfedge), mesh.target(halfedge)]]
+        x, y = canvas.viewport.to_screen(ends).mean(axis=0).tolist()
+        width, height = canvas.viewport.size
+        right = min(width - 48.0 - x, 0.0) + max(48.0 - x, 0.0)
+        down = min(height - 48.0 - y, 0.0) + max(48.0 - y, 0.0)
+        if right or down:
+            canvas.see(canvas.viewport.panned(right, down))
+
+
+def _curve(places: np.ndarray) -> np.ndarray:
+    """(n,) places (n, 2) as numbers along a curve that fills the plane, in Morton's order."""
+    low = places.min(axis=0)
+    size = max(float((places.max(axis=0) - low).max()), 1e-300)
+    cells = ((places - low) / size * (2**_BITS - 1)).astype(np.int64)
+    cells[:, 1] = 2**_BITS - 1 - cells[:, 1]  # from the top down, as one reads
+    code = np.zeros(len(places), np.int64)
+    for bit in range(_BITS):
+        code |= (cells[:, 0] >> bit & 1) << 2 * bit | (cells[:, 1] >> bit & 1) << 2 * bit + 1
+    return code
