@@ -1,0 +1,193 @@
+"""Small controls that the pages and the options of the dialog are made of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from qtpy.QtCore import QSignalBlocker, Qt, Signal
+from qtpy.QtGui import QFont, QFontMetrics
+from qtpy.QtWidgets import (
+    QButtonGroup,
+    QCheckBox,
+    QDoubleSpinBox,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSlider,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.desktop.widgets import named
+from app.theme import GRID
+
+STEPS = 200
+"""Positions of a slider."""
+
+
+class Choice(QWidget):
+    """Buttons side by side of which one is down. ``changed(key)``."""
+
+    changed = Signal(str)
+
+    def __init__(self, choices: Sequence[tuple[str, str]], name: str, chosen: str = "") -> None:
+        super().__init__()
+        self.setAccessibleName(name)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        self.buttons: dict[str, QPushButton] = {}
+        self._group = QButtonGroup(self)
+        for key, title in choices:
+            button = QPushButton(title)
+            button.setObjectName("Segment")
+            button.setCheckable(True)
+            button.setAutoDefault(False)
+            button.setAccessibleName(f"{name}: {title}")
+            button.setProperty("key", key)
+            button.setMinimumWidth(_width(button, title))
+            button.clicked.connect(self._on_clicked)
+            self._group.addButton(button)
+            self.buttons[key] = button
+            layout.addWidget(button)
+        layout.addStretch(1)
+        self.buttons[chosen or choices[0][0]].setChecked(True)
+
+    @property
+    def key(self) -> str:
+        """Which one is down."""
+        return str(self._group.checkedButton().property("key"))
+
+    @key.setter
+    def key(self, key: str) -> None:
+        self.buttons[key].setChecked(True)
+
+    def _on_clicked(self) -> None:
+        self.changed.emit(self.key)
+
+
+class Measure(QWidget):
+    """A number that may be left to the shape: a tick, a slider, and a field to type in.
+
+    ``value`` is None while the tick is off. ``changed()``. A ``geometric`` slider runs by factors,
+    from the largest value at the left to the smallest at the right.
+    """
+
+    changed = Signal()
+
+    def __init__(
+        self,
+        title: str,
+        automatic: str,
+        low: float,
+        high: float,
+        value: float,
+        decimals: int,
+        unit: str = "",
+        geometric: bool = False,
+    ) -> None:
+        super().__init__()
+        self._low, self._high, self._geometric = low, high, geometric
+        self._automatic = automatic
+        self.tick = QCheckBox(title)
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setRange(0, STEPS)
+        self.slider.setAccessibleName(f"{title}, slider")
+        self.field = QDoubleSpinBox()
+        self.field.setDecimals(decimals)
+        self.field.setRange(low, high)
+        self.field.setValue(value)
+        self.field.setSuffix(unit)
+        self.field.setFixedWidth(11 * GRID)
+        self.field.setAccessibleName(title)
+        self.field.setKeyboardTracking(False)
+        self.field.setAlignment(Qt.AlignmentFlag.AlignRight)
+        self.words = named(automatic, "Hint")
+        head, line = QHBoxLayout(), QHBoxLayout()
+        head.addWidget(self.tick)
+        head.addStretch(1)
+        head.addWidget(self.words)
+        line.setSpacing(12)
+        line.addWidget(self.slider, 1)
+        line.addWidget(self.field)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(2)
+        layout.addLayout(head)
+        layout.addLayout(line)
+        self.tick.toggled.connect(self._on_toggled)
+        self.slider.valueChanged.connect(self._on_slid)
+        self.field.valueChanged.connect(self._on_typed)
+        self._place_slider()
+        self._on_toggled(False)
+
+    @property
+    def value(self) -> float | None:
+        """The number, None where the shape decides."""
+        return float(self.field.value()) if self.tick.isChecked() else None
+
+    def set_range(self, low: float, high: float, value: float) -> None:
+        """Other bounds, and the number to begin with unless the user has set one within them."""
+        self._low, self._high = low, high
+        decimals = max(0, 3 - math.floor(math.log10(high)))
+        inside = self.tick.isChecked() and low <= self.field.value() <= high
+        with QSignalBlocker(self.field):
+            self.field.setDecimals(min(decimals, 9))
+            self.field.setRange(low, high)
+            self.field.setSingleStep(10.0 ** math.floor(math.log10(high) - 1.0))
+            if not inside:
+                self.field.setValue(value)
+        self._place_slider()
+
+    def _share(self, value: float) -> float:
+        if self._geometric:
+            return math.log(self._high / value) / math.log(self._high / self._low)
+        return (value - self._low) / (self._high - self._low)
+
+    def _place_slider(self) -> None:
+        with QSignalBlocker(self.slider):
+            self.slider.setValue(round(STEPS * self._share(self.field.value())))
+
+    def _on_toggled(self, on: bool) -> None:
+        self.slider.setEnabled(on)
+        self.field.setEnabled(on)
+        self.words.setText("" if on else self._automatic)
+        self.changed.emit()
+
+    def _on_slid(self, step: int) -> None:
+        share = step / STEPS
+        if self._geometric:
+            value = self._high * (self._low / self._high) ** share
+        else:
+            value = self._low + share * (self._high - self._low)
+        with QSignalBlocker(self.field):
+            self.field.setValue(value)
+        self.changed.emit()
+
+    def _on_typed(self) -> None:
+        self._place_slider()
+        self.changed.emit()
+
+
+def _width(button: QPushButton, title: str) -> int:
+    """Pixels that a button needs for its title in bold, as it has it while it is down."""
+    font = QFont(button.font())
+    font.setPixelSize(13)
+    font.setWeight(QFont.Weight.DemiBold)
+    return QFontMetrics(font).horizontalAdvance(title) + 5 * GRID
+
+
+def heading(text: str) -> QLabel:
+    """A title above a group of controls."""
+    return named(text, "Heading")
+
+
+def column(*parts: QWidget, gap: int = GRID) -> QVBoxLayout:
+    """Widgets one under the other, without margins."""
+    layout = QVBoxLayout()
+    layout.setContentsMargins(0, 0, 0, 0)
+    layout.setSpacing(gap)
+    for part in parts:
+        layout.addWidget(part)
+    return layout

@@ -1,0 +1,150 @@
+"""The table of a sketch's coordinates, typed and in step with the drawing."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import QSignalBlocker, Qt, Signal
+from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
+
+from app.desktop.widgets import tabular
+from app.sketch import Place, Sketch
+from app.theme import GRID
+
+WIDTH = 27 * GRID
+NEW = "New"
+NOT_A_NUMBER = "{text!r} is not a number."
+
+
+class Coordinates(QTableWidget):
+    """A view on a :class:`app.sketch.Sketch`: one row for each corner, one more while a loop is
+    open, to type the next corner in. ``picked(loop, corner)``; ``told(sentence)``.
+    """
+
+    picked = Signal(int, int)
+    told = Signal(str)
+
+    def __init__(self, sketch: Sketch, parent: QWidget | None = None) -> None:
+        super().__init__(0, 3, parent)
+        self.setObjectName("Table")
+        self.setAccessibleName("Coordinates of the corners")
+        self.setHorizontalHeaderLabels(["Corner", "x", "y"])
+        self.setFixedWidth(WIDTH)
+        self.verticalHeader().hide()
+        self.verticalHeader().setDefaultSectionSize(28)
+        header = self.horizontalHeader()
+        header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
+        header.resizeSection(0, 9 * GRID)
+        header.setHighlightSections(False)
+        for axis in (1, 2):
+            self.horizontalHeaderItem(axis).setTextAlignment(
+                Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+            )
+        self.horizontalHeaderItem(0).setTextAlignment(
+            Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        )
+        self.setShowGrid(False)
+        self.setFont(tabular(self.font()))
+        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.setTabKeyNavigation(True)
+        self.setEditTriggers(
+            QAbstractItemView.EditTrigger.DoubleClicked
+            | QAbstractItemView.EditTrigger.SelectedClicked
+            | QAbstractItemView.EditTrigger.EditKeyPressed
+            | QAbstractItemView.EditTrigger.AnyKeyPressed
+        )
+        self.sketch = sketch
+        self._rows: list[tuple[int, int]] = []
+        self._began: list[float | None] = [None, None]
+        sketch.changed.connect(self._fill)
+        self.itemChanged.connect(self._on_typed)
+        self.currentCellChanged.connect(self._on_current_changed)
+        self._fill()
+
+    def release(self) -> None:
+        """Let go of the sketch."""
+        self.sketch.changed.disconnect(self._fill)
+
+    def select(self, loop: int, corner: int) -> None:
+        """Mark a corner's row."""
+        if (loop, corner) in self._rows:
+            with QSignalBlocker(self):
+                self.setCurrentCell(self._rows.index((loop, corner)), 1)
+
+    def _fill(self) -> None:
+        corners = self.sketch.corners()
+        self._rows = [(i, j) for i, j, _ in corners]
+        with QSignalBlocker(self):
+            self.setRowCount(len(corners) + (1 if self.sketch.open else 0))
+            for row, (i, j, place) in enumerate(corners):
+                self._put(row, _title(i, j), [_text(n) for n in place])
+            if self.sketch.open:
+                began = ["" if n is None else _text(n) for n in self._began]
+                self._put(len(corners), NEW, began)
+        if self.currentRow() < 0:
+            self.scrollToBottom()
+
+    def _put(self, row: int, title: str, values: list[str]) -> None:
+        for column, text in enumerate([title, *values]):
+            item = self.item(row, column)
+            if item is None:
+                item = QTableWidgetItem()
+                self.setItem(row, column, item)
+            item.setText(text)
+            if column == 0:
+                item.setFlags(Qt.ItemFlag.ItemIsEnabled)
+            else:
+                item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+
+    def _on_typed(self, item: QTableWidgetItem) -> None:
+        row, axis = item.row(), item.column() - 1
+        if axis < 0:
+            return
+        text = item.text().strip()
+        number = _number(text)
+        if number is None:
+            if text:
+                self.told.emit(NOT_A_NUMBER.format(text=text[:20]))
+            self._fill()
+            return
+        self.told.emit("")
+        if row < len(self._rows):
+            loop, corner = self._rows[row]
+            self.sketch.set(loop, corner, _with(self._place(loop, corner), axis, number))
+            return
+        self._began[axis] = number
+        x, y = self._began
+        if x is not None and y is not None:
+            self._began = [None, None]
+            self.sketch.add((x, y))
+            with QSignalBlocker(self):
+                self.setCurrentCell(self.rowCount() - 1, 1)
+        else:
+            self._fill()
+
+    def _place(self, loop: int, corner: int) -> Place:
+        return self.sketch.loops[loop].corners[corner]
+
+    def _on_current_changed(self, row: int, *_: int) -> None:
+        if 0 <= row < len(self._rows):
+            self.picked.emit(*self._rows[row])
+
+
+def _with(place: Place, axis: int, number: float) -> Place:
+    return (number, place[1]) if axis == 0 else (place[0], number)
+
+
+def _title(loop: int, corner: int) -> str:
+    return f"{corner + 1}" if loop == 0 else f"Hole {loop}.{corner + 1}"
+
+
+def _text(number: float) -> str:
+    return f"{number:.10g}".replace("-", "\u2212")
+
+
+def _number(text: str) -> float | None:
+    """A number, written with a point or a comma; None if it is none."""
+    try:
+        number = float(text.replace("\u2212", "-").replace(",", "."))
+    except ValueError:
+        return None
+    return number if abs(number) < 1e12 else None

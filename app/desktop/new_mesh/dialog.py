@@ -1,0 +1,234 @@
+"""The dialog that makes a new mesh: where the shape comes from, how it is meshed, how it looks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import (
+    QDialog,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.desktop import icons
+from app.desktop.new_mesh.controls import Choice
+from app.desktop.new_mesh.draw_page import DrawPage
+from app.desktop.new_mesh.file_page import FilePage
+from app.desktop.new_mesh.gallery_page import GalleryPage
+from app.desktop.new_mesh.maker import Maker
+from app.desktop.new_mesh.options import Options
+from app.desktop.new_mesh.page import Page
+from app.desktop.new_mesh.random_page import RandomPage
+from app.desktop.widgets import named, sentence
+from app.making import Made
+from app.theme import GRID, Theme
+
+PAGES = (("gallery", "Gallery"), ("random", "Random"), ("draw", "Draw"), ("file", "File"))
+WORKING = "Making the mesh\u2026"
+NOTHING = "The mesh is shown here as soon as there is a shape."
+NO_MESH = "There is no mesh to show: see below."
+MAKE, OPEN = "Make mesh", "Open mesh"
+
+
+class NewMeshDialog(QDialog):
+    """Accepted, it has a mesh in ``made``.
+
+    Args:
+        kind: "quad" or "tri" to begin with; empty for quads.
+        theme: its colours.
+        parent: the window over which it opens.
+        file: a file to begin with, on its page.
+    """
+
+    def __init__(
+        self, kind: str, theme: Theme, parent: QWidget | None = None, file: str = ""
+    ) -> None:
+        super().__init__(parent)
+        self.setWindowTitle("New mesh")
+        self.resize(1120, 720)
+        self.made: Made | None = None
+        self.maker = Maker(self)
+        self.maker.start()
+        self.options = Options(kind, theme)
+        self.gallery, self.random = GalleryPage(theme), RandomPage(theme)
+        self.draw, self.file = DrawPage(theme), FilePage(theme)
+        self._pages: dict[str, Page] = {
+            "gallery": self.gallery,
+            "random": self.random,
+            "draw": self.draw,
+            "file": self.file,
+        }
+        self._asked: Mapping[str, Any] | None = None
+        self._told = ""
+        self._theme = theme
+        self._accepting = False
+        self.setStyleSheet(_style(theme))
+        self._arrange()
+        self._connect()
+        self.show_page("file" if file else "gallery")
+        if file:
+            self.file.take(file)
+
+    def _arrange(self) -> None:
+        self.tabs = Choice(PAGES, "Where the shape comes from")
+        self.stack = QStackedWidget()
+        for page in self._pages.values():
+            self.stack.addWidget(page)
+        self.status = named("", "Status")
+        self.status.setWordWrap(True)
+        self.status.setAccessibleName("What is wrong or to be done")
+        self.cancel, self.make = QPushButton("Cancel"), QPushButton(MAKE)
+        self.make.setObjectName("Primary")
+        self.make.setDefault(True)
+        self.cancel.setAutoDefault(False)
+        left = QVBoxLayout()
+        left.setSpacing(2 * GRID)
+        left.addWidget(self.tabs)
+        left.addWidget(self.stack, 1)
+        middle = QHBoxLayout()
+        middle.setSpacing(3 * GRID)
+        middle.addLayout(left, 1)
+        middle.addWidget(self.options)
+        foot = QHBoxLayout()
+        foot.setSpacing(GRID)
+        self.mark = QLabel()
+        self.mark.setPixmap(
+            icons.pixmap("alert", self._theme.warning, 16, self.devicePixelRatioF())
+        )
+        foot.addWidget(self.mark)
+        foot.addWidget(self.status, 1)
+        foot.addWidget(self.cancel)
+        foot.addWidget(self.make)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
+        layout.setSpacing(2 * GRID)
+        layout.addLayout(middle, 1)
+        layout.addLayout(foot)
+
+    def _connect(self) -> None:
+        self.tabs.changed.connect(self.show_page)
+        self.options.changed.connect(self._on_changed)
+        for page in self._pages.values():
+            page.changed.connect(self._on_changed)
+            page.told.connect(self._on_told)
+        for pictures in (self.gallery.shapes, self.random.pictures):
+            pictures.itemDoubleClicked.connect(self.accept)
+        self.maker.made.connect(self._on_made)
+        self.maker.failed.connect(self._on_failed)
+        self.cancel.clicked.connect(self.reject)
+        self.make.clicked.connect(self.accept)
+
+    @property
+    def page(self) -> Page:
+        """The page in sight."""
+        return self._pages[self.tabs.key]
+
+    def show_page(self, key: str) -> None:
+        """Turn to a page: "gallery", "random", "draw" or "file"."""
+        self.tabs.key = key
+        self.stack.setCurrentWidget(self._pages[key])
+        self.page.fill()
+        self._told = ""
+        self._on_changed()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self._theme = theme
+        self.setStyleSheet(_style(theme))
+        self.options.set_theme(theme)
+        for page in self._pages.values():
+            page.set_theme(theme)
+
+    def accept(self) -> None:
+        """Take the mesh, or wait until it is made."""
+        if self.made is not None:
+            super().accept()
+        elif self.maker.busy:
+            self._accepting = True
+            self._refresh()
+
+    def done(self, result: int) -> None:
+        """Close: end the process and let go of everything."""
+        self.maker.close()
+        for page in self._pages.values():
+            page.release()
+        super().done(result)
+
+    def keyPressEvent(self, event: Any) -> None:  # noqa: N802
+        """Return in a field ends its editing; it does not make the mesh."""
+        typing = self.focusWidget() not in (None, self, self.make, self.draw.area)
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and typing:
+            event.accept()
+        else:
+            super().keyPressEvent(event)
+
+    def _on_changed(self) -> None:
+        page = self.page
+        self.options.settings.setEnabled(page.takes_settings)
+        source = page.source
+        self._accepting = False
+        if source is None:
+            self._asked = self.made = None
+            self.maker.cancel()
+            self.options.show_words(NOTHING, stale=False)
+        else:
+            request = {"source": source, **self.options.request}
+            if request != self._asked:
+                self._asked, self.made = request, None
+                self.maker.ask(request)
+                self.options.show_words(WORKING, stale=True)
+        self._refresh()
+
+    def _on_made(self, made: Made) -> None:
+        self.made = made
+        self.options.set_extent(float(max(made.points.max(axis=0) - made.points.min(axis=0))))
+        self.options.show_made(made)
+        if self._accepting:
+            self.accept()
+        else:
+            self._refresh()
+
+    def _on_failed(self, words: str) -> None:
+        self._accepting = False
+        self.options.show_words(NO_MESH, stale=False)
+        self._refresh(sentence(words))
+
+    def _on_told(self, words: str) -> None:
+        self._told = words
+        self._refresh()
+
+    def _refresh(self, failed: str = "") -> None:
+        self.make.setText(
+            WORKING if self._accepting else MAKE if self.page.takes_settings else OPEN
+        )
+        self.make.setEnabled(not self._accepting and (self.made is not None or self.maker.busy))
+        wrong = failed or self._told or (self.page.words if self.page.is_wrong else "")
+        self.status.setText(wrong or self.page.words)
+        self.mark.setVisible(bool(wrong))
+        if self.status.property("warns") != bool(wrong):
+            self.status.setProperty("warns", bool(wrong))
+            self.status.style().unpolish(self.status)
+            self.status.style().polish(self.status)
+
+
+def _style(theme: Theme) -> str:
+    return f"""
+#Status {{ color: {theme.muted}; }}
+#Status[warns="true"] {{ color: {theme.warning}; }}
+#Table QLineEdit {{ padding: 0 4px; border-radius: 0; border: 1px solid {theme.accent}; }}
+QAbstractSpinBox {{ padding-right: 8px; }}
+QAbstractSpinBox:disabled {{ color: {theme.faint}; background: transparent; }}
+QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; height: 0; border: 0; }}
+QAbstractSpinBox::up-arrow, QAbstractSpinBox::down-arrow {{ image: none; width: 0; height: 0; }}
+QListWidget {{ font-size: 12px; }}
+QListWidget::item {{ padding: 4px 2px; }}
+#DropZone {{ border: 1px dashed {theme.faint}; border-radius: 8px;
+            background: {theme.background}; }}
+#DropZone[over="true"] {{ border-color: {theme.accent}; background: {theme.accent_soft}; }}
+"""

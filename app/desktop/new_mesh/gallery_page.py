@@ -1,0 +1,46 @@
+"""The page of the gallery's shapes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qtpy.QtWidgets import QVBoxLayout
+
+from app.desktop.new_mesh.page import Page, Pictures, words_of
+from app.theme import Theme
+from meshcore import shapes
+
+
+class GalleryPage(Page):
+    """One of the named shapes."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__()
+        self._theme = theme
+        self.shapes = Pictures("Shapes of the gallery")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.shapes)
+        self.shapes.currentItemChanged.connect(self._on_chosen)
+
+    @property
+    def source(self) -> dict[str, Any] | None:
+        """The chosen shape."""
+        return {"shape": self.shapes.key} if self.shapes.key else None
+
+    def fill(self) -> None:
+        """Draw the pictures."""
+        if self.shapes.count() == 0:
+            for name, domain in shapes.gallery().items():
+                self.shapes.add(words_of(name), name, domain, self._theme)
+            self.shapes.setCurrentRow(0)
+
+    def choose(self, name: str) -> None:
+        """Choose a shape by its name."""
+        self.fill()
+        for row in range(self.shapes.count()):
+            if self.shapes.item(row).text() == words_of(name):
+                self.shapes.setCurrentRow(row)
+
+    def _on_chosen(self) -> None:
+        self.changed.emit()

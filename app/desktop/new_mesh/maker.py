@@ -1,0 +1,144 @@
+"""The process that makes the meshes of the dialog, and what there is to ask it."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+from qtpy.QtCore import QByteArray, QObject, QProcess, QProcessEnvironment, QTimer, Signal
+
+from app import making
+
+PAUSE = 120
+"""Milliseconds without a further change after which a request is sent."""
+PATIENCE = 300
+"""Milliseconds that work no longer wanted may take before the process is replaced."""
+
+GONE = "The mesh could not be made: the process at work ended, perhaps for want of memory."
+
+
+class Maker(QObject):
+    """Answers the last request only: ``made(Made)`` or ``failed(sentence)``.
+
+    Requests are as :func:`app.making.make` takes them. A new one drops the one before.
+    """
+
+    made = Signal(object)
+    failed = Signal(str)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._process: QProcess | None = None
+        self._received = b""
+        self._wanted: Mapping[str, Any] | None = None
+        self._asked: Mapping[str, Any] | None = None
+        self._pause = QTimer(self)
+        self._pause.setSingleShot(True)
+        self._pause.timeout.connect(self._send)
+        self._patience = QTimer(self)
+        self._patience.setSingleShot(True)
+        self._patience.timeout.connect(self._replace)
+
+    @property
+    def busy(self) -> bool:
+        """True while an answer is to come."""
+        return self._wanted is not None
+
+    def start(self) -> None:
+        """Start the process ahead of the first request: its imports take a while."""
+        if self._process is not None:
+            return
+        process = QProcess(self)
+        environment = QProcessEnvironment.systemEnvironment()
+        environment.insert("PYTHONPATH", os.pathsep.join(path for path in sys.path if path))
+        process.setProcessEnvironment(environment)
+        process.setStandardErrorFile(QProcess.nullDevice())
+        process.readyReadStandardOutput.connect(self._on_answer)
+        process.finished.connect(self._on_ended)
+        process.errorOccurred.connect(self._on_ended)
+        self._process, self._received = process, b""
+        process.start(sys.executable, ["-m", making.__name__])
+
+    def ask(self, request: Mapping[str, Any], at_once: bool = False) -> None:
+        """Ask for a mesh; what was asked before is no longer wanted."""
+        self._wanted = request
+        self._pause.start(0 if at_once else PAUSE)
+
+    def cancel(self) -> None:
+        """Want nothing any more."""
+        self._wanted = None
+        self._pause.stop()
+        self._give_up_soon()
+
+    def close(self) -> None:
+        """End the process."""
+        self._wanted = self._asked = None
+        self._pause.stop()
+        self._patience.stop()
+        self._end()
+
+    def _send(self) -> None:
+        if self._wanted is None:
+            return
+        if self._asked is not None:
+            self._give_up_soon()
+            return
+        self.start()
+        self._asked = self._wanted
+        if self._process is not None:
+            self._process.write(QByteArray(json.dumps(self._asked).encode() + b"\n"))
+
+    def _give_up_soon(self) -> None:
+        if self._asked is not None and not self._patience.isActive():
+            self._patience.start(PATIENCE)
+
+    def _replace(self) -> None:
+        if self._asked is None or self._asked is self._wanted:
+            return
+        self._asked = None
+        self._end()
+        self.start()
+        self._send()
+
+    def _end(self) -> None:
+        process, self._process = self._process, None
+        if process is None:
+            return
+        process.readyReadStandardOutput.disconnect(self._on_answer)
+        process.finished.disconnect(self._on_ended)
+        process.errorOccurred.disconnect(self._on_ended)
+        process.kill()
+        process.waitForFinished(1000)
+        process.deleteLater()
+
+    def _on_answer(self) -> None:
+        if self._process is None:
+            return
+        self._received += bytes(self._process.readAllStandardOutput().data())
+        answer = making.unframed(self._received)
+        if answer is None:
+            return
+        result, self._received = answer
+        asked, self._asked = self._asked, None
+        self._patience.stop()
+        if asked is not self._wanted:
+            self._send()
+            return
+        self._wanted = None
+        if isinstance(result, str):
+            self.failed.emit(result)
+        else:
+            self.made.emit(result)
+
+    def _on_ended(self) -> None:
+        """The process is gone without being told to."""
+        self._end()
+        asked, self._asked = self._asked, None
+        if asked is not None and asked is self._wanted:
+            self._wanted = None
+            self.failed.emit(GONE)
+        elif self._wanted is not None:
+            self._send()

@@ -1,0 +1,141 @@
+"""The right side of the dialog: the preview, its numbers, and kind, size and quality."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
+
+from app.desktop.new_mesh.controls import Choice, Measure, heading
+from app.desktop.new_mesh.preview import Preview
+from app.desktop.widgets import named, tabular
+from app.making import Made
+from app.theme import GRID, Theme
+
+WIDTH = 352
+KINDS = (("quad", "Quads"), ("tri", "Triangles"))
+RULES = (("catmull-clark", "Cut triangles"), ("pairing", "Pair triangles"))
+RULE_TIPS = {
+    "catmull-clark": "Each triangle is cut into three quads: few elements, many irregular vertices",
+    "pairing": "Triangles are joined in pairs: more regular elements of one size",
+}
+_COARSEST, _FINEST = 0.5, 1 / 1000
+"""Longest edges that the slider offers, as shares of the shape's size."""
+
+
+class Options(QWidget):
+    """``changed()`` when another mesh is asked for."""
+
+    changed = Signal()
+
+    def __init__(self, kind: str, theme: Theme) -> None:
+        super().__init__()
+        self.setFixedWidth(WIDTH)
+        self.preview = Preview(theme)
+        self.kind = Choice(KINDS, "Elements", kind or "quad")
+        self.rule = Choice(RULES, "Quads by")
+        for key, button in self.rule.buttons.items():
+            button.setToolTip(RULE_TIPS[key])
+        self.size_of = Measure("Longest edge", "automatic", 0.001, 1.0, 0.2, 4, geometric=True)
+        self.quality = Measure("Least angle of triangles", "automatic", 0.0, 34.0, 28.0, 1, "°")
+        self.quality.setToolTip(
+            "Degrees that no angle of the triangles should be below; small angles of the shape stay"
+        )
+        self._values: dict[str, QLabel] = {}
+        self._size = 0.0
+        self._arrange()
+        self.kind.changed.connect(self._on_kind_changed)
+        self.rule.changed.connect(self._on_kind_changed)
+        self.size_of.changed.connect(self.changed.emit)
+        self.quality.changed.connect(self.changed.emit)
+        self._on_kind_changed()
+
+    def _arrange(self) -> None:
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addWidget(self.preview, 1)
+        layout.addSpacing(GRID)
+        layout.addLayout(self._numbers())
+        layout.addSpacing(2 * GRID)
+        self.settings = QWidget()
+        inner = QVBoxLayout(self.settings)
+        inner.setContentsMargins(0, 0, 0, 0)
+        inner.setSpacing(GRID)
+        inner.addWidget(heading("ELEMENTS"))
+        inner.addWidget(self.kind)
+        inner.addWidget(self.rule)
+        inner.addSpacing(GRID // 2)
+        inner.addWidget(self.size_of)
+        inner.addWidget(self.quality)
+        layout.addWidget(self.settings)
+
+    def _numbers(self) -> QGridLayout:
+        grid = QGridLayout()
+        grid.setHorizontalSpacing(GRID)
+        grid.setVerticalSpacing(2)
+        titles = (
+            ("elements", "Elements", "How many elements the mesh has"),
+            ("vertices", "Vertices", "How many vertices the mesh has"),
+            ("score", "s", "The sum over all vertices of how far their degree is off"),
+            ("optimum", "s*", "The lowest score that any connectivity can have here"),
+        )
+        for i, (key, title, tip) in enumerate(titles):
+            value = named("\u2013", "Value")
+            value.setFont(tabular(value.font()))
+            value.setAccessibleName(title)
+            value.setToolTip(tip)
+            self._values[key] = value
+            name = named(title, "Label")
+            name.setToolTip(tip)
+            row, at = divmod(i, 2)
+            grid.addWidget(name, row, 3 * at)
+            value.setAlignment(Qt.AlignmentFlag.AlignRight)
+            grid.addWidget(value, row, 3 * at + 1)
+        grid.setColumnStretch(1, 1)
+        grid.setColumnMinimumWidth(2, 3 * GRID)
+        grid.setColumnStretch(4, 1)
+        return grid
+
+    @property
+    def request(self) -> dict[str, Any]:
+        """What there is to ask for besides the source; see :func:`app.making.make`."""
+        return {
+            "kind": self.kind.key,
+            "max_edge": self.size_of.value,
+            "min_angle": self.quality.value,
+            "quads": self.rule.key if self.kind.key == "quad" else None,
+        }
+
+    @property
+    def numbers(self) -> dict[str, str]:
+        """What is said about the mesh: elements, vertices, score, optimum."""
+        return {key: str(label.text()) for key, label in self._values.items()}
+
+    def show_made(self, made: Made) -> None:
+        """Draw the mesh and say how large it is."""
+        self.preview.show_made(made)
+        counts = {"elements": len(made.elements), "vertices": len(made.points)}
+        for key, number in {**counts, "score": made.score, "optimum": made.optimum}.items():
+            self._values[key].setText(f"{number:,}")
+
+    def show_words(self, words: str, stale: bool) -> None:
+        """Say why there is no mesh (yet)."""
+        self.preview.show_words(words, stale)
+        for label in self._values.values():
+            label.setText("\u2026" if stale else "\u2013")
+
+    def set_extent(self, size: float) -> None:
+        """Offer edges that suit a shape of this size."""
+        if size > 0 and not 0.99 < size / (self._size or 1e-300) < 1.01:
+            self._size = size
+            self.size_of.set_range(_FINEST * size, _COARSEST * size, 0.1 * size)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+        self.preview.set_theme(theme)
+
+    def _on_kind_changed(self) -> None:
+        self.rule.setVisible(self.kind.key == "quad")
+        self.changed.emit()

@@ -1,0 +1,107 @@
+"""What the pages of the dialog have in common."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qtpy.QtCore import QSize, Qt, Signal
+from qtpy.QtGui import QIcon, QPainter, QPixmap
+from qtpy.QtWidgets import QListView, QListWidget, QListWidgetItem, QWidget
+
+from app.desktop.new_mesh.painting import paint_shape, squares
+from app.theme import GRID, Theme
+from app.viewport import Viewport
+from meshcore.domain import Domain
+
+PICTURE = QSize(112, 88)
+
+
+class Page(QWidget):
+    """One way to say what is to be meshed. ``changed()``; ``told(sentence)`` in passing.
+
+    A page fills itself when it is shown first.
+    """
+
+    changed = Signal()
+    told = Signal(str)
+
+    takes_settings = True
+    """Whether kind, size and quality have a meaning for what is chosen here."""
+
+    @property
+    def source(self) -> dict[str, Any] | None:
+        """As :func:`app.making.make` takes it; None while there is nothing to mesh."""
+        raise NotImplementedError
+
+    @property
+    def words(self) -> str:
+        """Why there is nothing to mesh, or what to do next."""
+        return ""
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether `words` say what is wrong rather than what comes next."""
+        return False
+
+    def fill(self) -> None:
+        """Show what takes a while to be made."""
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in other colours."""
+
+    def release(self) -> None:
+        """Let go of everything."""
+
+
+class Pictures(QListWidget):
+    """Shapes as small pictures of which one is chosen."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__()
+        self.setAccessibleName(name)
+        self.setViewMode(QListView.ViewMode.IconMode)
+        self.setResizeMode(QListView.ResizeMode.Adjust)
+        self.setMovement(QListView.Movement.Static)
+        self.setIconSize(PICTURE)
+        self.setWordWrap(True)
+        self.setTextElideMode(Qt.TextElideMode.ElideNone)
+        self.setSpacing(0)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setGridSize(QSize(PICTURE.width() + 5 * GRID // 2, PICTURE.height() + 6 * GRID))
+
+    def add(self, title: str, key: object, domain: Domain, theme: Theme) -> None:
+        """Add a shape at the end."""
+        item = QListWidgetItem(picture(domain, theme, self.devicePixelRatioF()), title)
+        item.setData(Qt.ItemDataRole.UserRole, key)
+        item.setTextAlignment(Qt.AlignmentFlag.AlignHCenter)
+        self.addItem(item)
+
+    @property
+    def key(self) -> Any:
+        """What stands for the chosen shape, None if there is none."""
+        item = self.currentItem()
+        return None if item is None else item.data(Qt.ItemDataRole.UserRole)
+
+
+def picture(domain: Domain, theme: Theme, ratio: float = 1.0) -> QIcon:
+    """A small drawing of a domain: its outline and holes, its corners as squares."""
+    drawn = QPixmap(PICTURE * ratio)
+    drawn.setDevicePixelRatio(ratio)
+    drawn.fill(Qt.GlobalColor.transparent)
+    view = Viewport(size=(PICTURE.width(), PICTURE.height())).fitted(domain.outline, 8.0)
+    painter = QPainter(drawn)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    paint_shape(painter, view, domain.loops, theme, 1.25)
+    for loop, flags in zip(domain.loops, domain.loop_corners, strict=True):
+        if flags.any():
+            squares(painter, view.to_screen(loop[flags]), theme, 3.5)
+    painter.end()
+    made = QIcon(drawn)
+    made.addPixmap(drawn, QIcon.Mode.Selected)
+    return made
+
+
+def words_of(name: str) -> str:
+    """A shape's name as it is read."""
+    words = name.replace("_", " ").replace("-", " ")
+    return words[:1].upper() + words[1:]

@@ -1,0 +1,116 @@
+"""How shapes and meshes are drawn outside of the canvas: as on it, by QPainter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from qtpy.QtCore import QLineF, QPointF, QRectF, Qt
+from qtpy.QtGui import QColor, QFont, QPainter, QPainterPath, QPen, QPolygonF
+
+from app.desktop.widgets import tabular
+from app.making import Made
+from app.markers import BASE_RADIUS, CROWDED, GROWTH, LARGEST, READABLE, SMALLEST, label
+from app.theme import Theme
+from app.viewport import Viewport
+
+LINES = 40_000
+"""Edges that are drawn as lines; where more are in sight the area is tinted instead."""
+DISCS = 2_000
+CORNER = 5.0
+"""Pixels: side of the square of a corner."""
+_SMALLER = 0.8
+"""Discs beside those of the canvas: there is less room."""
+_TINT = 0.35
+"""Share of the edges' colour in the tint of a mesh too fine to be drawn."""
+
+
+def paint_shape(
+    painter: QPainter, view: Viewport, loops: Sequence[np.ndarray], theme: Theme, width: float = 1.5
+) -> None:
+    """Fill the area between the loops, each (n, 2), and draw them."""
+    path = QPainterPath()
+    for loop in loops:
+        path.addPolygon(polygon(view.to_screen(loop)))
+        path.closeSubpath()
+    painter.setPen(_pen(theme.boundary, width))
+    painter.setBrush(QColor(theme.fill))
+    painter.drawPath(path)
+
+
+def paint_mesh(painter: QPainter, view: Viewport, made: Made, theme: Theme) -> bool:
+    """Draw a mesh with its irregular vertices; False if it is too fine for its edges to show."""
+    places = view.to_screen(made.points[:, :2])
+    low, high = (f(places[made.edges], axis=1) for f in (np.min, np.max))
+    inner = made.edges[((high >= 0) & (low <= view.size)).all(axis=1)]
+    fine = len(inner) > LINES
+    rim = QPainterPath()
+    for loop in made.loops:
+        rim.addPolygon(polygon(places[loop]))
+        rim.closeSubpath()
+    fill = blend(theme.fill, theme.edge, _TINT) if fine else QColor(theme.fill)
+    painter.fillPath(rim, fill)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    if not fine:
+        painter.setPen(_pen(theme.edge, 1.0))
+        ends = places[inner].reshape(-1, 4).tolist()
+        painter.drawLines([QLineF(a, b, c, d) for a, b, c, d in ends])
+    painter.setPen(_pen(theme.boundary, 1.75))
+    painter.drawPath(rim)
+    if not fine:
+        squares(painter, places[made.geometric], theme)
+        _discs(painter, places, made, view, theme)
+    return not fine
+
+
+def squares(painter: QPainter, places: np.ndarray, theme: Theme, side: float = CORNER) -> None:
+    """Draw corners, whose places are pixels (n, 2)."""
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(theme.corner))
+    for x, y in places.tolist():
+        painter.drawRect(QRectF(x - side / 2, y - side / 2, side, side))
+
+
+def polygon(places: np.ndarray) -> QPolygonF:
+    """Pixels (n, 2) as Qt takes them."""
+    return QPolygonF([QPointF(x, y) for x, y in places.tolist()])
+
+
+def _discs(painter: QPainter, places: np.ndarray, made: Made, view: Viewport, theme: Theme) -> None:
+    vertices = np.flatnonzero(made.delta)
+    inside = (places[vertices] >= -LARGEST) & (places[vertices] <= np.array(view.size) + LARGEST)
+    vertices = vertices[inside.all(axis=1)]
+    if len(vertices) > DISCS:
+        return
+    wanted = np.minimum(BASE_RADIUS + GROWTH * (np.abs(made.delta[vertices]) - 1), LARGEST)
+    room = CROWDED * made.reach[vertices] * view.pixels
+    radii = np.maximum(np.minimum(_SMALLER * wanted, room), SMALLEST)
+    font = tabular(QFont(painter.font()))
+    font.setWeight(QFont.Weight.DemiBold)
+    order = np.argsort(-radii, kind="stable")
+    for vertex, radius in zip(vertices[order].tolist(), radii[order].tolist(), strict=True):
+        delta = int(made.delta[vertex])
+        x, y = places[vertex].tolist()
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(theme.plus if delta > 0 else theme.minus))
+        painter.drawEllipse(QPointF(x, y), radius, radius)
+        if radius >= READABLE:
+            font.setPixelSize(max(8, round(1.1 * radius)))
+            painter.setFont(font)
+            painter.setPen(QColor(theme.marker_text))
+            box = QRectF(x - radius, y - radius, 2 * radius, 2 * radius)
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, label(delta))
+
+
+def blend(one: str, other: str, share: float) -> QColor:
+    """A colour between two, ``share`` of the way from the first."""
+    a, b = QColor(one), QColor(other)
+    parts = [(1 - share) * p + share * q for p, q in zip(a.getRgbF(), b.getRgbF(), strict=True)]
+    return QColor.fromRgbF(*parts)
+
+
+def _pen(colour: str, width: float) -> QPen:
+    pen = QPen(QColor(colour), width)
+    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+    return pen
