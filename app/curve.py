@@ -96,7 +96,7 @@ def steps(values: np.ndarray, into: Frame) -> np.ndarray:
     """The values (n,) as a line of steps, (m, 2) pixels; m grows with the width, not with n.
 
     The line changes its height where a state is reached. With more states than pixels each column
-    of pixels shows the first, the lowest, the highest and the last value in it.
+    of pixels shows the lowest and the highest value in it.
     """
     count = len(values)
     if count == 0:
@@ -104,22 +104,28 @@ def steps(values: np.ndarray, into: Frame) -> np.ndarray:
     if count > 2 * into.width:
         column = np.floor(into.x(np.arange(count)) - into.left).astype(np.int64)
         begin = np.flatnonzero(np.diff(column, prepend=-1))
-        end = np.append(begin[1:], count) - 1
-        shown = np.column_stack(
-            [
-                values[begin],
-                np.minimum.reduceat(values, begin),
-                np.maximum.reduceat(values, begin),
-                values[end],
-            ]
+        low, high = np.minimum.reduceat(values, begin), np.maximum.reduceat(values, begin)
+        rising = values[np.append(begin[1:], count) - 1] >= values[begin]
+        shown = np.where(
+            rising[:, None], np.column_stack([low, high]), np.column_stack([high, low])
         )
-        x = np.repeat(into.left + column[begin] + 0.5, 4)
-        return np.column_stack([x, into.y(shown.ravel())])
+        x = np.repeat(into.left + column[begin] + 0.5, 2)
+        return _without_stops(np.column_stack([x, into.y(shown.ravel())]))
     x, y = into.x(np.arange(count)), into.y(values)
     line = np.empty((2 * count - 1, 2))
     line[0::2, 0], line[0::2, 1] = x, y
     line[1::2, 0], line[1::2, 1] = x[1:], y[:-1]
-    return line
+    return _without_stops(line)
+
+
+def _without_stops(line: np.ndarray) -> np.ndarray:
+    """Without the points in the middle of a level stretch."""
+    if len(line) < 3:
+        return line
+    level = line[1:, 1] == line[:-1, 1]
+    needed = np.ones(len(line), dtype=bool)
+    needed[1:-1] = ~(level[1:] & level[:-1])
+    return line[needed]
 
 
 def best_state(scores: np.ndarray, optima: np.ndarray) -> int:

@@ -28,15 +28,14 @@ class HistoryModel(QAbstractListModel):
         self._branches: Branches = ()
         self._order: list[int] = []
         self._places: list[int] = []
-        self._rows = 0
-        self._last: Row | None = None
+        self._rows: list[Row] = []  # its own: the history may have gone on since the last look
         self._empty = True
 
     def rowCount(self, parent: QModelIndex | None = None) -> int:  # noqa: N802
         """Lines there are; a line has none below it."""
         if self._empty or (parent is not None and parent.isValid()):
             return 0
-        return self._rows + 1 + len(self._places)
+        return len(self._rows) + 1 + len(self._places)
 
     def line(self, place: int) -> Line:
         """What stands at a place of the list."""
@@ -45,7 +44,7 @@ class HistoryModel(QAbstractListModel):
             branch = self._order[before]
             return Line(self._branches[branch].at, None, branch)
         state = place - before
-        return Line(state, self._history[state - 1] if state else None)
+        return Line(state, self._rows[state - 1] if state else None)
 
     def place(self, state: int) -> int:
         """Where in the list a state stands."""
@@ -60,6 +59,11 @@ class HistoryModel(QAbstractListModel):
     def branches(self) -> Branches:
         """The branches that are shown."""
         return self._branches
+
+    @property
+    def current(self) -> bool:
+        """False while the history has other branches than those that are shown."""
+        return self._branches is self._history.branches
 
     def data(self, index: QModelIndex, role: int = Qt.ItemDataRole.DisplayRole) -> object:
         """Words for people who hear the list, or point at it; the delegate paints from lines."""
@@ -79,23 +83,23 @@ class HistoryModel(QAbstractListModel):
 
     def follow(self, history: History, empty: bool) -> None:
         """Take over what ``history`` holds now, with no more fuss than it needs."""
-        count = len(history)
+        known, count = len(self._rows), len(history)
         same = history is self._history and empty == self._empty
         same = same and self._branches is history.branches
         # a row always comes after the same rows: see app.curve.Track
         kept = same and (
-            self._rows == 0 or (self._rows <= count and history[self._rows - 1] is self._last)
+            known == 0 or (known <= count and history[known - 1] is self._rows[known - 1])
         )
-        if kept and count == self._rows:
+        if kept and count == known:
             return
         if kept:
             first = self.rowCount()
-            self.beginInsertRows(QModelIndex(), first, first + count - self._rows - 1)
+            self.beginInsertRows(QModelIndex(), first, first + count - known - 1)
+            self._rows += [history[i] for i in range(known, count)]
         else:
             self.beginResetModel()
+            self._rows = list(history)
         self._history, self._branches, self._empty = history, history.branches, empty
-        self._rows = count
-        self._last = history[count - 1] if count else None
         self._order = sorted(range(len(self._branches)), key=lambda i: self._branches[i].at)
         self._places = [self._branches[b].at + 1 + i for i, b in enumerate(self._order)]
         if kept:

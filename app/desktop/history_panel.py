@@ -17,10 +17,11 @@ from qtpy.QtWidgets import (
     QAbstractItemView,
     QFrame,
     QHBoxLayout,
-    QListView,
+    QHeaderView,
     QStyle,
     QStyledItemDelegate,
     QStyleOptionViewItem,
+    QTableView,
     QVBoxLayout,
 )
 
@@ -157,16 +158,28 @@ class Lines(QStyledItemDelegate):
         painter.drawText(place, left, _elided(painter, words, place.width()))
 
 
-class HistoryList(QListView):
-    """A list whose arrow keys and clicks ask to go somewhere."""
+class HistoryList(QTableView):
+    """A list whose Return key and clicks ask to go somewhere.
+
+    It is a table of one column: Qt's list asks the model for every line whenever one is added.
+    """
 
     activated_at = Signal(int)
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("History")
-        self.setUniformItemSizes(True)
+        self.setShowGrid(False)
+        self.setWordWrap(False)
+        self.setTabKeyNavigation(False)
         self.setMouseTracking(True)
+        across, down = self.horizontalHeader(), self.verticalHeader()
+        across.hide()
+        across.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        down.hide()
+        down.setMinimumSectionSize(ROW)
+        down.setDefaultSectionSize(ROW)
+        down.setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -245,9 +258,9 @@ class HistoryPanel(QFrame):
 
     def _on_activated(self, place: int) -> None:
         line = self.model.line(place)
-        if line.branch >= 0:
+        if line.branch >= 0 and self.model.current:
             self.branch_asked.emit(line.branch)
-        else:
+        elif line.branch < 0:
             self.asked.emit(line.state)
 
 

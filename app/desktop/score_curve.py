@@ -116,9 +116,9 @@ class ScoreCurve(QWidget):
             return
         self.setFocus(Qt.FocusReason.MouseFocusReason)
         fork = self._fork_at(event.position())
-        if fork >= 0:
+        if fork >= 0 and self._branches is self._history.branches:
             self.branch_asked.emit(fork)
-        else:
+        elif fork < 0:
             self._ask(event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
@@ -261,7 +261,9 @@ class ScoreCurve(QWidget):
             QPen(QColor(self._theme.muted), 1.2, Qt.PenStyle.DashLine, Qt.PenCapStyle.FlatCap)
         )
         painter.drawPolyline(_polygon(curve.steps(optima, self._frame)))
-        painter.setPen(QPen(QColor(self._theme.accent), 1.8))
+        # a wider pen takes fifty times as long, and would fill what lies between many steps
+        thin = len(scores) > self._frame.width
+        painter.setPen(QPen(QColor(self._theme.accent), 1.0 if thin else 1.8))
         painter.drawPolyline(_polygon(curve.steps(scores, self._frame)))
         self._draw_best(painter)
         self._draw_forks(painter)

@@ -69,8 +69,11 @@ def test_a_curve_of_many_states_is_no_longer_than_its_pixels():
     assert line[:, 1].max() == pytest.approx(55.0)
     assert (np.diff(line[:, 0]) >= 0).all()
     assert [box.state(x) for x in (-5, 10, 310, 610, 900)] == [0, 0, 5000, 9999, 9999]
-    few = curve.steps(scores[:5], curve.frame(scores[:5], scores[:5] * 0, 0, 0, 100, 10))
-    assert few[:, 0].tolist() == [0, 25, 25, 50, 50, 75, 75, 100, 100]
+    few = np.array([5, 4, 6, 2, 3])
+    line = curve.steps(few, curve.frame(few, few * 0, 0, 0, 100, 10))
+    assert line[:, 0].tolist() == [0, 25, 25, 50, 50, 75, 75, 100, 100]
+    level = np.full(1000, 7)
+    assert len(curve.steps(level, curve.frame(level, level, 0, 0, 100, 10))) == 2
 
 
 def test_the_best_state_counts_from_the_last_change_of_the_task():
