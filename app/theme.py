@@ -273,7 +273,7 @@ QLineEdit, QSpinBox, QDoubleSpinBox {{ background: {t.raised}; border: 1px solid
                                       border-radius: 6px; padding: 6px 8px; }}
 QLineEdit:focus, QSpinBox:focus, QDoubleSpinBox:focus {{ border-color: {t.accent}; }}
 QLineEdit:disabled, QSpinBox:disabled, QDoubleSpinBox:disabled {{ color: {t.faint}; }}
-QAbstractSpinBox {{ padding-right: 22px; }}
+QAbstractSpinBox {{ padding: 6px 22px 6px 8px; }}
 QAbstractSpinBox::up-button {{ subcontrol-origin: border; subcontrol-position: top right;
                               width: 20px; border: 0; margin: 2px 2px 0 0; }}
 QAbstractSpinBox::down-button {{ subcontrol-origin: border; subcontrol-position: bottom right;

@@ -1,161 +1,328 @@
-"""The agent panel: which policy, and how far it goes."""
+"""The agent panel: which policy, what it shall do, and how far it is."""
 
-from qtpy.QtCore import QSignalBlocker, Qt
+from __future__ import annotations
+
+from functools import partial
+
+from qtpy.QtCore import QSignalBlocker, Qt, QTimer
 from qtpy.QtGui import QAction
-from qtpy.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QSlider, QVBoxLayout, QWidget
+from qtpy.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QGridLayout,
+    QHBoxLayout,
+    QPushButton,
+    QSlider,
+    QSpinBox,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.assistant import Assistant, State
 from app.desktop import icons
 from app.desktop.actions import ActionSet
-from app.desktop.tables.agent import BEST_OF, SEARCHES
-from app.desktop.widgets import named
+from app.desktop.hint_list import HintList
+from app.desktop.settings import Settings
+from app.desktop.widgets import Bar, named
 from app.document import Document
-from app.policy_files import shipped
+from app.policy_files import kind_of, label, shipped
 from app.theme import GRID, Theme
 
 NO_POLICY = {"tri": "No policy for triangle meshes", "quad": "No policy for quad meshes"}
 SPEEDS = (0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60)
 """What the slider offers, in decisions per second."""
-
-
-_SEARCH = f"agent.search_{SEARCHES[0][0]}"
+USUAL_SPEED, USUAL_ROLLOUTS, USUAL_SECONDS = 4, 10, 10
+MOST_ROLLOUTS, MOST_SECONDS = 1000, 3600
+TICK = 100
+"""Milliseconds between two looks at the clock while something is under way."""
+FILES = "agent/files"
+"""The setting that remembers policy files."""
+MOST_FILES = 10
 
 
 class AgentPanel(QWidget):
     """Follows the assistant; its buttons are the table's actions."""
 
     def __init__(
-        self, document: Document, assistant: Assistant, actions: ActionSet, theme: Theme
+        self,
+        document: Document,
+        assistant: Assistant,
+        actions: ActionSet,
+        theme: Theme,
     ) -> None:
         super().__init__()
         self._document = document
         self._assistant = assistant
         self._actions = actions
+        self._settings: Settings | None = None
         self._theme = theme
-        self.policy = QComboBox()
-        self.policy.setToolTip("The policy that Step, Play and Complete follow")
-        self.policy.currentIndexChanged.connect(self._on_policy_chosen)
-        self.step = _button(actions["agent.step"], "Step")
-        self.play = _button(actions["agent.play"], "Play")
-        self.complete = _button(actions["agent.complete"], "Complete")
-        self.complete.setObjectName("Primary")
-        self.best_of = _button(actions["agent.best_of"], f"Best of {BEST_OF}")
-        self.search = _button(actions[_SEARCH], f"Search {SEARCHES[0][0]} s")
-        self.stop = _button(actions["agent.stop"], "Stop")
-        self.speed = QSlider(Qt.Orientation.Horizontal)
-        self.speed.setRange(0, len(SPEEDS) - 1)
-        self.speed.setToolTip("Decisions per second of Play")
-        self.speed.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.speed.valueChanged.connect(self._on_speed_moved)
-        self.pace = named("", "Label")
-        self.progress = named("", "Hint")
-        self.progress.setWordWrap(True)
-        self.progress.setMinimumHeight(18)
+        self._buttons: list[tuple[QWidget, str]] = []
+        self._numbers: dict[QSpinBox, str] = {}
+        self._files: list[str] = []
+        self._make_policy()
+        self._make_buttons()
+        self._make_progress()
         self._arrange()
         document.replaced.connect(self._on_replaced)
         assistant.changed.connect(self._on_assistant_changed)
-        self.speed.setValue(SPEEDS.index(4))
         self._on_replaced()
+
+    def use(self, settings: Settings) -> None:
+        """Take up what was set last time, and keep what is set from now on."""
+        speed = settings.number("agent/speed", USUAL_SPEED)
+        self.speed.setValue(min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - speed)))
+        for box, key in self._numbers.items():
+            box.setValue(round(min(max(settings.number(key, box.value()), 1), box.maximum())))
+        self._settings, self._files = settings, settings.texts(FILES)
+        self._fill()
 
     def release(self) -> None:
         """Let go of document and assistant."""
+        self._clock.stop()
         self._document.replaced.disconnect(self._on_replaced)
         self._assistant.changed.disconnect(self._on_assistant_changed)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw the icons again."""
+        """Draw in other colours."""
         self._theme = theme
+        self.bar.set_theme(theme)
+        self.hints.set_theme(theme)
         self._on_assistant_changed()
 
     def refresh(self) -> None:
         """Enable the buttons whose actions are enabled."""
-        for button, name in (
-            (self.step, "agent.step"),
-            (self.play, "agent.play"),
-            (self.complete, "agent.complete"),
-            (self.best_of, "agent.best_of"),
-            (self.search, _SEARCH),
-            (self.stop, "agent.stop"),
-        ):
+        for button, name in self._buttons:
             button.setEnabled(self._actions[name].isEnabled())
+
+    @property
+    def rollouts(self) -> int:
+        """Runs of *Best of*."""
+        return int(self.rollouts_box.value())
+
+    @property
+    def seconds(self) -> float:
+        """Seconds of *Search*."""
+        return float(self.seconds_box.value())
+
+    def offer(self, path: str, kind: str) -> None:
+        """Offer a policy file from now on, too, where meshes are of its kind."""
+        self._files = [path, *(one for one in self._files if one != path)][:MOST_FILES]
+        self._keep(FILES, self._files)
+        if kind == self._document.kind:
+            self._fill()
+
+    def _keep(self, key: str, value: object) -> None:
+        if self._settings is not None:
+            self._settings.put(key, value)
+
+    # Making
+
+    def _make_policy(self) -> None:
+        self.policy = QComboBox()
+        self.policy.setToolTip("The policy that hints and runs follow")
+        self.policy.setAccessibleName("Policy")
+        self.policy.setSizeAdjustPolicy(
+            QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon
+        )
+        self.policy.currentIndexChanged.connect(self._on_policy_chosen)
+        self.more = self._button("agent.policy", "\u2026")
+        self.more.setFixedWidth(36)
+
+    def _make_buttons(self) -> None:
+        self.hint = self._button("agent.hint", "Hint")
+        self.step = self._button("agent.step", "Step")
+        self.play = self._button("agent.play", "Play")
+        self.complete = self._button("agent.complete", "Complete")
+        self.complete.setObjectName("Primary")
+        self.stop = self._button("agent.stop", "Stop")
+        self.best_of = self._button("agent.best_of", "Best of")
+        self.search = self._button("agent.search", "Search")
+        self.region = self._button("agent.region", "Finish only this region")
+        self.rollouts_box = self._number("agent/rollouts", MOST_ROLLOUTS, USUAL_ROLLOUTS, " runs")
+        self.rollouts_box.setToolTip("How often Best of runs the policy")
+        self.seconds_box = self._number("agent/seconds", MOST_SECONDS, USUAL_SECONDS, " s")
+        self.seconds_box.setToolTip("How long Search and Finish only this region look")
+        self.watch = QCheckBox("Show what the policy sees")
+        self.watch.setToolTip(self._actions["agent.watch"].toolTip())
+        self.watch.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.watch.clicked.connect(self._actions["agent.watch"].trigger)
+        self._buttons.append((self.watch, "agent.watch"))
+        self.speed = QSlider(Qt.Orientation.Horizontal)
+        self.speed.setRange(0, len(SPEEDS) - 1)
+        self.speed.setToolTip("Decisions per second of Play")
+        self.speed.setAccessibleName("Speed")
+        self.speed.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.pace = named("", "Label")
+        self.speed.valueChanged.connect(self._on_speed_moved)
+        self.speed.setValue(SPEEDS.index(USUAL_SPEED))
+
+    def _make_progress(self) -> None:
+        self.bar = Bar(self._theme)
+        self.bar.hide()
+        self.progress = named("", "Hint")
+        self.progress.setWordWrap(True)
+        self.progress.setMinimumHeight(18)
+        self.hints = HintList(self._theme)
+        self._clock = QTimer(self)
+        self._clock.setInterval(TICK)
+        self._clock.timeout.connect(self._on_tick)
+
+    def _button(self, name: str, text: str) -> QPushButton:
+        """A button for an action that leaves the keyboard to the canvas."""
+        action: QAction = self._actions[name]
+        made = QPushButton(text)
+        made.setToolTip(action.toolTip())
+        made.setAccessibleName(action.text())
+        made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        made.clicked.connect(action.trigger)
+        self._buttons.append((made, name))
+        return made
+
+    def _number(self, key: str, most: int, usual: int, unit: str) -> QSpinBox:
+        made = QSpinBox()
+        made.setRange(1, most)
+        made.setSuffix(unit)
+        made.setValue(usual)
+        made.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        made.setKeyboardTracking(False)
+        made.valueChanged.connect(partial(self._keep, key))
+        self._numbers[made] = key
+        return made
 
     def _arrange(self) -> None:
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(GRID)
-        layout.addWidget(self.policy)
-        for pair in (
-            (self.step, self.play),
-            (self.complete, self.stop),
-            (self.best_of, self.search),
-        ):
-            line = QHBoxLayout()
-            line.setSpacing(GRID)
-            for button in pair:
-                line.addWidget(button, 1)
-            layout.addLayout(line)
-        line = QHBoxLayout()
-        line.setSpacing(GRID)
-        line.addWidget(self.speed, 1)
-        line.addWidget(self.pace)
-        layout.addLayout(line)
+        layout.addLayout(_line((self.policy, 1), (self.more, 0)))
+        layout.addLayout(_line((self.hint, 1), (self.step, 1), (self.play, 1)))
+        layout.addWidget(self.hints)
+        layout.addLayout(_line((self.speed, 1), (self.pace, 0)))
+        layout.addLayout(_line((self.complete, 1), (self.stop, 1)))
+        layout.addWidget(self.bar)
         layout.addWidget(self.progress)
+        layout.addWidget(self.watch)
+        grid = QGridLayout()
+        grid.setSpacing(GRID)
+        for row, (button, box) in enumerate(
+            ((self.best_of, self.rollouts_box), (self.search, self.seconds_box))
+        ):
+            grid.addWidget(button, row, 0)
+            grid.addWidget(box, row, 1)
+        grid.setColumnStretch(0, 1)
+        grid.setColumnStretch(1, 1)
+        layout.addLayout(grid)
+        layout.addWidget(self.region)
+
+    # Following
 
     def _on_replaced(self) -> None:
         """Another mesh: offer the policies of its kind."""
-        kind = self._document.kind
-        names = shipped(kind) if kind else []
-        with QSignalBlocker(self.policy):
-            self.policy.clear()
-            for name in names:
-                self.policy.addItem(name)
-            if not names:
-                self.policy.addItem("No policy yet" if not kind else NO_POLICY[kind])
-            if self._assistant.policy in names:
-                self.policy.setCurrentText(self._assistant.policy)
-        self.policy.setEnabled(bool(names))
+        names = self._fill()
         if self._assistant.policy not in names:
             self._assistant.policy = names[0] if names else ""
         self._on_assistant_changed()
 
+    def _fill(self) -> list[str]:
+        """The policies on offer, which the box lists from now on."""
+        kind = self._document.kind
+        names = shipped(kind) if kind else []
+        names += [path for path in self._files if kind and _is_for(path, kind)]
+        with QSignalBlocker(self.policy):
+            self.policy.clear()
+            for name in names:
+                self.policy.addItem(label(name), name)
+                if label(name) != name:
+                    self.policy.setItemData(
+                        self.policy.count() - 1, name, Qt.ItemDataRole.ToolTipRole
+                    )
+            if not names:
+                self.policy.addItem("No policy yet" if not kind else NO_POLICY[kind])
+        self.policy.setEnabled(bool(names))
+        self._select()
+        return names
+
+    def _select(self) -> None:
+        """Let the box show the policy that is followed."""
+        at = self.policy.findData(self._assistant.policy)
+        if at >= 0 and at != self.policy.currentIndex():
+            with QSignalBlocker(self.policy):
+                self.policy.setCurrentIndex(at)
+
     def _on_policy_chosen(self, index: int) -> None:
-        self._assistant.policy = self.policy.itemText(index)
+        name = self.policy.itemData(index)
+        if name:
+            self._assistant.choose(name)
+            self._select()  # what is chosen is followed only once it is loaded
 
     def _on_speed_moved(self, index: int) -> None:
         self._assistant.speed = SPEEDS[index]
         self.pace.setText(f"{SPEEDS[index]:g} per second")
+        self._keep("agent/speed", SPEEDS[index])
 
     def _on_assistant_changed(self) -> None:
-        state = self._assistant.state
-        playing = state is State.PLAYING
-        going_on = state is State.PAUSED and not playing
+        assistant = self._assistant
+        playing = assistant.state is State.PLAYING
+        self.play.setText(
+            "Pause" if playing else "Go on" if assistant.state is State.PAUSED else "Play"
+        )
         self.step.setIcon(icons.icon("step", self._theme))
         self.play.setIcon(icons.icon("pause" if playing else "play", self._theme))
-        self.play.setText("Pause" if playing else "Go on" if going_on else "Play")
-        self.progress.setText(progress(self._assistant))
+        self.stop.setText("Stop at once" if assistant.stopping else "Stop")
+        self.watch.setChecked(assistant.watch)
+        self._select()
+        if assistant.running != self._clock.isActive():
+            if assistant.running:
+                self._clock.start()
+            else:
+                self._clock.stop()
+        self._on_tick()
         self.refresh()
 
+    def _on_tick(self) -> None:
+        share = self._assistant.progress.share
+        self.bar.setVisible(share is not None)
+        self.bar.share = share or 0.0
+        text = told(self._assistant)
+        if text != self.progress.text():
+            self.progress.setText(text)
 
-def progress(assistant: Assistant) -> str:
+
+def told(assistant: Assistant) -> str:
     """What the assistant is doing, in a few words."""
-    count = assistant.progress.decisions
+    progress = assistant.progress
+    count = progress.decisions
     decisions = f"{count} decision{'' if count == 1 else 's'}"
+    best = "" if progress.best is None else f", best s {progress.best}"
     if assistant.loading:
         return "Loading the policy\u2026"
-    if assistant.state is State.PAUSED:
-        return f"Paused after {decisions}"
+    if assistant.hinting.asking:
+        return "Asking the policy\u2026"
+    if assistant.stopping:
+        return f"Stopping{best}"
     if assistant.state is State.SEARCHING:
-        best = assistant.progress.best
-        return "Searching\u2026" if best is None else f"Searching: s {best} is the best so far"
-    if assistant.running:
-        return f"{assistant.state.value.capitalize()}: {decisions}"
-    return f"{decisions} taken" if count else "Ready" if assistant.policy else ""
+        effort = progress.effort
+        done = (
+            f", {progress.rollouts} of {effort.rollouts} runs" if effort and effort.rollouts else ""
+        )
+        return f"Searching: {progress.elapsed:.1f} s{done}{best}"
+    if assistant.state is State.PAUSED:
+        return f"Paused after {decisions}{best}"
+    if assistant.state is State.PLAYING:
+        return f"Playing: {decisions}, {progress.elapsed:.0f} s{best}"
+    return f"{decisions} taken{best}" if count else "Ready" if assistant.policy else ""
 
 
-def _button(action: QAction, text: str) -> QPushButton:
-    """A button for ``action`` that leaves the keyboard to the canvas."""
-    made = QPushButton(text)
-    made.setToolTip(action.toolTip())
-    made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-    made.clicked.connect(action.trigger)
-    return made
+def _is_for(path: str, kind: str) -> bool:
+    """Whether there is a policy file for this kind of mesh; it may have gone since it was used."""
+    try:
+        return kind_of(path) == kind
+    except (ValueError, OSError):
+        return False
+
+
+def _line(*members: tuple[QWidget, int]) -> QHBoxLayout:
+    line = QHBoxLayout()
+    line.setSpacing(GRID)
+    for member, stretch in members:
+        line.addWidget(member, stretch)
+    return line

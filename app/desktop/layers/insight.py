@@ -1,0 +1,234 @@
+"""What the policy sees and wants: its field of view, its template, and its probabilities."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from qtpy.QtCore import QPointF, QRect, QRectF, Qt
+from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen
+
+from app.desktop.layers.hints import percent
+from app.desktop.layers.hover import arrow, polygon
+from app.desktop.layers.layer import Layer, pen
+from app.theme import Theme
+from meshcore import HalfEdgeMesh
+
+if TYPE_CHECKING:
+    from agent.choices import Insight
+
+READ = 0.05
+"""Probabilities from here on are written beside their half-edge."""
+ROOM = 34.0
+"""Numbers are written where the edges are longer than this, in pixels."""
+FAINT = 0.004
+"""Half-edges less likely than this are not drawn."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """An insight in the plane of the view, as the document's mesh was when it was had."""
+
+    field: np.ndarray
+    """(M, k, 2) corners of the elements in the field of view, the nearest first."""
+    blocks: np.ndarray
+    """(M,) the block of convolution with which each comes in."""
+    elements: np.ndarray
+    """(K, k, 2) corners of the elements of the half-edges that are weighed, the likeliest last."""
+    sides: np.ndarray
+    """(K,) which of its sides the half-edge is."""
+    weights: np.ndarray
+    """(K,) their probabilities."""
+    wanted: int
+    """The row of the half-edge that is taken next."""
+    places: np.ndarray
+    """(T, 2) the vertices of the template."""
+    slots: np.ndarray
+    """(T,) the slot of each."""
+    rings: np.ndarray
+    """(T,) the ring of each."""
+    words: tuple[str, ...]
+    """What there is to say of it."""
+
+
+def sight(insight: Insight, mesh: HalfEdgeMesh, words: tuple[str, ...] = ()) -> Sight:
+    """The insight as seen on `mesh`, which is in the state that it is about."""
+    order = np.argsort(insight.weights, kind="stable")
+    halfedges = insight.halfedges[order]
+    return Sight(
+        field=_corners(mesh, insight.field[:, 0]),
+        blocks=insight.field[:, 1],
+        elements=_corners(mesh, halfedges // mesh.k),
+        sides=halfedges % mesh.k,
+        weights=insight.weights[order],
+        wanted=int(np.flatnonzero(halfedges == insight.wanted.halfedge)[0]),
+        places=mesh.points[insight.template[:, 0], :2],
+        slots=insight.template[:, 1],
+        rings=insight.template[:, 2],
+        words=words,
+    )
+
+
+def _corners(mesh: HalfEdgeMesh, elements: np.ndarray) -> np.ndarray:
+    halfedges = (mesh.k * elements[:, None] + np.arange(mesh.k)).ravel()
+    corners = mesh.points[mesh.arrays.edge[halfedges, 0], :2]
+    return corners.reshape(-1, mesh.k, 2)
+
+
+class FieldLayer(Layer):
+    """The field of view as a tint; lies below the markers. The rest is :class:`InsightLayer`."""
+
+    def __init__(self, theme: Theme, font: QFont) -> None:
+        super().__init__(theme)
+        self.sight: Sight | None = None
+        self.above = InsightLayer(theme, font, self)
+
+    def show(self, sight: Sight | None) -> None:
+        """Show what the policy sees, or nothing."""
+        if sight is not None or self.sight is not None:
+            self.sight = sight
+            self.changed()
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """The later an element comes in, the paler it is."""
+        if self.sight is None:
+            return
+        painter.setPen(Qt.PenStyle.NoPen)
+        most = max(1, int(self.sight.blocks.max(initial=1)))
+        corners = self.viewport.to_screen(self.sight.field.reshape(-1, 2))
+        corners = corners.reshape(self.sight.field.shape)
+        for element, block in zip(corners, self.sight.blocks.tolist(), strict=True):
+            tint = QColor(self.theme.accent)
+            tint.setAlpha(round(84 - 56 * block / most))
+            painter.setBrush(tint)
+            painter.drawPolygon(polygon(element))
+
+
+class InsightLayer(Layer):
+    """Template vertices with their slots, probabilities on half-edges, and a few words."""
+
+    def __init__(self, theme: Theme, font: QFont, below: FieldLayer) -> None:
+        super().__init__(theme)
+        self._below = below
+        self._font = QFont(font)
+        self._font.setWeight(QFont.Weight.DemiBold)
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """From the least to the most important."""
+        seen = self._below.sight
+        if seen is None:
+            return
+        corners = self.viewport.to_screen(seen.elements.reshape(-1, 2))
+        corners = corners.reshape(seen.elements.shape)
+        heaviest = float(seen.weights.max(initial=FAINT))
+        for row, (element, side, weight) in enumerate(
+            zip(corners, seen.sides.tolist(), seen.weights.tolist(), strict=True)
+        ):
+            if weight >= FAINT and row != seen.wanted:
+                self._paint_halfedge(painter, element, side, weight, heaviest)
+        self._paint_template(painter, seen)
+        row = seen.wanted
+        weight = float(seen.weights[row])
+        side = int(seen.sides[row])
+        self._paint_halfedge(painter, corners[row], side, weight, heaviest, wanted=True)
+        self._paint_words(painter, seen.words)
+
+    def _paint_halfedge(
+        self,
+        painter: QPainter,
+        element: np.ndarray,
+        side: int,
+        weight: float,
+        heaviest: float,
+        wanted: bool = False,
+    ) -> None:
+        """An arrow as thick as the half-edge is likely, and its probability."""
+        tail, head = arrow(polygon(element), side)
+        along = head - tail
+        length = float(np.hypot(along.x(), along.y()))
+        if length < 1.0:
+            return
+        along /= length
+        normal = QPointF(-along.y(), along.x())
+        share = float(np.sqrt(weight / heaviest))
+        width = 1.0 + 3.0 * share
+        size = min(5.0 + width * 1.6, 0.45 * length)
+        path = QPainterPath(head)
+        path.lineTo(head - along * size + normal * (0.5 * size))
+        path.lineTo(head - along * size - normal * (0.5 * size))
+        path.closeSubpath()
+        end = head - along * (0.8 * size)
+        colour = QColor(self.theme.arrow)
+        colour.setAlpha(255 if wanted else round(70 + 130 * share))
+        if wanted:
+            painter.setPen(pen(self.theme.background, width + 3.5))
+            painter.drawLine(tail, end)
+        line = QPen(colour, width)
+        line.setCapStyle(Qt.PenCapStyle.FlatCap)
+        painter.setPen(line)
+        painter.drawLine(tail, end)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(colour)
+        painter.drawPath(path)
+        if (weight >= READ or wanted) and length > ROOM:
+            # on the left of the arrow, which is inside the element
+            self._paint_number(painter, (tail + head) / 2.0, normal, percent(weight), wanted)
+
+    def _paint_number(
+        self, painter: QPainter, at: QPointF, normal: QPointF, text: str, wanted: bool
+    ) -> None:
+        font = QFont(self._font)
+        font.setPixelSize(11)
+        width = QFontMetricsF(font).horizontalAdvance(text) + 8.0
+        reach = 6.0 + 0.5 * (abs(normal.x()) * width + abs(normal.y()) * 15.0)
+        middle = at - normal * reach
+        pill = QRectF(middle.x() - width / 2, middle.y() - 7.5, width, 15.0)
+        painter.setFont(font)
+        painter.setPen(QPen(QColor(self.theme.arrow if wanted else self.theme.line), 1.0))
+        painter.setBrush(QColor(self.theme.raised))
+        painter.drawRoundedRect(pill, 7.5, 7.5)
+        painter.setPen(QColor(self.theme.text))
+        painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, text)
+
+    def _paint_template(self, painter: QPainter, seen: Sight) -> None:
+        """A ring around each vertex, full for the element's own, dotted further out."""
+        font = QFont(self._font)
+        font.setPixelSize(10)
+        painter.setFont(font)
+        metrics = QFontMetricsF(font)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        at = self.viewport.to_screen(seen.places).tolist()
+        for (x, y), slot, ring in zip(at, seen.slots.tolist(), seen.rings.tolist(), strict=True):
+            rim = QPen(QColor(self.theme.arrow), 1.75)
+            rim.setStyle(Qt.PenStyle.SolidLine if ring == 0 else Qt.PenStyle.DotLine)
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.setPen(rim)
+            painter.drawEllipse(QPointF(x, y), 12.5, 12.5)
+            text = str(slot)
+            tag = QRectF(x + 8.0, y + 6.0, metrics.horizontalAdvance(text) + 7.0, 14.0)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(self.theme.raised))
+            painter.drawRoundedRect(tag, 7.0, 7.0)
+            painter.setPen(QColor(self.theme.arrow))
+            painter.drawText(tag, Qt.AlignmentFlag.AlignCenter, text)
+
+    def _paint_words(self, painter: QPainter, words: tuple[str, ...]) -> None:
+        """A card in the lower left corner: the numbers, and what the marks mean."""
+        if not words:
+            return
+        font = QFont(self._font)
+        font.setPixelSize(12)
+        font.setWeight(QFont.Weight.Normal)
+        metrics = QFontMetricsF(font)
+        width = max(metrics.horizontalAdvance(line) for line in words) + 24.0
+        height = 18.0 * len(words) + 14.0
+        card = QRectF(12.0, self.viewport.size[1] - height - 12.0, width, height)
+        painter.setFont(font)
+        painter.setPen(QPen(QColor(self.theme.line), 1.0))
+        painter.setBrush(QColor(self.theme.raised))
+        painter.drawRoundedRect(card, 6.0, 6.0)
+        for row, line in enumerate(words):
+            box = QRectF(card.left() + 12.0, card.top() + 7.0 + 18.0 * row, width - 24.0, 18.0)
+            painter.setPen(QColor(self.theme.text if row == 0 else self.theme.muted))
+            painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, line)
