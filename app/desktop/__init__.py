@@ -17,7 +17,7 @@ def run(source: Document | str | Path | None = None, kind: str = "quad", demo: b
     from app.desktop.interrupt import on_interrupt
 
     app = application()
-    window = open_window(source, kind, demo)
+    window = open_window(source, kind, demo, guided=True)
     with on_interrupt(window.close):
         code = int(app.exec())
     window.warmup.stop()

@@ -55,9 +55,16 @@ def font() -> QFont:
 
 
 def open_window(
-    source: Document | str | Path | None = None, kind: str = "quad", demo: bool = False
+    source: Document | str | Path | None = None,
+    kind: str = "quad",
+    demo: bool = False,
+    guided: bool = False,
 ) -> MainWindow:
-    """Make and show the window on ``source``, as in :func:`app.desktop.run`."""
+    """Make and show the window on ``source``, as in :func:`app.desktop.run`.
+
+    ``guided`` for a person's own window: it comes where it was last, and who has not seen the tour
+    is shown it.
+    """
     if source is None and demo:
         source = DEMO_SHAPE
     document = source if isinstance(source, Document) else Document()
@@ -66,6 +73,9 @@ def open_window(
         load(document, source, kind)
     if demo:
         window.warmup.ready.connect(window.assistant.prepare)
+    if guided:
+        window.preferences.restore_place()
+        window.opened.connect(window.guide.welcome)
     window.show()
     window.activateWindow()
     return window

@@ -1,44 +1,93 @@
 """What is shown in the place of a mesh while there is none."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import (
-    QHBoxLayout,
-    QPushButton,
-    QVBoxLayout,
-    QWidget,
-)
+from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
+from app.desktop import icons
 from app.desktop.widgets import named
 from app.theme import GRID
 
+MOST = 5
+"""Recent files that are offered."""
+
 
 class EmptyPage(QWidget):
-    """Shown in the canvas's place while there is no mesh."""
+    """Shown in the canvas's place while there is no mesh.
 
-    def __init__(self, new: Callable[[], None], open_file: Callable[[], None]) -> None:
+    ``new()`` and ``open_file()`` do what the buttons say, ``open_recent(path)`` what a click on a
+    recent file means.
+    """
+
+    def __init__(
+        self,
+        new: Callable[[], None],
+        open_file: Callable[[], None],
+        open_recent: Callable[[str], None],
+    ) -> None:
         super().__init__()
+        self._open_recent = open_recent
         self.setObjectName("Empty")
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
+        picture = named("", "Picture")
+        picture.setPixmap(icons.app_icon().pixmap(56, 56))
         title = named("No mesh yet", "EmptyTitle")
-        text = named("Take a shape from the gallery, or open a triangle or quad mesh.", "EmptyText")
-        shape, file = QPushButton("Take a shape\u2026"), QPushButton("Open a file\u2026")
-        shape.setObjectName("Primary")
-        shape.clicked.connect(lambda checked=False: new())
-        file.clicked.connect(lambda checked=False: open_file())
+        text = named("Make one from a shape, or open a triangle or quad mesh.", "EmptyText")
+        self.new = QPushButton("New mesh\u2026")
+        self.new.setObjectName("Primary")
+        self.new.setToolTip("Make a mesh of a shape  (Ctrl+N)")
+        self.open = QPushButton("Open a file\u2026")
+        self.open.setToolTip("Open a mesh file  (Ctrl+O)")
+        self.new.clicked.connect(lambda checked=False: new())
+        self.open.clicked.connect(lambda checked=False: open_file())
+        drop = named("A file can also be dropped here.", "Hint")
         buttons = QHBoxLayout()
         buttons.setSpacing(GRID)
         buttons.addStretch(1)
-        buttons.addWidget(shape)
-        buttons.addWidget(file)
+        buttons.addWidget(self.new)
+        buttons.addWidget(self.open)
         buttons.addStretch(1)
+        self._recent = QWidget()
+        self._column = QVBoxLayout(self._recent)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(0)
         layout = QVBoxLayout(self)
         layout.setSpacing(GRID)
-        layout.addStretch(1)
-        for part in (title, text):
+        layout.addStretch(3)
+        for part in (picture, title, text):
             part.setAlignment(Qt.AlignmentFlag.AlignHCenter)
             layout.addWidget(part)
         layout.addSpacing(2 * GRID)
         layout.addLayout(buttons)
-        layout.addStretch(1)
+        drop.setAlignment(Qt.AlignmentFlag.AlignHCenter)
+        layout.addSpacing(GRID)
+        layout.addWidget(drop)
+        layout.addSpacing(2 * GRID)
+        layout.addWidget(self._recent, 0, Qt.AlignmentFlag.AlignHCenter)
+        layout.addStretch(4)
+        self.recent: list[QPushButton] = []
+
+    def show_recent(self, paths: Sequence[str]) -> None:
+        """Offer these files, as far as they are still there."""
+        while (item := self._column.takeAt(0)) is not None:
+            item.widget().deleteLater()
+        self.recent = []
+        there = [path for path in paths if Path(path).is_file()][:MOST]
+        if not there:
+            return
+        heading = named("RECENT", "Heading")
+        heading.setAlignment(Qt.AlignmentFlag.AlignHCenter)
+        self._column.addWidget(heading)
+        for path in there:
+            button = QPushButton(Path(path).name)
+            button.setObjectName("Link")
+            button.setToolTip(path)
+            button.clicked.connect(partial(self._on_recent_clicked, path))
+            self._column.addWidget(button)
+            self.recent.append(button)
+
+    def _on_recent_clicked(self, path: str, checked: bool = False) -> None:
+        self._open_recent(path)

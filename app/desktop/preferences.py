@@ -25,6 +25,7 @@ class Preferences:
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._on_scheme_changed)
         self._apply_look()
         self._apply_editing()
+        self._apply_recent()
 
     def release(self) -> None:
         """Keep where the window is, and let go of the settings."""
@@ -38,13 +39,6 @@ class Preferences:
         """The theme to be used now: ``"light"`` or ``"dark"``."""
         chosen = self._window.settings.theme
         return system_theme() if chosen == SYSTEM else chosen
-
-    def _apply_look(self) -> None:
-        self._window.set_theme(self.theme)
-        self._window.canvas.overlay.markers.numbers = self._window.settings.numbers
-
-    def _apply_editing(self) -> None:
-        self._window.document.auto_smooth = self._window.settings.auto_smooth
 
     def restore_place(self) -> None:
         """Put the window where it was when it was closed last, if that is known."""
@@ -61,7 +55,9 @@ class Preferences:
         settings = self._window.settings
         settings.auto_smooth = not settings.auto_smooth
         self._window.say(
-            "Every operation is smoothed." if settings.auto_smooth else "Operations move nothing."
+            "Operations are smoothed again."
+            if settings.auto_smooth
+            else "Operations no longer move the vertices around them."
         )
 
     def show(self) -> None:
@@ -72,11 +68,23 @@ class Preferences:
         dialog.exec()
         dialog.deleteLater()
 
+    def _apply_look(self) -> None:
+        self._window.set_theme(self.theme)
+        self._window.canvas.overlay.markers.numbers = self._window.settings.numbers
+
+    def _apply_editing(self) -> None:
+        self._window.document.auto_smooth = self._window.settings.auto_smooth
+
+    def _apply_recent(self) -> None:
+        self._window.empty.show_recent(self._window.settings.recent)
+
     def _on_changed(self, key: str) -> None:
         if key.startswith("look/"):
             self._apply_look()
         elif key.startswith("editing/"):
             self._apply_editing()
+        elif key.startswith("files/recent"):
+            self._apply_recent()
         self._window.refresh()
 
     def _on_scheme_changed(self, scheme: Qt.ColorScheme) -> None:

@@ -28,6 +28,7 @@ from app.desktop.film import Film
 from app.desktop.glow import Lines
 from app.desktop.guide import Guide
 from app.desktop.inverted import Inverted
+from app.desktop.left_column import LeftColumn
 from app.desktop.operations_panel import OperationsPanel
 from app.desktop.pointing import Pointing
 from app.desktop.preferences import Preferences
@@ -103,7 +104,9 @@ class MainWindow(QMainWindow):
         self.addToolBar(self.toolbar)
         self._fill_menus()
         self.empty = pages.EmptyPage(
-            self.actions_by_id["new"].trigger, self.actions_by_id["open"].trigger
+            self.actions_by_id["new"].trigger,
+            self.actions_by_id["open"].trigger,
+            self.files.open,
         )
         self.pages = QStackedWidget()
         self.pages.addWidget(self.canvas)
@@ -118,6 +121,10 @@ class MainWindow(QMainWindow):
         self.row = QHBoxLayout(whole)  # what stands left of the canvas, the canvas, the sidebar
         self.row.setContentsMargins(0, 0, 0, 0)
         self.row.setSpacing(0)
+        self.left = LeftColumn(
+            Section("Operations", self.operations_panel, self.settings, self.theme)
+        )
+        self.row.addWidget(self.left)
         self.row.addWidget(middle, 1)
         self.sidebar = self._make_sidebar()
         self.row.addWidget(self.sidebar)
@@ -136,7 +143,6 @@ class MainWindow(QMainWindow):
         return Sidebar(
             (
                 Section("Score", self.score_panel, settings, self.theme),
-                Section("Operations", self.operations_panel, settings, self.theme),
                 Section("Agent", self.agent_panel, settings, self.theme),
                 Section("Quality", quality, settings, self.theme, quality.measures),
             )
@@ -230,12 +236,20 @@ class MainWindow(QMainWindow):
             self.dashboard,
             self.film,
             self.guide,
+            self.left,
             self.sidebar,
             self.agent_panel,
             self.operations_panel,
             self.notice,
         ):
             part.set_theme(self.theme)
+
+    def reveal(self, panel: QWidget) -> None:
+        """Unfold ``panel``, and scroll to it."""
+        if panel is self.left.section.panel:
+            self.left.reveal()
+        else:
+            self.sidebar.reveal(panel)
 
     def refresh(self) -> None:
         """Enable what makes sense now."""
