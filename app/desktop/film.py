@@ -51,7 +51,7 @@ class Film:
         self.panel = HistoryPanel(theme)
         self.timeline = Timeline(window.actions_by_id, theme)
         self.exporting = Exporting(window)
-        window.row.insertWidget(0, self.panel)
+        window.left.fill(self.panel)
         window.column.addWidget(self.exporting.bar)
         window.column.addWidget(self.timeline)
         for part in (self.panel, self.timeline.curve):

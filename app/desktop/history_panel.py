@@ -215,7 +215,6 @@ class HistoryPanel(QFrame):
     def __init__(self, theme: Theme) -> None:
         super().__init__()
         self.setObjectName("HistoryPanel")
-        self.setFixedWidth(WIDTH)
         self.model = HistoryModel()
         self.list = HistoryList()
         self.list.setModel(self.model)

@@ -38,9 +38,10 @@ def _widget(window: MainWindow, widget: QWidget | None) -> QRect | None:
 
 
 def _panel(window: MainWindow, panel: QWidget) -> QRect | None:
-    """The part of a panel of the sidebar that is to be seen."""
+    """The part of a panel beside the canvas that is to be seen."""
     whole = _widget(window, panel)
-    seen = _widget(window, window.sidebar)
+    left = window.left.isAncestorOf(panel)
+    seen = _widget(window, window.left if left else window.sidebar)
     return whole.intersected(seen) if whole is not None and seen is not None else None
 
 
@@ -181,7 +182,7 @@ class Tour(QObject):
     def _show(self) -> None:
         stop = self._stops[self._at]
         if stop.panel is not None:
-            self._window.sidebar.reveal(stop.panel(self._window))
+            self._window.reveal(stop.panel(self._window))
         done = stop.done if self._did[self._at] else ""
         self.callout.tell(self._at + 1, len(self._stops), stop.heading, stop.text, done)
         self._place()
