@@ -34,14 +34,15 @@ class Files:
         self._window.setWindowTitle(f"{document.name or 'No mesh'}[*] \u2013 Meshwright")
         self._window.setWindowModified(document.modified)
 
-    def new(self) -> None:
-        """Ask for a shape of the gallery and mesh it."""
-        from app.desktop.gallery import Gallery
+    def new(self, file: str = "") -> None:
+        """Ask for a shape and how it is meshed, beginning with ``file`` if one is given."""
+        from app.desktop.new_mesh import NewMeshDialog
 
         window = self._window
-        dialog = Gallery(window.document.kind, window.theme, window)
-        if dialog.exec():
-            self.make(dialog.shape, dialog.kind)
+        dialog = NewMeshDialog(window.document.kind, window.theme, window, file)
+        if dialog.exec() and dialog.made is not None:
+            made = dialog.made
+            window.document.replace(made.mesh(), made.name, made.path or None)
         dialog.deleteLater()
 
     def make(self, shape: str, kind: str) -> None:

@@ -259,8 +259,8 @@ def test_empty_state_and_a_shape_from_the_gallery(qtbot, open_window):
 
     def choose():
         dialog = QApplication.activeModalWidget()
-        dialog_seen.append(dialog.shapes.count())
-        dialog.kinds.buttons()[1].click()
+        dialog_seen.append(dialog.gallery.shapes.count())
+        dialog.options.kind.buttons["tri"].click()
         dialog.accept()
 
     QTimer.singleShot(300, choose)

@@ -56,7 +56,8 @@ class Coordinates(QTableWidget):
         self._rows: list[tuple[int, int]] = []
         self._began: list[float | None] = [None, None]
         sketch.changed.connect(self._fill)
-        self.itemChanged.connect(self._on_typed)
+        # later: while a cell is being edited its table must not change
+        self.cellChanged.connect(self._on_typed, Qt.ConnectionType.QueuedConnection)
         self.currentCellChanged.connect(self._on_current_changed)
         self._fill()
 
@@ -95,9 +96,9 @@ class Coordinates(QTableWidget):
             else:
                 item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
 
-    def _on_typed(self, item: QTableWidgetItem) -> None:
-        row, axis = item.row(), item.column() - 1
-        if axis < 0:
+    def _on_typed(self, row: int, column: int) -> None:
+        item, axis = self.item(row, column), column - 1
+        if axis < 0 or item is None:
             return
         text = item.text().strip()
         number = _number(text)

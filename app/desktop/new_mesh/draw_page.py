@@ -62,8 +62,8 @@ class DrawPage(Page):
         both.addWidget(self.area, 1)
         both.addWidget(self.table)
         hint = named(
-            "Click to add a corner, or type it in the table. Drag to move one, click an edge to put "
-            "one on it. Right click or Backspace takes back.",
+            "Click to add a corner, or type it in the table. Drag to move one, click an edge to "
+            "put one on it. Right click or Backspace takes back.",
             "Hint",
         )
         hint.setWordWrap(True)

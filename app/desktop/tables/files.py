@@ -7,8 +7,8 @@ from app.desktop.action import Action, has_mesh
 ACTIONS: tuple[Action, ...] = (
     Action(
         "new",
-        "New from shape\u2026",
-        "Make a mesh of a shape from the gallery",
+        "New\u2026",
+        "Make a mesh of a shape: gallery, random, drawn, or from a file",
         lambda window: window.files.new(),
         ("Ctrl+N",),
         menu="File",

@@ -1,0 +1,401 @@
+"""The dialog for new meshes, driven by real mouse and key events."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from driving import WAIT
+from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
+from qtpy.QtGui import QDropEvent
+from qtpy.QtWidgets import QApplication
+
+from app import making
+from app.desktop.new_mesh import NewMeshDialog
+from app.desktop.new_mesh.maker import Maker
+from app.theme import theme
+from meshcore import MeshError, generate, read, shapes, write
+
+LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
+SQUARE = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+REQUEST = {
+    "source": {"shape": "star"},
+    "kind": "quad",
+    "max_edge": None,
+    "min_angle": None,
+    "quads": None,
+}
+
+
+@pytest.fixture
+def dialog(qtbot):
+    """The dialog, with its first mesh made."""
+    made = NewMeshDialog("quad", theme("light"))
+    qtbot.addWidget(made)
+    made.show()
+    made.activateWindow()
+    qtbot.waitUntil(made.isActiveWindow, timeout=WAIT)
+    wait_for_mesh(qtbot, made)
+    yield made
+    made.reject()
+    assert made.maker._process is None
+    assert not [timer for timer in made.findChildren(QTimer) if timer.isActive()]
+
+
+def wait_for_mesh(qtbot, dialog) -> making.Made:
+    qtbot.waitUntil(lambda: dialog.made is not None, timeout=WAIT)
+    return dialog.made
+
+
+def wait_for_words(qtbot, dialog, words) -> None:
+    qtbot.waitUntil(lambda: words in dialog.status.text(), timeout=WAIT)
+
+
+class Pen:
+    """Draws on the drawing page by mouse events at places of the plane."""
+
+    def __init__(self, qtbot, dialog) -> None:
+        self.qtbot, self.area = qtbot, dialog.draw.area
+        dialog.tabs.buttons["draw"].click()
+        qtbot.waitUntil(lambda: self.area.width() > 300, timeout=WAIT)
+
+    def pixel(self, place) -> QPoint:
+        x, y = self.area.view.to_screen(np.array(place)).tolist()
+        return QPoint(round(x), round(y))
+
+    def point(self, *place) -> None:
+        self.qtbot.mouseMove(self.area, self.pixel(place))
+
+    def click(self, *place, button=LEFT) -> None:
+        self.point(*place)
+        self.qtbot.mouseClick(self.area, button, pos=self.pixel(place))
+
+    def drag(self, start, end) -> None:
+        self.point(*start)
+        self.qtbot.mousePress(self.area, LEFT, pos=self.pixel(start))
+        middle = np.mean([start, end], axis=0)
+        for place in (middle, end):
+            self.qtbot.mouseMove(self.area, self.pixel(place))
+        self.qtbot.mouseRelease(self.area, LEFT, pos=self.pixel(end))
+
+    def loop(self, places) -> None:
+        for place in [*places, places[0]]:
+            self.click(*place)
+
+
+@pytest.fixture
+def pen(qtbot, dialog):
+    return Pen(qtbot, dialog)
+
+
+def key(qtbot, widget, key, modifier=Qt.KeyboardModifier.NoModifier) -> None:
+    qtbot.keyClick(widget, key, modifier)
+
+
+# The gallery, and kind, size and quality
+
+
+def test_gallery_shows_every_shape_and_previews_the_chosen_one(qtbot, dialog):
+    pictures = dialog.gallery.shapes
+    assert pictures.count() == len(shapes.names())
+    assert dialog.options.numbers == {
+        "elements": "24", "vertices": "35", "score": "12", "optimum": "4",
+    }  # fmt: skip
+    place = pictures.visualItemRect(pictures.item(3)).center()
+    qtbot.mouseClick(pictures.viewport(), LEFT, pos=place)
+    assert dialog.made is None
+    assert dialog.options.numbers["elements"] == "\u2026"
+    made = wait_for_mesh(qtbot, dialog)
+    assert made.name == "l-shape"
+    assert dialog.options.numbers["elements"] == str(len(made.elements))
+
+
+def test_size_kind_and_quality_change_the_mesh(qtbot, dialog):
+    options = dialog.options
+    coarse = len(wait_for_mesh(qtbot, dialog).elements)
+    options.size_of.tick.click()
+    options.size_of.field.setValue(0.2)
+    fine = wait_for_mesh(qtbot, dialog)
+    assert len(fine.elements) > coarse
+    ends = fine.points[fine.edges]
+    assert np.hypot(*(ends[:, 0] - ends[:, 1])[:, :2].T).max() <= 0.2
+    assert options.rule.isVisible()
+    options.rule.buttons["pairing"].click()
+    paired = wait_for_mesh(qtbot, dialog)
+    assert paired.score < fine.score
+    options.kind.buttons["tri"].click()
+    assert not options.rule.isVisible()
+    triangles = wait_for_mesh(qtbot, dialog)
+    assert triangles.kind == "tri" and triangles.elements.shape[1] == 3
+    options.quality.tick.click()
+    options.quality.field.setValue(0.0)
+    assert len(wait_for_mesh(qtbot, dialog).elements) != len(triangles.elements)
+
+
+def test_slider_and_field_are_in_step(qtbot, dialog):
+    size = dialog.options.size_of
+    assert size.value is None and not size.slider.isEnabled()
+    size.tick.click()
+    size.slider.setValue(0)
+    coarsest = size.value
+    size.slider.setValue(size.slider.maximum())
+    assert size.value == pytest.approx(coarsest / 500, rel=0.05)
+    size.field.setValue(coarsest)
+    assert size.slider.value() == 0
+
+
+def test_too_many_elements_are_refused_in_one_sentence(qtbot, dialog):
+    size = dialog.options.size_of
+    size.tick.click()
+    wait_for_mesh(qtbot, dialog)
+    size.slider.setValue(size.slider.maximum())
+    size.field.setRange(1e-5, 1.0)
+    size.field.setDecimals(5)
+    size.field.setValue(2e-4)
+    wait_for_words(qtbot, dialog, "2,000,000 are the most")
+    assert "This mesh would need about" in dialog.status.text()
+    assert not dialog.make.isEnabled() and not dialog.mark.isHidden()
+
+
+def test_the_last_request_wins_and_the_window_answers_meanwhile(qtbot, dialog):
+    size = dialog.options.size_of
+    size.tick.click()
+    size.field.setRange(1e-4, 1.0)
+    size.field.setDecimals(5)
+    size.field.setValue(2e-3)  # some seconds of work
+    qtbot.waitUntil(lambda: dialog.maker._asked is not None, timeout=WAIT)
+    size.field.setValue(0.3)
+    made = wait_for_mesh(qtbot, dialog)
+    assert len(made.elements) < 1000
+    qtbot.wait(50)
+    assert dialog.made is made
+
+
+def test_make_waits_for_the_mesh(qtbot, dialog):
+    dialog.gallery.choose("gear")
+    assert dialog.made is None
+    dialog.make.click()
+    assert not dialog.make.isEnabled() and dialog.isVisible()
+    qtbot.waitUntil(lambda: not dialog.isVisible(), timeout=WAIT)
+    assert dialog.made.name == "gear"
+    mesh = dialog.made.mesh()
+    mesh.validate()
+    same = generate.mesh_domain(shapes.shape("gear"), "quad")
+    assert (mesh.points == same.points).all() and (mesh.elements() == same.elements()).all()
+    assert (mesh.desired() == same.desired()).all()
+
+
+# Random shapes
+
+
+def test_random_polygons_by_seed(qtbot, dialog):
+    dialog.tabs.buttons["random"].click()
+    page = dialog.random
+    made = wait_for_mesh(qtbot, dialog)
+    assert made.name == "polygon-10"
+    page.seed.setValue(7)
+    again = wait_for_mesh(qtbot, dialog)
+    corners = shapes.random_corners(10, np.random.default_rng(7))
+    assert (again.points[:10, :2] == corners).all()
+    assert page.pictures.key == 7
+    page.sides.setValue(15)
+    assert wait_for_mesh(qtbot, dialog).geometric.sum() == 15
+    page.dice.click()
+    assert page.seed.value() == page.pictures.key == 20
+    page.seed.setValue(123)
+    qtbot.waitUntil(lambda: page.pictures.key == 123, timeout=WAIT)
+    page.kind.buttons["part"].click()
+    part = wait_for_mesh(qtbot, dialog)
+    assert part.name == "part-15"
+    page.pictures.setCurrentRow(3)
+    assert page.seed.value() == page.pictures.key
+
+
+# Drawing
+
+
+def test_a_square_with_a_hole_is_drawn_with_the_mouse(qtbot, dialog, pen):
+    assert dialog.status.text() == "Click to place the first corner of the outline."
+    assert not dialog.make.isEnabled()
+    pen.loop(SQUARE)
+    assert not dialog.draw.sketch.open
+    pen.qtbot.mouseClick(dialog.draw.hole, LEFT)
+    assert "Click inside the outline" in dialog.status.text()
+    pen.loop([(-0.2, -0.2), (0.2, -0.2), (0, 0.2)])
+    assert dialog.draw.sketch.complete
+    made = wait_for_mesh(qtbot, dialog)
+    assert len(made.loops) == 2
+    places = {tuple(p) for p in made.points[made.geometric][:, :2].round(9).tolist()}
+    assert places == {*SQUARE, (-0.2, -0.2), (0.2, -0.2), (0.0, 0.2)}
+
+
+def test_right_click_and_backspace_take_back(qtbot, dialog, pen):
+    for place in SQUARE:
+        pen.click(*place)
+    pen.click(0.9, 0.9, button=RIGHT)
+    key(qtbot, dialog.draw.area, Qt.Key.Key_Backspace)
+    assert dialog.draw.sketch.loops[0].corners == tuple(SQUARE[:2])
+    key(qtbot, dialog.draw.area, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert len(dialog.draw.sketch.loops[0].corners) == 3
+    key(qtbot, dialog.draw.area, Qt.Key.Key_Return)
+    assert not dialog.draw.sketch.open and dialog.isVisible()
+
+
+def test_a_corner_is_dragged_as_one_edit_and_an_edge_takes_a_new_one(qtbot, dialog, pen):
+    pen.loop(SQUARE)
+    pen.drag((0.5, 0.5), (0.8, 0.7))
+    assert dialog.draw.sketch.loops[0].corners[2] == (0.8, 0.7)
+    dialog.draw.undo.click()
+    assert dialog.draw.sketch.loops[0].corners[2] == (0.5, 0.5)
+    pen.drag((0.0, 0.5), (0.0, 0.9))
+    corners = dialog.draw.sketch.loops[0].corners
+    assert len(corners) == 5 and corners[3] == (0.0, 0.9)
+    key(qtbot, dialog.draw.area, Qt.Key.Key_Delete)
+    assert dialog.draw.sketch.loops[0].corners == tuple(SQUARE)
+
+
+def test_what_crosses_is_said_before_and_after(qtbot, dialog, pen):
+    for place in [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5)]:
+        pen.click(*place)
+    pen.point(0.1, -0.9)
+    assert "crosses or touches itself" in dialog.status.text()
+    assert not dialog.mark.isHidden()
+    pen.click(0.1, -0.9)
+    assert "crosses or touches itself near" in dialog.status.text()
+    assert not dialog.make.isEnabled()
+    pen.click(0.1, -0.9, button=RIGHT)
+    pen.point(-0.5, 0.5)
+    assert "close the outline" in dialog.status.text()
+
+
+def test_snapping_to_right_angles_shows_guides_and_can_be_switched_off(qtbot, dialog, pen):
+    draw = dialog.draw
+    draw.to_grid.click()
+    pen.click(-0.53, -0.41)
+    first = draw.sketch.loops[0].corners[0]
+    pen.point(0.4, -0.4)
+    assert draw.area._snap.guides
+    pen.click(0.4, -0.4)
+    assert draw.sketch.loops[0].corners[1][1] == first[1]
+    draw.to_angles.click()
+    pen.click(0.42, 0.33)
+    assert draw.sketch.loops[0].corners[2][0] != draw.sketch.loops[0].corners[1][0]
+
+
+def test_coordinates_are_typed_in_the_table(qtbot, dialog, pen):
+    table, sketch = dialog.draw.table, dialog.draw.sketch
+
+    def enter(row, column, text):
+        table.setFocus()
+        table.setCurrentCell(row, column)
+        qtbot.keyClicks(table.viewport(), text[0])
+        editor = QApplication.focusWidget()
+        qtbot.keyClicks(editor, text[1:])
+        key(qtbot, editor, Qt.Key.Key_Return)
+        qtbot.wait(10)
+
+    for row, (x, y) in enumerate([("0", "0"), ("1,5", "0"), ("1.5", "2")]):
+        enter(row, 1, x)
+        enter(row, 2, y)
+    assert sketch.loops[0].corners == ((0, 0), (1.5, 0), (1.5, 2))
+    assert dialog.isVisible()
+    enter(2, 2, "-1")
+    assert sketch.loops[0].corners[2] == (1.5, -1)
+    assert table.item(2, 2).text() == "\u22121"
+    enter(0, 1, "two")
+    assert "'two' is not a number" in dialog.status.text()
+    assert sketch.loops[0].corners[0] == (0, 0)
+    pen.click(*sketch.loops[0].corners[1])
+    assert table.currentRow() == 1
+
+
+# Files
+
+
+def test_a_drawing_is_chosen_and_meshed(qtbot, dialog, tmp_path):
+    path = tmp_path / "plate.svg"
+    path.write_text('<svg xmlns="http://www.w3.org/2000/svg"><rect width="40" height="20"/></svg>')
+    dialog.tabs.buttons["file"].click()
+    assert dialog.status.text() == "Choose a file, or drop one here."
+    qtbot.keyClicks(dialog.file.path, str(path))
+    key(qtbot, dialog.file.path, Qt.Key.Key_Return)
+    made = wait_for_mesh(qtbot, dialog)
+    assert dialog.isVisible()
+    assert (made.name, made.path, made.kind) == ("plate", "", "quad")
+    dialog.options.size_of.tick.click()
+    assert dialog.options.size_of.value > 1
+    dialog.file.take(str(tmp_path / "missing.svg"))
+    wait_for_words(qtbot, dialog, "there is no such file")
+    assert not dialog.make.isEnabled()
+
+
+def test_a_mesh_file_is_opened_as_it_is(qtbot, dialog, tmp_path, star):
+    write(tmp_path / "star.vtk", star)
+    dialog.show_page("file")
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(tmp_path / "star.vtk"))])
+    event = QDropEvent(
+        QPointF(9, 9), Qt.DropAction.CopyAction, data, LEFT, Qt.KeyboardModifier.NoModifier
+    )
+    dialog.file.dropEvent(event)
+    made = wait_for_mesh(qtbot, dialog)
+    assert not dialog.options.settings.isEnabled()
+    assert dialog.make.text() == "Open mesh"
+    assert Path(made.path) == tmp_path / "star.vtk"
+    assert (made.mesh().elements() == read(tmp_path / "star.vtk").elements()).all()
+
+
+# The window, the process
+
+
+def test_the_window_takes_the_drawn_mesh(qtbot, open_window):
+    window = open_window()
+
+    def draw():
+        dialog = QApplication.activeModalWidget()
+        Pen(qtbot, dialog).loop(SQUARE)
+        dialog.make.click()
+
+    QTimer.singleShot(200, draw)
+    window.actions_by_id["new"].trigger()
+    assert window.document.name == "drawing"
+    assert window.document.mesh.geometric().sum() == 4
+    assert window.pages.currentWidget() is window.canvas
+
+
+def test_a_process_that_dies_is_told_and_replaced(qtbot):
+    maker = Maker()
+    maker.start()
+    maker.ask({**REQUEST, "max_edge": 1.5e-3}, at_once=True)
+    qtbot.waitUntil(lambda: maker._asked is not None, timeout=WAIT)
+    with qtbot.waitSignal(maker.failed, timeout=WAIT) as told:
+        maker._process.kill()
+    assert "process at work ended" in told.args[0]
+    with qtbot.waitSignal(maker.made, timeout=WAIT) as made:
+        maker.ask(REQUEST, at_once=True)
+    assert made.args[0].score == 12
+    maker.close()
+
+
+def test_frames_hold_all_and_come_one_after_the_other():
+    made = making.make(REQUEST)
+    content = making.frame(made) + making.frame("No.")
+    assert making.unframed(content[:100]) is None
+    again, rest = making.unframed(content)
+    assert json.dumps([again.name, again.kind, again.score]) == '["star", "quad", 12]'
+    assert all((getattr(again, f) == getattr(made, f)).all() for f in ("points", "rim", "desired"))
+    assert making.unframed(rest) == ("No.", b"")
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"source": {"shape": "sta"}}, "did you mean"),
+        ({"source": {"domain": {"outline": [[0, 0], [1, 1]]}}}, "at least 3"),
+        ({"max_edge": 1e-4}, "2,000,000 are the most"),
+        ({"min_angle": 60}, "34"),
+    ],
+)
+def test_bad_requests_end_in_a_sentence(change, says):
+    with pytest.raises(MeshError, match=says):
+        making.make({**REQUEST, **change})
