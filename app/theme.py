@@ -248,7 +248,8 @@ QStatusBar QLabel {{ color: {t.muted}; font-size: 12px; padding: 0 8px; }}
 #EmptyText {{ color: {t.muted}; font-size: 14px; }}
 
 #Timeline {{ background: {t.panel}; border: 0; border-top: 1px solid {t.line}; }}
-#HistoryPanel {{ background: {t.panel}; border: 0; border-right: 1px solid {t.line}; }}
+#LeftColumn {{ background: {t.panel}; border: 0; border-right: 1px solid {t.line}; }}
+#HistoryPanel {{ background: transparent; border: 0; }}
 #ExportBar {{ background: {t.panel}; border: 0; border-top: 1px solid {t.line}; }}
 #History {{ background: transparent; border: 0; }}
 QToolButton#Walk {{ padding: 5px; }}
