@@ -18,7 +18,7 @@ def run(source: Document | str | Path | None = None, kind: str = "quad", demo: b
 
     app = application()
     window = open_window(source, kind, demo, guided=True)
-    with on_interrupt(window.close):
+    with on_interrupt(window.files.leave):
         code = int(app.exec())
     window.warmup.stop()
     return code

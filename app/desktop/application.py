@@ -62,8 +62,8 @@ def open_window(
 ) -> MainWindow:
     """Make and show the window on ``source``, as in :func:`app.desktop.run`.
 
-    ``guided`` for a person's own window: it comes where it was last, and who has not seen the tour
-    is shown it.
+    ``guided`` for a person's own window: it comes where it was last, keeps every step, asks before
+    unsaved work is dropped, offers what was lost, and who has not seen the tour is shown it.
     """
     if source is None and demo:
         source = DEMO_SHAPE
@@ -75,6 +75,7 @@ def open_window(
         window.warmup.ready.connect(window.assistant.prepare)
     if guided:
         window.preferences.restore_place()
+        window.files.watch()
         window.opened.connect(window.guide.welcome)
     window.show()
     window.activateWindow()

@@ -2,16 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from qtpy.QtWidgets import QFileDialog
+from qtpy.QtCore import QPoint, Qt
+from qtpy.QtWidgets import QApplication, QFileDialog
 
+from app.desktop.dropping import Dropping
+from app.desktop.guard import Guard
+from app.desktop.recent import RecentMenu
 from app.desktop.widgets import sentence
-from meshcore import io
+from app.policy_files import shipped
+from app.project import ENDING, is_project
+from app.viewport import FARTHEST, NEAREST
+from meshcore import formats, io
 
 if TYPE_CHECKING:
     from app.desktop.window import MainWindow
+
+MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"
+USUAL = ".vtk"
+"""The ending of a mesh file whose name is typed without one."""
 
 
 class Files:
@@ -19,26 +34,69 @@ class Files:
 
     def __init__(self, window: MainWindow) -> None:
         self._window = window
+        self.dropping: Dropping | None = None
+        self.recent: RecentMenu | None = None
+        self.guard: Guard | None = None
 
     def connect(self) -> None:
-        """Follow the document."""
-        self._window.document.saved_changed.connect(self._on_saved_changed)
+        """Follow the document; take files that are dropped."""
+        window = self._window
+        window.document.saved_changed.connect(self._on_saved_changed)
+        window.opened.connect(self._on_opened)
+        self.dropping = Dropping(window, self.open)
+        self.recent = RecentMenu(window.settings, self.open, window)
+        window.actions_by_id["recent"].setMenu(self.recent)
         self._on_saved_changed()
 
     def release(self) -> None:
         """Let go of the document."""
         self._window.document.saved_changed.disconnect(self._on_saved_changed)
+        if self.dropping is not None:
+            self.dropping.release()
+        if self.guard is not None:
+            self.guard.release()
+
+    def watch(self, folder: Path | None = None) -> None:
+        """From now on keep every step, and ask before unsaved work is dropped; what was lost when a
+        process died is offered once the window is there.
+        """
+        self.guard = Guard(self._window, folder)
+        self._window.opened.connect(self.guard.offer)
+
+    def may_drop(self) -> bool:
+        """Whether the mesh may give way to another one, or to nothing."""
+        return self.guard is None or self.guard.may_drop()
+
+    def leave(self) -> None:
+        """Close the window at once, without a question; nothing is lost by that."""
+        if self.guard is not None:
+            self.guard.leave()
+        else:
+            self._window.close()
+
+    def ask_for_lost(self) -> None:
+        """Offer work that was lost when a process died."""
+        if self.guard is not None:
+            self.guard.ask_for_lost()
+
+    def _on_opened(self) -> None:
+        # it would read dropped files on its own, past the document
+        self._window.canvas.plotter.setAcceptDrops(False)
 
     def _on_saved_changed(self) -> None:
         document = self._window.document
         self._window.setWindowTitle(f"{document.name or 'No mesh'}[*] \u2013 Meshwright")
         self._window.setWindowModified(document.modified)
 
+    # Another mesh
+
     def new(self, file: str = "") -> None:
         """Ask for a shape and how it is meshed, beginning with ``file`` if one is given."""
         from app.desktop.new_mesh import NewMeshDialog
 
         window = self._window
+        if not self.may_drop():
+            return
         dialog = NewMeshDialog(window.document.kind, window.theme, window, file)
         if dialog.exec() and dialog.made is not None:
             made = dialog.made
@@ -54,53 +112,138 @@ class Files:
         except ValueError as error:
             self._window.notice.tell(one_line(error))
         else:
-            self._window.document.replace(mesh, shape)
+            if self.may_drop():
+                self._window.document.replace(mesh, shape)
 
     def choose(self) -> None:
         """Ask for a file and open it."""
         path = self._window.document.path
         folder = str(path.parent) if path else ""
-        chosen, _ = QFileDialog.getOpenFileName(self._window, "Open a mesh", folder, patterns())
+        chosen, _ = QFileDialog.getOpenFileName(self._window, "Open", folder, to_open())
         if chosen:
             self.open(chosen)
 
     def open(self, path: str | Path) -> None:
-        """Open a mesh file."""
+        """Open a mesh file, a project, or the shape in a geometry file."""
+        window, place = self._window, Path(path).absolute()
+        if not self.may_drop():
+            return
         try:
-            self._window.document.open(path)
+            with waiting():
+                window.document.open(place)
         except (ValueError, OSError) as error:
-            self._window.notice.tell(one_line(error))
-        else:
-            self._window.canvas.fit()
+            if not place.exists():
+                window.settings.recent = [
+                    one for one in window.settings.recent if one != str(place)
+                ]
+            window.notice.tell(one_line(error))
+            return
+        self._remember(place)
+        self.show_all()
 
-    def save(self) -> None:
-        """Write the mesh to its file, or ask for one."""
+    def show_all(self) -> None:
+        """Look at the mesh as a project says, else at all of it."""
+        window = self._window
+        window.canvas.fit()
+        kept = window.document.settings
+        view = kept.get("view")
+        if isinstance(view, list) and len(view) == 3 and all(map(_is_length, view)) and view[2] > 0:
+            x, y, width = view
+            seen = window.canvas.viewport
+            pixels = min(max(seen.size[0] / width, NEAREST), FARTHEST)
+            window.canvas.see(replace(seen, centre=(x, y), pixels=pixels))
+        if kept.get("policy") in shipped(window.document.kind):
+            window.assistant.policy = kept["policy"]
+
+    def show_recent(self) -> None:
+        """Open the menu of recent files in the middle of the window."""
+        if self.recent is not None:
+            middle = self._window.mapToGlobal(self._window.rect().center())
+            self.recent.popup(middle - self.recent.sizeHint().width() * QPoint(1, 0) / 2)
+
+    # Saving
+
+    def save(self) -> bool:
+        """Write the mesh to its file, or ask for one; whether it is written."""
         if self._window.document.path is None:
-            self.save_as()
-        else:
-            self._save(None)
+            return self.save_as()
+        return self._save(None)
 
-    def save_as(self) -> None:
-        """Ask for a file and write the mesh to it."""
+    def save_as(self) -> bool:
+        """Ask for a file and write the mesh to it, or all of the work to a project."""
         document = self._window.document
-        start = str(document.path or f"{document.name or 'mesh'}.vtk")
-        path, _ = QFileDialog.getSaveFileName(self._window, "Save the mesh as", start, patterns())
-        if path:
-            self._save(path)
+        start = str(document.path or f"{document.name or 'mesh'}{USUAL}")
+        chosen = PROJECTS if document.path and is_project(document.path) else MESHES
+        filters = {one.partition(" (")[0]: one for one in to_save().split(";;")}
+        path, kind = QFileDialog.getSaveFileName(
+            self._window, "Save as", start, to_save(), filters[chosen]
+        )
+        if path and not Path(path).suffix:
+            path += ENDING if kind.startswith(PROJECTS) else USUAL
+        return bool(path) and self._save(path)
 
-    def _save(self, path: str | None) -> None:
+    def _save(self, path: str | None) -> bool:
+        window = self._window
+        viewport = window.canvas.viewport
+        window.document.settings.update(
+            policy=window.assistant.policy,
+            view=[*viewport.centre, viewport.size[0] / viewport.pixels],
+        )
         try:
-            written = self._window.document.save(path)
+            with waiting():
+                written = window.document.save(path)
         except (ValueError, OSError) as error:
-            self._window.notice.tell(one_line(error))
-        else:
-            self._window.say(f"Saved {written.name}.")
+            window.notice.tell(one_line(error))
+            return False
+        self._remember(written)
+        window.say(f"Saved {written.name}.{left_out(written)}")
+        return True
+
+    def _forget(self, path: Path) -> None:
+        settings = self._window.settings
+        settings.recent = [one for one in settings.recent if one != str(path)]
+
+    def _remember(self, path: Path) -> None:
+        settings = self._window.settings
+        settings.recent = [str(path.absolute()), *settings.recent]
 
 
-def patterns() -> str:
-    """The endings that the file dialogs offer."""
-    endings = " ".join(f"*{ending}" for ending in io.endings())
-    return f"Meshes ({endings});;All files (*)"
+@contextmanager
+def waiting() -> Iterator[None]:
+    """The mouse pointer says that it takes a moment."""
+    QApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
+    try:
+        yield
+    finally:
+        QApplication.restoreOverrideCursor()
+
+
+def to_open() -> str:
+    """The groups of files that can be opened."""
+    groups = {MESHES: io.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
+    return _filters({"All that can be opened": sum(groups.values(), ()), **groups})
+
+
+def to_save() -> str:
+    """The groups of files that can be written."""
+    return _filters({MESHES: io.endings(), PROJECTS: (ENDING,)})
+
+
+def _filters(groups: dict[str, tuple[str, ...]]) -> str:
+    named = [f"{name} ({' '.join(f'*{end}' for end in ends)})" for name, ends in groups.items()]
+    return ";;".join(named)
+
+
+def left_out(path: Path) -> str:
+    """What a mesh file of this kind does not keep, as a sentence; empty if nothing."""
+    if is_project(path) or formats.of(path).data:
+        return ""
+    title = formats.of(path).title
+    return f" {title} files keep no corners, desired degrees or history; a project does."
+
+
+def _is_length(value: Any) -> bool:
+    return isinstance(value, int | float) and isfinite(value) and abs(value) < FARTHEST
 
 
 def one_line(error: Exception) -> str:

@@ -215,7 +215,10 @@ class MainWindow(QMainWindow):
             QTimer.singleShot(0, self.warmup.start)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """End runs and threads, free VTK's resources."""
+        """Ask for what is not saved; then end runs and threads, free VTK's resources."""
+        if not self.files.may_drop():
+            event.ignore()
+            return
         self.warmup.stop()
         self._release()
         super().closeEvent(event)

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from app.desktop.action import Action, has_mesh
+from typing import TYPE_CHECKING
+
+from app.desktop.action import Action, has_mesh, needing
+
+if TYPE_CHECKING:
+    from app.desktop.window import MainWindow
+
+
+@needing("No file has been opened or saved yet.")
+def has_recent(window: MainWindow) -> bool:
+    """There are files to be opened again."""
+    return bool(window.settings.recent)
+
 
 ACTIONS: tuple[Action, ...] = (
     Action(
@@ -17,11 +29,20 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "open",
         "Open\u2026",
-        "Open a mesh file",
+        "Open a mesh, a project, or the shape in a drawing",
         lambda window: window.files.choose(),
         ("Ctrl+O",),
         menu="File",
         icon="open",
+    ),
+    Action(
+        "recent",
+        "Open recent",
+        "Files that were opened or saved lately",
+        lambda window: window.files.show_recent(),
+        (),
+        has_recent,
+        menu="File",
     ),
     Action(
         "save",
@@ -36,10 +57,18 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "save_as",
         "Save as\u2026",
-        "Write the mesh to another file",
+        "Write the mesh to another file, or all of the work to a project",
         lambda window: window.files.save_as(),
         ("Ctrl+Shift+S",),
         has_mesh,
+        menu="File",
+    ),
+    Action(
+        "recover",
+        "Recover lost work\u2026",
+        "Take up what was not saved when the program ended without closing",
+        lambda window: window.files.ask_for_lost(),
+        (),
         menu="File",
     ),
     Action(

@@ -1,0 +1,103 @@
+"""Files dropped on the window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import QEvent, QMimeData, QObject, QRectF, Qt
+from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen
+from qtpy.QtWidgets import QWidget
+
+from app.theme import GRID, Theme
+
+if TYPE_CHECKING:
+    from app.desktop.window import MainWindow
+
+
+class Dropping(QObject):
+    """Lets files be dropped on ``window``; ``open_file(path)`` gets the first of them."""
+
+    def __init__(self, window: MainWindow, open_file: Callable[[str], object]) -> None:
+        super().__init__(window)
+        self._window = window
+        self._open = open_file
+        self.veil = Veil(window)
+        window.setAcceptDrops(True)
+        window.installEventFilter(self)
+
+    def release(self) -> None:
+        """Take no more files."""
+        self._window.removeEventFilter(self)
+        self._window.setAcceptDrops(False)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Show what would happen while a file is over the window; open it when it is let go."""
+        kind = event.type()
+        if kind == QEvent.Type.DragEnter:
+            path = dropped(event.mimeData())
+            if path:
+                event.acceptProposedAction()
+                self.veil.show_for(path, self._window.theme)
+            return True
+        if kind == QEvent.Type.DragLeave:
+            self.veil.hide()
+            return True
+        if kind == QEvent.Type.Drop:
+            self.veil.hide()
+            path = dropped(event.mimeData())
+            if path:
+                event.acceptProposedAction()
+                self._open(path)
+            return True
+        return False
+
+
+class Veil(QWidget):
+    """Over the whole window: the name of what would be opened."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._theme = window.theme
+        self._name = ""
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        """What it says."""
+        return f"Drop to open {self._name}"
+
+    def show_for(self, path: str, theme: Theme) -> None:
+        """Cover the window with the name of this file."""
+        self._name, self._theme = Path(path).name, theme
+        self.setGeometry(self.parentWidget().rect())
+        self.raise_()
+        self.show()
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """A dashed frame with words in its middle."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        ground = QColor(self._theme.background)
+        ground.setAlphaF(0.88)
+        painter.fillRect(self.rect(), ground)
+        frame = QRectF(self.rect()).adjusted(2 * GRID, 2 * GRID, -2 * GRID, -2 * GRID)
+        painter.setPen(QPen(QColor(self._theme.accent), 2, Qt.PenStyle.DashLine))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRoundedRect(frame, GRID, GRID)
+        font = self.font()
+        font.setPixelSize(22)
+        painter.setFont(font)
+        painter.setPen(QColor(self._theme.text))
+        room = painter.fontMetrics().elidedText(
+            self.text, Qt.TextElideMode.ElideMiddle, int(frame.width()) - 4 * GRID
+        )
+        painter.drawText(frame, Qt.AlignmentFlag.AlignCenter, room)
+        painter.end()
+
+
+def dropped(data: QMimeData) -> str:
+    """Path of the first file in what is dragged, empty if there is none."""
+    return next((url.toLocalFile() for url in data.urls() if url.isLocalFile()), "")

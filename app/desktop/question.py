@@ -1,0 +1,69 @@
+"""A question with its answers as buttons, in the window's look."""
+
+from collections.abc import Sequence
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import QDialog, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from app.desktop.widgets import named
+from app.theme import GRID
+
+
+class Question(QDialog):
+    """Asks ``title``, with ``text`` below it; :attr:`answer` is the id of the button pressed.
+
+    ``answers`` are (id, word), the recommended one last; ``aside`` stands apart at the left, for
+    the one that loses something. Escape gives the empty answer.
+    """
+
+    def __init__(
+        self,
+        title: str,
+        text: str,
+        answers: Sequence[tuple[str, str]],
+        aside: tuple[str, str] | None = None,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self.answer = ""
+        self.buttons: dict[str, QPushButton] = {}
+        self.setWindowTitle("Meshwright")
+        self.setFixedWidth(440)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
+        layout.setSpacing(GRID)
+        heading, story = named(title, "Question"), named(text, "Label")
+        for part in (heading, story):
+            part.setWordWrap(True)
+            part.setTextFormat(Qt.TextFormat.PlainText)
+            layout.addWidget(part)
+        layout.addSpacing(2 * GRID)
+        line = QHBoxLayout()
+        line.setSpacing(GRID)
+        if aside is not None:
+            line.addWidget(self._button(*aside))
+        line.addStretch(1)
+        for answer, word in answers:
+            line.addWidget(self._button(answer, word))
+        recommended = self.buttons[answers[-1][0]]
+        recommended.setObjectName("Primary")
+        recommended.setDefault(True)
+        recommended.setFocus()
+        layout.addLayout(line)
+
+    def _button(self, answer: str, word: str) -> QPushButton:
+        button = QPushButton(word)
+        button.setAutoDefault(False)
+        button.clicked.connect(lambda checked=False: self._take(answer))
+        self.buttons[answer] = button
+        return button
+
+    def _take(self, answer: str) -> None:
+        self.answer = answer
+        self.accept()
+
+    def ask(self) -> str:
+        """Wait for the answer."""
+        self.exec()
+        self.deleteLater()
+        return self.answer
