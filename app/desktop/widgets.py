@@ -128,7 +128,8 @@ class Link(QWidget):
         layout.addWidget(named(title, "Label"))
         layout.addStretch(1)
         layout.addWidget(self._value)
-        self.setToolTip(tooltip)
+        for part in (self, self._value):
+            part.setToolTip(tooltip)
         self.show_value("\u2013")
 
     @property
@@ -166,6 +167,7 @@ class Notice(QFrame):
         self._close = QToolButton()
         self._close.setObjectName("NoticeClose")
         self._close.setToolTip("Close this message")
+        self._close.setAccessibleName("Close this message")
         self._close.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._close.clicked.connect(self.hide)
         layout.addWidget(self._text, 1)

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from app.assistant import State
-from app.desktop.action import Action, can_run
+from app.desktop.action import Action, can_run, needing
 from app.searching import COMPLETE_SECONDS
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ HINTS = 5
 """Hints that have a key of their own."""
 
 
+@needing("Needs a mesh, and an agent that is ready.")
 def _can_hint(window: MainWindow) -> bool:
     return can_run(window) and window.assistant.state is not State.SEARCHING
 

@@ -15,7 +15,7 @@ def _operation(info: OperationInfo) -> Action:
     return Action(
         id=operation_id(info),
         title=info.title,
-        tooltip=info.summary,
+        tooltip=info.summary[:1].upper() + info.summary[1:],
         run=lambda window: window.editing.operate(info.operation),
         shortcuts=(info.key.upper(),),
         enabled=lambda window: window.document.kind == info.kind,

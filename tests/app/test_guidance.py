@@ -1,0 +1,107 @@
+"""Whoever opens the window for the first time, without a mouse or without eyes, finds the way."""
+
+import pytest
+from driving import WAIT
+from qtpy.QtCore import QObject, Qt
+from qtpy.QtWidgets import (
+    QAbstractButton,
+    QAbstractSlider,
+    QAbstractSpinBox,
+    QComboBox,
+    QLineEdit,
+    QScrollBar,
+    QWidget,
+)
+
+from app.desktop import actions
+from app.desktop.about import AboutDialog
+from app.desktop.application import open_window as open_a_window
+from app.desktop.preferences_dialog import PreferencesDialog
+from app.document import Document
+from meshcore import io
+
+CONTROLS = (QAbstractButton, QAbstractSlider, QAbstractSpinBox, QComboBox, QLineEdit)
+
+
+def controls(parent: QObject) -> list[QWidget]:
+    """What a person can use, without the parts that Qt makes for itself."""
+    return [
+        found
+        for kind in CONTROLS
+        for found in parent.findChildren(kind)
+        if found.isVisibleTo(parent)
+        and not isinstance(found, QScrollBar)
+        and not found.objectName().startswith("qt_")
+        and not isinstance(found.parent(), QAbstractSpinBox | QComboBox)
+        and type(found).__name__ not in ("QTableCornerButton",)
+    ]
+
+
+def told(control: QWidget) -> str:
+    text = control.text() if isinstance(control, QAbstractButton) else ""
+    return control.accessibleName() or text.strip(" .\u2026\u00b7")
+
+
+def where(control: QWidget) -> str:
+    names = []
+    part: QObject | None = control
+    while part is not None:
+        names.append(type(part).__name__ + (f"#{part.objectName()}" if part.objectName() else ""))
+        part = part.parent()
+    return " < ".join(names[:4])
+
+
+@pytest.mark.parametrize("kind", ["quad", "tri", "none"])
+def test_every_control_of_the_window_has_a_name_and_a_tooltip(open_window, star, triangles, kind):
+    window = open_window({"quad": star, "tri": triangles, "none": None}[kind])
+    found = controls(window)
+    assert len(found) > 20
+    nameless = [where(control) for control in found if not told(control)]
+    assert not nameless, "\n".join(nameless)
+    without = [f"{told(control)}: {where(control)}" for control in found if not control.toolTip()]
+    assert not without, "\n".join(without)
+
+
+@pytest.mark.parametrize("page", [PreferencesDialog, AboutDialog])
+def test_every_control_of_the_dialogs_has_them_too(qtbot, open_window, star, page):
+    window = open_window(star)
+    dialog = page(window.settings, window) if page is PreferencesDialog else page(window)
+    qtbot.addWidget(dialog)
+    found = controls(dialog)
+    assert [where(control) for control in found if not told(control)] == []
+    assert [told(control) for control in found if not control.toolTip()] == []
+
+
+def test_every_action_says_what_it_does():
+    for action in actions.ACTIONS:
+        assert action.title and action.tooltip and action.menu, action.id
+        assert not action.tooltip.endswith("."), action.id
+        assert action.tooltip[0].isupper(), action.id
+        assert len(action.tooltip) < 100, action.id
+
+
+def test_all_that_is_reached_by_the_mouse_is_reached_by_tab(open_window, star):
+    window = open_window(star)
+    for button in controls(window.sidebar):
+        assert button.focusPolicy() & Qt.FocusPolicy.TabFocus, where(button)
+
+
+def test_a_persons_own_window_shows_the_tour_once(qtbot, open_window, star):
+    open_window(star).settings.clear()  # tests have settings of their own
+    for expected in (True, False):
+        window = open_a_window(Document(star.copy(), "star"), guided=True)
+        qtbot.addWidget(window)
+        qtbot.waitUntil(lambda window=window: window.canvas.plotter is not None, timeout=WAIT)
+        assert (window.guide.tour is not None) == expected
+        window.close()
+
+
+def test_recent_files_are_offered_where_there_is_no_mesh(qtbot, open_window, star, tmp_path):
+    path = tmp_path / "part.vtk"
+    io.write(path, star)
+    window = open_window()
+    window.settings.recent = [str(path), str(tmp_path / "gone.vtk")]
+    assert [button.text() for button in window.empty.recent] == ["part.vtk"]
+    qtbot.mouseClick(window.empty.recent[0], Qt.MouseButton.LeftButton)
+    assert window.document.mesh.n_elements == star.n_elements
+    assert window.pages.currentWidget() is window.canvas
