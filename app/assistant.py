@@ -190,8 +190,10 @@ class Assistant:
 
     def pause(self) -> None:
         """Hold a played run; :meth:`play` goes on, :meth:`step` takes one decision more."""
-        if self._state is State.PLAYING:
+        run = self._run
+        if run is not None and run.state is State.PLAYING:
             self._end(State.PAUSED)
+            self._tidy(run)
 
     def search(self, effort: Effort | None = None) -> None:
         """Look for the best state within `effort` and go there by the shortest way found."""
@@ -203,8 +205,10 @@ class Assistant:
         if run is not None and run.state is State.SEARCHING and not run.enough.is_set():
             run.enough.set()
             self.changed.emit()
-        else:
-            self.cancel()
+            return
+        self.cancel()
+        if run is not None and run.state is State.PLAYING:
+            self._tidy(run)
 
     @property
     def stopping(self) -> bool:
@@ -381,7 +385,13 @@ class Assistant:
             self._applying = True
             while decided.operations:
                 operation, halfedge = decided.operations.pop(0)
-                self._document.submit(operation, halfedge, by=label(run.policy), held=run.held)
+                self._document.submit(
+                    operation,
+                    halfedge,
+                    by=label(run.policy),
+                    held=run.held,
+                    thorough=run.state is State.STEPPING,  # the others are tidied up at the end
+                )
                 if decided.operations and time.monotonic() > deadline:
                     self._dispatch(partial(self.decided, run, decided))
                     return
@@ -408,8 +418,7 @@ class Assistant:
         document = self._document
         reason = run.runner.reason if run.runner is not None else ""
         self._end(State.IDLE)
-        if run.effort is not None and run.decisions:
-            self._tidy(run)
+        self._tidy(run)
         where = "" if run.held is None else "The region is finished: "
         if document.at_optimum:
             self.said.emit(f"At the optimum after {_count(self.progress.decisions, 'decision')}.")
@@ -420,15 +429,18 @@ class Assistant:
 
     def _tidy(self, run: Run) -> None:
         """What smoothing around each operation has folded on the way, the whole unfolds."""
-        mesh = self._document.mesh
-        if mesh is None:
+        from app.tidying import after_run
+
+        if not run.decisions:
             return
+        seen = self._insight
         self._applying = True
         try:
-            free = None if run.held is None else np.setdiff1d(mesh.vertices(), run.held)
-            self._document.smooth(by=label(run.policy), vertices=free)
+            after_run(self._document, label(run.policy), run.held, run.effort is not None)
         finally:
             self._applying = False
+        self._runner_at = self._document.revision  # vertices have moved, no edge has
+        self._see(seen)
 
 
 def _count(number: int, noun: str) -> str:

@@ -167,10 +167,12 @@ class Document(Timeline):
         halfedge: int,
         by: str = YOU,
         held: np.ndarray | None = None,
+        thorough: bool = True,
     ) -> Edit:
         """Apply one operation and smooth around it, as one step; OperationRefused if refused.
 
-        held (n,): vertices that count as locked meanwhile, and so stay where they are.
+        held (n,): vertices that count as locked meanwhile, and so stay where they are. Smoothing
+        takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then.
         """
         mesh = self._need()
 
@@ -178,7 +180,7 @@ class Document(Timeline):
             with holding(mesh, held) if held is not None else nullcontext():
                 edit = mesh.apply(operation, halfedge)
                 if self.auto_smooth:
-                    _relax(mesh, edit.touched)
+                    _relax(mesh, edit.touched, thorough)
                 return edit
 
         action = Operation(operation)
@@ -250,14 +252,11 @@ def _meshed(path: Path, kind: str) -> HalfEdgeMesh:
     return generate.mesh_domain(geometry_files.read_domain(path), kind)
 
 
-def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None) -> None:
+def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None, thorough: bool = True) -> None:
     """Smooth near ``around`` (vertex ids) or everywhere; imported late, for it pulls in scipy."""
     from meshcore.smoothing import relax
 
-    if around is None:
-        relax(mesh)
-    else:
-        relax(mesh, around=around)
+    relax(mesh, around, thorough)
 
 
 def _tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:

@@ -4,6 +4,8 @@ to come.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from meshcore import HalfEdgeMesh
@@ -11,6 +13,9 @@ from meshcore.quality import inverted
 from meshcore.region import chosen, elements_at
 from meshcore.smoothing import relax, smooth
 from meshcore.untangle import untangle
+
+if TYPE_CHECKING:
+    from app.document import Document
 
 
 def tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
@@ -45,3 +50,20 @@ def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
 def _move(mesh: HalfEdgeMesh, vertices: np.ndarray, positions: np.ndarray) -> None:
     if len(vertices):
         mesh.move(vertices, positions)
+
+
+def after_run(document: Document, by: str, held: np.ndarray | None, searched: bool) -> None:
+    """What an agent's run leaves behind, in better shape, as one step; ``held`` (n,) stay.
+
+    The whole mesh after a search, because its result is looked at; after any other run only what
+    is inverted, and that only where the document smooths by itself.
+    """
+    mesh = document.mesh
+    if mesh is None:
+        return
+    if held is not None:
+        document.smooth(by, np.setdiff1d(mesh.vertices(), held))
+    elif searched:
+        document.smooth(by)
+    elif document.auto_smooth and len(inverted(mesh)):
+        document.untangle(by)
