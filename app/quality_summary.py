@@ -11,7 +11,7 @@ from meshcore import HalfEdgeMesh
 from meshcore.outline import Outline
 from meshcore.quality import TOLERANCE, reference_normals
 
-CHUNK = 1 << 14
+CHUNK = 1 << 12
 """Elements that are measured in one go; between two of them the work can be called off."""
 BINS = 20
 

@@ -1,6 +1,7 @@
 """Quality measured beside the editing: after a pause, on a copy of the mesh, in a thread."""
 
 import threading
+import time
 from functools import partial
 
 from qtpy.QtCore import QObject, QTimer, Signal
@@ -95,7 +96,7 @@ class Gauge(QObject):
     def _measure(self, mesh: HalfEdgeMesh, cancel: threading.Event) -> None:
         summary = None
         try:
-            summary = summarise(mesh, cancel.is_set)
+            summary = summarise(mesh, partial(_give_way, cancel))
         finally:
             self._dispatch(partial(self._finish, summary, cancel))
 
@@ -111,3 +112,9 @@ class Gauge(QObject):
             self.summary, self.fresh, self.stale = summary, True, False
             self._late.stop()
             self.measured.emit()
+
+
+def _give_way(cancel: threading.Event) -> bool:
+    """Whether to stop; lets the window have the interpreter between two parts of the work."""
+    time.sleep(0.001)
+    return cancel.is_set()
