@@ -44,6 +44,7 @@ class Made:
         path: the mesh file that it was read from, empty for a mesh that was made.
         kind: "tri" or "quad".
         score, optimum: s and s*.
+        low, high: (2,) the corners of its box, seen from above.
         points: (n, 3).
         elements: (m, 3 or 4).
         geometric: (n,) whether a vertex is a corner.
@@ -60,6 +61,8 @@ class Made:
     kind: str
     score: int
     optimum: int
+    low: np.ndarray
+    high: np.ndarray
     points: np.ndarray
     elements: np.ndarray
     geometric: np.ndarray
@@ -69,6 +72,11 @@ class Made:
     edges: np.ndarray
     rim: np.ndarray
     sizes: np.ndarray
+
+    @property
+    def extent(self) -> float:
+        """The longer side of its box."""
+        return float((self.high - self.low).max())
 
     @property
     def loops(self) -> list[np.ndarray]:
@@ -123,23 +131,26 @@ def frame(result: Made | str) -> bytes:
         arrays = {field.name: np.asarray(getattr(result, field.name)) for field in fields(Made)}
     content = io.BytesIO()
     np.savez(content, **arrays)
-    return len(content.getvalue()).to_bytes(_LENGTH, "little") + content.getvalue()
+    whole = content.getvalue()
+    return len(whole).to_bytes(_LENGTH, "little") + whole
 
 
-def unframed(content: bytes) -> tuple[Made | str, bytes] | None:
-    """Return the first whole frame's mesh or refusal and what follows it; None if none is whole."""
-    end = _LENGTH + int.from_bytes(content[:_LENGTH], "little")
-    if len(content) < _LENGTH or len(content) < end:
-        return None
-    with np.load(io.BytesIO(content[_LENGTH:end]), allow_pickle=False) as arrays:
+def length(content: bytes | bytearray) -> int:
+    """Return the bytes that a frame has in all, by its beginning."""
+    return _LENGTH + int.from_bytes(content[:_LENGTH], "little")
+
+
+def unframed(content: bytes | bytearray) -> Made | str:
+    """Return the mesh, or the refusal, in a whole frame."""
+    with np.load(io.BytesIO(memoryview(content)[_LENGTH:]), allow_pickle=False) as arrays:
         if "refusal" in arrays:
-            return str(arrays["refusal"]), content[end:]
+            return str(arrays["refusal"])
         values = {name: array[()] for name, array in arrays.items()}
     for name in ("name", "path", "kind"):
         values[name] = str(values[name])
     for name in ("score", "optimum"):
         values[name] = int(values[name])
-    return Made(**values), content[end:]
+    return Made(**values)
 
 
 def serve() -> None:
@@ -206,6 +217,8 @@ def _made(mesh: HalfEdgeMesh, name: str, path: str) -> Made:
         kind=mesh.kind,
         score=mesh.score,
         optimum=mesh.optimum,
+        low=mesh.points[:, :2].min(axis=0),
+        high=mesh.points[:, :2].max(axis=0),
         points=mesh.points,
         elements=elements,
         geometric=mesh.geometric(),

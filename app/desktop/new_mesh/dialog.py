@@ -187,7 +187,7 @@ class NewMeshDialog(QDialog):
 
     def _on_made(self, made: Made) -> None:
         self.made = made
-        self.options.set_extent(float(max(made.points.max(axis=0) - made.points.min(axis=0))))
+        self.options.set_extent(made.extent)
         self.options.show_made(made)
         if self._accepting:
             self.accept()

@@ -32,7 +32,7 @@ class Maker(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._process: QProcess | None = None
-        self._received = b""
+        self._received = bytearray()
         self._wanted: Mapping[str, Any] | None = None
         self._asked: Mapping[str, Any] | None = None
         self._pause = QTimer(self)
@@ -59,7 +59,7 @@ class Maker(QObject):
         process.readyReadStandardOutput.connect(self._on_answer)
         process.finished.connect(self._on_ended)
         process.errorOccurred.connect(self._on_ended)
-        self._process, self._received = process, b""
+        self._process, self._received = process, bytearray()
         process.start(sys.executable, ["-m", making.__name__])
 
     def ask(self, request: Mapping[str, Any], at_once: bool = False) -> None:
@@ -117,11 +117,10 @@ class Maker(QObject):
     def _on_answer(self) -> None:
         if self._process is None:
             return
-        self._received += bytes(self._process.readAllStandardOutput().data())
-        answer = making.unframed(self._received)
-        if answer is None:
+        self._received += self._process.readAllStandardOutput().data()
+        if len(self._received) < making.length(self._received):
             return
-        result, self._received = answer
+        result, self._received = making.unframed(self._received), bytearray()
         asked, self._asked = self._asked, None
         self._patience.stop()
         if asked is not self._wanted:

@@ -40,27 +40,37 @@ def paint_shape(
 
 def paint_mesh(painter: QPainter, view: Viewport, made: Made, theme: Theme) -> bool:
     """Draw a mesh with its irregular vertices; False if it is too fine for its edges to show."""
-    places = view.to_screen(made.points[:, :2])
-    low, high = (f(places[made.edges], axis=1) for f in (np.min, np.max))
-    inner = made.edges[((high >= 0) & (low <= view.size)).all(axis=1)]
+    inner = _in_sight(made, view)
     fine = len(inner) > LINES
     rim = QPainterPath()
     for loop in made.loops:
-        rim.addPolygon(polygon(places[loop]))
+        rim.addPolygon(polygon(view.to_screen(made.points[loop])))
         rim.closeSubpath()
     fill = blend(theme.fill, theme.edge, _TINT) if fine else QColor(theme.fill)
     painter.fillPath(rim, fill)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     if not fine:
         painter.setPen(_pen(theme.edge, 1.0))
-        ends = places[inner].reshape(-1, 4).tolist()
+        ends = view.to_screen(made.points[inner]).reshape(-1, 4).tolist()
         painter.drawLines([QLineF(a, b, c, d) for a, b, c, d in ends])
     painter.setPen(_pen(theme.boundary, 1.75))
     painter.drawPath(rim)
     if not fine:
-        squares(painter, places[made.geometric], theme)
-        _discs(painter, places, made, view, theme)
+        squares(painter, view.to_screen(made.points[made.geometric]), theme)
+        _discs(painter, made, view, theme)
     return not fine
+
+
+def _in_sight(made: Made, view: Viewport) -> np.ndarray:
+    """The inner edges (e, 2) that may be seen; of a large mesh quickly all, if all may."""
+    box = view.to_screen(np.array([made.low, made.high]))
+    if len(made.edges) > LINES and (box >= 0).all() and (box <= view.size).all():
+        return made.edges
+    places = view.to_screen(made.points)
+    one, other = places[made.edges[:, 0]], places[made.edges[:, 1]]
+    seen = (np.maximum(one, other) >= 0) & (np.minimum(one, other) <= view.size)
+    found: np.ndarray = made.edges[seen.all(axis=1)]
+    return found
 
 
 def squares(painter: QPainter, places: np.ndarray, theme: Theme, side: float = CORNER) -> None:
@@ -76,10 +86,11 @@ def polygon(places: np.ndarray) -> QPolygonF:
     return QPolygonF([QPointF(x, y) for x, y in places.tolist()])
 
 
-def _discs(painter: QPainter, places: np.ndarray, made: Made, view: Viewport, theme: Theme) -> None:
+def _discs(painter: QPainter, made: Made, view: Viewport, theme: Theme) -> None:
     vertices = np.flatnonzero(made.delta)
-    inside = (places[vertices] >= -LARGEST) & (places[vertices] <= np.array(view.size) + LARGEST)
-    vertices = vertices[inside.all(axis=1)]
+    places = view.to_screen(made.points[vertices])
+    inside = ((places >= -LARGEST) & (places <= np.array(view.size) + LARGEST)).all(axis=1)
+    vertices, places = vertices[inside], places[inside]
     if len(vertices) > DISCS:
         return
     wanted = np.minimum(BASE_RADIUS + GROWTH * (np.abs(made.delta[vertices]) - 1), LARGEST)
@@ -88,9 +99,9 @@ def _discs(painter: QPainter, places: np.ndarray, made: Made, view: Viewport, th
     font = tabular(QFont(painter.font()))
     font.setWeight(QFont.Weight.DemiBold)
     order = np.argsort(-radii, kind="stable")
-    for vertex, radius in zip(vertices[order].tolist(), radii[order].tolist(), strict=True):
-        delta = int(made.delta[vertex])
-        x, y = places[vertex].tolist()
+    for i, radius in zip(order.tolist(), radii[order].tolist(), strict=True):
+        delta = int(made.delta[vertices[i]])
+        x, y = places[i].tolist()
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(theme.plus if delta > 0 else theme.minus))
         painter.drawEllipse(QPointF(x, y), radius, radius)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import (
     QColor,
@@ -57,8 +58,8 @@ class Preview(QWidget):
         self._words = words
         self._stale = stale and self._made is not None
         if not stale:
-            self._made = None
-        self._redraw()
+            self._made = self._picture = None
+        self.update()
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in other colours."""
@@ -68,7 +69,7 @@ class Preview(QWidget):
     def _fit(self) -> None:
         self._view = self._view.resized(self.width(), self.height())
         if self._made is not None:
-            self._view = self._view.fitted(self._made.points, MARGIN)
+            self._view = self._view.fitted(np.array([self._made.low, self._made.high]), MARGIN)
 
     def _redraw(self) -> None:
         self._picture = None
@@ -161,9 +162,5 @@ class Preview(QWidget):
 
 
 def _same_extent(one: Made, other: Made) -> bool:
-    a, b = (made.points[:, :2] for made in (one, other))
-    size = max(float(abs(a).max()), float(abs(b).max()), 1e-12)
-    return bool(
-        abs(a.min(axis=0) - b.min(axis=0)).max() < 1e-6 * size
-        and abs(a.max(axis=0) - b.max(axis=0)).max() < 1e-6 * size
-    )
+    apart = max(abs(one.low - other.low).max(), abs(one.high - other.high).max())
+    return bool(apart < 1e-6 * max(one.extent, other.extent))
