@@ -79,7 +79,9 @@ def fitted(mesh: HalfEdgeMesh, look: Look, moment: Moment | None = None) -> View
     head = HEAD * unit if look.score else 0.0
     foot = FOOT * unit if _has_curve(look, moment) else 0.0
     room = (width, max(int(height - head - foot), 16))
-    view = Viewport(size=room).fitted(mesh.points[mesh.vertices()], MARGIN * unit)
+    view = Viewport(size=room).fitted(
+        mesh.points[mesh.vertices()], max(MARGIN * unit, 0.06 * min(room))
+    )
     x, y = view.centre
     return Viewport((x, y + (head - foot) / (2.0 * view.pixels)), view.pixels, (width, height))
 

@@ -162,9 +162,9 @@ class Film:
         for moment in self.moments(stops):
             yield raster(figure(self._mesh, look, moment, view), SAMPLES)
 
-    def write(
+    def save(
         self,
-        path: str | Path,
+        path: Path,
         look: Look | None = None,
         seconds: float = 0.25,
         every: int = 1,
@@ -172,9 +172,8 @@ class Film:
     ) -> int:
         """Write the film as GIF or MP4, as the ending says; returns the number of frames.
 
-        ``seconds`` is how long one frame stays, ``every`` how many steps it stands for.
-        ``progress(done, total)`` is called after each frame; what it raises ends the work, and
-        nothing is left behind. Raises MeshError for an ending or a place that cannot be written.
+        ``seconds`` is how long one frame stays, ``every`` how many steps it stands for. Raises,
+        and calls ``progress``, as :func:`app.movie.save` does.
         """
         look = look or Look()
         stops = self.stops(every)
@@ -182,7 +181,7 @@ class Film:
         times[0] = max(seconds, FIRST if len(stops) > 1 else LAST)
         times[-1] = max(seconds, LAST)
         frames = zip(self.images(stops, look), times, strict=True)
-        movie.write(path, frames, len(stops), look, progress)
+        movie.save(path, frames, len(stops), look, progress)
         return len(stops)
 
 

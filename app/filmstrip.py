@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.drawing import raster
+from app.figure import Look, Moment, elements, figure
 from app.outputs import replacing
 
 if TYPE_CHECKING:
@@ -25,10 +27,10 @@ def write(
 
     Raises UserError if the file cannot be written.
     """
-    from app import scene
     from meshcore import smoothing
 
     work = mesh.copy()
+    look = Look(size, theme)
     frames = []
     done = 0
     for stop in (0, len(operations) // 2, len(operations)):
@@ -36,7 +38,8 @@ def write(
             work.apply(operation, halfedge)
         done = stop
         smoothing.relax(work)
-        frames.append(scene.image(work, size, theme))
+        words = f"{done:,} of {len(operations):,} operations" if operations else ""
+        frames.append(raster(figure(work, look, Moment(elements(work), words))))
     with replacing(path) as temporary:
         side_by_side(frames).save(temporary, format="PNG")
 

@@ -1,4 +1,4 @@
-"""Moving pictures: frames into a GIF or an MP4 file, one at a time, whole or not at all."""
+"""Moving pictures: frames into a GIF or an MP4 file, one at a time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from app.figure import Look
 from app.theme import Theme
-from meshcore import atomic
 from meshcore.errors import MeshError
 
 ENDINGS = (".gif", ".mp4")
@@ -38,21 +37,20 @@ def checked_ending(path: str | Path) -> str:
     return ending
 
 
-def write(
-    path: str | Path, frames: Frames, count: int, look: Look, progress: Progress | None = None
+def save(
+    path: Path, frames: Frames, count: int, look: Look, progress: Progress | None = None
 ) -> None:
-    """Write ``count`` frames, each a Pillow image of ``look.size`` and its seconds.
+    """Write ``count`` frames, each a Pillow image of ``look.size`` and its seconds, to ``path``.
 
-    ``progress(done, count)`` is called after each; what it raises ends the work, and an old file
-    at ``path`` is as it was. Raises MeshError where the file cannot be written.
+    ``progress(done, count)`` is called after each; what it raises ends the work, with a file that
+    is not whole: :func:`app.pictures.write_order` sees to that. Raises MeshError for another ending
+    or a size that cannot be encoded, OSError where the file cannot be written.
     """
-    ending = checked_ending(path)
-    with atomic.replacing(path) as temporary:
-        followed = _followed(frames, count, progress)
-        if ending == ".gif":
-            _write_gif(temporary, followed, look)
-        else:
-            _write_mp4(temporary, followed, look, str(path))
+    followed = _followed(frames, count, progress)
+    if checked_ending(path) == ".gif":
+        _save_gif(path, followed, look)
+    else:
+        _save_mp4(path, followed, look)
 
 
 def _followed(frames: Frames, count: int, progress: Progress | None) -> Iterator[tuple[Any, float]]:
@@ -65,7 +63,7 @@ def _followed(frames: Frames, count: int, progress: Progress | None) -> Iterator
 # GIF
 
 
-def _write_gif(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
+def _save_gif(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
     """Frames of one palette, each cut down to what differs from the one before it."""
     from PIL import Image
     from PIL.GifImagePlugin import getdata
@@ -150,7 +148,7 @@ def _gif_header(image: Any) -> bytes:
 # MP4
 
 
-def _write_mp4(path: Path, frames: Iterator[tuple[Any, float]], look: Look, name: str) -> None:
+def _save_mp4(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
     """H.264 in colours that every player knows; sides are made even, as it asks."""
     import av
     from av.error import FFmpegError
@@ -170,7 +168,7 @@ def _write_mp4(path: Path, frames: Iterator[tuple[Any, float]], look: Look, name
     except (FFmpegError, ValueError) as error:
         if isinstance(error, OSError):
             raise
-        raise MeshError(f"{name}: the film cannot be encoded ({error}).") from error
+        raise MeshError(f"the film cannot be encoded ({error}).") from error
 
 
 def _repeated(frames: Iterator[tuple[Any, float]]) -> Iterator[tuple[Any, int]]:

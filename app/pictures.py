@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from app import movie
 from app.drawing import Drawing, raster, svg
 from app.figure import Look, figure
 from app.film import Film
+from app.movie import Progress
 from meshcore import HalfEdgeMesh, atomic
 from meshcore.errors import MeshError
 
@@ -62,36 +62,46 @@ class Order:
 
 
 def write_order(
-    film: Film, order: Order, path: str | Path, progress: Callable[[int, int], None] | None = None
+    film: Film, order: Order, path: str | Path, progress: Progress | None = None
 ) -> int:
+    """Write as :func:`save_order` does, but whole or not at all: an old file stays as it was.
+
+    Raises MeshError, which names ``path``, where the file cannot be written.
+    """
+    with atomic.replacing(path) as temporary:
+        return save_order(film, order, temporary, progress)
+
+
+def save_order(film: Film, order: Order, path: Path, progress: Progress | None = None) -> int:
     """Write a film, or a picture of the state where ``film`` stands; returns the frames written.
 
     ``progress(done, total)`` is called after each frame; what it raises ends the work. Raises
-    MeshError where the file cannot be written.
+    OSError where the file cannot be written, MeshError for an ending that no picture has.
     """
     if order.moving:
-        stride = order.stride(film)
-        return film.write(path, order.look, order.seconds, stride, progress)
-    moment = film.moment(film.state)
-    write_picture(figure(film.mesh, order.look, moment), path)
+        return film.save(path, order.look, order.seconds, order.stride(film), progress)
+    save_picture(figure(film.mesh, order.look, film.moment(film.state)), path)
     if progress is not None:
         progress(1, 1)
     return 1
 
 
-def write_mesh_picture(mesh: HalfEdgeMesh, path: str | Path, look: Look | None = None) -> None:
-    """Write one picture of ``mesh``, PNG or SVG; MeshError where it cannot be written."""
-    write_picture(figure(mesh, look), path)
+def save_mesh_picture(mesh: HalfEdgeMesh, path: str | Path, look: Look | None = None) -> None:
+    """Write one picture of ``mesh``; raises as :func:`save_picture` does."""
+    save_picture(figure(mesh, look), path)
 
 
-def write_picture(drawing: Drawing, path: str | Path) -> None:
-    """Write a drawing as PNG or SVG, as the ending says; MeshError where it cannot be written."""
-    ending = Path(path).suffix.lower()
-    if ending not in STILLS:
+def save_picture(drawing: Drawing, path: str | Path) -> None:
+    """Write a drawing as PNG or SVG, as the ending says.
+
+    Raises OSError where the file cannot be written, MeshError for another ending.
+    """
+    path = Path(path)
+    ending = path.suffix.lower()
+    if ending == ".svg":
+        path.write_text(svg(drawing), encoding="utf-8")
+    elif ending == ".png":
+        raster(drawing).save(path, format="PNG", optimize=True)
+    else:
         found = f"the ending {ending}" if ending else "a name without an ending"
         raise MeshError(f"{path}: a picture cannot have {found}; use {' or '.join(STILLS)}.")
-    with atomic.replacing(path) as temporary:
-        if ending == ".svg":
-            temporary.write_text(svg(drawing), encoding="utf-8")
-        else:
-            raster(drawing).save(temporary, format="PNG", optimize=True)

@@ -1,21 +1,16 @@
-"""The scene: a mesh as PyVista actors, and pictures of it without a window.
+"""The scene: a mesh as PyVista actors, for the window.
 
-VTK draws the elements and the outline. Markers and numbers are drawn over it, by the window with
-QPainter and by :func:`picture` with Pillow, so that they are crisp; only where there are very many
-of them does VTK draw the discs too (:attr:`Scene.crowd`).
+VTK draws the elements and the outline. Markers and numbers are drawn over it by the window, with
+QPainter, so that they are crisp; only where there are very many of them does VTK draw the discs too
+(:attr:`Scene.crowd`). Pictures and films are made without VTK: see :mod:`app.figure`.
 """
 
-import os
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from app.markers import READABLE, Markers, label, markers
-from app.theme import Theme, theme
+from app.markers import Markers, markers
+from app.theme import Theme
 from app.viewport import Viewport
 from meshcore import HalfEdgeMesh
 
@@ -25,9 +20,6 @@ LONG = 4000
 """A boundary of more vertices than this is VTK's to draw, also where the caller could."""
 CLASSES = 4
 """Discs of VTK come in one size for each |delta| from 1 to here; larger ones share the last."""
-SAMPLES = 2
-"""Pictures are drawn this many times larger and scaled down, for smooth lines."""
-OFF_SCREEN = "vtkEGLRenderWindow"
 _NOWHERE = np.zeros((0, 3))
 
 
@@ -172,64 +164,6 @@ class Scene:
         )
 
 
-def picture(
-    mesh: HalfEdgeMesh,
-    path: str | Path,
-    size: tuple[int, int] = (1200, 900),
-    theme: str = "light",
-    score: bool = True,
-) -> Path:
-    """Write a PNG (or what the ending says) of ``mesh`` with ``size`` in pixels.
-
-    No display is needed. ``score`` writes s, the optimum and the number of elements into it.
-    Raises OSError where the file cannot be written, ValueError for an unknown theme or ending.
-    """
-    path = Path(path)
-    image(mesh, size, theme, score).save(path)
-    return path
-
-
-def image(
-    mesh: HalfEdgeMesh,
-    size: tuple[int, int] = (1200, 900),
-    theme_name: str = "light",
-    score: bool = True,
-    viewport: Viewport | None = None,
-) -> Any:
-    """The picture of ``mesh`` as a Pillow image; ``viewport`` as fitted if None."""
-    from PIL import Image
-
-    colours = theme(theme_name)
-    large = (size[0] * SAMPLES, size[1] * SAMPLES)
-    if viewport is None:
-        margin = 0.06 * min(size)
-        viewport = Viewport(size=size).fitted(mesh.points[mesh.vertices()], margin)
-    viewport = Viewport(viewport.centre, viewport.pixels * SAMPLES, large)
-    with _off_screen():
-        import pyvista
-
-        plotter = pyvista.Plotter(off_screen=True, window_size=list(large))
-        try:
-            scene = Scene(plotter, colours, width=SAMPLES * size[1] / 900.0 + 0.2)
-            scene.show(mesh)
-            scene.look(viewport)
-            drawn = Image.fromarray(np.asarray(plotter.screenshot(return_img=True)))
-        finally:
-            plotter.close()
-    _draw_markers(drawn, scene.markers, viewport, colours, SAMPLES * size[1] / 900.0)
-    drawn = drawn.resize(size, Image.Resampling.LANCZOS)
-    if score:
-        _draw_score(drawn, mesh, colours)
-    return drawn
-
-
-def summary(mesh: HalfEdgeMesh) -> str:
-    """``s 8, optimum 5, 24 quads``."""
-    noun = "quad" if mesh.k == 4 else "triangle"
-    plural = "" if mesh.n_elements == 1 else "s"
-    return f"s {mesh.score}, optimum {mesh.optimum}, {mesh.n_elements:,} {noun}{plural}"
-
-
 def _surface(mesh: HalfEdgeMesh) -> Any:
     import pyvista
 
@@ -253,71 +187,3 @@ def _outline(marks: Markers) -> Any:
     return pyvista.PolyData(
         np.column_stack((points, np.zeros(len(points)))), lines=np.concatenate(cells)
     )
-
-
-def _draw_markers(
-    image: Any, marks: Markers | None, viewport: Viewport, colours: Theme, scale: float
-) -> None:
-    from PIL import ImageDraw
-
-    if marks is None:
-        return
-    draw = ImageDraw.Draw(image)
-    half = 3.5 * scale
-    for x, y in viewport.to_screen(marks.corner_places):
-        draw.rectangle((x - half, y - half, x + half, y + half), fill=colours.corner)
-    # radii are meant for a screen of 900 pixels' height: larger pictures get larger discs
-    small = Viewport(viewport.centre, viewport.pixels / scale, viewport.size)
-    radii = marks.radii(small) * scale
-    places = viewport.to_screen(marks.places)
-    for (x, y), delta, r, corner in zip(places, marks.delta, radii, marks.corners, strict=True):
-        colour = colours.plus if delta > 0 else colours.minus
-        if corner:
-            draw.rectangle((x - r, y - r, x + r, y + r), fill=colours.corner)
-        rim = r + 1.2 * scale
-        draw.ellipse((x - rim, y - rim, x + rim, y + rim), fill=colours.background)
-        draw.ellipse((x - r, y - r, x + r, y + r), fill=colour)
-        if r >= READABLE * scale:
-            font = _font(1.15 * r)
-            draw.text((x, y), label(int(delta)), colours.marker_text, font, anchor="mm")
-    ring = 10.0 * scale
-    for x, y in viewport.to_screen(marks.locked_places):
-        box = (x - ring, y - ring, x + ring, y + ring)
-        draw.ellipse(box, outline=colours.boundary, width=max(1, round(1.5 * scale)))
-
-
-def _draw_score(image: Any, mesh: HalfEdgeMesh, colours: Theme) -> None:
-    from PIL import ImageDraw
-
-    draw = ImageDraw.Draw(image)
-    size = max(11.0, image.height / 52.0)
-    at = (size, image.height - size)
-    text = summary(mesh)
-    draw.text(at, text, colours.muted, _font(size), anchor="ls")
-    if mesh.score == mesh.optimum:
-        width = draw.textlength(text, font=_font(size))
-        draw.text(
-            (at[0] + width, at[1]), ", at the optimum", colours.accent, _font(size), anchor="ls"
-        )
-
-
-def _font(size: float) -> Any:
-    import matplotlib
-    from PIL import ImageFont
-
-    fonts = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
-    return ImageFont.truetype(str(fonts / "DejaVuSans.ttf"), size)
-
-
-@contextmanager
-def _off_screen() -> Iterator[None]:
-    """Have VTK draw without a display; a window opened afterwards is not affected."""
-    name = "VTK_DEFAULT_OPENGL_WINDOW"
-    if sys.platform != "linux" or name in os.environ:
-        yield
-        return
-    os.environ[name] = OFF_SCREEN
-    try:
-        yield
-    finally:
-        del os.environ[name]

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw
 
-from app import scene
+from app.drawing import raster
+from app.figure import Look, figure, fitted
 from app.filmstrip import side_by_side
 from app.theme import LIGHT
 from app.viewport import Viewport
@@ -27,7 +28,7 @@ from meshcore.generate import mesh_domain
 from meshcore.operations import CATALOGUE, OperationInfo
 
 IMAGES = Path(__file__).parent / "images"
-RENDER = 1800
+RENDER = 1500
 """Pixels of the square that is drawn; discs are sized for it, then the middle is cut out."""
 PANEL = (560, 460)
 GAP = 120
@@ -92,9 +93,14 @@ def most_central(mesh: HalfEdgeMesh, operation: Operation) -> int:
     return min(allowed, key=distance)
 
 
+def plain(mesh: HalfEdgeMesh, size: tuple[int, int], view: Viewport | None = None) -> Any:
+    """Return the picture of a mesh without words."""
+    return raster(figure(mesh, Look(size, score=False), viewport=view))
+
+
 def panel(mesh: HalfEdgeMesh, view: Viewport, arrow: int | None = None) -> Any:
     """Return the picture of a patch, with an arrow on one half-edge."""
-    drawn = scene.image(mesh, (RENDER, RENDER), score=False, viewport=view)
+    drawn = plain(mesh, (RENDER, RENDER), view)
     if arrow is not None:
         a, b = view.to_screen(mesh.points[[mesh.origin(arrow), mesh.target(arrow)]])
         draw_arrow(drawn, a, b)
@@ -154,10 +160,7 @@ def make_operations() -> None:
 
 def make_gallery() -> None:
     """Every shape of the gallery as a quad mesh, as generated, in rows of five."""
-    tiles = [
-        scene.image(mesh_domain(domain, "quad"), (360, 300), score=False)
-        for domain in shapes.gallery().values()
-    ]
+    tiles = [plain(mesh_domain(domain, "quad"), (360, 300)) for domain in shapes.gallery().values()]
     columns = 5
     rows = math.ceil(len(tiles) / columns)
     whole = Image.new("RGB", (columns * 360, rows * 300), LIGHT.background)
@@ -179,7 +182,7 @@ def make_parts() -> None:
         mesh = mesh_domain(domain, "quad")
         if number % columns == 0:
             tiles += [[], []]
-        tiles[-2].append(scene.image(mesh, size, score=False))
+        tiles[-2].append(plain(mesh, size))
         replay(mesh, solve(mesh, policy, seconds=PARTS_SECONDS))
         smoothing.relax(mesh)
         tiles[-1].append(with_blocks(mesh, size))
@@ -191,9 +194,9 @@ def make_parts() -> None:
 
 def with_blocks(mesh: HalfEdgeMesh, size: tuple[int, int]) -> Any:
     """Return the picture of a quad mesh with the lines between its blocks drawn stronger."""
-    drawn = scene.image(mesh, size, score=False)
+    drawn = plain(mesh, size)
     fine = 4
-    view = Viewport(size=size).fitted(mesh.points[mesh.vertices()], 0.06 * min(size))
+    view = fitted(mesh, Look(size, score=False))
     overlay = Image.new("RGBA", (fine * size[0], fine * size[1]), LIGHT.boundary + "00")
     draw = ImageDraw.Draw(overlay)
     for h in np.flatnonzero(blocks.separatrices(mesh)).tolist():

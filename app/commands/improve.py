@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,7 @@ DESCRIPTION = (
 )
 
 ROLLOUTS = 10
+PICTURE_SIZE = (1200, 900)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -53,6 +55,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--png", metavar="P.png", help="write a picture of the result too")
     parser.add_argument(
+        "--film", metavar="F", help="write the run as a film too, F.gif or F.mp4, step by step"
+    )
+    parser.add_argument(
         "--corner-angle",
         metavar="DEGREES",
         type=inputs.angle,
@@ -65,6 +70,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     """Check everything that can be checked, then search, replay, settle and write."""
     meshfile.checked_mesh_output(arguments.output)
     png = checked_output(arguments.png, (".png",), "--png") if arguments.png else None
+    film = checked_output(arguments.film, (".gif", ".mp4"), "--film") if arguments.film else None
     mesh = inputs.read_mesh(arguments.input, arguments.corner_angle)
     output = meshfile.checked_mesh_output(arguments.output, mesh.kind)
     policy = inputs.read_policy(arguments.policy, mesh.kind)
@@ -73,18 +79,26 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     start = time.perf_counter()
     before = {"score": mesh.score, "elements": mesh.n_elements, "optimum": mesh.optimum}
     solution = _search(arguments, report, mesh, policy)
+    first = mesh.copy() if film else mesh
     replay(mesh, solution)
     inverted = meshfile.settle(mesh)
     mesh.validate()
     if mesh.optimum != before["optimum"]:
         raise RuntimeError(f"s* changed from {before['optimum']} to {mesh.optimum}")
-    _write(mesh, output, png)
+    with ExitStack() as stack:  # all files or none: the others wait until the mesh is written
+        if png is not None:
+            _write_picture(stack.enter_context(replacing(png)), mesh)
+        if film is not None:
+            temporary = stack.enter_context(replacing(film))
+            _write_film(temporary, first, solution, policy.name, Path(arguments.input).stem, report)
+        meshfile.write_mesh(output, mesh)
 
     values = {
         "command": "improve",
         "input": arguments.input,
         "output": str(output),
         "png": str(png) if png else None,
+        "film": str(film) if film else None,
         "policy": policy.name,
         "kind": mesh.kind,
         "score_before": before["score"],
@@ -104,16 +118,24 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     report.result(values, _text(values))
 
 
-def _write(mesh: HalfEdgeMesh, output: Path, png: Path | None) -> None:
-    """Write both files or neither: the picture takes its place only once the mesh is written."""
-    if png is None:
-        meshfile.write_mesh(output, mesh)
-        return
-    from app import scene
+def _write_picture(path: Path, mesh: HalfEdgeMesh) -> None:
+    from app import pictures
+    from app.figure import Look
 
-    with replacing(png) as temporary:
-        scene.picture(mesh, temporary)
-        meshfile.write_mesh(output, mesh)
+    pictures.save_mesh_picture(mesh, path, Look(PICTURE_SIZE))
+
+
+def _write_film(
+    path: Path, mesh: HalfEdgeMesh, solution: Solution, by: str, name: str, report: Report
+) -> None:
+    """The operations one by one on ``mesh``, which is as it was before, smoothed on the way."""
+    from app import pictures
+    from app.film import Film
+
+    film = Film.of_run(mesh, solution.operations, by, name)
+    order = pictures.Order(ending=path.suffix.lower())
+    with report.progress("filming", len(film.stops(order.stride(film)))) as update:
+        pictures.save_order(film, order, path, lambda done, total: update(done))
 
 
 def replay(mesh: HalfEdgeMesh, solution: Solution) -> None:
@@ -159,5 +181,6 @@ def _text(values: dict[str, Any]) -> str:
         ("operations", f"{values['operations']} (best of {values['rollouts']})"),
         ("seconds", f"{values['seconds']:.1f}"),
     ]
-    written = values["output"] + (f", {values['png']}" if values["png"] else "")
+    files = (values["output"], values["png"], values["film"])
+    written = ", ".join(file for file in files if file)
     return f"{values['input']} -> {written}\n" + table(rows)

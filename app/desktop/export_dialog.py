@@ -5,7 +5,6 @@ from dataclasses import replace
 from qtpy.QtCore import Qt, QTimer
 from qtpy.QtGui import QImage, QPixmap
 from qtpy.QtWidgets import (
-    QAbstractSpinBox,
     QButtonGroup,
     QCheckBox,
     QComboBox,
@@ -105,7 +104,6 @@ class ExportDialog(QDialog):
         for box in (self.size_box, self.theme_box):
             box.currentIndexChanged.connect(self._on_changed)
         for spin in (self.seconds, self.every):
-            spin.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
             spin.valueChanged.connect(self._on_changed)
 
     def _arrange(self) -> None:

@@ -57,6 +57,7 @@ class Film:
         for part in (self.panel, self.timeline.curve):
             part.asked.connect(self._on_asked)
             part.branch_asked.connect(self.take_branch)
+        self.timeline.curve.walked.connect(self.walk)
         self.timeline.speed_chosen.connect(self._on_speed_chosen)
         self.timeline.show_speed(int(self._speed))
         window.document.history_changed.connect(self._on_history_changed)
@@ -206,6 +207,9 @@ class Film:
     def _show(self) -> None:
         document = self._window.document
         self._late.stop()
+        if self._soon.isActive():
+            self._late.start()  # the line is where the mouse is, and the mesh will be there soon
+            return
         if self.panel.isVisibleTo(self._window):
             self.panel.show_history(document.history, document.empty)
         if self.timeline.isVisibleTo(self._window):

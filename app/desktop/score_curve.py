@@ -42,7 +42,7 @@ FORK_REACH = 7
 
 
 class ScoreCurve(QWidget):
-    """Paints a history; what a person asks for it says by ``asked(state)`` and
+    """Paints a history; what a person asks for it says by ``asked(state)``, ``walked(steps)`` and
     ``branch_asked(index)``.
 
     The curve lies in a pixmap that is made anew only when the history, the size or the colours
@@ -50,6 +50,7 @@ class ScoreCurve(QWidget):
     """
 
     asked = Signal(int)
+    walked = Signal(int)
     branch_asked = Signal(int)
 
     def __init__(self, theme: Theme) -> None:
@@ -144,7 +145,7 @@ class ScoreCurve(QWidget):
         """One step back or forward for each notch."""
         turn = event.angleDelta().y() or event.angleDelta().x()
         if turn and not self._empty:
-            self._go(self.cursor_state + (1 if turn < 0 else -1))
+            self.walked.emit(1 if turn < 0 else -1)
         event.accept()
 
     def event(self, event: QEvent) -> bool:
@@ -160,14 +161,11 @@ class ScoreCurve(QWidget):
             super().keyPressEvent(event)
             return
         page = max(1, len(self._history) // 20)
-        moves = (-1, 1, -page, page, -self.cursor_state, len(self._history))
-        self._go(self.cursor_state + moves[WALKING.index(event.key())])
+        whole = len(self._history)
+        self.walked.emit((-1, 1, -page, page, -whole, whole)[WALKING.index(event.key())])
 
     def _ask(self, at: QPointF) -> None:
-        self._go(self._frame.state(at.x()))
-
-    def _go(self, state: int) -> None:
-        state = min(max(state, 0), len(self._history))
+        state = min(self._frame.state(at.x()), len(self._history))
         if state != self.cursor_state:
             self.set_cursor(state)  # the line follows the mouse at once, the mesh comes after
             self.asked.emit(state)

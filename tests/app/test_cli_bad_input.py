@@ -135,6 +135,7 @@ def test_output_folder_that_does_not_exist(refused, tmp_path):
     refused("improve", "a.obj", "-o", "no/b.obj", says=says)
     refused("improve", "a.obj", "-o", "b.obj", "--png", "no/b.png", says=says)
     refused("mesh", "star", "-o", "no/b.obj", "--kind", "tri", says=says)
+    refused("improve", "a.obj", "-o", "b.obj", "--film", "no/b.gif", says=says)
     refused("demo", "-o", "no/b.png", says=says)
 
 
@@ -144,6 +145,7 @@ def test_output_ending_that_cannot_be_written(refused, tmp_path):
     refused(
         "improve", "a.obj", "-o", "b.obj", "--png", "b.jpg", says="cannot write the ending .jpg"
     )
+    refused("improve", "a.obj", "-o", "b.obj", "--film", "b.avi", says="use one of .gif .mp4")
     refused("mesh", "star", "-o", "b", "--kind", "tri", says="a name without an ending")
 
 
@@ -210,13 +212,13 @@ def test_full_disk_leaves_the_old_mesh_whole(refused, tmp_path, capfd, ending):
 
 
 def test_full_disk_leaves_the_old_picture_whole(refused, tmp_path, monkeypatch):
-    from app import scene
+    from app import pictures
 
-    def picture(mesh, path, **_):
+    def picture(mesh, path, *_):
         path.write_bytes(b"half")
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(scene, "picture", picture)
+    monkeypatch.setattr(pictures, "save_mesh_picture", picture)
     (tmp_path / "a.obj").write_text(TRIANGLES)
     (tmp_path / "a.png").write_bytes(b"old")
     words = ["improve", "a.obj", "-o", "a.obj", "--png", "a.png", "--rollouts", "1"]

@@ -92,7 +92,7 @@ def test_same_seed_same_mesh(run, tmp_path):
 def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
     made = run("mesh", "star", "-o", "in.vtk", "--kind", kind)
     words = ("improve", "in.vtk", "-o", "out.vtk", "--rollouts", "3", "--png", "out.png")
-    said = run(*words)
+    said = run(*words, "--film", "out.gif")
     before, after = meshcore.read(tmp_path / "in.vtk"), meshcore.read(tmp_path / "out.vtk")
     after.validate()
     assert corners(after) == corners(before)
@@ -106,6 +106,8 @@ def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
     assert 0 < said["normalised_return"] <= 1
     with Image.open(tmp_path / "out.png") as picture:
         assert picture.size == (1200, 900)
+    with Image.open(tmp_path / "out.gif") as film:
+        assert film.n_frames == said["operations"] + 2  # the start, and the smoothing at the end
 
 
 def test_improve_says_why_the_first_time_takes_long(run, capfd, monkeypatch):

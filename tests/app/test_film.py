@@ -1,6 +1,9 @@
 """The score curve, figures, and films of a history, without a window."""
 
+import os
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -11,7 +14,7 @@ from app import curve, movie, pictures
 from app.curve import Track
 from app.document import Document
 from app.drawing import Area, Drawing, Segments, raster, svg
-from app.figure import Look, edges, figure
+from app.figure import Look, edges, figure, summary
 from app.film import Film
 from app.pictures import Order
 from app.theme import THEMES
@@ -142,6 +145,26 @@ def test_figure_in_pixels_shows_the_loud_things_and_no_others(walked):
     assert not [shape for shape in plain.shapes if type(shape).__name__ == "Text"]
 
 
+def test_a_picture_needs_neither_display_nor_vtk(tmp_path):
+    code = (
+        "import sys; from app import pictures; from app.figure import Look; "
+        "from meshcore import generate, shapes; "
+        "m = generate.mesh_domain(shapes.shape('star'), 'quad'); "
+        f"pictures.save_mesh_picture(m, r'{tmp_path / 'star.png'}', Look((300, 200), 'dark')); "
+        "assert not {'vtkmodules', 'pyvista', 'qtpy', 'torch'} & set(sys.modules)"
+    )
+    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, timeout=100, check=False)
+    assert done.returncode == 0
+    with Image.open(tmp_path / "star.png") as image:
+        assert image.size == (300, 200)
+
+
+def test_summary(star, triangles):
+    assert summary(star) == "s 12, optimum 4, 24 quads"
+    assert summary(triangles).endswith("triangles")
+
+
 def test_figure_in_vectors_is_svg_with_its_words(walked):
     text = svg(figure(walked.mesh, SMALL, Film(walked).moment(2)))
     root = ElementTree.fromstring(text)
@@ -170,7 +193,7 @@ def test_holes_stay_open_in_both():
 def test_a_gif_has_one_frame_for_each_state_and_its_times(walked, tmp_path):
     film, path = Film(walked), tmp_path / "star.gif"
     seen = []
-    assert film.write(path, SMALL, 0.2, progress=lambda *done: seen.append(done)) == len(film)
+    assert film.save(path, SMALL, 0.2, progress=lambda *done: seen.append(done)) == len(film)
     assert seen[-1] == (len(film), len(film))
     with Image.open(path) as image:
         assert image.n_frames == len(film)
@@ -190,7 +213,7 @@ def test_an_mp4_plays_as_long_as_it_should(walked, tmp_path):
     import av
 
     film, path = Film(walked), tmp_path / "star.mp4"
-    frames = film.write(path, Look(size=(321, 241), theme="dark"), 0.25, every=2)
+    frames = film.save(path, Look(size=(321, 241), theme="dark"), 0.25, every=2)
     wanted = 1.0 + 0.25 * (frames - 2) + 2.5
     with av.open(str(path)) as file:
         stream = file.streams.video[0]
@@ -230,9 +253,9 @@ def test_a_still_is_of_the_state_where_the_film_stands(walked, tmp_path):
 def test_other_endings_are_refused_in_one_sentence(walked, tmp_path):
     for name in ("film.avi", "film"):
         with pytest.raises(MeshError, match=r"\.gif or \.mp4"):
-            Film(walked).write(tmp_path / name)
+            Film(walked).save(tmp_path / name)
         with pytest.raises(MeshError, match=r"\.png or \.svg"):
-            pictures.write_mesh_picture(walked.mesh, tmp_path / name)
+            pictures.save_mesh_picture(walked.mesh, tmp_path / name)
     with pytest.raises(MeshError, match="no mesh"):
         Film(Document())
 

@@ -1,13 +1,8 @@
-"""Viewport, picking, markers, and pictures without a display."""
-
-import os
-import subprocess
-import sys
+"""Viewport, picking, markers and themes."""
 
 import numpy as np
 import pytest
 
-from app import scene
 from app.markers import label, markers
 from app.picking import Picker
 from app.policy_files import shipped
@@ -92,30 +87,6 @@ def test_themes_are_readable():
         assert "{t." not in style_sheet(colours)
     with pytest.raises(ValueError, match="light, dark"):
         theme("pink")
-
-
-def test_a_picture_needs_no_display(tmp_path):
-    code = (
-        "from app import scene; from meshcore import generate, shapes; "
-        "m = generate.mesh_domain(shapes.shape('star'), 'quad'); "
-        f"scene.picture(m, r'{tmp_path / 'star.png'}', size=(300, 200), theme='dark')"
-    )
-    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-    done = subprocess.run([sys.executable, "-c", code], env=environment, timeout=100, check=False)
-    assert done.returncode == 0
-    from PIL import Image
-
-    with Image.open(tmp_path / "star.png") as image:
-        assert image.size == (300, 200)
-        pixels = np.asarray(image.convert("RGB")).reshape(-1, 3).astype(int)
-    for name in (THEMES["dark"].background, THEMES["dark"].fill, THEMES["dark"].minus):
-        wanted = [int(name[i : i + 2], 16) for i in (1, 3, 5)]
-        assert np.abs(pixels - wanted).max(axis=1).min() <= 8
-
-
-def test_summary(star, triangles):
-    assert scene.summary(star) == "s 12, optimum 4, 24 quads"
-    assert scene.summary(triangles).endswith("triangles")
 
 
 def test_shipped_policies_agree_with_their_names():

@@ -194,12 +194,12 @@ def test_branches_are_seen_and_taken(qtbot, walked, greedy):
 
 def test_list_and_timeline_can_be_hidden_and_stay_so(qtbot, walked):
     window, film = walked, walked.film
-    width = window.canvas.width()
+    height = window.canvas.height()
     press(qtbot, window, Qt.Key.Key_F3)
     press(qtbot, window, Qt.Key.Key_F4)
     assert not film.panel.isVisible()
     assert not film.timeline.isVisible()
-    qtbot.waitUntil(lambda: window.canvas.width() > width, timeout=WAIT)
+    qtbot.waitUntil(lambda: window.canvas.height() > height, timeout=WAIT)
     assert not window.settings.flag("film/list", True)
     assert not window.actions_by_id["history.list"].isChecked()
     window.document.undo()
