@@ -11,6 +11,7 @@ import numpy as np
 
 from meshcore import HalfEdgeMesh, Operation, Verdict
 from meshcore.operations import CODES, OperationInfo, of_kind, score_change
+from meshcore.trial import score_change as tried_change
 from meshcore.trial import trial
 
 
@@ -91,7 +92,7 @@ def _choice(mesh: HalfEdgeMesh, info: OperationInfo, halfedge: int) -> Choice:
     if not verdict:
         return Choice(info, verdict, None)
     if info.operation == Operation.CHORD_COLLAPSE:  # no formula tells what a whole strip changes
-        return Choice(info, verdict, trial(mesh, info.operation, halfedge).score_change)
+        return Choice(info, verdict, tried_change(mesh, info.operation, halfedge))
     code = CODES[mesh.k][info.operation]
     return Choice(info, verdict, int(score_change(mesh.arrays, code, halfedge)))
 

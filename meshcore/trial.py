@@ -5,8 +5,9 @@ The mesh's own journal is not touched, so that what can be undone and redone sta
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -35,6 +36,8 @@ from meshcore.operations import Operation
 
 if TYPE_CHECKING:
     from meshcore.mesh import HalfEdgeMesh
+
+Result = TypeVar("Result")
 
 _WRITE_KINDS = 1 + journal.LIST_WRITE
 _ENTRIES = 1024
@@ -92,6 +95,31 @@ def trial(mesh: HalfEdgeMesh, operation: Operation | str, h: int) -> Trial:
     verdict = mesh.check(operation, h)
     if not verdict:
         raise OperationRefused(f"{operation} at half-edge {h} is not allowed: {verdict.reason}")
+    return _aside(
+        mesh, operation, h, lambda aside, change: _read(aside, Operation(operation), h, change)
+    )
+
+
+def score_change(mesh: HalfEdgeMesh, operation: Operation | str, h: int) -> int:
+    """How s would change, for an operation that :meth:`HalfEdgeMesh.check` allows at h.
+
+    As :func:`trial`, where nothing else is asked; for operations without a formula.
+    """
+    return _aside(mesh, operation, h, _undone)
+
+
+def _undone(aside: MeshArrays, change: int) -> int:
+    journal.undo(aside)
+    return change
+
+
+def _aside(
+    mesh: HalfEdgeMesh,
+    operation: Operation | str,
+    h: int,
+    then: Callable[[MeshArrays, int], Result],
+) -> Result:
+    """Apply the operation with another journal; `then` is told the change of s and undoes it."""
     code = operations.CODES[mesh.k][Operation(operation)]
     entries = _ENTRIES
     while True:
@@ -104,7 +132,7 @@ def trial(mesh: HalfEdgeMesh, operation: Operation | str, h: int) -> Trial:
         try:
             done = operations.apply_once(*aside, code, h, mesh.degree_cap)
             if done[0] == refusals.ALLOWED:
-                return _read(aside, Operation(operation), h, int(done[1]))
+                return then(aside, int(done[1]))
         finally:
             aside.counters[RESTORED:] = held[RESTORED:]
         vertices, elements, more = aside.trace[TRACE_IDS : TRACE_IDS + 3].tolist()

@@ -112,7 +112,7 @@ class MoveVertices(Gesture):
         self._offset = grabbed - start  # the vertex stays under the mouse as it was taken
         self._drag = drag
         self._done = done
-        layer.begin(drag.segments)
+        layer.begin(drag.segments, drag.places[:, :2].copy())
 
     def move(self, at: QPointF) -> None:
         """The vertices follow."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from qtpy.QtCore import QTimer
 
 from app.desktop.layers.ghost import GhostLayer
 from app.preview import Choice, best, choices, following, ghost
@@ -15,6 +16,14 @@ if TYPE_CHECKING:
 
 GHOSTS = "editing/ghosts"
 """The setting that shows ghosts."""
+FAR = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
+"""Operations whose ghosts may reach through the whole mesh."""
+LARGE = 5000
+"""In meshes of more elements such ghosts wait until the mouse rests: they would flicker."""
+REST = 60
+"""Milliseconds that count as rest."""
+FEW = 2000
+"""The tag of a ghost keeps off irregular vertices while there are no more than this."""
 
 
 class Pointing:
@@ -30,13 +39,16 @@ class Pointing:
         self._picked: Operation | None = None
         self._previewed: Operation | None = None
         self._shown: tuple[int, int, Operation | None] = (-1, -1, None)
-        self.layer: GhostLayer | None = None
+        self.layer = GhostLayer(window.theme, window.font())
+        self._rest = QTimer(window)
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(REST)
+        self._rest.timeout.connect(self._draw_ghost)
 
     def connect(self) -> None:
         """Follow the mouse and the document."""
         window = self._window
         overlay = window.canvas.overlay
-        self.layer = GhostLayer(window.theme, overlay.font())
         overlay.add(self.layer, below=overlay.markers)
         overlay.add(self.layer.numbers, below=overlay.card)
         window.canvas.pointed.connect(self.refresh)
@@ -50,6 +62,7 @@ class Pointing:
     def release(self) -> None:
         """Let go of the document."""
         window = self._window
+        self._rest.stop()
         window.document.hover_changed.disconnect(self._on_hover_changed)
         window.document.changed.disconnect(self._on_changed)
         window.document.replaced.disconnect(self.disarm)
@@ -128,30 +141,43 @@ class Pointing:
             self._show_ghost(mesh, meant, halfedge)
 
     def _show_ghost(self, mesh: HalfEdgeMesh, meant: Choice | None, halfedge: int) -> None:
-        if self.layer is None:
-            return
+        self._rest.stop()
         if meant is None or not self.ghosts or self._window.assistant.running:
             self.layer.show(None)
+        elif meant.operation in FAR and mesh.n_elements > LARGE:
+            self.layer.show(None)
+            self._rest.start()
+        else:
+            self._draw_ghost()
+
+    def _draw_ghost(self) -> None:
+        """Show the ghost of what is meant now."""
+        mesh, meant, halfedge = self._window.document.mesh, self.current, self._at[1]
+        if mesh is None or meant is None or self._at[0] != self._window.document.revision:
             return
         seen = ghost(mesh, meant.operation, halfedge)
-        self.layer.show(seen, meant.info.title, _corners(mesh, halfedge))
+        scene = self._window.canvas.scene
+        marks = scene.markers.places if scene is not None and scene.markers is not None else None
+        if marks is not None and len(marks) > FEW:
+            marks = None
+        self.layer.show(seen, meant.info.title, _corners(mesh, halfedge), marks)
 
     def _clear(self) -> None:
         self._at, self.choices, self._picked = (-1, -1), (), None
         if self._shown != (-1, -1, None):
             self._shown = (-1, -1, None)
             self._window.operations_panel.offer((), None)
-            if self.layer is not None:
-                self.layer.show(None)
+            self._rest.stop()
+            self.layer.show(None)
 
     def _on_hover_changed(self, halfedge: int) -> None:
         if halfedge < 0:
             self._clear()
 
     def _on_changed(self) -> None:
-        if self.layer is not None:  # what was a ghost is there now, or can be no more
-            self.layer.show(None)
-            self._shown = (-1, -1, None)
+        self._rest.stop()  # what was a ghost is there now, or can be no more
+        self.layer.show(None)
+        self._shown = (-1, -1, None)
 
     def _on_settings_changed(self, key: str) -> None:
         if key == GHOSTS:
@@ -161,9 +187,10 @@ class Pointing:
 
 
 def _corners(mesh: HalfEdgeMesh, halfedge: int) -> np.ndarray:
-    """(n, 2) the corners of the elements on both sides of a half-edge."""
-    sides = [halfedge, mesh.twin(halfedge)]
-    firsts = [h - h % mesh.k for h in sides if h >= 0]
-    vertices = [mesh.origin(first + i) for first in firsts for i in range(mesh.k)]
+    """(k, 2) the corners of a half-edge's element, from its origin on."""
+    vertices = []
+    for _ in range(mesh.k):
+        vertices.append(mesh.origin(halfedge))
+        halfedge = mesh.next(halfedge)
     corners: np.ndarray = mesh.points[vertices, :2]
     return corners

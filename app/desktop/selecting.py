@@ -11,7 +11,7 @@ from app.desktop.editing import plural
 from app.desktop.gestures import Band, Gesture, MoveVertices, Refused
 from app.desktop.layers.band import BandLayer
 from app.desktop.layers.rubber import RubberLayer
-from app.desktop.layers.selection import SelectionLayer
+from app.desktop.layers.selection import RADIUS, RegionLayer, SelectionLayer
 from app.desktop.mouse import Click
 from app.desktop.vertex_menu import selection_menu, vertex_menu
 from app.dragging import Drag, refusal
@@ -20,6 +20,7 @@ from meshcore.halfedge import ORIGIN
 
 if TYPE_CHECKING:
     from app.desktop.window import MainWindow
+    from app.viewport import Viewport
 
 EDIT, BOX, LASSO = "edit", "box", "lasso"
 REACH = 10.0
@@ -37,6 +38,7 @@ class Selecting:
         self._window = window
         self.tool = EDIT
         self.layer = SelectionLayer(window.theme)
+        self.region = RegionLayer(window.theme)
         self.band = BandLayer(window.theme)
         self.rubber = RubberLayer(window.theme)
 
@@ -44,9 +46,11 @@ class Selecting:
         """Follow mouse, selection and document."""
         window = self._window
         overlay = window.canvas.overlay
-        overlay.add(self.layer, below=overlay.markers)
+        overlay.add(self.region, below=overlay.markers)
         overlay.add(self.rubber, below=overlay.markers)
-        overlay.add(self.band)
+        overlay.add(self.layer, below=overlay.arrow)
+        overlay.add(self.rubber.top, below=overlay.card)
+        overlay.add(self.band, below=overlay.card)
         window.canvas.gesture_at = self._gesture_at
         window.document.selection.changed.connect(self._on_selected)
         window.document.changed.connect(self._on_changed)
@@ -206,9 +210,22 @@ class Selecting:
     def _show(self) -> None:
         mesh, selection = self._window.document.mesh, self._window.document.selection
         if mesh is None:
-            self.layer.show(np.zeros((0, 2)), np.zeros((0, 4, 2)))
+            self.region.show(np.zeros((0, 4, 2)))
+            self.layer.show(np.zeros((0, 2)), self._radii)
             return
         halfedges = mesh.k * selection.elements[:, None] + np.arange(mesh.k)
-        corners = mesh.arrays.edge[halfedges, ORIGIN]
         points = mesh.points[:, :2]
-        self.layer.show(points[selection.vertices], points[corners])
+        self.region.show(points[mesh.arrays.edge[halfedges, ORIGIN]])
+        self.layer.show(points[selection.vertices], self._radii)
+
+    def _radii(self, viewport: Viewport) -> np.ndarray:
+        """(n,) radii of the rings around the selected vertices: outside of the discs there are."""
+        vertices = self._window.document.selection.vertices
+        radii = np.full(len(vertices), RADIUS)
+        scene = self._window.canvas.scene
+        marks = scene.markers if scene is not None else None
+        if marks is not None and len(marks.vertices):
+            places = np.minimum(np.searchsorted(marks.vertices, vertices), len(marks.vertices) - 1)
+            marked = marks.vertices[places] == vertices
+            radii[marked] = marks.radii(viewport)[places[marked]] + 3.5
+        return radii

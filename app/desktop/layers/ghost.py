@@ -3,7 +3,7 @@ irregularities; the change of s.
 """
 
 import numpy as np
-from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, Qt
+from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, QSizeF, Qt
 from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from app.desktop.layers.layer import Layer, pen
@@ -16,6 +16,10 @@ SLACK = 48.0
 """Pixels around a ghost's edges that its numbers may take."""
 ROOM = 26.0
 """Numbers are written where the edges at the half-edge are longer than this, in pixels."""
+GAP = 14.0
+"""Pixels between the tag and the element that is pointed at."""
+HIDES = 60.0
+"""Pixels that the tag would rather be farther away than hide one more thing."""
 MOST = 24
 """More numbers than this are not written: a ghost is to be seen through."""
 
@@ -28,13 +32,21 @@ class GhostLayer(Layer):
         self.ghost: Ghost | None = None
         self.numbers = GhostNumbers(theme, font, self)
 
-    def show(self, ghost: Ghost | None, title: str = "", around: np.ndarray | None = None) -> None:
-        """Show ``ghost``, or none, with ``title`` beside the places ``around`` (n, 2)."""
+    def show(
+        self,
+        ghost: Ghost | None,
+        title: str = "",
+        around: np.ndarray | None = None,
+        marks: np.ndarray | None = None,
+    ) -> None:
+        """Show ``ghost``, or none, its ``title`` beside the places ``around`` (n, 2): the first two
+        are the ends of the half-edge. The title keeps off ``marks`` (m, 2).
+        """
         if ghost is None and self.ghost is None:
             return
         before = self.rect().united(self.numbers.rect())
         self.ghost = ghost
-        self.numbers.tell(title if ghost is not None else "", around)
+        self.numbers.tell(title if ghost is not None else "", around, marks)
         self.changed(before.united(self.rect()).united(self.numbers.rect()))
 
     def rect(self) -> QRectF:
@@ -86,7 +98,8 @@ class GhostNumbers(Layer):
         self._font = QFont(font)
         self._font.setWeight(QFont.Weight.DemiBold)
         self._title = ""
-        self._around = np.zeros((1, 2))
+        self._around = np.zeros((2, 2))
+        self._marks = np.zeros((0, 2))
 
     @property
     def text(self) -> str:
@@ -94,10 +107,11 @@ class GhostNumbers(Layer):
         ghost = self._edges.ghost
         return "" if ghost is None else f"{self._title}  {label(ghost.change)}"
 
-    def tell(self, title: str, around: np.ndarray | None) -> None:
-        """The words of the tag, and the places (n, 2) in the plane that it stands beside."""
+    def tell(self, title: str, around: np.ndarray | None, marks: np.ndarray | None) -> None:
+        """What :meth:`GhostLayer.show` was told."""
         self._title = title
-        self._around = np.zeros((1, 2)) if around is None else around
+        self._around = np.zeros((2, 2)) if around is None else around
+        self._marks = np.zeros((0, 2)) if marks is None else marks
 
     def rect(self) -> QRectF:
         """Where the tag is, in pixels."""
@@ -151,13 +165,47 @@ class GhostNumbers(Layer):
         return font
 
     def _tag(self) -> QRectF:
-        """Right of the elements and above them; inside the canvas."""
+        """Beside the element that is pointed at, where it hides least of the ghost."""
         at = self.viewport.to_screen(self._around)
-        width = QFontMetricsF(self._tag_font()).horizontalAdvance(self.text) + 24.0
-        room, height = self.viewport.size
-        x = min(float(at[:, 0].max()) + 8.0, room - width - 8.0)
-        y = min(max(float(at[:, 1].min()) - 28.0, 8.0), height - 32.0)
-        return QRectF(max(x, 8.0), y, width, 24.0)
+        size = QSizeF(QFontMetricsF(self._tag_font()).horizontalAdvance(self.text) + 24.0, 24.0)
+        width, height = self.viewport.size
+        room = QRectF(8.0, 8.0, width - 16.0 - size.width(), height - 16.0 - size.height())
+        (left, top), (right, bottom) = at.min(axis=0).tolist(), at.max(axis=0).tolist()
+        x, y = ((at[0] + at[1]) / 2.0).tolist()
+        wide, high = size.width(), size.height()
+        corners = (
+            (right + GAP, y - high / 2),
+            (left - GAP - wide, y - high / 2),
+            (x - wide / 2, top - GAP - high),
+            (x - wide / 2, bottom + GAP),
+        )
+        tags = [QRectF(_within(*corner, room), size) for corner in corners]
+        middle = QPointF(x, y)
+        return min(tags, key=lambda tag: self._cost(tag, middle))
+
+    def _cost(self, tag: QRectF, middle: QPointF) -> float:
+        """How far from the half-edge a tag would be, and how much more it hides than it should."""
+        ghost = self._edges.ghost
+        away = tag.center() - middle
+        cost = float(np.hypot(away.x(), 2.0 * away.y()))
+        if ghost is None or len(ghost.added) > MOST:
+            return cost
+        added = ghost.added[:, None] if len(ghost.added) else np.zeros((0, 1, 2, 2))
+        shares = np.array([0.15, 0.5, 0.85])[None, :, None]
+        along = added[:, :, 0] * (1.0 - shares) + added[:, :, 1] * shares
+        hidden = np.concatenate([along.reshape(-1, 2), ghost.places, self._marks])
+        at = self.viewport.to_screen(hidden)
+        wide = tag.adjusted(-8, -8, 8, 24)
+        inside = (at[:, 0] > wide.left()) & (at[:, 0] < wide.right())
+        inside &= (at[:, 1] > wide.top()) & (at[:, 1] < wide.bottom())
+        return cost + HIDES * float(inside.sum())
+
+
+def _within(x: float, y: float, room: QRectF) -> QPointF:
+    return QPointF(
+        min(max(x, room.left()), max(room.right(), room.left())),
+        min(max(y, room.top()), max(room.bottom(), room.top())),
+    )
 
 
 def change_colour(change: int, theme: Theme) -> str:

@@ -2,24 +2,23 @@
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
-from qtpy.QtGui import QColor, QImage, QPainter, QPen, QPolygonF
+from qtpy.QtGui import QColor, QPainter, QPen, QPolygonF
 
-from app.desktop.layers.layer import Layer, pen
+from app.desktop.layers.layer import pen
+from app.desktop.layers.picture import PictureLayer
 from app.theme import Theme
-from app.viewport import Viewport
 
 STEP = 6.0
 """Pixels between the points that a line is drawn by: finer ones are left out."""
 
 
-class LinesLayer(Layer):
-    """Polylines in the plane. All of them lie in one picture that is made when the view moves."""
+class LinesLayer(PictureLayer):
+    """Polylines in the plane; lies below the markers."""
 
     def __init__(self, theme: Theme) -> None:
         super().__init__(theme)
         self._lines: list[np.ndarray] = []
         self._current = -1
-        self._picture: QImage | None = None
 
     @property
     def count(self) -> int:
@@ -34,8 +33,8 @@ class LinesLayer(Layer):
     def show(self, lines: list[np.ndarray]) -> None:
         """Show these polylines (n, 2)."""
         if lines or self._lines:
-            self._lines, self._current, self._picture = lines, -1, None
-            self.changed()
+            self._lines, self._current = lines, -1
+            self.forget()
 
     def point(self, current: int) -> None:
         """Let line ``current`` glow more, or none of them for -1."""
@@ -44,41 +43,21 @@ class LinesLayer(Layer):
             self._current = current
             self.changed(before.united(self._rect()))
 
-    def set_theme(self, theme: Theme) -> None:
-        """Paint in other colours."""
-        super().set_theme(theme)
-        self._picture = None
-
-    def look(self, viewport: Viewport) -> None:
-        """The view has moved."""
-        super().look(viewport)
-        self._picture = None
+    @property
+    def empty(self) -> bool:
+        """Whether no line glows."""
+        return not self._lines
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """Copy the picture, made anew where it is out of date; then the current line."""
-        if not self._lines:
-            return
-        ratio = painter.device().devicePixelRatioF()
-        if self._picture is None or self._picture.devicePixelRatio() != ratio:
-            self._picture = self._draw(ratio)
-        part = QRectF(rect)
-        source = QRectF(part.topLeft() * ratio, part.size() * ratio)
-        painter.drawImage(part, self._picture, source)
+        """The picture of all, then the current one once more."""
+        super().paint(painter, rect)
         if 0 <= self._current < len(self._lines):
             self._stroke(painter, self._lines[self._current], 110, 11.0, 3.0)
 
-    def _draw(self, ratio: float) -> QImage:
-        width, height = self.viewport.size
-        format_ = QImage.Format.Format_ARGB32_Premultiplied
-        image = QImage(round(width * ratio), round(height * ratio), format_)
-        image.setDevicePixelRatio(ratio)
-        image.fill(Qt.GlobalColor.transparent)
-        painter = QPainter(image)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    def draw(self, painter: QPainter) -> None:
+        """All lines."""
         for line in self._lines:
             self._stroke(painter, line, 56, 8.0, 1.75)
-        painter.end()
-        return image
 
     def _stroke(
         self, painter: QPainter, line: np.ndarray, alpha: int, glow: float, core: float

@@ -2,17 +2,19 @@
 
 import numpy as np
 from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, Qt
-from qtpy.QtGui import QPainter
+from qtpy.QtGui import QColor, QPainter, QPen
 
 from app.desktop.layers.hatch import paint_hatched
 from app.desktop.layers.layer import Layer, pen
 from app.theme import Theme
 
-SLACK = 12.0
+SLACK = 24.0
+COVER = 13.0
+"""Pixels around a vertex that is away that are covered: its disc stands there."""
 
 
 class RubberLayer(Layer):
-    """Follows a drag; lies below the markers."""
+    """Follows a drag; lies below the markers, with the vertices in :attr:`top` above them."""
 
     def __init__(self, theme: Theme) -> None:
         super().__init__(theme)
@@ -20,6 +22,8 @@ class RubberLayer(Layer):
         self._segments = np.zeros((0, 2, 2))
         self._folded = np.zeros((0, 3, 2))
         self._places = np.zeros((0, 2))
+        self._from = np.zeros((0, 2))
+        self.top = RubberVertices(theme, self)
 
     @property
     def folded(self) -> int:
@@ -31,9 +35,9 @@ class RubberLayer(Layer):
         """(n, 2) where the dragged vertices would be, in the plane."""
         return self._places
 
-    def begin(self, segments: np.ndarray) -> None:
-        """These edges (m, 2, 2) are going to move."""
-        self._before = segments
+    def begin(self, segments: np.ndarray, places: np.ndarray) -> None:
+        """These edges (m, 2, 2) and vertices (n, 2) are going to move."""
+        self._before, self._from = segments, places
         self.show(segments, np.zeros((0, 3, 2)), np.zeros((0, 2)))
 
     def show(self, segments: np.ndarray, folded: np.ndarray, places: np.ndarray) -> None:
@@ -46,7 +50,8 @@ class RubberLayer(Layer):
         """The drag is over."""
         before = self._rect()
         self._before = self._segments = np.zeros((0, 2, 2))
-        self._folded, self._places = np.zeros((0, 3, 2)), np.zeros((0, 2))
+        self._folded = np.zeros((0, 3, 2))
+        self._places = self._from = np.zeros((0, 2))
         self.changed(before)
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
@@ -58,10 +63,17 @@ class RubberLayer(Layer):
         paint_hatched(painter, self.viewport.to_screen(self._folded), self.theme)
         painter.setPen(pen(self.theme.arrow, 1.75))
         painter.drawLines(self._lines(self._segments))
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(pen(self.theme.arrow, 1.0).color())
+
+    def paint_vertices(self, painter: QPainter) -> None:
+        """Cover what stands where the vertices were, and show them where they are."""
+        painter.setPen(QPen(QColor(self.theme.faint), 1.25, Qt.PenStyle.DotLine))
+        painter.setBrush(QColor(self.theme.fill))
+        for x, y in self.viewport.to_screen(self._from).tolist():
+            painter.drawEllipse(QPointF(x, y), COVER, COVER)
+        painter.setPen(pen(self.theme.background, 1.5))
+        painter.setBrush(QColor(self.theme.arrow))
         for x, y in self.viewport.to_screen(self._places).tolist():
-            painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
+            painter.drawEllipse(QPointF(x, y), 6.0, 6.0)
 
     def _lines(self, segments: np.ndarray) -> list[QLineF]:
         ends = self.viewport.to_screen(segments.reshape(-1, 2)).reshape(-1, 4)
@@ -74,3 +86,15 @@ class RubberLayer(Layer):
         at = self.viewport.to_screen(ends)
         low, high = at.min(axis=0) - SLACK, at.max(axis=0) + SLACK
         return QRectF(QPointF(*low.tolist()), QPointF(*high.tolist()))
+
+
+class RubberVertices(Layer):
+    """The dragged vertices."""
+
+    def __init__(self, theme: Theme, edges: RubberLayer) -> None:
+        super().__init__(theme)
+        self._edges = edges
+
+    def paint(self, painter: QPainter, rect: QRect) -> None:
+        """Where they were, and where they are."""
+        self._edges.paint_vertices(painter)
