@@ -1,5 +1,7 @@
 """A callout: a small card beside a place of the window, with an arrow to it."""
 
+from collections.abc import Sequence
+
 from qtpy.QtCore import QPoint, QPointF, QRect, QRectF, Qt, Signal
 from qtpy.QtGui import QColor, QPainter, QPainterPath, QPaintEvent, QPen
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
@@ -88,9 +90,9 @@ class Callout(QWidget):
         self.setAccessibleName(heading)
         self.setAccessibleDescription(text)
 
-    def point_at(self, target: QRect, outside: bool) -> None:
-        """Stand beside ``target``, in the parent's pixels, where there is most room, or where the
-        target is so large that there is none, inside it; ``outside`` for targets at an edge.
+    def point_at(self, target: QRect, sides: Sequence[str]) -> None:
+        """Stand beside ``target``, in the parent's pixels: at the first of ``sides`` that has the
+        room ("left", "right", "above", "below"), else where there is most of it.
         """
         self._card.adjustSize()
         width, height = self._card.width() + 2 * _TIP, self._card.height() + 2 * _TIP
@@ -102,9 +104,8 @@ class Callout(QWidget):
             "above": target.top() - room.top() - height,
             "below": room.bottom() - target.bottom() - height,
         }
-        order = ("left", "right", "above", "below")
-        fitting = [side for side in order if rooms[side] >= _GAP]
-        self._side = fitting[0] if outside and fitting else max(order, key=lambda s: rooms[s])
+        fitting = [side for side in sides if rooms[side] >= _GAP]
+        self._side = fitting[0] if fitting else max(rooms, key=lambda side: rooms[side])
         middle = target.center()
         if self._side in ("left", "right"):
             tip_x = target.left() - _GAP if self._side == "left" else target.right() + _GAP

@@ -82,7 +82,8 @@ class Canvas(QWidget):
         self.plotter.installEventFilter(self)
         self.layout().addWidget(self.plotter)
         self.plotter.show()  # at once, so that it can take the keyboard
-        self.scene = Scene(self.plotter, self._theme, short_outlines=True)
+        ratio = self.devicePixelRatioF()  # VTK counts the pixels of the screen
+        self.scene = Scene(self.plotter, self._theme, width=ratio, short_outlines=True)
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())
         self._on_replaced()

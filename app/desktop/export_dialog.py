@@ -9,16 +9,15 @@ from qtpy.QtWidgets import (
     QCheckBox,
     QComboBox,
     QDialog,
-    QDoubleSpinBox,
     QGridLayout,
     QHBoxLayout,
     QLabel,
     QPushButton,
-    QSpinBox,
     QVBoxLayout,
     QWidget,
 )
 
+from app.desktop.number_box import DecimalBox, IntegerBox
 from app.desktop.widgets import named
 from app.drawing import raster
 from app.figure import figure
@@ -60,8 +59,8 @@ class ExportDialog(QDialog):
         self.formats = QButtonGroup(self)
         self.size_box = QComboBox()
         self.theme_box = QComboBox()
-        self.seconds = QDoubleSpinBox()
-        self.every = QSpinBox()
+        self.seconds = DecimalBox()
+        self.every = IntegerBox()
         self.parts: dict[str, QCheckBox] = {}
         self.length = named("", "Hint")
         self.note = named("", "Hint")

@@ -28,7 +28,9 @@ class Stop:
     target: Callable[[MainWindow], QRect | None]
     done: str = ""
     panel: Callable[[MainWindow], QWidget] | None = None
-    """The panel of the sidebar that it is about, which is unfolded."""
+    """The panel beside the canvas that it is about, which is unfolded."""
+    sides: tuple[str, ...] = ("left", "right")
+    """Where the callout stands, best first."""
 
 
 def _widget(window: MainWindow, widget: QWidget | None) -> QRect | None:
@@ -46,14 +48,14 @@ def _panel(window: MainWindow, panel: QWidget) -> QRect | None:
 
 
 def _halfedge(window: MainWindow) -> QRect | None:
-    """A few pixels around the middle of an edge near the middle of what is seen."""
+    """A few pixels around the middle of an edge at the right of what is seen of the mesh."""
     canvas, mesh = window.canvas, window.document.mesh
     if mesh is None or not canvas.isVisible():
         return None
     elements = mesh.elements()
     centres = canvas.viewport.to_screen(mesh.points[elements].mean(axis=1))
-    middle = np.array(canvas.viewport.size) / 2.0
-    row = int(np.abs(centres - middle).sum(axis=1).argmin())
+    seen = ((centres > 0) & (centres < canvas.viewport.size)).all(axis=1)
+    row = int(np.where(seen, centres[:, 0], -1.0).argmax())
     x, y = canvas.viewport.to_screen(mesh.points[elements[row, :2]].mean(axis=0)).tolist()
     at = canvas.mapTo(window, QPoint(round(x), round(y)))
     return QRect(at - QPoint(10, 10), at + QPoint(10, 10))
@@ -73,6 +75,7 @@ STOPS = (
         "element; numbers mark vertices with too many edges (+) or too few (\u2212).",
         _halfedge,
         "That is a half-edge.",
+        sides=("right", "below", "left"),
     ),
     Stop(
         "Do an operation",
@@ -81,6 +84,7 @@ STOPS = (
         lambda window: _panel(window, window.operations_panel),
         "Done. The mesh has changed, and it is still a mesh.",
         panel=lambda window: window.operations_panel,
+        sides=("right",),
     ),
     Stop(
         "Watch the score",
@@ -101,6 +105,7 @@ STOPS = (
         "Every step, yours or the agent\u2019s, is kept. Click or drag on the timeline to go back, "
         "and edit on from there. Ctrl+K finds every command, F1 lists all keys.",
         _history,
+        sides=("above", "right", "below"),
     ),
 )
 
@@ -194,4 +199,4 @@ class Tour(QObject):
         if target is None:
             target = _widget(self._window, self._window.pages) or self._window.rect()
             target = QRect(target.center(), target.center())
-        self.callout.point_at(target, outside=self._at > 0)
+        self.callout.point_at(target, stop.sides)

@@ -6,12 +6,13 @@ from typing import Any
 
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QKeySequence, QShortcut
-from qtpy.QtWidgets import QCheckBox, QDoubleSpinBox, QHBoxLayout, QPushButton, QVBoxLayout
+from qtpy.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QVBoxLayout
 
 from app.desktop import icons
 from app.desktop.new_mesh.coordinates import Coordinates
 from app.desktop.new_mesh.drawing_area import DrawingArea
 from app.desktop.new_mesh.page import Page
+from app.desktop.number_box import DecimalBox
 from app.desktop.widgets import named
 from app.sketch import Sketch
 from app.snapping import Snapper
@@ -32,7 +33,7 @@ class DrawPage(Page):
         self.clear = _button("Clear", "Begin anew; can be taken back")
         self.fit = _button("Fit", "Show all that is drawn")
         self.to_grid = _tick("Grid", "Corners go to points of the grid")
-        self.step = QDoubleSpinBox()
+        self.step = DecimalBox()
         self.step.setDecimals(3)
         self.step.setRange(0.001, 1000.0)
         self.step.setSingleStep(0.05)

@@ -20,6 +20,7 @@ from qtpy.QtWidgets import (
 )
 
 from app.desktop.new_mesh.page import Page
+from app.desktop.number_box import DecimalBox
 from app.desktop.widgets import named
 from app.theme import GRID, Theme
 from meshcore import geometry_files, io
@@ -180,7 +181,7 @@ class FilePage(Page):
 
 
 def _angle(value: float, low: float, high: float, decimals: int, name: str) -> QDoubleSpinBox:
-    made = QDoubleSpinBox()
+    made = DecimalBox()
     made.setDecimals(decimals)
     made.setRange(low, high)
     made.setValue(value)

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 from qtpy.QtCore import QSignalBlocker, Qt, QTimer
-from qtpy.QtWidgets import QHBoxLayout, QPushButton, QSpinBox, QVBoxLayout
+from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from app.desktop import icons
 from app.desktop.new_mesh.controls import Choice
 from app.desktop.new_mesh.page import Page, Pictures
+from app.desktop.number_box import IntegerBox
 from app.desktop.widgets import named
 from app.theme import GRID, Theme
 from meshcore import parts, shapes
@@ -31,11 +32,11 @@ class RandomPage(Page):
         super().__init__()
         self._theme = theme
         self.kind = Choice(KINDS, "Kind of shape")
-        self.sides = QSpinBox()
+        self.sides = IntegerBox()
         self.sides.setRange(FEWEST, MOST)
         self.sides.setValue(10)
         self.sides.setAccessibleName("Sides")
-        self.seed = QSpinBox()
+        self.seed = IntegerBox()
         self.seed.setRange(0, LAST_SEED)
         self.seed.setAccessibleName("Seed")
         self.seed.setToolTip("The same sides and seed make the same shape, always")
