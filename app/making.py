@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
+from app.project import is_project
 from meshcore.errors import MeshError
 
 if TYPE_CHECKING:
@@ -107,6 +108,8 @@ def make(request: Mapping[str, Any]) -> Made:
 
     source = request["source"]
     path = source.get("file", "")
+    if is_project(path):
+        raise MeshError(f"{path}: a project is opened by Open, not here.")
     if path and not geometry_files.is_geometry(path):
         mesh = read(path, source["corner_angle"])
         _refuse_many(mesh.n_elements, "has")

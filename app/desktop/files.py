@@ -100,7 +100,10 @@ class Files:
         dialog = NewMeshDialog(window.document.kind, window.theme, window, file)
         if dialog.exec() and dialog.made is not None:
             made = dialog.made
-            window.document.replace(made.mesh(), made.name, made.path or None)
+            with waiting():
+                window.document.replace(made.mesh(), made.name, made.path or None)
+            if made.path:
+                self._remember(Path(made.path))
         dialog.deleteLater()
 
     def make(self, shape: str, kind: str) -> None:

@@ -149,7 +149,6 @@ def test_too_many_elements_are_refused_in_one_sentence(qtbot, dialog):
     size.tick.click()
     wait_for_mesh(qtbot, dialog)
     size.slider.setValue(size.slider.maximum())
-    size.field.setRange(1e-5, 1.0)
     size.field.setDecimals(5)
     size.field.setValue(2e-4)
     wait_for_words(qtbot, dialog, "2,000,000 are the most")
@@ -160,7 +159,6 @@ def test_too_many_elements_are_refused_in_one_sentence(qtbot, dialog):
 def test_the_last_request_wins_and_the_window_answers_meanwhile(qtbot, dialog):
     size = dialog.options.size_of
     size.tick.click()
-    size.field.setRange(1e-4, 1.0)
     size.field.setDecimals(5)
     size.field.setValue(2e-3)  # some seconds of work
     qtbot.waitUntil(lambda: dialog.maker._asked is not None, timeout=WAIT)
@@ -183,6 +181,19 @@ def test_make_waits_for_the_mesh(qtbot, dialog):
     same = generate.mesh_domain(shapes.shape("gear"), "quad")
     assert (mesh.points == same.points).all() and (mesh.elements() == same.elements()).all()
     assert (mesh.desired() == same.desired()).all()
+
+
+def test_return_on_a_picture_makes_the_mesh_but_not_in_a_field(qtbot, dialog):
+    dialog.options.size_of.tick.click()
+    dialog.options.size_of.field.setFocus()
+    key(qtbot, dialog.options.size_of.field, Qt.Key.Key_Return)
+    wait_for_mesh(qtbot, dialog)
+    assert dialog.isVisible()
+    dialog.gallery.shapes.setFocus()
+    key(qtbot, dialog.gallery.shapes, Qt.Key.Key_Down)
+    key(qtbot, dialog.gallery.shapes, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: not dialog.isVisible(), timeout=WAIT)
+    assert dialog.made.name == "u-shape"
 
 
 # Random shapes
@@ -239,6 +250,15 @@ def test_right_click_and_backspace_take_back(qtbot, dialog, pen):
     assert len(dialog.draw.sketch.loops[0].corners) == 3
     key(qtbot, dialog.draw.area, Qt.Key.Key_Return)
     assert not dialog.draw.sketch.open and dialog.isVisible()
+
+
+def test_escape_does_not_throw_a_drawing_away(qtbot, dialog, pen):
+    pen.click(0, 0)
+    key(qtbot, dialog.draw.area, Qt.Key.Key_Escape)
+    assert dialog.isVisible() and "press Cancel" in dialog.status.text()
+    dialog.draw.clear.click()
+    key(qtbot, dialog.draw.area, Qt.Key.Key_Escape)
+    assert not dialog.isVisible()
 
 
 def test_a_corner_is_dragged_as_one_edit_and_an_edge_takes_a_new_one(qtbot, dialog, pen):
@@ -326,6 +346,8 @@ def test_a_drawing_is_chosen_and_meshed(qtbot, dialog, tmp_path):
     assert dialog.options.size_of.value > 1
     dialog.file.take(str(tmp_path / "missing.svg"))
     wait_for_words(qtbot, dialog, "there is no such file")
+    dialog.file.take(str(tmp_path / "work.meshwright"))
+    wait_for_words(qtbot, dialog, "a project is opened by Open")
     assert not dialog.make.isEnabled()
 
 

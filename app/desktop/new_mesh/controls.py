@@ -10,7 +10,6 @@ from qtpy.QtGui import QFont, QFontMetrics
 from qtpy.QtWidgets import (
     QButtonGroup,
     QCheckBox,
-    QDoubleSpinBox,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -19,9 +18,12 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from app.desktop.number_box import DecimalBox
 from app.desktop.widgets import named
 from app.theme import GRID
 
+_SMALLEST, _LARGEST = 1e-9, 1e9
+"""Lengths that can be typed."""
 STEPS = 200
 """Positions of a slider."""
 
@@ -94,7 +96,7 @@ class Measure(QWidget):
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setRange(0, STEPS)
         self.slider.setAccessibleName(f"{title}, slider")
-        self.field = QDoubleSpinBox()
+        self.field = DecimalBox()
         self.field.setDecimals(decimals)
         self.field.setRange(low, high)
         self.field.setValue(value)
@@ -128,21 +130,25 @@ class Measure(QWidget):
         return float(self.field.value()) if self.tick.isChecked() else None
 
     def set_range(self, low: float, high: float, value: float) -> None:
-        """Other bounds, and the number to begin with unless the user has set one within them."""
+        """Other bounds of the slider, and the number to begin with unless the user has set one
+        within them.
+        """
         self._low, self._high = low, high
         decimals = max(0, 3 - math.floor(math.log10(high)))
         inside = self.tick.isChecked() and low <= self.field.value() <= high
         with QSignalBlocker(self.field):
             self.field.setDecimals(min(decimals, 9))
-            self.field.setRange(low, high)
+            self.field.setRange(_SMALLEST, _LARGEST)
             self.field.setSingleStep(10.0 ** math.floor(math.log10(high) - 1.0))
             if not inside:
                 self.field.setValue(value)
         self._place_slider()
+        if self.tick.isChecked() and not inside:
+            self.changed.emit()
 
     def _share(self, value: float) -> float:
         if self._geometric:
-            return math.log(self._high / value) / math.log(self._high / self._low)
+            return math.log(self._high / max(value, self._low)) / math.log(self._high / self._low)
         return (value - self._low) / (self._high - self._low)
 
     def _place_slider(self) -> None:

@@ -7,11 +7,14 @@ from typing import Any
 
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import (
+    QAbstractSpinBox,
     QDialog,
     QHBoxLayout,
     QLabel,
+    QLineEdit,
     QPushButton,
     QStackedWidget,
+    QTableWidget,
     QVBoxLayout,
     QWidget,
 )
@@ -30,6 +33,7 @@ from app.making import Made
 from app.theme import GRID, Theme
 
 PAGES = (("gallery", "Gallery"), ("random", "Random"), ("draw", "Draw"), ("file", "File"))
+WOULD_BE_LOST = "The drawing would be lost: press Cancel to close without it."
 WORKING = "Making the mesh\u2026"
 NOTHING = "The mesh is shown here as soon as there is a shape."
 NO_MESH = "There is no mesh to show: see below."
@@ -65,7 +69,7 @@ class NewMeshDialog(QDialog):
             "file": self.file,
         }
         self._asked: Mapping[str, Any] | None = None
-        self._told = ""
+        self._told = self._path = ""
         self._theme = theme
         self._accepting = False
         self.setStyleSheet(_style(theme))
@@ -161,10 +165,16 @@ class NewMeshDialog(QDialog):
         super().done(result)
 
     def keyPressEvent(self, event: Any) -> None:  # noqa: N802
-        """Return in a field ends its editing; it does not make the mesh."""
-        typing = self.focusWidget() not in (None, self, self.make, self.draw.area)
+        """Return in a field ends its editing; Escape does not throw a drawing away."""
+        typing = isinstance(self.focusWidget(), QAbstractSpinBox | QLineEdit | QTableWidget)
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and typing:
             event.accept()
+        elif (
+            event.key() == Qt.Key.Key_Escape
+            and self.page is self.draw
+            and not self.draw.sketch.empty
+        ):
+            self._on_told(WOULD_BE_LOST)
         else:
             super().keyPressEvent(event)
 
@@ -173,6 +183,10 @@ class NewMeshDialog(QDialog):
         self.options.settings.setEnabled(page.takes_settings)
         source = page.source
         self._accepting = False
+        path = source.get("file", "") if source else ""
+        if path and path != self._path:
+            self._path = path
+            self.options.size_of.tick.setChecked(False)  # what suits it is not known yet
         if source is None:
             self._asked = self.made = None
             self.maker.cancel()
@@ -221,11 +235,8 @@ def _style(theme: Theme) -> str:
     return f"""
 #Status {{ color: {theme.muted}; }}
 #Status[warns="true"] {{ color: {theme.warning}; }}
+#Table QHeaderView::section {{ padding: 4px 17px 4px 11px; }}
 #Table QLineEdit {{ padding: 0 4px; border-radius: 0; border: 1px solid {theme.accent}; }}
-QAbstractSpinBox {{ padding-right: 8px; }}
-QAbstractSpinBox:disabled {{ color: {theme.faint}; background: transparent; }}
-QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; height: 0; border: 0; }}
-QAbstractSpinBox::up-arrow, QAbstractSpinBox::down-arrow {{ image: none; width: 0; height: 0; }}
 QListWidget {{ font-size: 12px; }}
 QListWidget::item {{ padding: 4px 2px; }}
 #DropZone {{ border: 1px dashed {theme.faint}; border-radius: 8px;

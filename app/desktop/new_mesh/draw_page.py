@@ -39,7 +39,7 @@ class DrawPage(Page):
         self.step.setSingleStep(0.05)
         self.step.setValue(0.1)
         self.step.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.step.setFixedWidth(8 * GRID)
+        self.step.setFixedWidth(10 * GRID)
         self.step.setAccessibleName("Step of the grid")
         self.to_points = _tick("Points", "The mouse is drawn to corners that are there")
         self.to_angles = _tick("Right angles", "Edges go to the axes and to right angles")

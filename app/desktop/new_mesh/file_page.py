@@ -187,7 +187,7 @@ def _angle(value: float, low: float, high: float, decimals: int, name: str) -> Q
     made.setValue(value)
     made.setSuffix("\u00b0")
     made.setAlignment(Qt.AlignmentFlag.AlignRight)
-    made.setFixedWidth(9 * GRID)
+    made.setFixedWidth(10 * GRID)
     made.setKeyboardTracking(False)
     made.setAccessibleName(name)
     return made

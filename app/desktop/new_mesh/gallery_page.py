@@ -34,6 +34,7 @@ class GalleryPage(Page):
             for name, domain in shapes.gallery().items():
                 self.shapes.add(words_of(name), name, domain, self._theme)
             self.shapes.setCurrentRow(0)
+        self.shapes.setFocus()
 
     def choose(self, name: str) -> None:
         """Choose a shape by its name."""

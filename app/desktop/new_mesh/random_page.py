@@ -43,7 +43,7 @@ class RandomPage(Page):
         self.seed.setMinimumWidth(12 * GRID)
         for field in (self.sides, self.seed):
             field.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.sides.setFixedWidth(6 * GRID)
+        self.sides.setFixedWidth(8 * GRID)
         self.dice = QPushButton("Others")
         self.dice.setToolTip("Show shapes of other seeds")
         self.dice.setAutoDefault(False)
