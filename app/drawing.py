@@ -111,6 +111,20 @@ def text_width(text: str, size: float, bold: bool = False) -> float:
     return float(_font(size, bold).getlength(text))
 
 
+def hatching(corners: np.ndarray, gap: float) -> np.ndarray:
+    """Slanted lines (n, 2, 2) inside a polygon (m, 2), ``gap`` pixels from one to the next."""
+    along, across = np.array([1.0, -1.0]) / np.sqrt(2.0), np.array([1.0, 1.0]) / np.sqrt(2.0)
+    depth, ahead = corners @ across, np.roll(corners, -1, axis=0) @ across
+    lines = []
+    for level in np.arange(np.ceil(depth.min() / gap), np.floor(depth.max() / gap) + 1) * gap:
+        cut = (depth <= level) != (ahead <= level)
+        share = ((level - depth[cut]) / (ahead[cut] - depth[cut]))[:, None]
+        places = corners[cut] + share * (np.roll(corners, -1, axis=0)[cut] - corners[cut])
+        places = places[np.argsort(places @ along)]
+        lines += [places[i : i + 2] for i in range(0, len(places) - 1, 2)]
+    return np.array(lines).reshape(-1, 2, 2)
+
+
 # Pixels
 
 

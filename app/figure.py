@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app import curve
-from app.drawing import Area, Disc, Drawing, Line, Segments, Square, Text
+from app.drawing import Area, Disc, Drawing, Line, Segments, Square, Text, hatching
 from app.markers import READABLE, Markers, label, markers
 from app.theme import Theme, theme
 from app.viewport import Viewport
-from meshcore import HalfEdgeMesh
+from meshcore import HalfEdgeMesh, quality
 from meshcore.halfedge import ORIGIN, TWIN
 
 REFERENCE = 800.0
@@ -22,6 +22,8 @@ REFERENCE = 800.0
 HEAD, FOOT = 64.0, 112.0
 """Nominal height of the lines above the mesh, and of the score curve below it."""
 MARGIN = 24.0
+MOST_INVERTED = 500
+"""More elements than this are not all hatched."""
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,7 @@ def figure(
     drawing.add(Segments(view.to_screen(mesh.points[pairs]), colours.edge, width))
     if look.changes and moment is not None and len(moment.added):
         drawing.add(Segments(view.to_screen(moment.added), colours.accent, 2.6 * unit))
+    _add_inverted(drawing, mesh, view, colours, unit)
     for loop in marks.loops:
         drawing.add(Line(view.to_screen(loop), colours.boundary, max(2.0 * unit, 1.3 * width)))
     _add_markers(drawing, marks, view, colours, unit, look.numbers)
@@ -143,6 +146,21 @@ def _edge_width(mesh: HalfEdgeMesh, pairs: np.ndarray, view: Viewport, unit: flo
     some = mesh.points[pairs[:: max(1, len(pairs) // 2000)], :2]
     typical = float(np.median(np.hypot(*(some[:, 1] - some[:, 0]).T))) * view.pixels
     return min(1.2 * unit, max(0.12 * typical, 0.34))
+
+
+def _add_inverted(
+    drawing: Drawing, mesh: HalfEdgeMesh, view: Viewport, colours: Theme, unit: float
+) -> None:
+    """Hatch what no solver may take, in plain sight."""
+    ids = quality.inverted(mesh)[:MOST_INVERTED]
+    if len(ids) == 0:
+        return
+    rows = mesh.arrays.edge[ids[:, None] * mesh.k + np.arange(mesh.k), ORIGIN]
+    corners = view.to_screen(mesh.points[rows])
+    lines = np.concatenate([hatching(one, 6.0 * unit) for one in corners])
+    rims = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)
+    drawing.add(Segments(lines, colours.warning, 0.9 * unit))
+    drawing.add(Segments(rims, colours.warning, 1.5 * unit))
 
 
 def _add_markers(

@@ -142,7 +142,7 @@ class Film:
         if state == 0:
             return "Start"
         row = self.rows[state - 1]
-        return f"{row.title}  {label(row.change)}" if row.halfedge >= 0 else row.title
+        return f"{row.title} ({label(row.change)})" if row.halfedge >= 0 else row.title
 
     def _detail(self, state: int) -> str:
         by = self.rows[state - 1].by if state else ""

@@ -118,6 +118,7 @@ def palette(colours: Theme) -> list[int]:
         (t.background, t.faint),
         (t.fill, t.faint),
         (t.background, t.line),
+        (t.fill, t.warning),
     )
     shares = np.linspace(0.0, 1.0, LEVELS)[:, None]
     mixed = [(1 - shares) * _rgb(a) + shares * _rgb(b) for a, b in meeting]

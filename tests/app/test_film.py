@@ -13,7 +13,7 @@ from PIL import Image
 from app import curve, movie, pictures
 from app.curve import Track
 from app.document import Document
-from app.drawing import Area, Drawing, Segments, raster, svg
+from app.drawing import Area, Drawing, Segments, hatching, raster, svg
 from app.figure import Look, edges, figure, summary
 from app.film import Film
 from app.pictures import Order
@@ -177,6 +177,20 @@ def test_figure_in_vectors_is_svg_with_its_words(walked):
     assert not re.search(r"nan|inf|e-", path)
     strange = svg(Drawing((10, 10), "#ffffff", "a < b & c"))
     assert ElementTree.fromstring(strange)[0].text == "a < b & c"
+
+
+def test_inverted_elements_are_hatched(strip):
+    plain = len(figure(strip, SMALL).shapes)
+    strip.move([1], np.array([[1.0, 1.4, 0.0]]))
+    drawn = figure(strip, SMALL)
+    hatched = [s for s in drawn.shapes if getattr(s, "colour", "") == THEMES["light"].warning]
+    assert len(hatched) == 2
+    assert len(drawn.shapes) == plain + 2
+    square = np.array([(0, 0), (10, 0), (10, 10), (0, 10)], dtype=float)
+    lines = hatching(square, 2.0)
+    assert len(lines) == 8  # the first one in the corner
+    assert np.ptp(lines.sum(axis=2), axis=1).max() < 1e-9
+    assert ((lines >= -1e-9) & (lines <= 10 + 1e-9)).all()
 
 
 def test_holes_stay_open_in_both():
