@@ -74,6 +74,8 @@ class Run:
     in_step: bool = False
     decisions: int = 0
     began: float = field(default_factory=time.monotonic)
+    due: float = field(default_factory=time.monotonic)
+    """When the last decision was due, while playing."""
     lock: threading.Lock = field(default_factory=threading.Lock)
     stop: threading.Event = field(default_factory=threading.Event)
     applied: threading.Event = field(default_factory=threading.Event)

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 BATCH_SECONDS = 0.03
 """Seconds for which a search gathers its operations before it hands them over."""
 
+ALIVE_SECONDS = 1.0
+"""Seconds after which a worker that waits looks whether the program is still there."""
+
 Dispatch = Callable[[Callable[[], None]], None]
 Load = Callable[[str], Any]
 MakeRunner = Callable[[HalfEdgeMesh, Any, int], Runner]
@@ -150,7 +153,7 @@ class Worker:
             return
         if run.state is State.LOOKING or (run.watch and run.state is State.PLAYING):
             self._dispatch(partial(self._listener.looked_at, run, runner.look()))
-            self._wait(run, time.monotonic())
+            self._wait(run)
         while run.state is not State.LOOKING and self._decide(run, runner):
             pass
 
@@ -183,17 +186,24 @@ class Worker:
         insight = runner.look() if run.watch and not finished else None
         decided = Decided(operations, decisions, finished, insight)
         self._dispatch(partial(self._listener.decided, run, decided))
-        run.applied.wait()
-        self._wait(run, begun)
+        while not run.applied.wait(ALIVE_SECONDS):
+            if not threading.main_thread().is_alive():
+                return False  # the program has broken off: nobody will apply anything any more
+        self._wait(run)
         return not run.stop.is_set() and not finished
 
-    def _wait(self, run: Run, begun: float) -> None:
-        """While playing, wait until it is time for the next decision."""
+    def _wait(self, run: Run) -> None:
+        """While playing, wait until it is time for the next decision.
+
+        Decisions are due at equal distances; one that comes too late puts off those after it.
+        """
+        before, now = run.due, time.monotonic()
         while run.state is State.PLAYING and not run.stop.is_set():
             run.wake.clear()  # set again when the speed changes or the run ends
             if run.stop.is_set():
                 break
-            left = begun + 1.0 / run.speed - time.monotonic()
+            run.due = max(before + 1.0 / run.speed, now)
+            left = run.due - time.monotonic()
             if left <= 0 or not run.wake.wait(left):
                 break
 

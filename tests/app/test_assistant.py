@@ -1,5 +1,7 @@
 """The assistant with a scripted policy: no Qt, no torch."""
 
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -392,3 +394,31 @@ def test_a_chosen_policy_is_taken_once_it_is_there(make, desk, star):
     desk.until(lambda: not assistant.loading)
     assert assistant.policy == "/somewhere/mine.safetensors"
     assert assistant.heard[-1] == "bad.safetensors: this is no policy file."
+
+
+def test_a_program_that_breaks_off_is_not_held_by_a_run():
+    """A worker waits until its decision is applied; nobody applies it once the program dies."""
+    code = """if True:
+        import time
+        from app.assistant import Assistant
+        from app.document import Document
+        from meshcore import generate, shapes
+
+        class Runner:
+            finished, reason = False, ""
+            look = staticmethod(lambda: None)
+            step = staticmethod(lambda: [("flip_left", 0)])
+
+        mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+        calls = []
+        assistant = Assistant(
+            Document(mesh), calls.append, lambda name: name, lambda *_: Runner()
+        )
+        assistant.policy = "any"
+        assistant.play()
+        while len(calls) < 2:
+            time.sleep(0.01)
+        raise SystemExit(3)
+    """
+    done = subprocess.run([sys.executable, "-c", code], timeout=60, check=False)
+    assert done.returncode == 3
