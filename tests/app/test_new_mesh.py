@@ -230,6 +230,8 @@ def test_a_square_with_a_hole_is_drawn_with_the_mouse(qtbot, dialog, pen):
     assert not dialog.make.isEnabled()
     pen.loop(SQUARE)
     assert not dialog.draw.sketch.open
+    pen.click(0, 0)
+    assert "press Add hole" in dialog.status.text()
     pen.qtbot.mouseClick(dialog.draw.hole, LEFT)
     assert "Click inside the outline" in dialog.status.text()
     pen.loop([(-0.2, -0.2), (0.2, -0.2), (0, 0.2)])

@@ -138,7 +138,6 @@ class NewMeshDialog(QDialog):
         self.tabs.key = key
         self.stack.setCurrentWidget(self._pages[key])
         self.page.fill()
-        self._told = ""
         self._on_changed()
 
     def set_theme(self, theme: Theme) -> None:
@@ -182,7 +181,7 @@ class NewMeshDialog(QDialog):
         page = self.page
         self.options.settings.setEnabled(page.takes_settings)
         source = page.source
-        self._accepting = False
+        self._accepting, self._told = False, ""
         path = source.get("file", "") if source else ""
         if path and path != self._path:
             self._path = path

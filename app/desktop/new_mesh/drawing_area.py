@@ -31,6 +31,7 @@ from app.viewport import Viewport
 REACH = 9.0
 """Pixels within which corners and lines attract the mouse."""
 CORNER = 8.0
+CLOSED = "Everything is closed: click an edge to put a corner on it, or press Add hole."
 _CLOSEST_GRID = 7.0
 """Pixels between grid lines below which only every fifth or tenth is drawn."""
 _DRAG = 4.0
@@ -147,11 +148,14 @@ class DrawingArea(QWidget):
         if event.button() != Qt.MouseButton.LeftButton or self._pressed is None:
             return
         moved, held = self._recorded, self._moving
+        was_open = self.sketch.open
         self._pressed = self._moving = None
         if not moved:
             self._clicked(event.position(), held)
         self._snap = self._snapped(event.position())
         self._tell()
+        if held is None and not was_open:
+            self.told.emit(CLOSED)
         self.update()
 
     def leaveEvent(self, event: object) -> None:  # noqa: N802
