@@ -11,8 +11,8 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
+from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
 
 BATCH_SECONDS = 0.03
 """Seconds for which a search gathers its operations before it hands them over."""
-
-ALIVE_SECONDS = 1.0
-"""Seconds after which a worker that waits looks whether the program is still there."""
 
 Dispatch = Callable[[Callable[[], None]], None]
 Load = Callable[[str], Any]
@@ -92,7 +89,9 @@ class Worker:
         self._make_search = make_search
         self._ask = ask or _ask_policy
         self._policies: dict[str, Any] = {}
-        self._pool: ThreadPoolExecutor | None = None
+        self._tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._thread: threading.Thread | None = None
+        self._closed = threading.Event()
 
     # In the document's thread
 
@@ -113,16 +112,22 @@ class Worker:
         self._submit(partial(self._answer, question), question)
 
     def close(self) -> None:
-        """Let the thread end, without waiting for it."""
-        if self._pool is not None:
-            self._pool.shutdown(wait=False, cancel_futures=True)
+        """Let the thread end, without waiting for it; what has not been begun is left undone."""
+        self._closed.set()
+        self._tasks.put(None)
 
     def _submit(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
-        if self._pool is None:
-            self._pool = ThreadPoolExecutor(max_workers=1, thread_name_prefix="assistant")
-        self._pool.submit(self._guarded, task, cause)
+        if self._thread is None:
+            # a daemon: a program that breaks off does not wait for decisions that nobody applies
+            self._thread = threading.Thread(target=self._serve, name="assistant", daemon=True)
+            self._thread.start()
+        self._tasks.put(partial(self._guarded, task, cause))
 
     # On the thread
+
+    def _serve(self) -> None:
+        while (task := self._tasks.get()) is not None and not self._closed.is_set():
+            task()
 
     def _guarded(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
         try:
@@ -186,9 +191,7 @@ class Worker:
         insight = runner.look() if run.watch and not finished else None
         decided = Decided(operations, decisions, finished, insight)
         self._dispatch(partial(self._listener.decided, run, decided))
-        while not run.applied.wait(ALIVE_SECONDS):
-            if not threading.main_thread().is_alive():
-                return False  # the program has broken off: nobody will apply anything any more
+        run.applied.wait()
         self._wait(run)
         return not run.stop.is_set() and not finished
 
