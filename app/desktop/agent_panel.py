@@ -22,6 +22,7 @@ from app.assistant import Assistant, State
 from app.desktop import icons
 from app.desktop.actions import ActionSet
 from app.desktop.hint_list import HintList
+from app.desktop.number_box import IntegerBox
 from app.desktop.settings import Settings
 from app.desktop.widgets import Bar, named
 from app.document import Document
@@ -59,6 +60,7 @@ class AgentPanel(QWidget):
         self._buttons: list[tuple[QWidget, str]] = []
         self._numbers: dict[QSpinBox, str] = {}
         self._files: list[str] = []
+        self._drawn: tuple[bool, Theme] | None = None  # what the icons are for
         self._make_policy()
         self._make_buttons()
         self._make_progress()
@@ -139,8 +141,10 @@ class AgentPanel(QWidget):
         self.search = self._button("agent.search", "Search")
         self.region = self._button("agent.region", "Finish only this region")
         self.rollouts_box = self._number("agent/rollouts", MOST_ROLLOUTS, USUAL_ROLLOUTS, " runs")
+        self.rollouts_box.setAccessibleName("Runs of Best of")
         self.rollouts_box.setToolTip("How often Best of runs the policy")
         self.seconds_box = self._number("agent/seconds", MOST_SECONDS, USUAL_SECONDS, " s")
+        self.seconds_box.setAccessibleName("Seconds of Search")
         self.seconds_box.setToolTip("How long Search and Finish only this region look")
         self.watch = QCheckBox("Show what the policy sees")
         self.watch.setToolTip(self._actions["agent.watch"].toolTip())
@@ -179,11 +183,11 @@ class AgentPanel(QWidget):
         return made
 
     def _number(self, key: str, most: int, usual: int, unit: str) -> QSpinBox:
-        made = QSpinBox()
+        made = IntegerBox()
         made.setRange(1, most)
         made.setSuffix(unit)
         made.setValue(usual)
-        made.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        made.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         made.setKeyboardTracking(False)
         made.valueChanged.connect(partial(self._keep, key))
         self._numbers[made] = key
@@ -265,8 +269,10 @@ class AgentPanel(QWidget):
         self.play.setText(
             "Pause" if playing else "Go on" if assistant.state is State.PAUSED else "Play"
         )
-        self.step.setIcon(icons.icon("step", self._theme))
-        self.play.setIcon(icons.icon("pause" if playing else "play", self._theme))
+        if self._drawn != (playing, self._theme):
+            self._drawn = (playing, self._theme)
+            self.step.setIcon(icons.icon("step", self._theme))
+            self.play.setIcon(icons.icon("pause" if playing else "play", self._theme))
         self.stop.setText("Stop at once" if assistant.stopping else "Stop")
         self.watch.setChecked(assistant.watch)
         self._select()
