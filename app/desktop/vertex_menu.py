@@ -49,6 +49,8 @@ def selection_menu(window: MainWindow) -> QMenu:
     _head(menu, f"{len(selection):,} vertices{around}, s {total:,}")
     _fill(menu, window, selection.vertices)
     menu.addSeparator()
+    menu.addAction(window.actions_by_id["agent.region"])
+    menu.addSeparator()
     for action_id in ("select.grow", "select.shrink", "select.invert", "select.none"):
         menu.addAction(window.actions_by_id[action_id])
     return menu
