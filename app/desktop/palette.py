@@ -151,7 +151,7 @@ class Palette(QFrame):
         if kind == QEvent.Type.KeyPress and _is_ours(event):
             self._on_key(event.key())
             return True
-        if kind == QEvent.Type.FocusOut and event.reason() != Qt.FocusReason.PopupFocusReason:
+        if kind == QEvent.Type.FocusOut and event.reason() not in _ELSEWHERE_FOR_NOW:
             self._before = None  # the keyboard has gone where the person put it
             self.dismiss()
         return False
@@ -205,6 +205,7 @@ _STEPS = {
     int(Qt.Key.Key_PageDown): ROWS - 1,
     int(Qt.Key.Key_PageUp): 1 - ROWS,
 }
+_ELSEWHERE_FOR_NOW = (Qt.FocusReason.PopupFocusReason, Qt.FocusReason.ActiveWindowFocusReason)
 _OTHERS = (Qt.Key.Key_Escape, Qt.Key.Key_Return, Qt.Key.Key_Enter)
 
 

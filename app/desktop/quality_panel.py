@@ -70,11 +70,13 @@ class QualityPanel(QWidget):
         unit = self._unit()
         spread = self._spread(summary)
         self.histogram.show_spread(spread, len(summary.inverted), unit)
-        if math.isnan(spread.worst):
+        if self._gauge.stale:
+            self.worst.show_value("\u2026")
+        elif math.isnan(spread.worst):
             self.worst.show_value("\u2013")
         else:
             value = f"{spread.worst:.1f}{unit}" if unit else f"{spread.worst:.2f}"
-            self.worst.show_value(value.replace("-", "\u2212"), not self._gauge.stale)
+            self.worst.show_value(value.replace("-", "\u2212"), leads=True)
 
     def _arrange(self) -> None:
         layout = QVBoxLayout(self)

@@ -101,6 +101,7 @@ class ScorePanel(QWidget):
             self.bar.share = 0.0
             return
         self.score.setText(f"{mesh.score:,}")
+        self.score.setAccessibleName(f"Score {mesh.score}, optimum {mesh.optimum}")
         self.goal.setText(f"Optimum {mesh.optimum:,}")
         gap = mesh.score - mesh.optimum
         self.gap.setText(f"{gap:,} above it")
@@ -126,7 +127,7 @@ class ScorePanel(QWidget):
             self.elements.text = f"{mesh.n_elements:,} quads in {number} {blocks}"
         else:
             self.elements.text = f"{mesh.n_elements:,} triangles"
-        if summary is None:
+        if summary is None or self._gauge.stale:
             self.inverted.show_value(_STALE)
             return
         count = len(summary.inverted)

@@ -3,7 +3,9 @@
 import pytest
 from driving import find, point_at, press
 from qtpy.QtCore import QSettings, Qt
+from qtpy.QtGui import QGuiApplication
 
+from app.desktop import preferences
 from app.desktop.preferences import system_theme
 from app.desktop.preferences_dialog import PreferencesDialog
 from app.desktop.settings import RECENT, Settings
@@ -75,6 +77,23 @@ def test_the_theme_is_applied_and_kept_at_once(qtbot, dialog):
         qtbot.mouseClick(page.themes[name], Qt.MouseButton.LeftButton)
         assert window.theme == theme(name)
         assert Settings().theme == name
+
+
+def test_the_theme_follows_the_desktop_until_one_is_chosen(open_window, star, monkeypatch):
+    window = open_window(star)
+    desktop = QGuiApplication.styleHints()
+
+    def turn(name: str, scheme: Qt.ColorScheme) -> None:  # this platform tells no scheme itself
+        monkeypatch.setattr(preferences, "system_theme", lambda: name)
+        desktop.colorSchemeChanged.emit(scheme)
+
+    turn("dark", Qt.ColorScheme.Dark)
+    assert window.theme.name == "dark"
+    turn("light", Qt.ColorScheme.Light)
+    assert window.theme.name == "light"
+    window.settings.theme = "light"
+    turn("dark", Qt.ColorScheme.Dark)
+    assert window.theme.name == "light"
 
 
 def test_the_toggle_is_the_same_setting(qtbot, open_window, star):
