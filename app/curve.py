@@ -9,6 +9,8 @@ import numpy as np
 from app.history import History, Row
 
 FIRST_ROOM = 256
+FAR = 4.0
+"""Times the span of a curve beyond which what is left to the optimum is left out of it."""
 
 
 class Track:
@@ -57,7 +59,10 @@ class Track:
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a curve is drawn: a rectangle in pixels, the states and scores at its edges."""
+    """Where a curve is drawn: a rectangle in pixels, the states and scores at its edges.
+
+    In a ``broken`` frame the optimum lies far below ``low``, and is drawn at the lower edge.
+    """
 
     left: float
     top: float
@@ -66,6 +71,7 @@ class Frame:
     states: int
     low: float
     high: float
+    broken: bool = False
 
     def x(self, state: np.ndarray | float) -> np.ndarray | float:
         """Pixels from the left of a state, or of many."""
@@ -73,7 +79,7 @@ class Frame:
 
     def y(self, score: np.ndarray | float) -> np.ndarray | float:
         """Pixels from the top of a score, or of many."""
-        share = (np.asarray(score) - self.low) / max(self.high - self.low, 1e-9)
+        share = np.maximum(np.asarray(score) - self.low, 0.0) / max(self.high - self.low, 1e-9)
         return self.top + self.height * (1.0 - share)
 
     def state(self, x: float) -> int:
@@ -86,10 +92,26 @@ class Frame:
 def frame(
     scores: np.ndarray, optima: np.ndarray, left: float, top: float, width: float, height: float
 ) -> Frame:
-    """The frame that holds all scores and optima (n,) in this rectangle."""
+    """The frame that holds all scores and optima (n,) in this rectangle.
+
+    It is broken where the way that is left is far longer than all that has happened: else a large
+    mesh would show a level line only.
+    """
     low = float(optima.min()) if len(optima) else 0.0
     high = max(float(scores.max()) if len(scores) else 1.0, low + 1.0)
-    return Frame(left, top, width, height, len(scores), low, high)
+    lowest = float(scores.min()) if len(scores) else low
+    room = max(high - lowest, 4.0)
+    broken = lowest - low > FAR * room
+    if broken:
+        low = lowest - 0.5 * room
+    return Frame(left, top, width, height, len(scores), low, high, broken)
+
+
+def break_mark(into: Frame, unit: float = 1.0) -> np.ndarray:
+    """Two short slanted lines (2, 2, 2) at the left edge of a broken frame, over the optimum."""
+    x, y = into.left, into.top + into.height - 7.0 * unit
+    stroke = np.array([(-4.0, 2.0), (4.0, -2.0)]) * unit
+    return np.stack([stroke + (x, y - 1.75 * unit), stroke + (x, y + 1.75 * unit)])
 
 
 def steps(values: np.ndarray, into: Frame) -> np.ndarray:

@@ -214,6 +214,8 @@ def _add_curve(drawing: Drawing, moment: Moment, colours: Theme, unit: float) ->
     goal = float(box.y(moment.optima[moment.state]))
     level = np.array([[[left, goal], [right, goal]]])
     drawing.add(Segments(level, colours.muted, 1.0 * unit, dash=4.0 * unit))
+    if box.broken:
+        drawing.add(Segments(curve.break_mark(box, unit), colours.muted, 1.2 * unit))
     size = 11.5 * unit
     labels = {float(box.y(moment.scores[0])): f"{moment.scores[0]:,}"}
     labels[goal] = f"{moment.optima[moment.state]:,}"

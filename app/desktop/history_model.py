@@ -30,6 +30,8 @@ class HistoryModel(QAbstractListModel):
         self._places: list[int] = []
         self._rows: list[Row] = []  # its own: the history may have gone on since the last look
         self._empty = True
+        self.highest = 0
+        """The highest score in the list."""
 
     def rowCount(self, parent: QModelIndex | None = None) -> int:  # noqa: N802
         """Lines there are; a line has none below it."""
@@ -95,10 +97,13 @@ class HistoryModel(QAbstractListModel):
         if kept:
             first = self.rowCount()
             self.beginInsertRows(QModelIndex(), first, first + count - known - 1)
-            self._rows += [history[i] for i in range(known, count)]
+            fresh = [history[i] for i in range(known, count)]
+            self._rows += fresh
         else:
             self.beginResetModel()
-            self._rows = list(history)
+            fresh = self._rows = list(history)
+            self.highest = history.first[0]
+        self.highest = max([self.highest, *(row.after for row in fresh)])
         self._history, self._branches, self._empty = history, history.branches, empty
         self._order = sorted(range(len(self._branches)), key=lambda i: self._branches[i].at)
         self._places = [self._branches[b].at + 1 + i for i, b in enumerate(self._order)]

@@ -59,10 +59,9 @@ class Lines(QStyledItemDelegate):
 
     def measure(self, font: QFont) -> None:
         """Make the columns of step and score as wide as the longest numbers in them."""
-        history = self._model.history
-        highest = max(history.first[0], history.start_score, 10)
+        highest = max(self._model.highest, 10)
         metrics = QFontMetricsF(_font(font, 12))
-        self._number = metrics.horizontalAdvance(_widest(len(history))) + 4.0
+        self._number = metrics.horizontalAdvance(_widest(self._model.rowCount())) + 4.0
         self._score = metrics.horizontalAdvance(_widest(highest)) + GRID + 2.0
 
     def sizeHint(self, option: QStyleOptionViewItem, index: Any) -> QSize:  # noqa: N802

@@ -263,6 +263,10 @@ class ScoreCurve(QWidget):
         thin = len(scores) > self._frame.width
         painter.setPen(QPen(QColor(self._theme.accent), 1.0 if thin else 1.8))
         painter.drawPolyline(_polygon(curve.steps(scores, self._frame)))
+        if self._frame.broken:
+            painter.setPen(QPen(QColor(self._theme.muted), 1.2))
+            for begin, end in curve.break_mark(self._frame).tolist():
+                painter.drawLine(QPointF(*begin), QPointF(*end))
         self._draw_best(painter)
         self._draw_forks(painter)
         painter.end()

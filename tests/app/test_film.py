@@ -79,6 +79,16 @@ def test_a_curve_of_many_states_is_no_longer_than_its_pixels():
     assert len(curve.steps(level, curve.frame(level, level, 0, 0, 100, 10))) == 2
 
 
+def test_a_far_optimum_does_not_flatten_the_curve():
+    scores, optima = np.array([3336, 3340, 3330]), np.full(3, 20)
+    box = curve.frame(scores, optima, 0, 0, 100, 60)
+    assert box.broken
+    assert float(np.ptp(box.y(scores))) > 30
+    assert box.y(20) == 60.0
+    assert len(curve.break_mark(box)) == 2
+    assert not curve.frame(np.array([40, 12]), np.array([4, 4]), 0, 0, 100, 60).broken
+
+
 def test_the_best_state_counts_from_the_last_change_of_the_task():
     assert curve.best_state(np.array([9, 5, 7, 5]), np.array([2, 2, 2, 2])) == 1
     assert curve.best_state(np.array([9, 5, 7, 6]), np.array([2, 2, 3, 3])) == 3
