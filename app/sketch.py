@@ -5,35 +5,14 @@ Knows no window: the drawing page and its table of coordinates are two views on 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from app.loops import Loop, Place, Problem, capital, name_of, problem_of
 from app.signals import Signal
 from meshcore.errors import MeshError
 
-Place = tuple[float, float]
-
 _NEAR = 1e-9
 """Share of the sketch's size below which two places are one."""
-
-
-@dataclass(frozen=True)
-class Loop:
-    """Corners in order; the first loop is the outline, the others are holes."""
-
-    corners: tuple[Place, ...] = ()
-    closed: bool = False
-
-
-@dataclass(frozen=True)
-class Problem:
-    """A sentence, and the edges to mark: (loop, corner at which the edge begins), and places."""
-
-    words: str
-    edges: tuple[tuple[int, int], ...] = ()
-    places: tuple[Place, ...] = ()
 
 
 class Sketch:
@@ -182,7 +161,7 @@ class Sketch:
     def problem(self) -> Problem | None:
         """What would keep the sketch from being a polygon; too few corners are not yet wrong."""
         if self._problem is None:
-            self._problem = _problem(self._loops)
+            self._problem = problem_of(self._loops)
         return self._problem if self._problem.words else None
 
     @property
@@ -199,7 +178,7 @@ class Sketch:
         missing = 3 - len(last.corners)
         if missing > 0:
             more = "one corner" if missing == 1 else f"{missing} corners"
-            return f"{_capital(what)} needs at least {more} more."
+            return f"{capital(what)} needs at least {more} more."
         return f"Click the first corner to close {what}, or go on."
 
     def domain(self) -> dict[str, Any]:
@@ -224,7 +203,7 @@ class Sketch:
             return None
         if _same(last.corners[0], place) or _same(last.corners[-1], place):
             return None
-        found = _problem((*self._loops[:-1], Loop((*last.corners, place))))
+        found = problem_of((*self._loops[:-1], Loop((*last.corners, place))))
         return found if found.words else None
 
     def _put(self, last: Loop) -> None:
@@ -245,138 +224,6 @@ class Sketch:
         self.changed.emit()
 
 
-def name_of(loop: int) -> str:
-    """``the outline``, ``hole 1`` and so on."""
-    return "the outline" if loop == 0 else f"hole {loop}"
-
-
-def _problem(loops: tuple[Loop, ...]) -> Problem:
-    crossing = _crossing(loops)
-    if crossing is not None:
-        return crossing
-    outline = loops[0]
-    for i, loop in enumerate(loops[1:], start=1):
-        if not loop.corners:
-            continue
-        edges = tuple((i, j) for j in range(len(loop.corners)))
-        if not _inside(loop.corners[0], outline.corners):
-            return Problem(f"Hole {i} lies outside the outline.", edges, loop.corners)
-        for j, other in enumerate(loops[1:], start=1):
-            if i != j and other.closed and _inside(loop.corners[0], other.corners):
-                return Problem(f"Hole {i} lies inside hole {j}.", edges, loop.corners)
-    for i, loop in enumerate(loops):
-        if loop.closed and _flat(loop.corners):
-            edges = tuple((i, j) for j in range(len(loop.corners)))
-            return Problem(f"{_capital(name_of(i))} encloses no area.", edges)
-    return Problem("")
-
-
-def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
-    """The first two edges that meet where they should not, and where."""
-    owner = [(i, j) for i, loop in enumerate(loops) for j in range(len(loop.corners) - 1)]
-    owner += [(i, len(loop.corners) - 1) for i, loop in enumerate(loops) if loop.closed]
-    if len(owner) < 2:
-        return None
-    corners = [loop.corners for loop in loops]
-    a = np.array([corners[i][j] for i, j in owner])
-    b = np.array([corners[i][(j + 1) % len(corners[i])] for i, j in owner])
-    ring = np.array([i for i, _ in owner])
-    index = np.array([j for _, j in owner])
-    count = np.array([len(corners[i]) for i, _ in owner])
-    gap = (index[None] - index[:, None]) % count[:, None]
-    chained = np.array([loops[i].closed for i in ring])[:, None] | (
-        abs(index[None] - index[:, None]) == 1
-    )
-    after = (ring[:, None] == ring[None]) & (gap == 1) & chained
-    meeting = _meet(a, b) & ~after & ~after.T
-    # neighbours share a corner; only one that runs back over the other is wrong
-    meeting |= (after & _folds(a, b)) | (after & _folds(a, b)).T
-    one, other = np.nonzero(np.triu(meeting, 1))
-    if len(one) == 0:
-        return None
-    e, f = int(one[0]), int(other[0])
-    place = _place(a[e], b[e], a[f], b[f])
-    spot = f"({place[0]:.4g}, {place[1]:.4g})"
-    i, j = owner[e][0], owner[f][0]
-    if i == j:
-        words = f"{_capital(name_of(i))} crosses or touches itself near {spot}."
-    else:
-        words = (
-            f"{_capital(name_of(max(i, j)))} crosses or touches {name_of(min(i, j))} near {spot}."
-        )
-    return Problem(words, (owner[e], owner[f]), (place,))
-
-
-def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """Sign of where p lies beside the line from a to b; 0 within rounding of it."""
-    u, v = b - a, p - a
-    across = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
-    size = np.abs(u).sum(axis=-1) * np.abs(v).sum(axis=-1)
-    sign: np.ndarray = np.where(np.abs(across) <= _NEAR * size, 0.0, np.sign(across))
-    return sign
-
-
-def _meet(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(e, e) whether edges have a point in common."""
-    p, q, r, s = a[:, None], b[:, None], a[None], b[None]
-    one, other = _side(p, q, r), _side(p, q, s)
-    third, fourth = _side(r, s, p), _side(r, s, q)
-    proper = (one * other < 0) & (third * fourth < 0)
-    touching = (
-        ((one == 0) & _between(p, q, r))
-        | ((other == 0) & _between(p, q, s))
-        | ((third == 0) & _between(r, s, p))
-        | ((fourth == 0) & _between(r, s, q))
-    )
-    result: np.ndarray = proper | touching
-    return result
-
-
-def _between(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
-    low, high = np.minimum(a, b), np.maximum(a, b)
-    room = _NEAR * (np.abs(low) + np.abs(high) + (high - low))
-    inside: np.ndarray = ((p >= low - room) & (p <= high + room)).all(axis=-1)
-    return inside
-
-
-def _folds(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(e, e) whether the second edge runs back along the first."""
-    u, v = (b - a)[:, None], (b - a)[None]
-    ahead = (u * v).sum(axis=-1)
-    result: np.ndarray = (_side(a[:, None], b[:, None], b[:, None] + v) == 0) & (ahead < 0)
-    return result
-
-
-def _place(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Place:
-    u, v, w = b - a, d - c, c - a
-    across = u[0] * v[1] - u[1] * v[0]
-    if abs(across) > _NEAR * np.abs(u).sum() * np.abs(v).sum():
-        share = (w[0] * v[1] - w[1] * v[0]) / across
-        return float(a[0] + share * u[0]), float(a[1] + share * u[1])
-    middle = np.sort(np.array([a, b, c, d]), axis=0)[1:3].mean(axis=0)
-    return float(middle[0]), float(middle[1])
-
-
-def _inside(place: Place, corners: tuple[Place, ...]) -> bool:
-    x, y = place
-    inside = False
-    for (x1, y1), (x2, y2) in zip(corners, (*corners[1:], *corners[:1]), strict=True):
-        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
-            inside = not inside
-    return inside
-
-
-def _flat(corners: tuple[Place, ...]) -> bool:
-    p = np.array(corners)
-    x, y = (p - p[0]).T
-    area = abs(float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)))
-    return area <= _NEAR * float(np.ptp(p, axis=0).max()) ** 2
-
-
 def _same(one: Place, other: Place) -> bool:
     size = max(abs(n) for n in (*one, *other)) or 1.0
     return all(abs(a - b) <= _NEAR * size for a, b in zip(one, other, strict=True))
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

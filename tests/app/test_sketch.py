@@ -1,8 +1,11 @@
 """The sketch behind the drawing page: edits, what is wrong in words, snapping."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from app.sketch import Loop, Sketch
+from app.loops import Loop
+from app.sketch import Sketch
 from app.snapping import Snapper
 from meshcore import MeshError
 from meshcore.domain import Domain
@@ -152,3 +155,21 @@ def test_snapping_can_be_switched_off():
 
 def test_grid_places_are_short_decimals():
     assert Snapper(grid=0.1).snap((0.31, 0.69), 0.01).place == (0.3, 0.7)
+
+
+PLACES = st.tuples(st.integers(0, 5), st.integers(0, 5))
+
+
+@settings(max_examples=400)
+@given(
+    st.lists(PLACES, min_size=3, max_size=7, unique=True),
+    st.lists(PLACES, min_size=3, max_size=4, unique=True),
+)
+def test_what_is_complete_is_a_domain_and_the_other_way_round(outline, hole):
+    sketch = drawn(outline, hole)
+    try:
+        Domain(outline, [hole])
+    except MeshError as error:
+        assert not sketch.complete, error
+    else:
+        assert sketch.complete, sketch.words

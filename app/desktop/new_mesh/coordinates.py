@@ -6,7 +6,8 @@ from qtpy.QtCore import QSignalBlocker, Qt, Signal
 from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
 
 from app.desktop.widgets import tabular
-from app.sketch import Place, Sketch
+from app.loops import Place
+from app.sketch import Sketch
 from app.theme import GRID
 
 WIDTH = 27 * GRID

@@ -23,7 +23,8 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from app.desktop.new_mesh.painting import polygon
 from app.desktop.widgets import tabular
-from app.sketch import Place, Sketch
+from app.loops import Place
+from app.sketch import Sketch
 from app.snapping import Snap, Snapper
 from app.theme import GRID, Theme
 from app.viewport import Viewport

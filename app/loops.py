@@ -1,0 +1,167 @@
+"""What may be wrong with loops of corners: crossings, holes outside, loops without area.
+
+In words for the person who draws, with the edges and places to mark. `meshcore.domain` checks again
+what comes out; this here is quick enough to follow the mouse.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+Place = tuple[float, float]
+
+_NEAR = 1e-9
+"""Share of the sketch's size below which two places are one."""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Corners in order; the first loop is the outline, the others are holes."""
+
+    corners: tuple[Place, ...] = ()
+    closed: bool = False
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A sentence, and the edges to mark: (loop, corner at which the edge begins), and places."""
+
+    words: str
+    edges: tuple[tuple[int, int], ...] = ()
+    places: tuple[Place, ...] = ()
+
+
+def name_of(loop: int) -> str:
+    """``the outline``, ``hole 1`` and so on."""
+    return "the outline" if loop == 0 else f"hole {loop}"
+
+
+def problem_of(loops: tuple[Loop, ...]) -> Problem:
+    """What is wrong with loops so far; no words if nothing is."""
+    crossing = _crossing(loops)
+    if crossing is not None:
+        return crossing
+    outline = loops[0]
+    for i, loop in enumerate(loops[1:], start=1):
+        if not loop.corners:
+            continue
+        edges = tuple((i, j) for j in range(len(loop.corners)))
+        if not _inside(loop.corners[0], outline.corners):
+            return Problem(f"Hole {i} lies outside the outline.", edges, loop.corners)
+        for j, other in enumerate(loops[1:], start=1):
+            if i != j and other.closed and _inside(loop.corners[0], other.corners):
+                return Problem(f"Hole {i} lies inside hole {j}.", edges, loop.corners)
+    for i, loop in enumerate(loops):
+        if loop.closed and _flat(loop.corners):
+            edges = tuple((i, j) for j in range(len(loop.corners)))
+            return Problem(f"{capital(name_of(i))} encloses no area.", edges)
+    return Problem("")
+
+
+def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
+    """The first two edges that meet where they should not, and where."""
+    owner = [(i, j) for i, loop in enumerate(loops) for j in range(len(loop.corners) - 1)]
+    owner += [(i, len(loop.corners) - 1) for i, loop in enumerate(loops) if loop.closed]
+    if len(owner) < 2:
+        return None
+    corners = [loop.corners for loop in loops]
+    a = np.array([corners[i][j] for i, j in owner])
+    b = np.array([corners[i][(j + 1) % len(corners[i])] for i, j in owner])
+    ring = np.array([i for i, _ in owner])
+    index = np.array([j for _, j in owner])
+    count = np.array([len(corners[i]) for i, _ in owner])
+    closed = np.array([loops[i].closed for i, _ in owner])
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    room = _NEAR * (np.abs(low) + np.abs(high))
+    apart = ((low - room)[:, None] > (high + room)[None]).any(axis=-1)
+    one, other = np.nonzero(np.triu(~apart & ~apart.T, 1))
+    gap = (index[other] - index[one]) % count[one]
+    beside = (ring[one] == ring[other]) & ((gap == 1) | (gap == count[one] - 1))
+    beside &= closed[one] | (np.abs(index[other] - index[one]) == 1)
+    ends = a[one], b[one], a[other], b[other]
+    # neighbours share a corner; only one that runs back over the other is wrong
+    wrong = np.flatnonzero(np.where(beside, _folds(*ends), _meet(*ends)))
+    if len(wrong) == 0:
+        return None
+    e, f = int(one[wrong[0]]), int(other[wrong[0]])
+    place = _place(a[e], b[e], a[f], b[f])
+    spot = f"({place[0]:.4g}, {place[1]:.4g})"
+    i, j = owner[e][0], owner[f][0]
+    if i == j:
+        words = f"{capital(name_of(i))} crosses or touches itself near {spot}."
+    else:
+        words = (
+            f"{capital(name_of(max(i, j)))} crosses or touches {name_of(min(i, j))} near {spot}."
+        )
+    return Problem(words, (owner[e], owner[f]), (place,))
+
+
+def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Sign of where p lies beside the line from a to b; 0 within rounding of it."""
+    u, v = b - a, p - a
+    across = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+    size = np.abs(u).sum(axis=-1) * np.abs(v).sum(axis=-1)
+    sign: np.ndarray = np.where(np.abs(across) <= _NEAR * size, 0.0, np.sign(across))
+    return sign
+
+
+def _meet(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """(k,) whether the edge from p to q and that from r to s have a point in common."""
+    one, other = _side(p, q, r), _side(p, q, s)
+    third, fourth = _side(r, s, p), _side(r, s, q)
+    proper = (one * other < 0) & (third * fourth < 0)
+    touching = (
+        ((one == 0) & _between(p, q, r))
+        | ((other == 0) & _between(p, q, s))
+        | ((third == 0) & _between(r, s, p))
+        | ((fourth == 0) & _between(r, s, q))
+    )
+    result: np.ndarray = proper | touching
+    return result
+
+
+def _between(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    room = _NEAR * (np.abs(low) + np.abs(high) + (high - low))
+    inside: np.ndarray = ((p >= low - room) & (p <= high + room)).all(axis=-1)
+    return inside
+
+
+def _folds(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """(k,) whether the edge from r to s runs back along that from p to q."""
+    ahead = ((q - p) * (s - r)).sum(axis=-1)
+    result: np.ndarray = (_side(p, q, q + (s - r)) == 0) & (ahead < 0)
+    return result
+
+
+def _place(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Place:
+    u, v, w = b - a, d - c, c - a
+    across = u[0] * v[1] - u[1] * v[0]
+    if abs(across) > _NEAR * np.abs(u).sum() * np.abs(v).sum():
+        share = (w[0] * v[1] - w[1] * v[0]) / across
+        return float(a[0] + share * u[0]), float(a[1] + share * u[1])
+    middle = np.sort(np.array([a, b, c, d]), axis=0)[1:3].mean(axis=0)
+    return float(middle[0]), float(middle[1])
+
+
+def _inside(place: Place, corners: tuple[Place, ...]) -> bool:
+    x, y = place
+    inside = False
+    for (x1, y1), (x2, y2) in zip(corners, (*corners[1:], *corners[:1]), strict=True):
+        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
+            inside = not inside
+    return inside
+
+
+def _flat(corners: tuple[Place, ...]) -> bool:
+    p = np.array(corners)
+    x, y = (p - p[0]).T
+    area = abs(float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)))
+    return area <= _NEAR * float(np.ptp(p, axis=0).max()) ** 2
+
+
+def capital(text: str) -> str:
+    """With a capital letter at its beginning."""
+    return text[:1].upper() + text[1:]
