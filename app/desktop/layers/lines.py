@@ -10,6 +10,9 @@ from app.theme import Theme
 
 STEP = 6.0
 """Pixels between the points that a line is drawn by: finer ones are left out."""
+COARSE = 24.0
+"""Likewise where there are more lines than :data:`MANY`."""
+MANY = 120
 
 
 class LinesLayer(PictureLayer):
@@ -55,19 +58,21 @@ class LinesLayer(PictureLayer):
             self._stroke(painter, self._lines[self._current], 110, 11.0, 3.0)
 
     def draw(self, painter: QPainter) -> None:
-        """All lines."""
+        """All lines; thin ones where there are very many, which would be one glow."""
+        if len(self._lines) <= MANY:
+            for line in self._lines:
+                self._stroke(painter, line, 56, 8.0, 1.75)
+            return
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
+        painter.setPen(QPen(QColor(self.theme.accent), 1.0))
         for line in self._lines:
-            self._stroke(painter, line, 56, 8.0, 1.75)
+            painter.drawPolyline(self._shape(line, COARSE))
 
     def _stroke(
         self, painter: QPainter, line: np.ndarray, alpha: int, glow: float, core: float
     ) -> None:
         """A wide soft line under a thin one, with a dot at either end."""
-        at = self.viewport.to_screen(line)
-        mean = float(np.hypot(*np.diff(at, axis=0).T).mean())
-        step = max(1, int(STEP / max(mean, 1e-9)))
-        at = np.concatenate([at[:-1:step], at[-1:]])
-        shape = QPolygonF([QPointF(x, y) for x, y in at.tolist()])
+        shape = self._shape(line, STEP)
         soft = QColor(self.theme.accent)
         soft.setAlpha(alpha)
         painter.setPen(QPen(soft, glow, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
@@ -78,6 +83,14 @@ class LinesLayer(PictureLayer):
         painter.setBrush(QColor(self.theme.accent))
         for end in (shape.first(), shape.last()):
             painter.drawEllipse(end, core + 1.75, core + 1.75)
+
+    def _shape(self, line: np.ndarray, step: float) -> QPolygonF:
+        """The line in pixels, with no more than a point every ``step`` of them."""
+        at = self.viewport.to_screen(line)
+        mean = float(np.hypot(*np.diff(at, axis=0).T).mean())
+        stride = max(1, int(step / max(mean, 1e-9)))
+        at = np.concatenate([at[:-1:stride], at[-1:]])
+        return QPolygonF([QPointF(x, y) for x, y in at.tolist()])
 
     def _rect(self) -> QRectF:
         if not 0 <= self._current < len(self._lines):

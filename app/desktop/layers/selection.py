@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 from qtpy.QtCore import QPointF, Qt
-from qtpy.QtGui import QColor, QPainter, QPainterPath, QPolygonF
+from qtpy.QtGui import QColor, QImage, QPainter, QPainterPath, QPolygonF
 
 from app.desktop.layers.layer import inside, pen
 from app.desktop.layers.picture import PictureLayer
@@ -39,14 +39,14 @@ class RegionLayer(PictureLayer):
 
     def draw(self, painter: QPainter) -> None:
         """All elements in view as one path."""
-        corners = self.viewport.to_screen(self._corners.reshape(-1, 2))
-        corners = corners.reshape(self._corners.shape)
-        rows = np.column_stack([corners.mean(axis=1), np.arange(len(corners))])
+        first = self.viewport.to_screen(self._corners[:, 0])
+        rows = np.column_stack([first, np.arange(len(first))])
         seen = inside(rows, self.viewport, 200.0)[:, 2].astype(int)
         if len(seen) > MANY:
             return
+        corners = self.viewport.to_screen(self._corners[seen])
         path = QPainterPath()
-        for polygon in corners[seen].tolist():
+        for polygon in corners.tolist():
             path.addPolygon(QPolygonF([QPointF(x, y) for x, y in (*polygon, polygon[0])]))
         tint = QColor(self.theme.accent)
         tint.setAlpha(38)
@@ -82,13 +82,25 @@ class SelectionLayer(PictureLayer):
         rows = np.column_stack([self.viewport.to_screen(self._places), self._radii(self.viewport)])
         rows = inside(rows, self.viewport)
         if len(rows) > MANY:
-            colour = QColor(self.theme.accent)
-            pixels = np.unique(np.round(rows[:, :2]).astype(int), axis=0)
-            for x, y in pixels.tolist():
-                painter.fillRect(x - 1, y - 1, 3, 3, colour)
+            painter.drawImage(0, 0, _dots(rows[:, :2], self.viewport.size, self.theme.accent))
             return
         painter.setBrush(Qt.BrushStyle.NoBrush)
         for colour, width in ((self.theme.background, 4.5), (self.theme.accent, 2.25)):
             painter.setPen(pen(colour, width))
             for x, y, radius in rows.tolist():
                 painter.drawEllipse(QPointF(x, y), radius, radius)
+
+
+def _dots(places: np.ndarray, size: tuple[int, int], colour: str) -> QImage:
+    """A picture of ``size`` with three by three pixels at each of the places (n, 2)."""
+    width, height = size
+    mask = np.zeros((height + 2, width + 2), bool)
+    x = np.clip(np.round(places[:, 0]).astype(int), 0, width - 1)
+    y = np.clip(np.round(places[:, 1]).astype(int), 0, height - 1)
+    for right in range(3):
+        for down in range(3):
+            mask[y + down, x + right] = True
+    pixels = np.where(mask[1:-1, 1:-1], np.uint32(QColor(colour).rgba()), np.uint32(0))
+    pixels = np.ascontiguousarray(pixels)
+    argb = QImage.Format.Format_ARGB32_Premultiplied
+    return QImage(pixels.data, width, height, 4 * width, argb).copy()
