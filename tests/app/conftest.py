@@ -167,6 +167,12 @@ def _own_settings(tmp_path_factory: pytest.TempPathFactory) -> None:
     QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, folder)
 
 
+def _without_question(window: Any) -> None:
+    """A test that ends leaves nobody there to answer."""
+    if window.files.guard is not None and window.isVisible():
+        window.files.leave()
+
+
 @pytest.fixture
 def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterator[Callable]:
     """Opens a window on a mesh, with :class:`Greedy` as its policy; closed after the test."""
@@ -200,7 +206,7 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
         window.resize(1000, 700)
         assistant.policy = "greedy" if mesh is not None else ""
         windows.append(window)
-        qtbot.addWidget(window)
+        qtbot.addWidget(window, before_close_func=_without_question)
         with qtbot.waitSignal(window.opened, timeout=WAIT):
             window.show()
         window.activateWindow()  # there is no window manager to do it

@@ -1,0 +1,321 @@
+"""Files in the window: open, save, recent, drop, projects; unsaved and lost work is asked about."""
+
+import numpy as np
+import pytest
+from driving import WAIT, point_at, press
+from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
+from qtpy.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
+from qtpy.QtWidgets import QApplication, QFileDialog
+
+from app import recovery
+from app.autosave import Autosave
+from app.desktop.lost_work import LostWork
+from app.desktop.question import Question
+from app.document import Document
+from meshcore import HalfEdgeMesh
+
+CONTROL = Qt.KeyboardModifier.ControlModifier
+
+
+@pytest.fixture
+def watched(open_window, tmp_path):
+    """Opens a window that guards its work, in a folder of the test."""
+
+    def build(mesh: HalfEdgeMesh | None = None, **options):
+        window = open_window(mesh, **options)
+        window.files.watch(tmp_path / "state")
+        return window
+
+    return build
+
+
+def edit(qtbot, window) -> None:
+    """One operation by the keyboard."""
+    mesh = window.document.mesh
+    halfedge = next(h for h in range(4 * mesh.n_elements) if mesh.check("flip_left", h))
+    point_at(qtbot, window, halfedge)
+    cursor = window.document.history.cursor
+    press(qtbot, window, Qt.Key.Key_F)
+    assert window.document.history.cursor == cursor + 1
+
+
+def when_shown(qtbot, kind, act) -> list:
+    """Call ``act(dialog)`` as soon as a dialog of this kind is there; the dialogs met so far."""
+    met = []
+
+    def look() -> None:
+        dialog = QApplication.activeModalWidget()
+        if isinstance(dialog, kind):
+            timer.stop()
+            met.append(dialog)
+            act(dialog)
+
+    timer = QTimer()
+    timer.timeout.connect(look)
+    timer.start(20)
+    met_and_timer = met
+    qtbot.timers = [*getattr(qtbot, "timers", []), timer]
+    return met_and_timer
+
+
+def answering(qtbot, answer: str) -> list:
+    """Press that button of the next question; nothing is Escape."""
+
+    def act(dialog: Question) -> None:
+        if answer:
+            qtbot.mouseClick(dialog.buttons[answer], Qt.MouseButton.LeftButton)
+        else:
+            qtbot.keyClick(dialog, Qt.Key.Key_Escape)
+
+    return when_shown(qtbot, Question, act)
+
+
+@pytest.mark.parametrize("answer", ["drop", "save", "cancel", ""])
+def test_closing_asks_for_what_is_not_saved(qtbot, watched, star, tmp_path, answer):
+    window = watched(star)
+    window.document.save(tmp_path / "star.vtk")
+    edit(qtbot, window)
+    journal = window.files.guard.autosave.path
+    assert journal.exists()
+    met = answering(qtbot, answer)
+    press(qtbot, window, Qt.Key.Key_Q, CONTROL)
+    assert len(met) == 1
+    closed = answer in ("drop", "save")
+    assert window.isVisible() != closed
+    assert journal.exists() != closed
+    fresh = Document()
+    fresh.open(tmp_path / "star.vtk")
+    assert (fresh.score == window.document.score) == (answer == "save")
+
+
+def test_nothing_is_asked_when_there_is_nothing_to_lose(qtbot, watched, star):
+    window = watched(star)
+    edit(qtbot, window)
+    press(qtbot, window, Qt.Key.Key_Z, CONTROL)
+    assert window.close()
+    assert not window.isVisible()
+
+
+def test_saving_as_a_project_keeps_everything(qtbot, watched, star, tmp_path, monkeypatch):
+    window = watched(star)
+    edit(qtbot, window)
+    edit(qtbot, window)
+    seen = window.canvas.viewport.zoomed(2.0, 100, 100)
+    window.canvas.see(seen)
+    asked = []
+
+    def name(parent, title, start, filters, chosen):
+        asked.append((start, chosen))
+        return str(tmp_path / "work"), filters.split(";;")[1]
+
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", name)
+    press(qtbot, window, Qt.Key.Key_S, CONTROL)
+    assert asked[0][0] == "star.vtk"
+    assert (tmp_path / "work.meshwright").exists()
+    assert window.said.text() == "Saved work.meshwright."
+    assert not window.isWindowModified()
+    assert window.files.guard.autosave.path is None
+    assert window.windowTitle().startswith("work")
+    other = watched()
+    other.files.open(tmp_path / "work.meshwright")
+    assert other.document.history.cursor == 2
+    assert np.array_equal(other.document.mesh.points, star.points)
+    assert other.canvas.viewport.centre == pytest.approx(seen.centre)
+    press(qtbot, other, Qt.Key.Key_Z, CONTROL)
+    press(qtbot, other, Qt.Key.Key_Z, CONTROL)
+    assert other.document.score == 12
+    other.document.go_to(2)
+    assert not other.isWindowModified()
+
+
+def test_what_a_format_leaves_out_is_said(qtbot, open_window, star, triangles, tmp_path):
+    window = open_window(triangles)
+    window.files._save(str(tmp_path / "a.stl"))
+    assert "keep no corners" in window.said.text()
+    window.files._save(str(tmp_path / "a.vtk"))
+    assert window.said.text() == "Saved a.vtk."
+
+
+def test_a_file_that_cannot_be_written_or_read_is_one_sentence(
+    qtbot, open_window, star, tmp_path, monkeypatch
+):
+    window = open_window(star)
+    place = str(tmp_path / "nowhere" / "a.vtk")
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (place, "Meshes (*.vtk)"))
+    assert not window.files.save()
+    assert "does not exist" in window.notice.text
+    broken = tmp_path / "broken.meshwright"
+    broken.write_text("no zip at all")
+    window.files.open(broken)
+    assert window.notice.text.endswith("not a whole one.")
+    assert window.document.mesh is star
+
+
+def test_recent_files(qtbot, open_window, star, tmp_path):
+    window = open_window(star)
+    assert not window.actions_by_id["recent"].isEnabled()
+    for name in ("a.vtk", "b & c.meshwright"):
+        window.files._save(str(tmp_path / name))
+    assert window.actions_by_id["recent"].isEnabled()
+    window.files.show_recent()
+    menu = window.files.recent
+    assert menu.isVisible()
+    texts = [entry.text() for entry in menu.actions()]
+    assert texts[0].startswith("&1  b && c.meshwright\t")
+    assert texts[1].startswith("&2  a.vtk\t")
+    qtbot.keyClick(menu, Qt.Key.Key_2)
+    assert window.document.path == tmp_path / "a.vtk"
+    assert window.settings.recent[0] == str(tmp_path / "a.vtk")
+    (tmp_path / "b & c.meshwright").unlink()
+    window.files.open(tmp_path / "b & c.meshwright")
+    assert "no such file" in window.notice.text
+    assert window.settings.recent == [str(tmp_path / "a.vtk")]
+    menu.fill()
+    menu.actions()[-1].trigger()
+    assert window.settings.recent == []
+
+
+def dragged(path) -> QMimeData:
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(path))])
+    return data
+
+
+def send(window, kind, data) -> bool:
+    """A drag event as the desktop sends it; whether it is taken."""
+    actions = Qt.DropAction.CopyAction
+    buttons, keys = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    where = QPoint(300, 300) if kind is QDragEnterEvent else QPointF(300, 300)
+    event = kind(where, actions, data, buttons, keys)
+    event.setAccepted(False)
+    QApplication.sendEvent(window, event)
+    return event.isAccepted()
+
+
+def test_a_file_is_dropped(qtbot, open_window, star, tmp_path):
+    Document(star.copy(), "star").save(tmp_path / "dropped.vtk")
+    window = open_window()
+    assert not window.canvas.plotter.acceptDrops()
+    data = dragged(tmp_path / "dropped.vtk")
+    veil = window.files.dropping.veil
+    assert send(window, QDragEnterEvent, data)
+    assert veil.isVisible()
+    assert veil.text == "Drop to open dropped.vtk"
+    QApplication.sendEvent(window, QDragLeaveEvent())
+    assert not veil.isVisible()
+    send(window, QDragEnterEvent, data)
+    assert send(window, QDropEvent, data)
+    assert not veil.isVisible()
+    assert window.document.name == "dropped"
+    text = QMimeData()
+    text.setText("no file")
+    assert not send(window, QDragEnterEvent, text)
+
+
+def left_behind(folder, mesh, name="lost", seeds=(1, 2, 3)) -> Document:
+    """What a process that died leaves."""
+    from test_branches import wander
+
+    document = Document(mesh, name)
+    keeper = Autosave(document, folder)
+    for seed in seeds:
+        wander(document, 1, seed)
+    keeper.leave()
+    return document
+
+
+def test_lost_work_is_offered_and_recovered(qtbot, watched, star, triangles, tmp_path):
+    lost = left_behind(tmp_path / "state", triangles)
+    window = watched(star)
+    met = when_shown(
+        qtbot,
+        LostWork,
+        lambda dialog: qtbot.mouseClick(dialog.cards[0].recover, Qt.MouseButton.LeftButton),
+    )
+    window.files.guard.offer()
+    assert len(met) == 1
+    assert np.array_equal(window.document.mesh.points, lost.mesh.points)
+    assert window.document.history.cursor == 3
+    assert window.said.text() == "Recovered lost, 3 steps."
+    assert window.isWindowModified()
+    # it is still kept, now by this window, until it is saved
+    (journal,) = (tmp_path / "state").iterdir()
+    assert journal == window.files.guard.autosave.path
+    window.activateWindow()  # there is no window manager to do it
+    qtbot.waitUntil(window.isActiveWindow, timeout=WAIT)
+    press(qtbot, window, Qt.Key.Key_Z, CONTROL)
+    window.files.leave()
+    (again,) = recovery.lost(tmp_path / "state")
+    assert again.now["steps"] == 2
+    again.release()
+
+
+def test_lost_work_is_discarded_by_two_clicks_or_left_for_later(qtbot, watched, star, tmp_path):
+    folder = tmp_path / "state"
+    left_behind(folder, star.copy(), "first")
+    left_behind(folder, star.copy(), "second", (4,))
+    window = watched(star)
+    said = []
+
+    def discard_one(dialog: LostWork) -> None:
+        said.extend(
+            (card.title.text(), card.story.text(), card.place.text()) for card in dialog.cards
+        )
+        card = dialog.cards[0]
+        qtbot.mouseClick(card.discard, Qt.MouseButton.LeftButton)
+        assert len(list(folder.iterdir())) == 2
+        assert card.discard.text() == "Delete for good?"
+        qtbot.mouseClick(card.discard, Qt.MouseButton.LeftButton)
+        assert len(list(folder.iterdir())) == 1
+        qtbot.mouseClick(dialog.later, Qt.MouseButton.LeftButton)
+
+    met = when_shown(qtbot, LostWork, discard_one)
+    window.actions_by_id["recover"].trigger()
+    assert len(met) == 1
+    assert {title for title, _, _ in said} == {"first", "second"}
+    assert any(story.startswith("3 steps, s ") for _, story, _ in said)
+    assert all(place.startswith("Today at") and "never saved" in place for _, _, place in said)
+    assert len(list(folder.iterdir())) == 1
+    (left,) = recovery.lost(folder)
+    left.discard()
+    window.actions_by_id["recover"].trigger()
+    assert window.said.text().startswith("There is no lost work")
+
+
+def test_recovering_asks_for_what_is_here(qtbot, watched, star, tmp_path):
+    left_behind(tmp_path / "state", star.copy())
+    window = watched(star)
+    edit(qtbot, window)
+    when_shown(
+        qtbot,
+        LostWork,
+        lambda dialog: qtbot.mouseClick(dialog.cards[0].recover, Qt.MouseButton.LeftButton),
+    )
+    met = answering(qtbot, "cancel")
+    window.files.guard.offer()
+    qtbot.waitUntil(lambda: bool(met), timeout=WAIT)
+    assert window.document.mesh is star
+    (left,) = recovery.lost(tmp_path / "state")
+    left.release()
+
+
+def test_autosave_follows_the_setting_and_tells_when_it_cannot(qtbot, watched, star, tmp_path):
+    (tmp_path / "state").write_text("in the way")
+    window = watched(star)
+    edit(qtbot, window)
+    assert window.notice.text.startswith("Autosave cannot write to")
+    assert window.document.history.cursor == 1
+    window.settings.autosave = False
+    assert not window.files.guard.autosave.enabled
+
+
+def test_ctrl_c_closes_without_a_question_and_loses_nothing(qtbot, watched, star, tmp_path):
+    window = watched(star)
+    edit(qtbot, window)
+    met = when_shown(qtbot, Question, lambda dialog: window.files.leave())
+    assert window.close()
+    assert len(met) == 1
+    assert not window.isVisible()
+    (left,) = recovery.lost(tmp_path / "state")
+    assert left.now["steps"] == 1
+    left.release()
