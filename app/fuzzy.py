@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-_START, _RUN, _LETTER, _GAP = 8.0, 6.0, 1.0, 0.08
+_START, _RUN, _LETTER, _GAP = 8.0, 9.0, 1.0, 0.08
 
 
 @dataclass(frozen=True)
@@ -17,8 +17,8 @@ def match(query: str, text: str) -> Match | None:
     """The best way to find the letters of ``query`` in ``text`` in their order; None if there is
     none. Spaces and capitals of the query do not matter.
 
-    Letters at the start of words and letters in a row count most, so ``fl`` means "flip left" and
-    "Fit all" rather than "half".
+    Letters in a row and letters at the start of words count most, so ``st`` means "Step", then
+    "Show the tour", and "Best" last.
     """
     wanted = "".join(query.lower().split())
     lower = text.lower()

@@ -26,7 +26,10 @@ def test_the_best_match_is_what_is_meant(query, meant):
 
 
 def test_places_are_the_letters_that_were_typed():
-    assert match("fl", "Flip left").places == (0, 5)
+    assert match("fr", "Flip right").places == (0, 5)
+    assert (
+        match("st", "Step").score > match("st", "Show the tour").score > match("st", "Best").score
+    )
     assert match("flip", "Flip left").places == (0, 1, 2, 3)
 
 
