@@ -47,6 +47,8 @@ class Ghost:
     """(n, 2, 2) ends of the edges that there would be."""
     removed: np.ndarray
     """(m, 2, 2) ends of the edges that would go."""
+    gone: np.ndarray
+    """(g, 2) places of the vertices that would go."""
     places: np.ndarray
     """(p, 2) where vertices would have another Delta than they have now."""
     delta: np.ndarray
@@ -77,6 +79,7 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
         change=seen.score_change,
         added=seen.added[:, :, :2],
         removed=seen.removed[:, :, :2],
+        gone=seen.gone[:, :2],
         places=seen.places[told, :2],
         delta=seen.delta[told],
     )

@@ -67,6 +67,8 @@ class Trial:
     """(p,) their Delta then."""
     new_vertices: np.ndarray
     """(q,) those of all vertices then that there are not now."""
+    gone: np.ndarray
+    """(g, 3) where the vertices are now that there would not be then."""
 
 
 class _State(NamedTuple):
@@ -181,6 +183,7 @@ def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> Trial
         places=after.places[differs],
         delta=after.delta[differs],
         new_vertices=new,
+        gone=before.places[before.alive & ~after.alive],
     )
 
 

@@ -16,12 +16,14 @@ from app.desktop.mouse import Click
 from app.desktop.vertex_menu import selection_menu, vertex_menu
 from app.dragging import Drag, refusal
 from app.selection import in_lasso
-from meshcore.halfedge import ORIGIN
+from meshcore.halfedge import FLAGS, LOCKED, ORIGIN
 
 if TYPE_CHECKING:
     from app.desktop.window import MainWindow
     from app.viewport import Viewport
 
+LOCK_RADIUS = 17.0
+"""Pixels of the ring around a selected vertex that is locked."""
 EDIT, BOX, LASSO = "edit", "box", "lasso"
 REACH = 10.0
 """Pixels around a vertex where a drag takes hold of it."""
@@ -228,4 +230,8 @@ class Selecting:
             places = np.minimum(np.searchsorted(marks.vertices, vertices), len(marks.vertices) - 1)
             marked = marks.vertices[places] == vertices
             radii[marked] = marks.radii(viewport)[places[marked]] + 3.5
+        mesh = self._window.document.mesh
+        if mesh is not None:  # locked ones have a ring already
+            locked = (mesh.arrays.vertex[vertices, FLAGS] & LOCKED) > 0
+            radii[locked] = np.maximum(radii[locked], LOCK_RADIUS)
         return radii

@@ -80,6 +80,13 @@ def test_a_clean_up_shows_the_line_that_goes():
     assert (len(seen.removed), len(seen.added)) == (6, 0)
 
 
+def test_a_collapse_shows_the_vertex_that_goes():
+    mesh = grid(3)
+    seen = trial(mesh, "collapse", mesh.halfedge(5, 6))
+    assert seen.gone.tolist() == [[2.0, 2.0, 0.0]]
+    assert 5 in seen.vertices
+
+
 def test_a_refused_operation_says_why():
     mesh = square_of_triangles()
     with pytest.raises(OperationRefused, match="boundary"):

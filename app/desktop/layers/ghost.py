@@ -16,6 +16,8 @@ SLACK = 48.0
 """Pixels around a ghost's edges that its numbers may take."""
 ROOM = 26.0
 """Numbers are written where the edges at the half-edge are longer than this, in pixels."""
+CROSS = 5.0
+"""Pixels that the cross on a vertex that would go reaches each way."""
 GAP = 14.0
 """Pixels between the tag and the element that is pointed at."""
 HIDES = 60.0
@@ -125,7 +127,17 @@ class GhostNumbers(Layer):
         size = np.ptp(self.viewport.to_screen(self._around), axis=0).max()
         if size > ROOM and len(ghost.places) <= MOST:
             self._paint_numbers(painter, ghost)
+            self._paint_gone(painter, ghost)
         self._paint_tag(painter, ghost)
+
+    def _paint_gone(self, painter: QPainter, ghost: Ghost) -> None:
+        """A cross on every vertex that would go."""
+        at = self.viewport.to_screen(ghost.gone).tolist() if len(ghost.gone) <= MOST else []
+        for colour, width in ((self.theme.background, 6.0), (self.theme.text, 2.25)):
+            painter.setPen(pen(colour, width))
+            for x, y in at:
+                painter.drawLine(QPointF(x - CROSS, y - CROSS), QPointF(x + CROSS, y + CROSS))
+                painter.drawLine(QPointF(x - CROSS, y + CROSS), QPointF(x + CROSS, y - CROSS))
 
     def _paint_numbers(self, painter: QPainter, ghost: Ghost) -> None:
         font = QFont(self._font)
