@@ -1,0 +1,106 @@
+"""The program as a person starts it, driven from outside by events of the X server (xdotool)."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from app import journalfile, recovery
+
+PATIENCE = 90.0
+
+pytestmark = pytest.mark.skipif(
+    shutil.which("xdotool") is None, reason="xdotool, which sends the events, is not installed"
+)
+
+
+class Program:
+    """``meshwright`` in a process of its own, with settings and state in ``home``."""
+
+    def __init__(self, home: Path, *words: str) -> None:
+        self.environment = {
+            **os.environ,
+            "XDG_CONFIG_HOME": str(home / "config"),
+            "MESHWRIGHT_STATE_DIR": str(home / "state"),
+        }
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "app", *words], env=self.environment, cwd=home
+        )
+
+    def xdotool(self, *words: str) -> str:
+        """What xdotool answers; empty where it finds nothing."""
+        done = subprocess.run(
+            ["xdotool", *words], env=self.environment, capture_output=True, text=True, timeout=30
+        )
+        return done.stdout.strip()
+
+    def window(self, title: str) -> str:
+        """The X window with this title, as soon as it is there."""
+
+        def found() -> str:
+            ids = self.xdotool("search", "--onlyvisible", "--name", title).split()
+            return ids[-1] if ids else ""
+
+        return until(found)
+
+    def kill(self) -> None:
+        """End it as a crash does."""
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+
+def until(condition):
+    """The first answer that is not empty."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        answer = condition()
+        if answer:
+            return answer
+        time.sleep(0.1)
+    pytest.fail("the program did not get there")
+
+
+def steps(state: Path) -> int:
+    """Steps that the autosave has written down: the first together with the mesh."""
+    written = [list(journalfile.records(path)) for path in (state / "autosave").glob("*.journal")]
+    return max((len(records) for records in written), default=0)
+
+
+def test_keys_edit_a_crash_loses_nothing_and_the_next_start_offers_it(tmp_path):
+    state = tmp_path / "state"
+    program = Program(tmp_path, "star")
+    try:
+        places = [(x, y) for y in range(250, 600, 35) for x in range(330, 880, 55)]
+
+        def edited() -> bool:
+            x, y = places[edited.turn % len(places)]
+            edited.turn += 1
+            window = program.window("^star")  # Qt makes it anew when the canvas comes
+            program.xdotool("windowfocus", window)
+            program.xdotool("mousemove", "--window", window, str(x), str(y), "key", "f")
+            return steps(state) >= 2
+
+        edited.turn = 0
+        until(edited)
+    finally:
+        program.kill()
+    done = steps(state)
+    found = recovery.lost(state / "autosave")
+    assert len(found) == 1 and found[0].name == "star"
+    kept = found[0].read()
+    kept.mesh.validate()
+    assert len(kept.history) == found[0].now["steps"] == done
+    found[0].release()
+
+    program = Program(tmp_path)
+    try:
+        dialog = program.window("^Recover work")
+        program.xdotool("windowfocus", dialog, "key", "Return")
+        program.window("^star")
+    finally:
+        program.kill()
