@@ -86,7 +86,8 @@ def test_all_that_is_reached_by_the_mouse_is_reached_by_tab(open_window, star):
         assert button.focusPolicy() & Qt.FocusPolicy.TabFocus, where(button)
 
 
-def test_a_persons_own_window_shows_the_tour_once(qtbot, open_window, star):
+def test_a_persons_own_window_shows_the_tour_once(qtbot, open_window, star, tmp_path, monkeypatch):
+    monkeypatch.setenv("MESHWRIGHT_STATE_DIR", str(tmp_path))
     open_window(star).settings.clear()  # tests have settings of their own
     for expected in (True, False):
         window = open_a_window(Document(star.copy(), "star"), guided=True)
