@@ -15,6 +15,10 @@ from meshcore.trial import score_change as tried_change
 from meshcore.trial import trial
 
 
+GLOBAL = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
+"""Operations that go from boundary to boundary."""
+
+
 @dataclass(frozen=True)
 class Choice:
     """One operation of the mesh's kind at one half-edge."""
@@ -101,8 +105,16 @@ def _choice(mesh: HalfEdgeMesh, info: OperationInfo, halfedge: int) -> Choice:
 
 
 def best(offered: tuple[Choice, ...]) -> Choice | None:
-    """The allowed one with the lowest change of s, the first of equals; None if none is allowed."""
-    return min((c for c in offered if c.allowed), key=lambda c: c.change or 0, default=None)
+    """The allowed one with the lowest change of s, the first of equals; None if none is allowed.
+
+    One that changes the mesh from boundary to boundary comes only where no local one is allowed: a
+    person who points at an edge means what lies there.
+    """
+
+    def rank(choice: Choice) -> tuple[bool, int]:
+        return choice.operation in GLOBAL, choice.change or 0
+
+    return min((choice for choice in offered if choice.allowed), key=rank, default=None)
 
 
 def following(offered: tuple[Choice, ...], current: Operation | None, step: int) -> Choice | None:
