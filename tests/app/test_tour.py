@@ -94,3 +94,14 @@ def test_closing_the_window_ends_it(open_window, star):
     window.close()
     assert window.guide.tour is None
     assert window.settings.toured
+
+
+def test_what_is_hidden_is_not_pointed_at(open_window, star):
+    window = open_window(star)
+    last = STOPS[-1]
+    timeline = last.target(window)
+    for part in (window.film.timeline, window.film.panel):
+        part.hide()
+    button = window.toolbar.widgetForAction(window.actions_by_id["undo"])
+    assert last.target(window) != timeline
+    assert last.target(window).size() == button.size()
