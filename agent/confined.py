@@ -37,6 +37,7 @@ from meshcore.halfedge import (
 )
 from meshcore.mesh import HalfEdgeMesh
 from meshcore.operations import CODES, NAMES, Operation
+from meshcore.smoothing import relax
 
 MANY = 128
 """Irregular vertices above which a part is repaired patch by patch first."""
@@ -46,6 +47,13 @@ POLISH = 0.15
 """Share of the time that is kept for leaving out operations that are not needed."""
 SHORTENING = 0.3
 """The most seconds of that where only a number of rollouts is asked for."""
+KEEP, GROW = 0.75, 1.5
+"""Elements that a part keeps at least, and has at most, relative to its start: the rim holds the
+sizes of the elements along it, and much larger ones cannot be drawn beside them."""
+FLAW = 2
+"""What an element costs that stays inverted when the part is smoothed, in units of s."""
+DRAWN = 4
+"""States of a round that are drawn, at most, where several are equally good."""
 
 
 @dataclass
@@ -77,8 +85,10 @@ def solve_within(
     """The best state found from `mesh`, which is not changed, by changing only `elements` (n,).
 
     The best of so many rollouts of the policy, within `seconds` if given; with `seconds` alone
-    rollouts, and for quads annealing, in turn; with neither SIDE_BY_SIDE rollouts. Ends early where
-    s can be proved to be as low as it can be, and when `cancelled()` says so, with the best so far.
+    rollouts, and for quads annealing, in turn; with neither SIDE_BY_SIDE rollouts. Better is: the
+    lower s, where an element that stays inverted when the part is smoothed counts FLAW; then fewer
+    operations. Ends early where s is proved to be as low as it can be and nothing is inverted, and
+    when `cancelled()` says so, with the best so far.
     `progress(rollouts done, best s of the whole mesh)` is called now and then. Raises PolicyError
     if the policy is for the other kind of mesh, MeshError if no vertex lies inside the part.
     """
@@ -176,6 +186,10 @@ class _Search:
         self.done = 0
         self.best: Operations = []
         self.best_score = self.part.mesh.score
+        self.flaws = self._flaws_of([])
+        size = self.part.mesh.n_elements
+        floor = max(KEEP, self.task.element_floor)
+        self.bounds = int(np.ceil(floor * size)), max(size + 8, int(GROW * size))
 
     def _outside_ends(self) -> np.ndarray:
         k = self.mesh.k
@@ -202,7 +216,7 @@ class _Search:
             return
         run = improve_large(
             self.mesh, self.policy, seconds=None if self.seconds is None else 0.6 * self.seconds,
-            seed=self.seed, cancelled=self._cancelled, within=self.part.elements,
+            seed=self.seed, cancelled=self._cancelled, within=self.part.elements, floor=KEEP,
             progress=None if self._progress is None else self._progress,
         )  # fmt: skip
         self.operations = run.steps()
@@ -210,28 +224,39 @@ class _Search:
         here = np.setdiff1d(self.mesh.element_ids(), self.outside, assume_unique=True)
         self.part = _Part(self.mesh, here)
         self.best_score = self.part.mesh.score
+        self.flaws = self._flaws_of([])
 
     def look(self) -> None:
         """Rollouts, and for quads annealing, until the optimum, the end of the time or of the
         rollouts.
         """
-        goal = self.part.mesh.optimum
-        while self.best_score > goal and not self.over(1.0 - POLISH):
+        while not self._perfect and not self.over(1.0 - POLISH):
             left = SIDE_BY_SIDE if self.wanted is None else self.wanted - self.done
             if left <= 0:
                 break
             began = self._seconds()
             self._roll(min(left, SIDE_BY_SIDE))
-            if self.wanted is None and self.mesh.k == 4 and self.best_score > goal:
+            if self.wanted is None and self.mesh.k == 4 and not self._perfect:
                 self._anneal(self._seconds() + max(0.1, self._seconds() - began))
+
+    @property
+    def _perfect(self) -> bool:
+        """Whether s is as low as it can be, and nothing inverted."""
+        return self.best_score == self.part.mesh.optimum and self.flaws == 0
 
     def _roll(self, size: int) -> None:
         """So many rollouts side by side."""
         task, mesh = self.task, self.part.mesh
-        batch = Batch(task, [mesh] * size, size, self.rng, endless=False)
+        if mesh.score == mesh.optimum:
+            self.done += size
+            return
+        batch = Batch(task, [mesh] * size, size, self.rng, endless=False, bounds=self.bounds)
         operations, halfedges = [], []
-        lowest = self.best_score
-        while batch.active.any() and lowest > mesh.optimum and not self.over(1.0 - POLISH):
+        while (
+            batch.active.any()
+            and (batch.best == mesh.optimum).sum() < DRAWN
+            and not self.over(1.0 - POLISH)
+        ):
             seen = batch.observe()
             if task.kind == "quad":
                 seen.mask[:, :, -1] = False  # a global split does not end at the rim
@@ -242,12 +267,14 @@ class _Search:
             operations.append(task.first_operation + actions % task.operations)
             halfedges.append(seen.chosen[np.arange(size), rows])
             batch.step(seen, actions)
-            lowest = min(lowest, int(batch.best.min()))
         self.done += size
-        at = int(np.lexsort((batch.best_step, batch.best))[0])
-        count = int(batch.best_step[at])
-        codes = [int(row[at]) for row in operations[:count]]
-        self._offer(self._played(codes, [int(row[at]) for row in halfedges[:count]]))
+        for at in np.lexsort((batch.best_step, batch.best))[:DRAWN].tolist():
+            if batch.best[at] > self._cost or self._perfect:
+                break
+            count = int(batch.best_step[at])
+            codes = [int(row[at]) for row in operations[:count]]
+            self._offer(self._played(codes, [int(row[at]) for row in halfedges[:count]]))
+        self._tell()
 
     def _played(self, codes: list[int], halfedges: list[int]) -> Operations:
         """What a rollout did, with the clean-ups that followed by themselves."""
@@ -263,19 +290,41 @@ class _Search:
     def _anneal(self, until: float) -> None:
         weights = list(WEIGHTS["quad"])
         weights[CODES[4][Operation.GLOBAL_SPLIT] - CODES[4][Operation.FLIP_LEFT]] = 0.0
-        annealer = Annealer(self.part.mesh, int(self.rng.integers(1 << 31)), weights=tuple(weights))
+        floor, ceiling = self.bounds
+        annealer = Annealer(
+            self.part.mesh, int(self.rng.integers(1 << 31)), weights=tuple(weights), floor=floor,
+            ceiling=ceiling,
+        )  # fmt: skip
         while not annealer.finished and self._seconds() < until and not self.over(1.0 - POLISH):
             annealer.run()
         self._offer(annealer.operations())
 
     def _offer(self, operations: Operations) -> None:
+        """Keep the state that the operations lead to, if it is better."""
         reached = self.part.mesh.copy()
         for operation, h in operations:
             reached.apply(operation, h)
-        fewer = len(operations) < len(self.best)
-        if (reached.score, not fewer) < (self.best_score, True):
-            self.best, self.best_score = operations, reached.score
+        # clean-ups are not asked whether they leave elements enough
+        if reached.score <= self._cost and reached.n_elements >= self.bounds[0]:
+            flaws = self._flaws_of(operations)
+            cost = reached.score + FLAW * flaws
+            if (cost, len(operations)) < (self._cost, len(self.best)):
+                self.best, self.best_score, self.flaws = operations, reached.score, flaws
         self._tell()
+
+    @property
+    def _cost(self) -> int:
+        """What the best state is measured by."""
+        return self.best_score + FLAW * self.flaws
+
+    def _flaws_of(self, operations: Operations) -> int:
+        """Elements that stay inverted around the part when it is smoothed after the operations."""
+        whole = self.mesh.copy()
+        self.part.put_back(whole, operations)
+        here = np.setdiff1d(whole.element_ids(), self.outside, assume_unique=True)
+        corners = (whole.k * here[:, None] + np.arange(whole.k)).ravel()
+        vertices = np.unique(whole.arrays.edge[corners, ORIGIN]).astype(np.int64)
+        return len(relax(whole, vertices[~whole.locked()[vertices]]))
 
     def answer(self) -> Confined:
         """The best that was found, short, and on the whole mesh."""
@@ -283,6 +332,8 @@ class _Search:
         found = shorten(
             self.part.mesh, self.best, seconds=max(0.0, left), cancelled=self._cancelled
         )
+        if len(found) < len(self.best) and self._flaws_of(found) > self.flaws:
+            found = self.best
         self.operations += self.part.put_back(self.mesh, found)
         if not np.array_equal(self._ends, self._outside_ends()):
             raise RuntimeError("a search within a region has changed what is outside")

@@ -110,6 +110,7 @@ def improve_large(
     max_steps: int | None = None,
     seed: int = 0,
     within: np.ndarray | None = None,
+    floor: float = 0.0,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> LargeRun:
@@ -118,15 +119,15 @@ def improve_large(
     Ends when nothing is left that is worth a visit, after `seconds`, after `max_steps` decisions of
     the policy, or when `cancelled()` says so, and then keeps what it has.
     `progress(operations, s)` is called now and then. within (N,): ids of the only elements that may
-    change; their rim must be locked. Raises PolicyError if the policy is for the other kind of
-    mesh.
+    change; their rim must be locked. floor: elements that each patch keeps, relative to its start,
+    where the policy asks for less. Raises PolicyError if the policy is for the other kind of mesh.
     """
     if mesh.kind != policy.kind:
         raise PolicyError(
             f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
         )
     began = time.perf_counter()
-    work = _Work(mesh, policy, seed)
+    work = _Work(mesh, policy, seed, floor)
     if within is not None:
         work.confine(within)
 
@@ -201,8 +202,9 @@ class _Played:
 class _Work:
     """A copy of the mesh and everything that is known of it while it is repaired."""
 
-    def __init__(self, mesh: HalfEdgeMesh, policy: Policy, seed: int) -> None:
+    def __init__(self, mesh: HalfEdgeMesh, policy: Policy, seed: int, floor: float = 0.0) -> None:
         self.policy, self.task = policy, policy.task
+        self._floor = max(floor, policy.task.element_floor)
         self.rng = np.random.default_rng(seed)
         self.generator = torch.Generator().manual_seed(seed)
         self.mesh = mesh.copy()
@@ -234,7 +236,9 @@ class _Work:
     def _patch_task(self) -> Task:
         """The policy's task, as it is played on a patch."""
         candidates = min(CANDIDATES, self.task.candidates)
-        return replace(self.task, candidates=candidates, element_ceiling=CEILING)
+        return replace(
+            self.task, candidates=candidates, element_floor=self._floor, element_ceiling=CEILING
+        )
 
     def _make_room(self) -> None:
         """Have slots enough for a round of operations, and an agenda of the same size."""

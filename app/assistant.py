@@ -333,6 +333,8 @@ class Assistant:
     def loaded(self, name: str) -> None:
         """A policy is there."""
         self._loading = False
+        if self._run is not None:
+            self._run.began = self._run.due = time.monotonic()  # loading is no work on the mesh
         if name == self._chosen:
             self._chosen = ""
             self.policy = name

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 from qtpy.QtWidgets import QFileDialog
 
 from app.assistant import State
@@ -15,10 +16,12 @@ from app.markers import label
 from app.policy_files import ENDING, kind_of
 from app.policy_files import label as policy_label
 from app.searching import Effort
+from meshcore.halfedge import ORIGIN
 
 if TYPE_CHECKING:
     from agent.choices import Insight
     from app.desktop.window import MainWindow
+    from meshcore import HalfEdgeMesh
 
 KINDS = {"tri": "triangle", "quad": "quad"}
 
@@ -30,6 +33,7 @@ class AgentControl:
         self._window = window
         self.hints = Hints(window)
         self.field: FieldLayer | None = None
+        self._region: tuple[HalfEdgeMesh, np.ndarray] | None = None  # mesh, elements outside
 
     def connect(self) -> None:
         """Follow the assistant."""
@@ -40,7 +44,7 @@ class AgentControl:
         overlay.add(self.field.above, below=overlay.arrow)
         self.hints.connect()
         window.agent_panel.use(window.settings)
-        assistant.changed.connect(window.refresh)
+        assistant.changed.connect(self._on_changed)
         assistant.looked.connect(self._on_looked)
         assistant.said.connect(window.say)
         assistant.failed.connect(window.notice.tell)
@@ -51,7 +55,7 @@ class AgentControl:
         window, assistant = self._window, self._window.assistant
         assistant.close()
         self.hints.release()
-        assistant.changed.disconnect(window.refresh)
+        assistant.changed.disconnect(self._on_changed)
         assistant.looked.disconnect(self._on_looked)
         assistant.said.disconnect(window.say)
         assistant.failed.disconnect(window.notice.tell)
@@ -84,12 +88,16 @@ class AgentControl:
 
     def finish_region(self) -> None:
         """Search in the selected region, as long as the panel says; nothing outside changes."""
+        mesh = self._window.document.mesh
         elements = self._window.document.selection.elements
-        if not len(elements):
+        if mesh is None or not len(elements):
             self._window.say("Select a region first: Shift and a drag over the mesh.")
             return
+        outside = np.setdiff1d(mesh.element_ids(), elements, assume_unique=True)
         seconds = self._window.agent_panel.seconds
         self._window.assistant.search(Effort(seconds=seconds, elements=elements))
+        if self._window.assistant.running:
+            self._region = mesh, outside
 
     def stop(self) -> None:
         """End what is under way; what is done stays."""
@@ -134,6 +142,21 @@ class AgentControl:
             window.assistant.choose(path)
 
     # What the assistant says
+
+    def _on_changed(self) -> None:
+        self._window.refresh()
+        if self._region is not None and not self._window.assistant.running:
+            (mesh, outside), self._region = self._region, None
+            if mesh is self._window.document.mesh:
+                self._select_all_but(outside)
+
+    def _select_all_but(self, outside: np.ndarray) -> None:
+        """Select the corners of all elements but those outside: the region as it is now."""
+        mesh = self._window.document.mesh
+        if mesh is not None:
+            inside = np.setdiff1d(mesh.element_ids(), outside, assume_unique=True)
+            corners = (mesh.k * inside[:, None] + np.arange(mesh.k)).ravel()
+            self._window.document.selection.set(mesh.arrays.edge[corners, ORIGIN])
 
     def _on_looked(self) -> None:
         mesh, insight = self._window.document.mesh, self._window.assistant.insight

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from agent import policies
-from agent.confined import solve_within
+from agent.confined import KEEP, solve_within
 from agent.policies import PolicyError
 from meshcore import MeshError, generate, shapes
 from meshcore.enclosure import enclose, holding
 from meshcore.halfedge import ORIGIN
 from meshcore.region import rings
+from meshcore.smoothing import relax
 
 
 @pytest.fixture(params=["quad", "tri"])
@@ -52,6 +53,9 @@ def test_it_replays_lowers_s_and_leaves_the_rest(case):
     assert copy.score == found.score
     assert np.array_equal(copy.arrays.edge[halfedges, ORIGIN], ends)
     assert np.array_equal(copy.points[inside.held], places)
+    outside = mesh.n_elements - len(inside.elements)
+    assert copy.n_elements - outside >= KEEP * len(inside.elements)
+    assert len(relax(copy, around=np.setdiff1d(copy.vertices(), inside.held))) == 0
     copy.validate()
 
 

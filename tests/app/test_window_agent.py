@@ -115,6 +115,17 @@ def test_the_region_button_wants_a_selection_and_searches_in_it(qtbot, open_wind
     assert efforts[0].seconds == window.agent_panel.seconds
 
 
+def test_a_finished_region_is_still_selected(qtbot, open_window, star):
+    window = open_window(star, longest=4, bad_steps=4)
+    window.document.selection.everything()
+    press(qtbot, window, Qt.Key.Key_R, Qt.KeyboardModifier.ControlModifier)
+    assert window.assistant.state is State.SEARCHING
+    qtbot.waitUntil(lambda: not window.assistant.running, timeout=WAIT)
+    assert window.document.history.cursor >= 4
+    assert np.array_equal(window.document.selection.vertices, star.vertices())
+    assert "The region is finished" in window.said.text()
+
+
 def test_numbers_of_the_panel_are_used_and_kept(qtbot, open_window, star):
     window = open_window(star)
     panel, efforts = window.agent_panel, []
