@@ -72,12 +72,14 @@ class Overlay(QWidget):
         """Paint what touches the region that Qt asks for."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        for layer in self.layers:
-            if layer.visible:
-                painter.save()
-                layer.paint(painter, event.rect())
-                painter.restore()
-        painter.end()
+        try:  # a painter that is left open takes the whole process down at the next paint
+            for layer in self.layers:
+                if layer.visible:
+                    painter.save()
+                    layer.paint(painter, event.rect())
+                    painter.restore()
+        finally:
+            painter.end()
 
     def _repaint(self, rect: QRectF | None) -> None:
         if rect is None:
