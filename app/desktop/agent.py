@@ -10,6 +10,7 @@ from qtpy.QtWidgets import QFileDialog
 
 from app.assistant import State
 from app.desktop.hints import Hints
+from app.desktop.layers.hints import percent
 from app.desktop.layers.insight import FieldLayer, sight
 from app.document import title_of
 from app.markers import label
@@ -174,10 +175,12 @@ class AgentControl:
         slots = len(insight.template)
         beyond = f", {insight.missing} slots beyond the boundary" if insight.missing else ""
         blocks = int(insight.field[:, 1].max(initial=0))
+        policy = policy_label(self._window.assistant.policy)
+        value = f"{insight.value:.2f}".replace("-", "\u2212")
         return (
-            f"{policy_label(self._window.assistant.policy)} weighs {len(insight.halfedges)}"
-            f" half-edges; next: {title}, {wanted.probability:.0%}, \u0394s {label(wanted.change)}",
+            f"{policy} weighs {len(insight.halfedges)} half-edges; next: {title},"
+            f" {percent(wanted.probability)}, \u0394s {label(wanted.change)}",
             f"Rings: its template, {slots} vertices by slot{beyond}",
             f"Tint: its field of view, {len(insight.field)} elements in {blocks} blocks"
-            f"; value {insight.value:.2f}",
+            f"; value {value}",
         )

@@ -17,6 +17,8 @@ from app.viewport import Viewport
 
 HEIGHT = 22.0
 GAP = 4.0
+MANY = 300
+"""Of more visible irregular vertices than this badges do not keep clear."""
 PALE = 120
 """How opaque the edges of the hints are that are not the one meant, of 255."""
 _DISC = np.array([(0, 0), (8, 0), (-8, 0), (0, 8), (0, -8), (4, 4), (-4, -4), (4, -4), (-4, 4)])
@@ -124,6 +126,8 @@ class HintBadges(Layer):
         metrics = QFontMetricsF(self._font)
         edges = [_points(self.viewport, hint.ghost.added) for hint in self._edges.hints]
         marks = inside(self.viewport.to_screen(self.marks), self.viewport)
+        if len(marks) > MANY:
+            marks = marks[:0]  # they are everywhere
         busy = np.concatenate([*edges, *(marks + offset for offset in _DISC)])
         for hint in self._edges.hints:
             x, y = self.viewport.to_screen(hint.place).tolist()

@@ -22,6 +22,10 @@ READ = 0.05
 """Probabilities from here on are written beside their half-edge."""
 ROOM = 34.0
 """Numbers are written where the edges are longer than this, in pixels."""
+NAMED = 7.5
+"""Rings of at least this radius carry their slot."""
+SMALL = 90.0
+"""A field of view of less than this, in pixels, is pointed out by a ring around it."""
 FAINT = 0.004
 """Half-edges less likely than this are not drawn."""
 
@@ -132,6 +136,7 @@ class InsightLayer(Layer):
         weight = float(seen.weights[row])
         side = int(seen.sides[row])
         self._paint_halfedge(painter, corners[row], side, weight, heaviest, wanted=True)
+        self._paint_place(painter, seen)
         self._paint_words(painter, seen.words)
 
     def _paint_halfedge(
@@ -152,7 +157,7 @@ class InsightLayer(Layer):
         along /= length
         normal = QPointF(-along.y(), along.x())
         share = float(np.sqrt(weight / heaviest))
-        width = 1.0 + 3.0 * share
+        width = min(1.0 + 3.0 * share, 1.0 + 0.06 * length)
         size = min(5.0 + width * 1.6, 0.45 * length)
         path = QPainterPath(head)
         path.lineTo(head - along * size + normal * (0.5 * size))
@@ -197,21 +202,43 @@ class InsightLayer(Layer):
         font.setPixelSize(10)
         painter.setFont(font)
         metrics = QFontMetricsF(font)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
+        radius = self._radius(seen)
         at = self.viewport.to_screen(seen.places).tolist()
         for (x, y), slot, ring in zip(at, seen.slots.tolist(), seen.rings.tolist(), strict=True):
             rim = QPen(QColor(self.theme.arrow), 1.75)
             rim.setStyle(Qt.PenStyle.SolidLine if ring == 0 else Qt.PenStyle.DotLine)
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.setPen(rim)
-            painter.drawEllipse(QPointF(x, y), 12.5, 12.5)
+            painter.drawEllipse(QPointF(x, y), radius, radius)
+            if radius < NAMED:
+                continue
             text = str(slot)
-            tag = QRectF(x + 8.0, y + 6.0, metrics.horizontalAdvance(text) + 7.0, 14.0)
+            tag = QRectF(
+                x + 0.65 * radius, y + 0.5 * radius, metrics.horizontalAdvance(text) + 7.0, 14.0
+            )
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(self.theme.raised))
             painter.drawRoundedRect(tag, 7.0, 7.0)
             painter.setPen(QColor(self.theme.arrow))
             painter.drawText(tag, Qt.AlignmentFlag.AlignCenter, text)
+
+    def _paint_place(self, painter: QPainter, seen: Sight) -> None:
+        """Where to look, in a mesh of small elements."""
+        corners = self.viewport.to_screen(seen.field.reshape(-1, 2))
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        size = float((high - low).max())
+        if size < SMALL:
+            (x, y), radius = ((low + high) / 2.0).tolist(), size / 2.0 + 18.0
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            for colour, width in ((self.theme.background, 5.0), (self.theme.arrow, 2.0)):
+                painter.setPen(pen(colour, width))
+                painter.drawEllipse(QPointF(x, y), radius, radius)
+
+    def _radius(self, seen: Sight) -> float:
+        """Of the rings: smaller where the elements are small, too."""
+        corners = self.viewport.to_screen(seen.elements[seen.wanted])
+        edges = np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)
+        return float(np.clip(0.3 * np.median(edges), 5.0, 12.5))
 
     def _paint_words(self, painter: QPainter, words: tuple[str, ...]) -> None:
         """A card in the lower left corner: the numbers, and what the marks mean."""
