@@ -105,7 +105,7 @@ class Assistant:
         if name != self._policy:
             self.cancel()
             self.hinting.forget()
-            self._policy, self._runner = name, None
+            self._policy, self._chosen, self._runner = name, "", None
             self._see(None)
             self.changed.emit()
             self._look_soon()
