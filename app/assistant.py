@@ -423,7 +423,7 @@ class Assistant:
         self._tidy(run)
         where = "" if run.held is None else "The region is finished: "
         if document.at_optimum:
-            self.said.emit(f"At the optimum after {_count(self.progress.decisions, 'decision')}.")
+            self.said.emit(f"At the optimum after {self.progress.counted}.")
         elif where:
             self.said.emit(f"{where}s {document.score}{'; ' + reason if reason else ''}.")
         else:
@@ -443,7 +443,3 @@ class Assistant:
             self._applying = False
         self._runner_at = self._document.revision  # vertices have moved, no edge has
         self._see(seen)
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

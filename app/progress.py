@@ -46,6 +46,11 @@ class Progress:
         return news
 
     @property
+    def counted(self) -> str:
+        """``1 decision``, ``12 decisions``."""
+        return f"{self.decisions} decision{'' if self.decisions == 1 else 's'}"
+
+    @property
     def effort(self) -> Effort | None:
         """How hard the search under way tries; None without one."""
         return self._run.effort if self._run is not None else None

@@ -296,8 +296,7 @@ class AgentPanel(QWidget):
 def told(assistant: Assistant) -> str:
     """What the assistant is doing, in a few words."""
     progress = assistant.progress
-    count = progress.decisions
-    decisions = f"{count} decision{'' if count == 1 else 's'}"
+    decisions = progress.counted
     best = "" if progress.best is None else f", best s {progress.best}"
     if assistant.loading:
         return "Loading the policy\u2026"
@@ -315,7 +314,7 @@ def told(assistant: Assistant) -> str:
         return f"Paused after {decisions}{best}"
     if assistant.state is State.PLAYING:
         return f"Playing: {decisions}, {progress.elapsed:.0f} s{best}"
-    return f"{decisions} taken{best}" if count else "Ready" if assistant.policy else ""
+    return f"{decisions} taken{best}" if progress.decisions else "Ready" if assistant.policy else ""
 
 
 def _is_for(path: str, kind: str) -> bool:
