@@ -14,7 +14,6 @@ from meshcore.operations import CODES, OperationInfo, of_kind, score_change
 from meshcore.trial import score_change as tried_change
 from meshcore.trial import trial
 
-
 GLOBAL = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
 """Operations that go from boundary to boundary."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from qtpy.QtCore import QTimer
 
 from app.desktop.layers.ghost import GhostLayer
-from app.preview import Choice, best, choices, following, ghost
+from app.preview import GLOBAL, Choice, best, choices, following, ghost
 from meshcore import HalfEdgeMesh, Operation
 
 if TYPE_CHECKING:
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 GHOSTS = "editing/ghosts"
 """The setting that shows ghosts."""
-FAR = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
-"""Operations whose ghosts may reach through the whole mesh."""
 LARGE = 5000
-"""In meshes of more elements such ghosts wait until the mouse rests: they would flicker."""
+"""In meshes of more elements ghosts from boundary to boundary wait until the mouse rests: they
+would flicker.
+"""
 REST = 60
 """Milliseconds that count as rest."""
 FEW = 2000
@@ -28,7 +28,8 @@ FEW = 2000
 
 class Pointing:
     """The operation that is meant is, in this order: the one that a menu's row is pointed at, the
-    one chosen with Tab at this half-edge, the armed one, the allowed one with the lowest change.
+    one chosen with Tab at this half-edge, the armed one, the best of the local ones (see
+    :func:`app.preview.best`).
     """
 
     def __init__(self, window: MainWindow) -> None:
@@ -144,7 +145,7 @@ class Pointing:
         self._rest.stop()
         if meant is None or not self.ghosts or self._window.assistant.running:
             self.layer.show(None)
-        elif meant.operation in FAR and mesh.n_elements > LARGE:
+        elif meant.operation in GLOBAL and mesh.n_elements > LARGE:
             self.layer.show(None)
             self._rest.start()
         else:

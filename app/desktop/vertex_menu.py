@@ -4,7 +4,7 @@ is to do with them.
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from app.document import Document
 
 DEGREES = range(2, 9)
+GONE_ON = "The mesh has changed since the menu was opened."
 
 
 def vertex_menu(window: MainWindow, vertex: int) -> QMenu:
@@ -72,26 +73,37 @@ def _fill(menu: QMenu, window: MainWindow, vertices: np.ndarray) -> None:
     mesh = document.mesh
     if mesh is None:
         return
+    revision = document.revision
+
+    def then(change: Callable[..., None], *values: object) -> Callable[[bool], None]:
+        """Do it, unless the mesh has gone on behind the menu: ids may be of other vertices now."""
+
+        def act(checked: bool = False) -> None:
+            if document.revision == revision:
+                change(vertices, *values or (checked,))
+            else:
+                window.say(GONE_ON)
+
+        return act
+
     degrees = menu.addMenu("Desired degree")
     present = set(mesh.desired()[vertices].tolist())
     for wanted in sorted({*DEGREES, *present}):
         action = _checkable(degrees, str(wanted), present == {wanted})
-        action.triggered.connect(partial(_set_desired, document, vertices, wanted))
+        action.triggered.connect(then(document.set_desired, wanted))
     geometric, locked = mesh.geometric()[vertices], mesh.locked()[vertices]
     corner = _checkable(menu, "Corner (stays where it is)", bool(geometric.all()))
-    corner.triggered.connect(lambda checked: document.set_geometric(vertices, checked))
+    corner.triggered.connect(then(document.set_geometric))
     lock = _checkable(menu, "Locked (nothing changes it)", bool(locked.all()))
-    lock.triggered.connect(lambda checked: document.set_locked(vertices, checked))
+    lock.triggered.connect(then(document.set_locked))
     smooth = menu.addAction("Smooth here")
-    smooth.triggered.connect(lambda checked=False: document.smooth(vertices=vertices))
+    smooth.triggered.connect(then(_smooth, document))
     for part in (degrees, corner, lock, smooth):
         part.setEnabled(window.ready)
 
 
-def _set_desired(
-    document: Document, vertices: np.ndarray, degree: int, checked: bool = False
-) -> None:
-    document.set_desired(vertices, degree)
+def _smooth(vertices: np.ndarray, document: Document) -> None:
+    document.smooth(vertices=vertices)
 
 
 def _checkable(menu: QMenu, title: str, checked: bool) -> QAction:

@@ -145,7 +145,8 @@ def test_ghosts_can_be_switched_off(qtbot, open_window, star):
 def test_a_ghost_through_a_large_mesh_waits_for_rest(qtbot, open_window, monkeypatch, grid):
     monkeypatch.setattr(pointing, "LARGE", 4)
     window = open_window(grid)
-    point_at(qtbot, window, grid.halfedge(8, 15))  # on a line: the clean-up changes s least
+    window.pointing.arm("cleanup")
+    point_at(qtbot, window, grid.halfedge(8, 15))
     assert window.pointing.layer.ghost is None
     qtbot.waitUntil(lambda: window.pointing.layer.ghost is not None, timeout=WAIT)
     assert window.pointing.layer.ghost.operation == "cleanup"

@@ -8,6 +8,7 @@ from driving import WAIT, beside, pixel, press
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QApplication
 
+from app.desktop.vertex_menu import GONE_ON
 from app.dragging import CORNER, LOCK
 from meshcore import HalfEdgeMesh
 
@@ -219,6 +220,18 @@ def test_the_menu_of_a_whole_selection(qtbot, open_window, grid):
         window.actions_by_id["agent.region"].isEnabled()
     )
     menu.close()
+
+
+def test_a_menu_of_a_mesh_that_has_gone_on_does_nothing(qtbot, open_window, grid):
+    window = open_window(grid)
+    menu = open_menu(qtbot, window, pixel(window, grid.points[16]) + QPoint(1, 1))
+    window.document.submit("collapse", grid.halfedge(9, 16), "greedy")
+    window.document.submit("collapse", grid.halfedge(17, 24), "greedy")
+    for text in ("Smooth here", "Locked", "Corner"):
+        entry(menu, text).trigger()
+        assert window.said.text() == GONE_ON
+    menu.close()
+    assert window.document.history.cursor == 2
 
 
 def test_the_menu_of_one_vertex_smooths_and_selects(qtbot, open_window, grid):
