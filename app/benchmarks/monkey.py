@@ -37,8 +37,9 @@ def run(
 ) -> dict[str, Any]:
     """Send 20,000 events (``quick``: 400) to a window on the star and report what went wrong.
 
-    Keys: ``events``, ``exceptions`` (their last lines), ``operations`` (steps that the history was
-    given), ``dialogs`` (how many were opened), ``slowest_ms`` (the longest time that the event loop
+    Keys: ``events``, ``exceptions`` (their last lines), ``steps`` (of the history, by hand or
+    agent), ``dialogs`` (which were opened), ``in_dialogs`` (events that went to a dialog or a menu),
+    ``slowest_ms`` (the longest time that the event loop
     was held), ``threads`` and ``timers`` that outlived the window, ``valid`` (is the mesh valid at
     the end?), ``undone`` (did undoing everything lead back to the first state?). Raises
     RuntimeError without a display and if the window dies.
@@ -72,8 +73,10 @@ class Monkey:
         self.rng = np.random.default_rng(seed)
         self.slowest = 0.0
         self.dialogs: set[str] = set()
-        self.operations = 0
+        self.steps = 0
+        self.over = 0  # events that went to a dialog or a menu
         self.busy: list[Any] = []  # the dialog or menu that was open when each event was sent
+        window.document.noted.connect(self._count)
         self.shortcuts = [
             keys for action in ACTIONS for keys in action.shortcuts if action.id != "quit"
         ]
@@ -103,6 +106,9 @@ class Monkey:
         if open_now is None and not QApplication.activeModalWidget():
             self.slowest = max(self.slowest, time.perf_counter() - began)
 
+    def _count(self, event: str, number: int) -> None:
+        self.steps += event == "step"
+
     def _pick(self, things: Sequence[Any]) -> Any:
         return things[int(self.rng.integers(len(things)))]
 
@@ -123,7 +129,7 @@ class Monkey:
         from qtpy.QtWidgets import QDialog, QFileDialog
 
         document = self.window.document
-        self.operations = max(self.operations, len(document.history))
+        self.over += open_now is not None
         if document.mesh is None or document.mesh.n_elements > LARGEST:
             document.replace(_star(self._pick(["tri", "quad"])), "star")
             return
@@ -278,7 +284,8 @@ def _play(seed: int, events: int) -> dict[str, Any]:
     result = {
         "events": monkey.sent,
         "dialogs": sorted(monkey.dialogs),
-        "operations": monkey.operations,
+        "steps": monkey.steps,
+        "in_dialogs": monkey.over,
         "slowest_ms": 1000.0 * monkey.slowest,
         **_sound(document),
         **_ended(app, window, before),

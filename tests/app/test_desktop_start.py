@@ -1,12 +1,13 @@
 """What the window needs before it is there, measured in a process of its own."""
 
 from app.benchmarks import desktop
+from app.benchmarks.desktop.display import display
 from meshcore import compiled
 
 
 def test_the_window_is_there_before_torch_and_kernels():
     compiled.warm()
-    with desktop._display() as environment:
+    with display() as environment:
         started = desktop._probe("start", environment)
     assert not started["torch_at_first_paint"]
     assert not started["torch_at_the_end"]

@@ -326,7 +326,7 @@ def test_bad_meshes(points, faces, says, tmp_path):
 
 
 def test_odd_paths(tmp_path, meshes):
-    assert "domain" in refusal(put_obj(tmp_path / "shape.json", [], [[0]]))
+    assert "holds a shape" in refusal(put_obj(tmp_path / "shape.json", [], [[0]]))
     assert "'.foo'" in refusal(put_obj(tmp_path / "mesh.foo", [], [[0]]))
     with pytest.raises(MeshError, match="no name for a file"):
         meshcore.read("mesh\0.vtk")
