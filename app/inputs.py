@@ -19,6 +19,7 @@ from app.report import Report, UserError
 if TYPE_CHECKING:
     from agent.policies import Policy
     from agent.training import Training
+    from app.document import Document
     from meshcore import HalfEdgeMesh
     from meshcore.domain import Domain
 
@@ -28,15 +29,30 @@ KIND_NOUN = {"tri": "triangles", "quad": "quads"}
 def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
     """Return the mesh in a file, or raise UserError that says what is wrong with it.
 
-    ``corner_angle`` in degrees: a boundary vertex where the boundary turns by more is a corner.
+    ``corner_angle`` in degrees: a boundary vertex where the boundary turns by more is a corner. A
+    project knows its corners.
     """
     _require_file(path)
     import meshcore
+    from app import project
 
     with _bad_input(path):
+        if project.is_project(path):
+            return project.read(path).mesh.copy()
         if corner_angle is None:
             return meshcore.read(path)
         return meshcore.read(path, corner_angle=corner_angle)
+
+
+def read_project(path: str) -> Document:
+    """Return the document in a project file, its history with it, or raise UserError."""
+    _require_file(path)
+    from app.document import Document
+
+    document = Document()
+    with _bad_input(path):
+        document.open(path)
+    return document
 
 
 def read_domain(shape: str, corner_angle: float | None = None) -> Domain:

@@ -22,7 +22,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "file",
         metavar="FILE-or-SHAPE",
         nargs="?",
-        help="mesh file, file of a shape (.dxf .svg .geojson .wkt .json) or name of a shape",
+        help="mesh file, project (.meshwright), file of a shape (.dxf .svg .geojson .wkt .json) "
+        "or name of a shape",
     )
     parser.add_argument(
         "--kind", choices=("tri", "quad"), default="quad", help="how to mesh a shape (quad)"
@@ -56,9 +57,12 @@ def _document(arguments: argparse.Namespace) -> Document | None:
     if name is None:
         return None
     from app.document import Document
+    from app.project import is_project
 
     path = Path(name)
     is_file = path.exists() or inputs.looks_like_path(name)
+    if is_file and is_project(path):
+        return inputs.read_project(name)
     if is_file and not _holds_shape(path):
         return Document(inputs.read_mesh(name, arguments.corner_angle), path.name, path)
     if not is_file:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from test_branches import bits, serials, wander
 
-from app import project
+from app import inputs, project
 from app.document import Document
+from app.report import UserError
 from meshcore import MeshError
 
 
@@ -190,3 +191,18 @@ def test_a_save_that_fails_leaves_the_old_file(document, tmp_path, monkeypatch):
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
     assert document.modified
+
+
+def test_commands_take_projects_too(document, tmp_path):
+    path = tmp_path / "a.meshwright"
+    document.save(path)
+    opened = inputs.read_project(str(path))
+    assert bits(opened) == bits(document)
+    assert opened.path == path
+    mesh = inputs.read_mesh(str(path))
+    assert np.array_equal(mesh.points, document.mesh.points)
+    assert mesh.steps == 0
+    path.write_text("nothing of the kind")
+    for read in (inputs.read_project, inputs.read_mesh):
+        with pytest.raises(UserError, match="not a Meshwright project"):
+            read(str(path))
