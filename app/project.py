@@ -18,7 +18,8 @@ import numpy as np
 from app import keeping
 from app.keeping import Kept
 from meshcore import MeshError
-from meshcore.atomic import reason, replacing
+from meshcore.atomic import replacing
+from meshcore.reading import naming
 from meshcore.snapshot import Arrays
 
 ENDING = ".meshwright"
@@ -73,19 +74,16 @@ def read(path: str | os.PathLike[str]) -> Kept:
     off, or holds what is no mesh.
     """
     place = Path(path)
-    try:
-        header, arrays = _members(place)
-        if not isinstance(header, dict) or header.get("format") != _FORMAT:
-            raise MeshError("it is not a Meshwright project")
-        kept = keeping.restored(header, arrays)
-    except MeshError as error:
-        raise MeshError(f"{place}: {str(error).rstrip('.')}.") from error
-    except FileNotFoundError as error:
-        raise MeshError(f"{place}: there is no such file.") from error
-    except OSError as error:
-        raise MeshError(f"{place}: it cannot be read ({reason(error)}).") from error
-    except _BROKEN as error:
-        raise MeshError(f"{place}: it is not a Meshwright project, or not a whole one.") from error
+    with naming(place):
+        try:
+            header, arrays = _members(place)
+            if not isinstance(header, dict) or header.get("format") != _FORMAT:
+                raise MeshError("it is not a Meshwright project")
+            kept = keeping.restored(header, arrays)
+        except MeshError:
+            raise
+        except _BROKEN as error:
+            raise MeshError("it is not a Meshwright project, or not a whole one") from error
     return Kept(
         kept.mesh,
         kept.history,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import stat
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,11 +13,11 @@ from typing import Any
 import shapely
 
 from meshcore import curves, dxf, svg
-from meshcore.atomic import reason
 from meshcore.curves import CURVE_STEP, Piece
 from meshcore.domain import CORNER_ANGLE, Domain, load_json
 from meshcore.errors import MeshError
 from meshcore.formats import SHAPES
+from meshcore.reading import naming, size_of
 from meshcore.tracing import traced
 
 MAX_BYTES = 256 * 2**20
@@ -76,31 +75,15 @@ def read_domain(
     ending = place.suffix.lower()
     if ending == ".json":
         return _json(place, corner_angle)
-    try:
+    with naming(place):
         if ending not in _READERS:
             raise MeshError(f"a file of a shape ends in one of {' '.join(endings())}")
-        content = _bytes(place)
-        pieces = _READERS[ending](content, corner_angle, curve_step)
+        pieces = _READERS[ending](_bytes(place), corner_angle, curve_step)
         return traced(pieces, corner_angle, place.stem)
-    except MeshError as error:
-        raise MeshError(f"{place}: {_sentence(str(error))}") from error
-    except FileNotFoundError as error:
-        raise MeshError(f"{place}: there is no such file.") from error
-    except OSError as error:
-        raise MeshError(f"{place}: it cannot be read ({reason(error)}).") from error
-    except ValueError as error:
-        raise MeshError(f"{str(place)!r} is no name for a file.") from error
 
 
 def _bytes(path: Path) -> bytes:
-    status = path.stat()
-    if stat.S_ISDIR(status.st_mode):
-        raise MeshError("this is a folder, not a file")
-    if not stat.S_ISREG(status.st_mode):
-        raise MeshError("this is not an ordinary file")
-    if status.st_size == 0:
-        raise MeshError("the file is empty")
-    if status.st_size > MAX_BYTES:
+    if size_of(path) > MAX_BYTES:
         raise MeshError(f"the file has more than {MAX_BYTES // 2**20} MiB")
     return path.read_bytes()
 
@@ -110,10 +93,8 @@ def _json(path: Path, corner_angle: float) -> Domain:
     content = load_json(path)
     if not _is_geojson(content):
         return Domain.from_json(path, corner_angle)
-    try:
+    with naming(path):
         return traced(_collected(content, corner_angle), corner_angle, path.stem)
-    except MeshError as error:
-        raise MeshError(f"{path}: {_sentence(str(error))}") from error
 
 
 def _geojson(content: bytes, corner_angle: float, step: float) -> list[Piece]:
@@ -178,10 +159,6 @@ def _pieces(shape: Any, corner_angle: float) -> Iterator[Piece]:
             piece = curves.straight(shapely.get_coordinates(part), corner_angle)
             if piece is not None:
                 yield piece
-
-
-def _sentence(text: str) -> str:
-    return text.rstrip(".") + "."
 
 
 _READERS: dict[str, Read] = {".dxf": dxf.read, ".svg": svg.read, ".geojson": _geojson, ".wkt": _wkt}

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-import stat
 from pathlib import Path
 
 import numpy as np
 
 from meshcore import assemble, formats, textfiles
-from meshcore.atomic import reason, replacing
+from meshcore.atomic import replacing
 from meshcore.errors import MeshError
 from meshcore.irregularity import CORNER_ANGLE
 from meshcore.mesh import HalfEdgeMesh
+from meshcore.reading import naming, size_of
 from meshcore.textfiles import Content
 
 
@@ -41,20 +41,12 @@ def read(path: str | os.PathLike[str], corner_angle: float = CORNER_ANGLE) -> Ha
             coordinate is not a finite number; the mesh is not manifold.
     """
     place = Path(path)
-    try:
+    with naming(place):
         head = _head(place)
         form = formats.of(place)
         with formats.contained():
             content = form.read(place)
         return _mesh(content, form, head, corner_angle)
-    except MeshError as error:
-        raise MeshError(f"{place}: {str(error).rstrip('.')}.") from error
-    except FileNotFoundError as error:
-        raise MeshError(f"{place}: there is no such file.") from error
-    except OSError as error:
-        raise MeshError(f"{place}: it cannot be read ({reason(error)}).") from error
-    except ValueError as error:
-        raise MeshError(f"{str(place)!r} is no name for a file.") from error
 
 
 def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
@@ -102,13 +94,7 @@ def _refuse_incomplete(form: formats.Format, path: Path, content: Content) -> No
 
 
 def _head(path: Path) -> bytes:
-    status = path.stat()
-    if stat.S_ISDIR(status.st_mode):
-        raise MeshError("this is a folder, not a file")
-    if not stat.S_ISREG(status.st_mode):
-        raise MeshError("this is not an ordinary file")
-    if status.st_size == 0:
-        raise MeshError("the file is empty")
+    size_of(path)
     with path.open("rb") as file:
         return file.read(1024)
 

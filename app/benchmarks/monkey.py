@@ -38,11 +38,11 @@ def run(
     """Send 20,000 events (``quick``: 400) to a window on the star and report what went wrong.
 
     Keys: ``events``, ``exceptions`` (their last lines), ``steps`` (of the history, by hand or
-    agent), ``dialogs`` (which were opened), ``in_dialogs`` (events that went to a dialog or a menu),
-    ``slowest_ms`` (the longest time that the event loop
-    was held), ``threads`` and ``timers`` that outlived the window, ``valid`` (is the mesh valid at
-    the end?), ``undone`` (did undoing everything lead back to the first state?). Raises
-    RuntimeError without a display and if the window dies.
+    agent), ``dialogs`` (which were opened), ``in_dialogs`` (events that went to a dialog or menu),
+    ``slowest_ms`` (the longest time that the event loop was held), ``threads`` and ``timers`` that
+    outlived the window, ``valid`` (is the mesh valid at the end?), ``undone`` (did undoing
+    everything lead back to the first state?). Raises RuntimeError without a display and if the
+    window dies.
     """
     with display() as environment, tempfile.TemporaryDirectory() as home:
         apart = {**environment, "XDG_CONFIG_HOME": home, "XDG_STATE_HOME": home}

@@ -1,0 +1,38 @@
+"""What every reader of a file does: refuses what is no file, and says which file was wrong."""
+
+from __future__ import annotations
+
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from meshcore.atomic import reason
+from meshcore.errors import MeshError
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Turn what goes wrong with a file into a MeshError: one sentence that begins with its path."""
+    try:
+        yield
+    except MeshError as error:
+        raise MeshError(f"{path}: {str(error).rstrip('.')}.") from error
+    except FileNotFoundError as error:
+        raise MeshError(f"{path}: there is no such file.") from error
+    except OSError as error:
+        raise MeshError(f"{path}: it cannot be read ({reason(error)}).") from error
+    except ValueError as error:
+        raise MeshError(f"{str(path)!r} is no name for a file.") from error
+
+
+def size_of(path: Path) -> int:
+    """Bytes of an ordinary file that is not empty; MeshError for anything else."""
+    status = path.stat()
+    if stat.S_ISDIR(status.st_mode):
+        raise MeshError("this is a folder, not a file")
+    if not stat.S_ISREG(status.st_mode):
+        raise MeshError("this is not an ordinary file")
+    if status.st_size == 0:
+        raise MeshError("the file is empty")
+    return int(status.st_size)
