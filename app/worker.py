@@ -7,6 +7,7 @@ never pile up and a cancelled run leaves nothing behind.
 
 from __future__ import annotations
 
+import atexit
 import logging
 import threading
 import time
@@ -24,6 +25,8 @@ from meshcore import HalfEdgeMesh
 if TYPE_CHECKING:
     from agent.choices import Choice, Insight
 
+LEAVE_SECONDS = 10.0
+"""Seconds that the end of the program waits for the thread, at most."""
 BATCH_SECONDS = 0.03
 """Seconds for which a search gathers its operations before it hands them over."""
 
@@ -92,6 +95,7 @@ class Worker:
         self._tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._thread: threading.Thread | None = None
         self._closed = threading.Event()
+        self._run: Run | None = None
 
     # In the document's thread
 
@@ -105,6 +109,7 @@ class Worker:
 
     def begin(self, run: Run) -> None:
         """Work on a run until it is over or stopped."""
+        self._run = run
         self._submit(partial(self._work, run), run)
 
     def answer(self, question: Question) -> None:
@@ -121,13 +126,23 @@ class Worker:
             # a daemon: a program that breaks off does not wait for decisions that nobody applies
             self._thread = threading.Thread(target=self._serve, name="assistant", daemon=True)
             self._thread.start()
+            atexit.register(self._leave)
         self._tasks.put(partial(self._guarded, task, cause))
+
+    def _leave(self) -> None:
+        """The program ends: a thread in compiled code must not outlive the interpreter."""
+        self.close()
+        if self._run is not None:
+            self._run.end()
+        if self._thread is not None:
+            self._thread.join(LEAVE_SECONDS)
 
     # On the thread
 
     def _serve(self) -> None:
         while (task := self._tasks.get()) is not None and not self._closed.is_set():
             task()
+        atexit.unregister(self._leave)
 
     def _guarded(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
         try:
