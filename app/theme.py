@@ -245,6 +245,7 @@ QStatusBar QLabel {{ color: {t.muted}; font-size: 12px; padding: 0 8px; }}
 #OperationMenu {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 8px; }}
 #Empty {{ background: {t.background}; }}
 #Question {{ font-size: 15px; font-weight: 600; }}
+#CardList {{ background: {t.panel}; }}
 #Card {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 8px; }}
 #CardTitle {{ font-weight: 600; }}
 #EmptyTitle {{ font-size: 22px; font-weight: 600; }}

@@ -9,7 +9,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from qtpy.QtCore import QPoint, Qt
+from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtWidgets import QApplication, QFileDialog
 
 from app.desktop.dropping import Dropping
@@ -61,7 +61,7 @@ class Files:
         process died is offered once the window is there.
         """
         self.guard = Guard(self._window, folder)
-        self._window.opened.connect(self.guard.offer)
+        self._window.opened.connect(self._on_watched_opened)
 
     def may_drop(self) -> bool:
         """Whether the mesh may give way to another one, or to nothing."""
@@ -82,6 +82,10 @@ class Files:
     def _on_opened(self) -> None:
         # it would read dropped files on its own, past the document
         self._window.canvas.plotter.setAcceptDrops(False)
+
+    def _on_watched_opened(self) -> None:
+        if self.guard is not None:
+            QTimer.singleShot(0, self.guard.offer)  # what else begins with the window goes first
 
     def _on_saved_changed(self) -> None:
         document = self._window.document

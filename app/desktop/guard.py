@@ -72,7 +72,7 @@ class Guard:
 
     def offer(self) -> None:
         """Offer what was lost, if anything was."""
-        works = recovery.lost(self._folder)
+        works = recovery.lost(self._folder) if self._window.isVisible() else []
         if works:
             self._offer(works)
 

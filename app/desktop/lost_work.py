@@ -64,6 +64,8 @@ class LostWork(QDialog):
 
     def _list(self) -> QScrollArea:
         inside = QWidget()
+        inside.setObjectName("CardList")
+        inside.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(GRID)

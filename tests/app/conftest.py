@@ -158,6 +158,14 @@ def strip() -> HalfEdgeMesh:
     return HalfEdgeMesh.from_elements(points, np.array([(0, 1, 4, 3), (1, 2, 5, 4)]))
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _own_state(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Nothing that a person's own windows have left behind is offered to tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MESHWRIGHT_STATE_DIR", str(tmp_path_factory.mktemp("state")))
+        yield
+
+
 @pytest.fixture(scope="session")
 def _own_settings(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Windows of tests keep their settings in a folder of the tests."""
