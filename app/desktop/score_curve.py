@@ -1,7 +1,7 @@
 """The score curve: s of every state, where one stands, and where branches fork."""
 
 import numpy as np
-from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import (
     QColor,
     QFont,
@@ -21,6 +21,7 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 from app import curve
 from app.branches import Branches
 from app.curve import Track
+from app.desktop.filters import OwnKeys
 from app.desktop.widgets import tabular
 from app.history import YOU, History, Row
 from app.markers import label
@@ -61,6 +62,7 @@ class ScoreCurve(QWidget):
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setAccessibleName("Score curve of the history")
+        OwnKeys(self, WALKING)
         self.cursor_state = 0
         self.hovered = -1
         self.builds = 0
@@ -91,6 +93,13 @@ class ScoreCurve(QWidget):
         branches = history.branches
         same = history is self._history and empty == self._empty and branches is self._branches
         self._history, self._branches, self._empty = history, branches, empty
+        self.hovered = min(self.hovered, len(self._track.scores) - 1)
+        if not same:
+            self._fork = -1  # the marks of branches lie elsewhere now
+        if self.hovered >= len(self._track.scores):
+            self.hovered = -1  # there are fewer states under the mouse than there were
+        if self._fork >= len(branches):
+            self._fork = -1
         if not same or fresh < len(self._track.scores):
             self._redraw()
         self.set_cursor(history.cursor)
@@ -147,13 +156,6 @@ class ScoreCurve(QWidget):
         if turn and not self._empty:
             self.walked.emit(1 if turn < 0 else -1)
         event.accept()
-
-    def event(self, event: QEvent) -> bool:
-        """Keys that walk are the curve's while it has the focus, not the window's shortcuts."""
-        if event.type() == QEvent.Type.ShortcutOverride and event.key() in WALKING:
-            event.setAccepted(not event.modifiers())
-            return bool(event.isAccepted())
-        return bool(super().event(event))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Arrows, page keys, Home and End walk through the history."""

@@ -221,6 +221,16 @@ def test_a_history_that_begins_again(qtbot, walked, triangles):
     assert not film.timeline.isVisible()
 
 
+def test_a_mark_under_the_mouse_goes_with_its_state(qtbot, walked, triangles):
+    window = walked
+    curve = window.film.timeline.curve
+    qtbot.mouseMove(curve, on_curve(window, 4))
+    assert curve.hovered == 4
+    window.document.replace(triangles, "triangles")
+    qtbot.waitUntil(lambda: curve.hovered == -1, timeout=WAIT)
+    curve.grab()  # an error while painting would end the process
+
+
 def test_ten_thousand_steps_are_listed_and_hovered_cheaply(qtbot, open_window, star):
     window = open_window(star)
     document, film = window.document, window.film
