@@ -1,9 +1,10 @@
 """The histogram of one measure over the elements, with the inverted ones beside it."""
 
-from qtpy.QtCore import QEvent, QPointF, QRectF, Qt
+from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import QBrush, QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF
-from qtpy.QtWidgets import QSizePolicy, QToolTip, QWidget
+from qtpy.QtWidgets import QSizePolicy, QWidget
 
+from app.desktop.filters import OwnTooltips
 from app.desktop.tally import short
 from app.desktop.widgets import tabular
 from app.quality_summary import Spread
@@ -24,6 +25,7 @@ class Histogram(QWidget):
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
+        OwnTooltips(self, lambda at: self.words(at.x()))
         self._theme = theme
         self._spread: Spread | None = None
         self._inverted = 0
@@ -133,13 +135,6 @@ class Histogram(QWidget):
             painter.setBrush(QColor(self._theme.text))
             tip = (QPointF(x, base + 1), QPointF(x - 3.5, base + 6), QPointF(x + 3.5, base + 6))
             painter.drawPolygon(QPolygonF(list(tip)))
-
-    def event(self, event: QEvent) -> bool:
-        """Tooltips are those of the columns."""
-        if event.type() == QEvent.Type.ToolTip:
-            QToolTip.showText(event.globalPos(), self.words(event.pos().x()), self)
-            return True
-        return bool(super().event(event))
 
     def _number(self, value: float) -> str:
         return f"{value:g}{self._unit}" if self._unit else f"{value:.3g}"

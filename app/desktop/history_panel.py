@@ -3,7 +3,6 @@
 from typing import Any
 
 from qtpy.QtCore import (
-    QEvent,
     QModelIndex,
     QPersistentModelIndex,
     QPointF,
@@ -34,6 +33,7 @@ from qtpy.QtWidgets import (
     QVBoxLayout,
 )
 
+from app.desktop.filters import OwnKeys
 from app.desktop.history_model import HistoryModel, Line
 from app.desktop.widgets import named, tabular
 from app.history import YOU, History
@@ -194,14 +194,8 @@ class HistoryList(QTableView):
         self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setAccessibleName("History")
+        OwnKeys(self, WALKING)
         self.clicked.connect(self._on_clicked)
-
-    def event(self, event: QEvent) -> bool:
-        """Keys that walk are the list's while it has the focus, not the window's shortcuts."""
-        if event.type() == QEvent.Type.ShortcutOverride and event.key() in WALKING:
-            event.setAccepted(not event.modifiers())
-            return bool(event.isAccepted())
-        return bool(super().event(event))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Return goes to the line that has the focus; the rest is Qt's."""

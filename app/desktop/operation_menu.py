@@ -1,9 +1,10 @@
 """The menu at the cursor: the operations of one half-edge, and why some are not allowed."""
 
-from qtpy.QtCore import QEvent, QPoint, Qt, Signal
+from qtpy.QtCore import QPoint, Qt, Signal
 from qtpy.QtGui import QCloseEvent, QKeyEvent, QMouseEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from app.desktop.filters import OwnKeys
 from app.desktop.layers.ghost import change_colour
 from app.desktop.widgets import sentence, tabular
 from app.markers import label
@@ -34,6 +35,7 @@ class OperationMenu(QFrame):
         parent: QWidget,
     ) -> None:
         super().__init__(parent, Qt.WindowType.Popup | Qt.WindowType.FramelessWindowHint)
+        OwnKeys(self)
         self.setObjectName("OperationMenu")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setFixedWidth(WIDTH)
@@ -61,13 +63,6 @@ class OperationMenu(QFrame):
         y = min(at.y() - GRID, room.bottom() - self.height())
         self.move(max(x, room.left()), max(y, room.top()))
         self.show()
-
-    def event(self, event: QEvent) -> bool:
-        """Keys are the menu's while it is open, not shortcuts of the window."""
-        if event.type() == QEvent.Type.ShortcutOverride:
-            event.accept()
-            return True
-        return bool(super().event(event))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Arrows and Return walk and choose; a key of an operation chooses it."""

@@ -93,13 +93,10 @@ class ScoreCurve(QWidget):
         branches = history.branches
         same = history is self._history and empty == self._empty and branches is self._branches
         self._history, self._branches, self._empty = history, branches, empty
-        self.hovered = min(self.hovered, len(self._track.scores) - 1)
-        if not same:
-            self._fork = -1  # the marks of branches lie elsewhere now
         if self.hovered >= len(self._track.scores):
             self.hovered = -1  # there are fewer states under the mouse than there were
-        if self._fork >= len(branches):
-            self._fork = -1
+        if not same:
+            self._fork = -1  # the marks of branches lie elsewhere now
         if not same or fresh < len(self._track.scores):
             self._redraw()
         self.set_cursor(history.cursor)

@@ -1,10 +1,11 @@
 """The tally: how many vertices there are of each irregularity, as columns with sign and number."""
 
 import numpy as np
-from qtpy.QtCore import QEvent, QPointF, QRectF, Qt, Signal
+from qtpy.QtCore import QPointF, QRectF, Qt, Signal
 from qtpy.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent
-from qtpy.QtWidgets import QSizePolicy, QToolTip, QWidget
+from qtpy.QtWidgets import QSizePolicy, QWidget
 
+from app.desktop.filters import OwnTooltips
 from app.desktop.widgets import tabular
 from app.markers import label
 from app.theme import Theme
@@ -28,6 +29,7 @@ class Tally(QWidget):
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
+        OwnTooltips(self, lambda at: self.words(at.x()))
         self._theme = theme
         self._counts: dict[int, int] = {}
         self._span = FEWEST
@@ -105,18 +107,13 @@ class Tally(QWidget):
         painter.drawLine(QPointF(0, base + 0.5), QPointF(self.width(), base + 0.5))
         painter.end()
 
-    def event(self, event: QEvent) -> bool:
-        """Tooltips are those of the columns."""
-        if event.type() == QEvent.Type.ToolTip:
-            delta = self._at(event.pos().x())
-            number = self._counts.get(delta, 0)
-            vertices = "1 vertex" if number == 1 else f"{number:,} vertices"
-            words = f"{vertices} with \u0394 {self._name(delta)}"
-            if number:
-                words += "; click to go from one to the next"
-            QToolTip.showText(event.globalPos(), words, self)
-            return True
-        return bool(super().event(event))
+    def words(self, x: float) -> str:
+        """What the column at pixel ``x`` stands for."""
+        delta = self._at(x)
+        number = self._counts.get(delta, 0)
+        vertices = "1 vertex" if number == 1 else f"{number:,} vertices"
+        words = f"{vertices} with \u0394 {self._name(delta)}"
+        return f"{words}; click to go from one to the next" if number else words
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """A hand over what can be clicked."""

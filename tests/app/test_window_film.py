@@ -224,8 +224,9 @@ def test_a_history_that_begins_again(qtbot, walked, triangles):
 def test_a_mark_under_the_mouse_goes_with_its_state(qtbot, walked, triangles):
     window = walked
     curve = window.film.timeline.curve
+    qtbot.mouseMove(curve, on_curve(window, 3))
     qtbot.mouseMove(curve, on_curve(window, 4))
-    assert curve.hovered == 4
+    qtbot.waitUntil(lambda: curve.hovered == 4, timeout=WAIT)
     window.document.replace(triangles, "triangles")
     qtbot.waitUntil(lambda: curve.hovered == -1, timeout=WAIT)
     curve.grab()  # an error while painting would end the process
