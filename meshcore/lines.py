@@ -24,6 +24,7 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
+from meshcore.navigation import is_ring
 from meshcore.refusals import ALLOWED, NEED_ROOM
 
 if TYPE_CHECKING:
@@ -87,24 +88,10 @@ def find_lines(m, cap):
         found, count = found + 1, end
     seen = np.zeros(m.counters[ELEMENT_SLOTS] * 4, np.uint8)
     for start in range(len(seen)):
-        h = start
-        while m.edge[h, ORIGIN] >= 0 and not seen[h]:
-            t = m.edge[h, TWIN]
-            seen[h] = 1
-            if t < 0:
-                break
-            seen[t] = 1
-            v = m.edge[t, ORIGIN]
-            if m.vertex[v, DEGREE] != 4 or on_boundary(m, v):
-                break
-            h = following(m.edge[following(h, 4), TWIN], 4)
-            if h == start:
-                code = check_cleanup(m, h, cap)
-                if code == ALLOWED or code == NEED_ROOM:
-                    count = _follow(m, h, chain, count)
-                    starts[found], ends[found] = h, count
-                    found += 1
-                break
+        if is_ring(m, start, seen, cap):
+            count = _follow(m, start, chain, count)
+            starts[found], ends[found] = start, count
+            found += 1
     return starts[:found], ends[:found], chain[:count]
 
 

@@ -101,6 +101,29 @@ def cleanable(m, first, cap):
     return -1
 
 
+@bare_kernel
+def is_ring(m, start, seen, cap):
+    """Whether `start` lies on a closed line that may be cleaned up.
+
+    Marks the half-edges that it walks over in `seen` (uint8), and passes over marked ones.
+    """
+    h = start
+    while m.edge[h, ORIGIN] >= 0 and not seen[h]:
+        t = m.edge[h, TWIN]
+        seen[h] = 1
+        if t < 0:
+            return False
+        seen[t] = 1
+        v = m.edge[t, ORIGIN]
+        if m.vertex[v, DEGREE] != 4 or on_boundary(m, v):
+            return False
+        h = following(m.edge[following(h, 4), TWIN], 4)
+        if h == start:
+            code = check_cleanup(m, h, cap)
+            return code == ALLOWED or code == NEED_ROOM
+    return False
+
+
 @kernel
 def cleanable_ring(m, cap):
     """A half-edge on a closed line that may be cleaned up, or -1. Every edge is walked over
@@ -108,20 +131,6 @@ def cleanable_ring(m, cap):
     """
     seen = np.zeros(m.counters[ELEMENT_SLOTS] * 4, np.uint8)
     for start in range(len(seen)):
-        h = start
-        while m.edge[h, ORIGIN] >= 0 and not seen[h]:
-            t = m.edge[h, TWIN]
-            seen[h] = 1
-            if t < 0:
-                break
-            seen[t] = 1
-            v = m.edge[t, ORIGIN]
-            if m.vertex[v, DEGREE] != 4 or on_boundary(m, v):
-                break
-            h = following(m.edge[following(h, 4), TWIN], 4)
-            if h == start:
-                code = check_cleanup(m, h, cap)
-                if code == ALLOWED or code == NEED_ROOM:
-                    return h
-                break
+        if is_ring(m, start, seen, cap):
+            return start
     return -1
