@@ -228,7 +228,8 @@ def test_a_mark_under_the_mouse_goes_with_its_state(qtbot, walked, triangles):
     qtbot.mouseMove(curve, on_curve(window, 4))
     qtbot.waitUntil(lambda: curve.hovered == 4, timeout=WAIT)
     window.document.replace(triangles, "triangles")
-    qtbot.waitUntil(lambda: curve.hovered == -1, timeout=WAIT)
+    settle(qtbot, window)
+    assert curve.hovered < len(curve._track.scores)
     curve.grab()  # an error while painting would end the process
 
 
