@@ -74,6 +74,7 @@ class Assistant:
         self._runner_at = -1
         self._applying = False
         self._insight: Insight | None = None
+        self._insight_at = -1
         self.progress = Progress()
         self.hinting = Hinting(document, self._worker)
         document.changed.connect(self._on_document_changed)
@@ -144,7 +145,7 @@ class Assistant:
     @property
     def insight(self) -> Insight | None:
         """What the policy sees in the present state, and will do next; None if not known."""
-        return self._insight
+        return self._insight if self._insight_at == self._document.revision else None
 
     # What a person asks for
 
@@ -306,7 +307,7 @@ class Assistant:
 
     def _see(self, insight: Insight | None) -> None:
         if insight is not None or self._insight is not None:
-            self._insight = insight
+            self._insight, self._insight_at = insight, self._document.revision
             self.looked.emit()
 
     def _look_soon(self) -> None:
@@ -326,6 +327,7 @@ class Assistant:
         self._see(None)
         if not self._applying:
             self.cancel()  # a person took over; the next run starts from what is there then
+            self._runner_at = -1  # no runner knows of this edit, whenever its run has ended
             self._look_soon()
 
     # What the worker says (:class:`app.worker.Listener`)

@@ -85,6 +85,25 @@ def test_the_runner_goes_on_from_where_it_was_unless_a_person_edited(make, desk,
     assert document.history.cursor == 2
 
 
+def test_a_runner_at_rest_in_a_played_run_does_not_outlive_a_persons_edit(make, desk, star, greedy):
+    document = Document(star)
+    runners = []
+
+    def make_runner(mesh, policy, seed):
+        runners.append(greedy(mesh))
+        return runners[-1]
+
+    assistant = make(document, make_runner=make_runner)
+    assistant.speed = 0.2
+    assistant.play()
+    desk.until(lambda: document.history.cursor == 1)
+    document.undo()  # the run waits for its next turn: its runner is ahead of the document now
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    assert len(runners) == 2
+    assert document.history.cursor == 1
+
+
 def test_a_search_reaches_the_optimum(make, desk, star):
     document = Document(star)
     assistant = make(document)

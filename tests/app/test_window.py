@@ -121,9 +121,7 @@ def test_the_menu_by_keyboard(qtbot, open_window, star):
         qtbot.keyClick(menu, key)
         assert window.document.history.cursor == cursor + 1
         window.document.undo()
-        qtbot.waitUntil(
-            lambda: not window.editing.menu, timeout=WAIT
-        )
+        qtbot.waitUntil(lambda: not window.editing.menu, timeout=WAIT)
 
 
 def test_hover_over_an_irregular_vertex_tells_its_degree(qtbot, open_window, star):
