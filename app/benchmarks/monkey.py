@@ -14,6 +14,8 @@ import tempfile
 import threading
 import time
 from collections.abc import Sequence
+from pathlib import Path
+from traceback import extract_tb
 from typing import Any
 
 import numpy as np
@@ -257,10 +259,8 @@ def _play(seed: int, events: int) -> dict[str, Any]:
     exceptions: list[str] = []
 
     def note(kind: Any, value: Any, trace: Any) -> None:
-        while trace is not None and trace.tb_next is not None:
-            trace = trace.tb_next
-        where = f" ({trace.tb_frame.f_code.co_filename}:{trace.tb_lineno})" if trace else ""
-        exceptions.append(f"{kind.__name__}: {value}{where}")
+        calls = [f"{Path(call.filename).name}:{call.lineno}" for call in extract_tb(trace)]
+        exceptions.append(f"{kind.__name__}: {value} ({' '.join(calls[-12:])})")
 
     sys.excepthook = note
     threading.excepthook = lambda given: note(given.exc_type, given.exc_value, given.exc_traceback)
