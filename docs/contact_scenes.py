@@ -9,9 +9,10 @@ from PIL import Image
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
-from stage import CONTROL, HOME, LARGE, SHIFT, SMALL, Stage, allowed, shape
+from stage import HOME, LARGE, SHIFT, SMALL, Stage, allowed, shape
 
 from app.policy_files import shipped
+from app.preview import GLOBAL, best, choices
 from meshcore import HalfEdgeMesh
 
 Play = Callable[[], Image.Image]
@@ -35,11 +36,34 @@ def tour() -> Image.Image:
     return shot(stage)
 
 
-def hover(theme: str, kind: str, size: tuple[int, int], name: str, operation: str) -> Image.Image:
-    """A half-edge under the mouse: its ghost, and how each operation changes s."""
+def hover(theme: str, kind: str, size: tuple[int, int], name: str) -> Image.Image:
+    """After the first step of two that lower s: the ghost of the second, and every change of s."""
     stage = Stage(shape(name, kind), name, size, theme)
-    stage.point_at(allowed(stage.window.document.mesh, operation)[0])
+    document = stage.window.document
+    first = next(
+        (choice.operation, h)
+        for h in allowed(document.mesh, "split")
+        for choice in choices(document.mesh, h)
+        if choice.change == 0 and choice.operation not in GLOBAL
+        if gains_after(document.mesh, choice.operation, h)
+    )
+    document.submit(*first)
+    stage.rest(0.3)
+    stage.point_at(gains(document.mesh)[0])
     return shot(stage)
+
+
+def gains(mesh: HalfEdgeMesh) -> list[int]:
+    """Half-edges where a local operation lowers s, those near the middle first."""
+    found = [(best(choices(mesh, h)), h) for h in allowed(mesh, "collapse")]
+    return [h for choice, h in found if choice.change < 0]
+
+
+def gains_after(mesh: HalfEdgeMesh, operation: str, halfedge: int) -> bool:
+    """Whether an operation opens the way to one that lowers s."""
+    mesh = mesh.copy()
+    mesh.apply(operation, halfedge)
+    return bool(gains(mesh))
 
 
 def menu() -> Image.Image:
@@ -110,19 +134,36 @@ def dragging() -> Image.Image:
 
 def lines() -> Image.Image:
     """Lines that can be cleaned up, and one under the mouse."""
-    stage = Stage(shape("l-shape"), "l-shape", SMALL, "light")
-    search(stage, 1.5)
-    mesh = stage.window.document.mesh
-    for _ in range(3):
-        found = allowed(mesh, "global_split")
-        if found:
-            stage.window.document.submit("global_split", found[0])
-    stage.rest(1.0)
-    found = allowed(mesh, "cleanup")
-    if found:
-        stage.point_at(found[0])
-    stage.rest(0.4)
+    mesh = cut(fewest("cross"), 2)
+    stage = Stage(mesh, "cross", SMALL, "light")
+    stage.window.actions_by_id["lines"].trigger()
+    stage.rest(0.5)
+    stage.point_at(allowed(mesh, "cleanup")[0])
+    stage.rest(0.6)
     return shot(stage)
+
+
+def fewest(name: str) -> HalfEdgeMesh:
+    """A quad mesh of the gallery at the optimum, coarse."""
+    from agent import policies, solver
+
+    mesh = shape(name)
+    policy = policies.load(shipped("quad")[0])
+    for operation, halfedge in solver.solve(mesh, policy, seconds=2.0).operations:
+        mesh.apply(operation, halfedge)
+    return mesh
+
+
+def cut(mesh: HalfEdgeMesh, levels: int) -> HalfEdgeMesh:
+    """Every quad cut into four, so many times."""
+    from meshcore import quadrangulate, smoothing
+
+    smoothing.relax(mesh)
+    mesh.compact()
+    points, quads, corners = mesh.points[mesh.vertices()], mesh.elements(), mesh.geometric()
+    for _ in range(levels):
+        points, quads, corners = quadrangulate.catmull_clark(points, [quads], corners)
+    return HalfEdgeMesh.from_elements(points, quads, corners)
 
 
 def hints() -> Image.Image:
@@ -211,7 +252,7 @@ def new_mesh(page: str, theme: str) -> Image.Image:
         if page == "draw":
             draw(stage, dialog.draw.area)
         stage.rest(2.0)
-        taken.append(stage.picture())
+        taken.append(stage.picture_of(dialog))
 
     stage.during(stage.window.files.new, act, 1.0)
     stage.close()
@@ -222,7 +263,10 @@ def draw(stage: Stage, area: object) -> None:
     """Click an outline, and begin a hole."""
     places = [(-0.9, -0.6), (0.9, -0.6), (0.9, 0.1), (0.3, 0.1), (0.3, 0.6), (-0.9, 0.6)]
     hole = [(-0.6, -0.3), (-0.1, -0.3), (-0.1, 0.2), (-0.6, 0.2)]
+    dialog = area.window()
     for loop in (places, hole):
+        if loop is hole:
+            QTest.mouseClick(dialog.draw.hole, Qt.MouseButton.LeftButton)
         for place in [*loop, loop[0]]:
             x, y = area.view.to_screen(np.array(place)).tolist()
             at = QPoint(round(x), round(y))
@@ -241,7 +285,7 @@ def dialog(show: Callable[[Stage], Callable[[], None]], theme: str, keys: str = 
         if keys:
             QTest.keyClicks(QApplication.focusWidget(), keys)
         stage.rest(0.5)
-        taken.append(stage.picture())
+        taken.append(stage.picture_of(QApplication.activeModalWidget()))
 
     stage.during(show(stage), act, 0.8)
     stage.close()
@@ -251,7 +295,7 @@ def dialog(show: Callable[[Stage], Callable[[], None]], theme: str, keys: str = 
 def palette() -> Image.Image:
     """The command palette."""
     stage = Stage(shape("h-shape"), "h-shape", SMALL, "dark")
-    stage.key(Qt.Key.Key_K, CONTROL)
+    stage.window.actions_by_id["palette"].trigger()
     stage.rest(0.3)
     QTest.keyClicks(QApplication.focusWidget() or stage.window, "sp")
     stage.rest(0.3)
@@ -300,11 +344,11 @@ SCENES: dict[str, tuple[str, Play]] = {
     "tour": ("The tour follows what one does", tour),
     "hover": (
         "A half-edge, its ghost, and every change of s",
-        partial(hover, "light", "quad", SMALL, "star", "flip_left"),
+        partial(hover, "light", "quad", SMALL, "cross"),
     ),
     "triangles": (
         "Triangles, dark, 1920 x 1080",
-        partial(hover, "dark", "tri", LARGE, "airfoil", "flip"),
+        partial(hover, "dark", "tri", LARGE, "airfoil"),
     ),
     "menu": ("The menu shows the ghost of the row one points at", menu),
     "selection": ("A region, and what can be done with it", selection),

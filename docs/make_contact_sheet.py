@@ -2,10 +2,10 @@
 
     python docs/make_contact_sheet.py [FOLDER [STATE ...]]
 
-writes one PNG a state into FOLDER (build/contact-sheet if none is named), and contact-sheet.png with
-all of them; pictures named in README go to docs/images. A display of at least 1920x1080 pixels is
-needed: ``xvfb-run -s "-screen 0 1920x1200x24" python docs/make_contact_sheet.py``. Nobody's
-settings are read or written.
+writes one PNG a state into FOLDER (build/contact-sheet if none is named), and contact-sheet.png
+with all of them; pictures that README shows go to docs/images. A display of at least 1920x1080
+pixels is needed: ``xvfb-run -s "-screen 0 1920x1200x24" python docs/make_contact_sheet.py``.
+Nobody's settings are read or written.
 """
 
 import sys

@@ -15,6 +15,7 @@ os.environ.update(XDG_CONFIG_HOME=HOME, XDG_STATE_HOME=HOME)
 import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 from qtpy.QtCore import QPoint, Qt, QTimer  # noqa: E402
+from qtpy.QtGui import QImage  # noqa: E402
 from qtpy.QtTest import QTest  # noqa: E402
 from qtpy.QtWidgets import QApplication  # noqa: E402
 
@@ -116,17 +117,19 @@ class Stage:
         """What is on the screen where the window is."""
         QApplication.processEvents()
         size = self.window.size()
-        shot = QApplication.primaryScreen().grabWindow(0, 0, 0, size.width(), size.height())
-        image = shot.toImage().convertToFormat(shot.toImage().Format.Format_RGB888)
-        return Image.frombuffer(
-            "RGB",
-            (image.width(), image.height()),
-            bytes(image.constBits()),
-            "raw",
-            "RGB",
-            image.bytesPerLine(),
-            1,
-        ).copy()
+        return _pillow(
+            QApplication.primaryScreen().grabWindow(0, 0, 0, size.width(), size.height())
+        )
+
+    def picture_of(self, dialog: Any) -> Image.Image:
+        """A dialog before a plain ground of the window's size, for there is no frame around it."""
+        taken = _pillow(dialog.grab())
+        size = self.window.size()
+        ground = Image.new("RGB", (size.width(), size.height()), self.window.theme.pressed)
+        ground.paste(
+            taken, ((size.width() - taken.width) // 2, (size.height() - taken.height) // 2)
+        )
+        return ground
 
     def close(self) -> None:
         """Close the window; nothing is asked."""
@@ -146,3 +149,11 @@ def allowed(mesh: HalfEdgeMesh, operation: str) -> list[int]:
     found = [h for h in live if mesh.check(Operation(operation), h)]
     centre = mesh.points[mesh.vertices()].mean(axis=0)
     return sorted(found, key=lambda h: float(np.linalg.norm(mesh.points[mesh.origin(h)] - centre)))
+
+
+def _pillow(shot: Any) -> Image.Image:
+    """A pixmap of Qt's as an image of Pillow's."""
+    image = shot.toImage().convertToFormat(QImage.Format.Format_RGB888)
+    size = (image.width(), image.height())
+    raw = bytes(image.constBits())
+    return Image.frombuffer("RGB", size, raw, "raw", "RGB", image.bytesPerLine(), 1).copy()
