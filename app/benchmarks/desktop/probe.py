@@ -16,6 +16,8 @@ import numpy as np
 
 HOVERS, OPERATIONS = 60, 15
 PLAY_SECONDS = 6.0
+PLAYED_SPEED = 20.0
+"""Operations a second that the agent is asked for."""
 KERNELS_S = 300.0
 SCRAMBLES = 50
 """One in so many elements gets an operation before the window opens: meshes are never regular."""
@@ -77,7 +79,7 @@ def play(began: float, size: int, seed: int) -> dict[str, Any]:
     app, window = _open(mesh)
     assistant, document = window.assistant, window.document
     assistant.policy = shipped("quad")[0]
-    assistant.speed = 60.0
+    assistant.speed = PLAYED_SPEED
     assistant.play()
     _spin(app, lambda: document.history.cursor > 3, KERNELS_S)
     frames = _count_frames(window)

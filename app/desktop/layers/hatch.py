@@ -10,6 +10,8 @@ from app.viewport import Viewport
 
 SMALLEST = 9.0
 """Elements narrower than this in pixels get a sign of warning beside the hatching."""
+SLACK = 24.0
+"""Pixels beside an element that its sign may reach."""
 MOST = 1500
 """More visible ones than this are not all drawn: there is no overlooking them."""
 
@@ -21,6 +23,7 @@ class HatchLayer(Layer):
         super().__init__(theme)
         self._corners = np.zeros((0, 3, 2))
         self._seen = np.zeros((0, 3, 2))
+        self._low = self._high = np.zeros((0, 2))  # boxes around what each of them paints
 
     @property
     def count(self) -> int:
@@ -41,11 +44,15 @@ class HatchLayer(Layer):
         middles = corners.mean(axis=1) if len(corners) else np.zeros((0, 2))
         rows = np.column_stack([middles, np.arange(len(middles))])
         self._seen = corners[inside(rows, viewport, 200.0)[:MOST, 2].astype(int)]
+        self._low = self._seen.min(axis=1) - SLACK if len(self._seen) else np.zeros((0, 2))
+        self._high = self._seen.max(axis=1) + SLACK if len(self._seen) else np.zeros((0, 2))
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
         """Hatching, and a sign where the element is too small to see it."""
-        if len(self._seen):
-            paint_hatched(painter, self._seen, self.theme)
+        low, high = (rect.left(), rect.top()), (rect.right(), rect.bottom())
+        near = ((self._low <= high) & (self._high >= low)).all(axis=1)
+        if near.any():
+            paint_hatched(painter, self._seen[near], self.theme)
 
 
 def paint_hatched(painter: QPainter, corners: np.ndarray, theme: Theme) -> None:
