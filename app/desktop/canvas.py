@@ -19,6 +19,8 @@ from app.viewport import Viewport
 
 VERTEX_REACH = 12
 """Pixels around a vertex that count as on it."""
+QUICK = 5000
+"""Elements up to which it is found at once, after a change, what lies under the mouse."""
 
 
 class Canvas(QWidget):
@@ -35,6 +37,7 @@ class Canvas(QWidget):
     pointed = Signal(object)
     escaped = Signal()
     drawn = Signal()
+    _refresh = Signal()
 
     def __init__(self, document: Document, theme: Theme) -> None:
         super().__init__()
@@ -54,10 +57,8 @@ class Canvas(QWidget):
         self.gesture_at: Callable[[QPointF, Qt.KeyboardModifier], Gesture | None]
         self.gesture_at = lambda at, modifiers: None
         self._frozen = False
-        self._refresh = QTimer(self)
-        self._refresh.setSingleShot(True)
-        self._refresh.setInterval(0)
-        self._refresh.timeout.connect(self._on_refresh)
+        # a posted call comes before Qt paints what else has changed: one picture, not two
+        self._refresh.connect(self._on_refresh, Qt.ConnectionType.QueuedConnection)
         self._point_again = QTimer(self)
         self._point_again.setSingleShot(True)
         self._point_again.setInterval(0)
@@ -93,7 +94,6 @@ class Canvas(QWidget):
         self.document.replaced.disconnect(self._on_replaced)
         self.document.changed.disconnect(self._on_changed)
         self.document.hover_changed.disconnect(self._on_hover_changed)
-        self._refresh.stop()
         self._point_again.stop()
         self.overlay.card.hide()
         if self.plotter is not None:
@@ -154,9 +154,10 @@ class Canvas(QWidget):
     def _on_changed(self) -> None:
         self.mouse.interrupt()
         self._picker = None
-        self._stale = True
         self.overlay.card.hide()
-        self._refresh.start()  # many changes in one turn of the event loop are one frame
+        if not self._stale:  # many changes in one turn of the event loop are one frame
+            self._stale = True
+            self._refresh.emit()
 
     def _on_refresh(self) -> None:
         mesh = self.document.mesh
@@ -164,8 +165,11 @@ class Canvas(QWidget):
             return
         self._stale = False
         self.scene.update(mesh)
+        if mesh.n_elements <= QUICK:
+            self._on_point_again()
+        else:
+            self._point_again.start()  # after the frame: the search tree takes longer
         self._look()
-        self._point_again.start()  # after the frame: a search tree of a large mesh takes longer
         self.drawn.emit()
 
     def _on_point_again(self) -> None:

@@ -16,7 +16,7 @@ from app.theme import Theme
 if TYPE_CHECKING:
     from app.desktop.window import MainWindow
 
-PAUSE = 40
+PAUSE = 100
 """Milliseconds after a change until list and curve follow: the mesh is drawn before."""
 PREPARING = "Still preparing the operations: a moment, please."
 
