@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 LEAVE_SECONDS = 10.0
 """Seconds that the end of the program waits for the thread, at most."""
+CATCH_UP = 0.2
+"""Seconds by which a played decision may be late without putting off those after it."""
 BATCH_SECONDS = 0.03
 """Seconds for which a search gathers its operations before it hands them over."""
 
@@ -213,14 +215,15 @@ class Worker:
     def _wait(self, run: Run) -> None:
         """While playing, wait until it is time for the next decision.
 
-        Decisions are due at equal distances; one that comes too late puts off those after it.
+        Decisions are due at equal distances. Those after one that comes late catch up, unless it
+        is so late that they would come all at once.
         """
         before, now = run.due, time.monotonic()
         while run.state is State.PLAYING and not run.stop.is_set():
             run.wake.clear()  # set again when the speed changes or the run ends
             if run.stop.is_set():
                 break
-            run.due = max(before + 1.0 / run.speed, now)
+            run.due = max(before + 1.0 / run.speed, now - CATCH_UP)
             left = run.due - time.monotonic()
             if left <= 0 or not run.wake.wait(left):
                 break
