@@ -41,10 +41,10 @@ def run(
 
     Keys: ``events``, ``exceptions`` (their last lines), ``steps`` (of the history, by hand or
     agent), ``dialogs`` (which were opened), ``in_dialogs`` (events that went to a dialog or menu),
-    ``slowest_ms`` (the longest time that the event loop was held), ``threads`` and ``timers`` that
-    outlived the window, ``valid`` (is the mesh valid at the end?), ``undone`` (did undoing
-    everything lead back to the first state?). Raises RuntimeError without a display and if the
-    window dies.
+    ``slowest_ms`` (the longest time that an event took, and ``slowest_was``: which), ``threads``
+    and ``timers`` that outlived the window, ``valid`` (is the mesh valid at the end?), ``undone``
+    (did undoing everything lead back to the first state?). Raises RuntimeError without a display
+    and if the window dies.
     """
     with display() as environment, tempfile.TemporaryDirectory() as home:
         apart = {**environment, "XDG_CONFIG_HOME": home, "XDG_STATE_HOME": home}
@@ -73,7 +73,8 @@ class Monkey:
 
         self.window, self.left, self.sent = window, events, 0
         self.rng = np.random.default_rng(seed)
-        self.slowest = 0.0
+        self.slowest, self.slowest_was = 0.0, ""
+        self.doing = ""
         self.dialogs: set[str] = set()
         self.steps = 0
         self.over = 0  # events that went to a dialog or a menu
@@ -106,7 +107,9 @@ class Monkey:
         finally:
             self.busy.pop()
         if open_now is None and not QApplication.activeModalWidget():
-            self.slowest = max(self.slowest, time.perf_counter() - began)
+            taken = time.perf_counter() - began
+            if taken > self.slowest:
+                self.slowest, self.slowest_was = taken, self.doing
 
     def _count(self, event: str, number: int) -> None:
         self.steps += event == "step"
@@ -165,6 +168,7 @@ class Monkey:
             widget = target.childAt(at) or target
         if not widget.isVisible():
             return
+        self.doing = f"mouse on {type(widget).__name__}"
 
         def place() -> QPoint:
             size = (widget.width(), widget.height())
@@ -234,6 +238,7 @@ class Monkey:
         from qtpy.QtTest import QTest
 
         combination = QKeySequence(name)[0]
+        self.doing = f"key {name}, {self.window.document.mesh.n_elements} elements"
         widget = target.focusWidget() or target
         if widget.isVisible():
             QTest.keyClick(widget, combination.key(), combination.keyboardModifiers())
@@ -287,6 +292,7 @@ def _play(seed: int, events: int) -> dict[str, Any]:
         "steps": monkey.steps,
         "in_dialogs": monkey.over,
         "slowest_ms": 1000.0 * monkey.slowest,
+        "slowest_was": monkey.slowest_was,
         **_sound(document),
         **_ended(app, window, before),
         "exceptions": exceptions,
