@@ -52,7 +52,8 @@ class Block(nn.Module):
     def forward(self, x: Tensor, reads: Tensor) -> Tensor:
         """x (N, F), reads (Q, k+1) into its rows, N for beyond the boundary: (Q, width_out)."""
         gathered = torch.cat([x, self.beyond]).index_select(0, reads.reshape(-1))
-        out: Tensor = torch.relu(self.norm(self.linear(gathered.view(len(reads), -1))))
+        gathered = gathered.view(len(reads), self.linear.in_features)  # reads may be empty
+        out: Tensor = torch.relu(self.norm(self.linear(gathered)))
         return out
 
 

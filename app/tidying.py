@@ -41,9 +41,9 @@ def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
         del pending[element]
         halfedges = mesh.k * element + np.arange(mesh.k)
         corners = mesh.arrays.edge[halfedges, 0].astype(np.int64)
-        relax(mesh, corners.tolist())
-        for near in elements_at(mesh, corners).tolist():
-            pending.pop(near, None)
+        left = relax(mesh, corners.tolist())  # what stays folded there stays so another time too
+        for seen in (*elements_at(mesh, corners).tolist(), *left.tolist()):
+            pending.pop(seen, None)
     return count, len(inverted(mesh)) if count else 0
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from agent.network import Architecture, PolicyNetwork
+from agent.network import Architecture, Block, PolicyNetwork
 from agent.patch import LARGEST, Patches, assemble, describe
 from agent.potential import field, forget, solve_potential
 from agent.task import Scratch, Task, look
@@ -115,3 +115,8 @@ def test_several_decisions_assemble_as_each_alone():
     rows, tables = assemble(Patches.join(parts), np.array([2, 0]))
     both = network.convolve(torch.from_numpy(rows), [torch.from_numpy(t) for t in tables])
     torch.testing.assert_close(both, torch.cat([alone[2], alone[0]]), rtol=1e-4, atol=1e-5)
+
+
+def test_a_convolution_of_nothing_has_no_rows():
+    none = torch.zeros((0, 5), dtype=torch.long)
+    assert Block(4, 3, 7)(torch.zeros((6, 3)), none).shape == (0, 7)
