@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("meshcore", "agent", "app", "assets")
+PACKAGES = ("meshcore", "agent", "app", "assets", "meshwright")
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,72 @@
+"""What may be named where a mesh is wanted, and the names of the package ``meshwright``."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import meshcore
+import meshwright
+from app.sources import mesh
+from meshcore import MeshError, shapes
+
+
+def test_each_kind_of_source_becomes_a_mesh(tmp_path):
+    path = tmp_path / "star.vtk"
+    meshcore.write(path, mesh("star", "tri"))
+    polygon = tmp_path / "square.json"
+    polygon.write_text(json.dumps({"outline": [[0, 0], [2, 0], [2, 2], [0, 2]]}))
+    corners = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    assert mesh("star").kind == "quad"
+    assert mesh(shapes.shape("l-shape"), "tri", max_edge=0.3).n_elements > 20
+    assert mesh(np.array(corners)).n_elements == mesh(corners).n_elements
+    assert mesh(str(path)).n_elements == mesh(path, "tri").n_elements
+    assert mesh(polygon, "tri").kind == "tri"
+
+
+def test_a_mesh_is_copied():
+    given = mesh("star")
+    made = mesh(given)
+    made.move(np.array([0]), made.points[[0]] + 1.0)
+    assert made.n_elements == given.n_elements
+    assert not np.array_equal(made.points, given.points)
+
+
+@pytest.mark.parametrize(
+    ("source", "kind", "sentence"),
+    [
+        ("nonsense", None, "no shape named 'nonsense'"),
+        ("missing.vtk", None, "there is no such file"),
+        ("star", "hex", "it is 'tri' or 'quad'"),
+        (3, None, "cannot be made of int"),
+        ([[0, 0], [1, 1]], None, "2 points"),
+        ([[0, 0], [1]], None, "not a list of"),
+    ],
+)
+def test_what_is_no_source_is_refused_in_a_sentence(source, kind, sentence):
+    with pytest.raises(MeshError, match=sentence):
+        mesh(source, kind)
+
+
+def test_a_mesh_of_the_other_kind_is_refused():
+    with pytest.raises(MeshError, match="of kind 'quad', not 'tri'"):
+        mesh(mesh("star"), "tri")
+
+
+@pytest.mark.parametrize("name", meshwright.__all__)
+def test_every_name_of_the_package_is_there(name):
+    assert getattr(meshwright, name) is not None
+    assert name in dir(meshwright)
+
+
+def test_a_name_that_is_not_there():
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = meshwright.nothing
+
+
+def test_importing_the_package_imports_little():
+    code = "import sys, meshwright; print([m for m in ('numpy', 'qtpy') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
