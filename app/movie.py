@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -65,15 +66,12 @@ def _followed(frames: Frames, count: int, progress: Progress | None) -> Iterator
 
 def _save_gif(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
     """Frames of one palette, each cut down to what differs from the one before it."""
-    from PIL import Image
     from PIL.GifImagePlugin import getdata
 
-    colours = Image.new("P", (1, 1))
-    colours.putpalette(palette(look.palette))
     before: Any = None
     with path.open("wb") as file:
         for image, seconds in frames:
-            small = image.quantize(palette=colours, dither=Image.Dither.NONE)
+            small = flat(image, look.palette)
             place, shown = (0, 0), small
             if before is None:
                 file.write(_gif_header(small))
@@ -96,7 +94,17 @@ def _differing(image: Any, before: Any) -> tuple[int, int, int, int]:
     return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
 
 
-def palette(colours: Theme) -> list[int]:
+def flat(image: Any, colours: Theme) -> Any:
+    """A Pillow image in the 256 colours of a theme's :func:`palette`."""
+    from PIL import Image
+
+    few = Image.new("P", (1, 1))
+    few.putpalette(palette(colours))
+    return image.quantize(palette=few, dither=Image.Dither.NONE)
+
+
+@cache
+def palette(colours: Theme) -> tuple[int, ...]:
     """256 colours as 768 numbers: those of a theme, and shades between those that meet."""
     t = colours
     meeting = (
@@ -130,7 +138,7 @@ def palette(colours: Theme) -> list[int]:
             whole[count] = row
             count += 1
     whole[count:] = whole[0]
-    return whole.ravel().tolist()
+    return tuple(whole.ravel().tolist())
 
 
 def _rgb(colour: str) -> np.ndarray:

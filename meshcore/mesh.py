@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from meshcore import construct, journal, navigation, operations, refusals
+from meshcore import construct, display, journal, navigation, operations, refusals
 from meshcore.archive import Archive, cut_undone
 from meshcore.errors import MeshError, OperationRefused
 from meshcore.halfedge import (
@@ -376,3 +376,7 @@ class HalfEdgeMesh(MeshView):
             for ids, at in self.outline
         ]
         return vertex_map, element_map
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> display.Bundle:
+        """A still picture at the end of a notebook's cell, where one can be drawn."""
+        return display.bundle(self)

@@ -1,0 +1,39 @@
+"""How a mesh shows itself at the end of a notebook's cell.
+
+meshcore draws nothing: who can draw says so by an entry point, which is looked up when the first
+mesh is shown. Without one a mesh is shown as its line of text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from meshcore.mesh import HalfEdgeMesh
+
+GROUP, NAME = "meshwright.display", "figure"
+"""Group and name of the entry point. It is a function of a mesh that returns MIME types with their
+data, and MIME types with their metadata.
+"""
+
+Bundle = tuple[dict[str, Any], dict[str, Any]]
+
+
+def bundle(mesh: HalfEdgeMesh) -> Bundle:
+    """What a notebook may choose from: the mesh's line of text, and a picture if one is drawn."""
+    data, metadata = {"text/plain": repr(mesh)}, {}
+    draw = drawer()
+    if draw is not None:
+        pictures, metadata = draw(mesh)
+        data |= pictures
+    return data, metadata
+
+
+@cache
+def drawer() -> Callable[[HalfEdgeMesh], Bundle] | None:
+    """The function that is installed for drawing, None if there is none."""
+    found = [point for point in entry_points(group=GROUP) if point.name == NAME]
+    return found[0].load() if found else None
