@@ -30,7 +30,8 @@ MOST_INVERTED = 500
 class Look:
     """What a figure shows. ``size`` in pixels; ``numbers`` inside the discs of irregular vertices;
     ``score`` above the mesh; ``curve`` below it; ``changes`` since the moment before. ``theme`` and
-    ``colours`` are what :func:`app.theme.theme` takes.
+    ``colours`` are what :func:`app.theme.theme` takes. ``unit`` scales lines and letters; 0: by the
+    size, so that a small figure is a large one made smaller.
     """
 
     size: tuple[int, int] = (960, 720)
@@ -40,6 +41,7 @@ class Look:
     curve: bool = True
     changes: bool = True
     colours: str = "vermilion"
+    unit: float = 0.0
 
     @property
     def palette(self) -> Theme:
@@ -132,7 +134,7 @@ def elements(mesh: HalfEdgeMesh) -> str:
 
 
 def _unit(look: Look) -> float:
-    return min(max(min(look.size) / REFERENCE, 0.45), 6.0)
+    return look.unit or min(max(min(look.size) / REFERENCE, 0.45), 6.0)
 
 
 def _has_curve(look: Look, moment: Moment | None) -> bool:
