@@ -1,0 +1,39 @@
+// The link to Python over the messages of an anywidget model.
+//
+// Every link has the same few members, whoever answers: send(word, fields) -> id of the message,
+// onmessage(content, buffers) to be set by who listens, close(), readOnly.
+
+let viewsSoFar = 0;
+
+/** A name for one view of a model that no other has. */
+function viewName() {
+  viewsSoFar += 1;
+  const random = Math.floor(Math.random() * 0x7fffffff).toString(36);
+  return `v${viewsSoFar}-${Date.now().toString(36)}-${random}`;
+}
+
+class KernelLink {
+  constructor(model) {
+    this.readOnly = false;
+    this.onmessage = () => {};
+    this.view = viewName();
+    this._model = model;
+    this._last = 0;
+    this._receive = (content, buffers) => {
+      const mine = !content || content.to === undefined || content.to === null || content.to === this.view;
+      if (content && mine) this.onmessage(content, buffers || []);
+    };
+    model.on("msg:custom", this._receive);
+  }
+
+  /** Say something to Python; answers carry the id as `reply`. */
+  send(word, fields = {}) {
+    this._last += 1;
+    this._model.send({ do: word, id: this._last, view: this.view, ...fields });
+    return this._last;
+  }
+
+  close() {
+    this._model.off("msg:custom", this._receive);
+  }
+}
