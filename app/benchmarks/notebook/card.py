@@ -1,0 +1,137 @@
+"""The widget's card as a person meets it: real places on the screen, real events, real pixels."""
+
+from __future__ import annotations
+
+import io
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+MOMENT = 20_000
+"""Milliseconds to wait for anything that should come at once, on a busy machine too."""
+
+
+class Card:
+    """One view of a MeshWidget in a page.
+
+    Attributes:
+        page: Playwright's page.
+        root: the card's outermost element.
+    """
+
+    def __init__(self, page: Page, number: int = 0) -> None:
+        """The card with this number from the top; waits until its mesh is painted."""
+        self.page = page
+        self.root: Locator = page.locator(".meshwright").nth(number)
+        self.root.wait_for(timeout=MOMENT)
+        self.until("root => root.dataset.painted !== undefined")
+
+    # What it says of itself
+
+    def look(self, function: str, given: Any = None) -> Any:
+        """Value of a JavaScript function of the card's element and of ``given``."""
+        return self.root.evaluate(function, given)
+
+    def until(self, function: str, given: Any = None) -> None:
+        """Wait until such a function is true; AssertionError if it does not become so."""
+        last = time.monotonic() + MOMENT / 1000
+        while not self.look(function, given):
+            assert time.monotonic() < last, f"this did not come: {function} {given or ''}"
+            self.page.wait_for_timeout(15)
+
+    @property
+    def revision(self) -> int:
+        """Revision of the mesh that is painted."""
+        return int(self.look("root => root.dataset.revision"))
+
+    @property
+    def head(self) -> dict[str, Any]:
+        """The head that Python sent last: score, cursor and so on."""
+        found: dict[str, Any] = self.look("root => root.meshwright.mirror.head")
+        return found
+
+    def await_head(self, **wanted: Any) -> None:
+        """Wait until the head says so and the mesh of that revision is painted."""
+        self.until(
+            "(root, wanted) => { const { mirror } = root.meshwright; return"
+            " Object.entries(wanted).every(([name, value]) => mirror.head[name] === value)"
+            " && Number(root.dataset.revision) === mirror.revision; }",
+            wanted,
+        )
+
+    def await_other(self, revision: int) -> None:
+        """Wait until a mesh of another revision is painted."""
+        self.until("(root, old) => Number(root.dataset.revision) !== old", revision)
+
+    # Where things are, and what is done there
+
+    def place(self, halfedge: int) -> tuple[float, float]:
+        """Where on the page a half-edge is to be pointed at, in CSS pixels of the viewport."""
+        self.root.scroll_into_view_if_needed()
+        at = self.look("(root, h) => root.meshwright.screenOf(h)", halfedge)
+        return at["x"], at["y"]
+
+    def hover(self, halfedge: int) -> None:
+        """Move the mouse to a half-edge, as a person does: not in one jump."""
+        self.page.mouse.move(*self.place(halfedge), steps=2)
+        self.until("(root, h) => Number(root.dataset.halfedge) === h", halfedge)
+
+    def click(self, halfedge: int) -> None:
+        """Move the mouse there and click."""
+        self.hover(halfedge)
+        self.page.mouse.click(*self.place(halfedge))
+
+    def press(self, *keys: str) -> None:
+        """Press keys one after the other, wherever the focus is."""
+        for key in keys:
+            self.page.keyboard.press(key)
+
+    def button(self, name: str) -> Locator:
+        """A button by what a screen reader says of it."""
+        return self.root.get_by_role("button", name=name).first
+
+    def send(self, content: Any, buffers: list[int] | None = None) -> None:
+        """Send this to Python behind the card's back, with zeroed buffers of these lengths."""
+        self.look(
+            "(root, [content, sizes]) => root.meshwright.link._model.send(content, undefined,"
+            " sizes.map(size => new ArrayBuffer(size)))",
+            [content, buffers or []],
+        )
+
+    # What is to be seen
+
+    def picture(self) -> np.ndarray:
+        """What the mesh's place on the screen shows, (height, width, 3) uint8."""
+        return pixels(self.root.locator(".mw-stage").screenshot(animations="disabled"))
+
+    def layer(self, name: str) -> np.ndarray:
+        """What one canvas alone has drawn, (height, width, 4) uint8."""
+        url = self.root.locator(f"canvas.mw-{name}").evaluate(
+            "canvas => canvas.toDataURL('image/png')"
+        )
+        return pixels(_decoded(url), "RGBA")
+
+
+def pixels(png: bytes, mode: str = "RGB") -> np.ndarray:
+    """A PNG's pixels, (height, width, channels) uint8."""
+    from PIL import Image
+
+    return np.asarray(Image.open(io.BytesIO(png)).convert(mode))
+
+
+def differing(first: np.ndarray, second: np.ndarray, least: int = 24) -> int:
+    """Number of pixels that differ by at least so much in some channel; all, if the sizes do."""
+    if first.shape != second.shape:
+        return max(first.size, second.size)
+    apart = np.abs(first.astype(int) - second.astype(int)).max(axis=2)
+    return int((apart >= least).sum())
+
+
+def _decoded(url: str) -> bytes:
+    import base64
+
+    return base64.b64decode(url.split(",", 1)[1])
