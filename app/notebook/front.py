@@ -17,6 +17,8 @@ SCRIPTS = (
     "link.js",
     "host.js",
     "film_link.js",
+    "track.js",
+    "track_paint.js",
     "timeline.js",
     "levels.js",
     "main.js",

@@ -1,0 +1,308 @@
+// The strip under the canvas: the score of every state as a curve of steps over the optimum, a
+// slider to go through them, and buttons that play what was recorded.
+//
+// What is asked of the link is `go_to` only, one at a time: while a hand moves faster than answers
+// come, the states between are left out. The mark follows the hand at once, the mesh comes after.
+
+const TIMELINE_HEIGHT = 72;
+const TIMELINE_ROOM = { left: 48, right: 16, top: 10, bottom: 20 };
+/** States a second on offer, and how many pictures a second are asked for at most. */
+const TIMELINE_SPEEDS = [1, 2, 5, 10, 25, 100];
+const TIMELINE_PICTURES = 20;
+/** Milliseconds after which an answer is no longer waited for. */
+const TIMELINE_PATIENCE = 2000;
+
+class Timeline {
+  constructor(element, card) {
+    this.card = card;
+    this.track = new Track();
+    this.cursor = 0;
+    this.playing = false;
+    this._wanted = null;
+    this._flight = null;
+    this._hovered = -1;
+    this._painting = 0;
+    this._make(element);
+    this._observer = new ResizeObserver(() => this.repaint());
+    this._observer.observe(this.slider);
+    card.follow(() => this.repaint());
+    this._tell();
+  }
+
+  _make(element) {
+    element.replaceChildren();
+    this.root = element;
+    this.slider = timelineElement("div", "mw-timeline-curve", {
+      role: "slider", tabindex: "0", "aria-label": "History of the mesh", "aria-valuemin": "0",
+    });
+    this.canvas = timelineElement("canvas", "", { "aria-hidden": "true" });
+    this.slider.append(this.canvas);
+    const row = timelineElement("div", "mw-timeline-row");
+    const button = (name, label, act) => {
+      const made = timelineElement("button", "mw-timeline-button", {
+        type: "button", "aria-label": label, title: label,
+      });
+      made.append(timelineIcon(name));
+      made.addEventListener("click", act);
+      row.append(made);
+      return made;
+    };
+    this.first = button("first", "To the start", () => this.ask(0));
+    this.back = button("back", "One step back", () => this.ask(this.shown - 1));
+    this.play = button("play", "Play what was recorded", () => this.toggle());
+    this.ahead = button("ahead", "One step forward", () => this.ask(this.shown + 1));
+    this.end = button("end", "To the last state", () => this.ask(this.last));
+    this.best = button("best", "To the best state", () => this.ask(this.track.best));
+    this.speed = timelineElement("select", "mw-timeline-speed", {
+      "aria-label": "Speed of playing", title: "Speed of playing",
+    });
+    for (const speed of TIMELINE_SPEEDS) this.speed.append(new Option(timelineSpeed(speed), speed, speed === 2, speed === 2));
+    this.words = timelineElement("div", "mw-timeline-words");
+    this.legend = timelineElement("div", "mw-timeline-legend", { "aria-hidden": "true" });
+    this.legend.append("● you  ◇ agent");
+    const line = timelineElement("div", "mw-timeline-line");
+    line.append(this.words);
+    row.append(this.speed, this.legend);
+    element.append(line, this.slider, row);
+    this._listen();
+  }
+
+  _listen() {
+    const { slider } = this;
+    const state = (event) => this.frame.state(event.clientX - slider.getBoundingClientRect().left);
+    slider.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0 || this.empty || !this.frame) return;
+      slider.setPointerCapture(event.pointerId);
+      this.stop();
+      this.ask(state(event));
+    });
+    slider.addEventListener("pointermove", (event) => {
+      if (this.empty || !this.frame) return;
+      if (slider.hasPointerCapture(event.pointerId)) this.ask(state(event));
+      this.hover(event.pointerType === "touch" ? -1 : state(event));
+    });
+    slider.addEventListener("pointerleave", () => this.hover(-1));
+    slider.addEventListener("keydown", (event) => this._key(event));
+  }
+
+  _key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || this.empty) return;
+    const page = Math.max(1, Math.round(this.last / 20));
+    const to = {
+      ArrowLeft: this.shown - 1, ArrowDown: this.shown - 1, ArrowRight: this.shown + 1,
+      ArrowUp: this.shown + 1, PageDown: this.shown - page, PageUp: this.shown + page,
+      Home: 0, End: this.last,
+    }[event.key];
+    if (to !== undefined) this.ask(to);
+    else if (event.key === " ") this.toggle();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  // What is here
+
+  /** Number of the last state. */
+  get last() {
+    return Math.max(this.track.length - 1, 0);
+  }
+
+  /** True while there is no step. */
+  get empty() {
+    return this.last === 0;
+  }
+
+  /** The state that the mark stands at: where the hand is, else where the mesh is. */
+  get shown() {
+    return this._wanted === null ? this.cursor : this._wanted;
+  }
+
+  /** Take over what a state or a patch says of the history. */
+  update(head) {
+    const last = this.last;
+    const awaited = this._flight !== null && head.cursor === this._flight;
+    const moved = head.cursor !== this.cursor;
+    this.track.follow(head);
+    this.cursor = head.cursor;
+    if (this.playing && (this.last !== last || (moved && !awaited))) this.stop();
+    if (awaited) this._landed();
+    this._tell();
+    this.repaint();
+  }
+
+  // Going
+
+  /** Go to a state, by hand. */
+  ask(state) {
+    this.stop();
+    this._ask(state);
+  }
+
+  _ask(state) {
+    const wanted = Math.min(Math.max(state, 0), this.last);
+    if (wanted === this.shown) return;
+    this._wanted = wanted;
+    if (this._flight === null) this._launch();
+    this._tell();
+    this.repaint();
+  }
+
+  _launch() {
+    this._flight = this._wanted;
+    this._patience = setTimeout(() => {
+      this._flight = null;
+      this._wanted = null;
+      this.stop();
+      this._tell();
+      this.repaint();
+    }, TIMELINE_PATIENCE);
+    this.card.link.send("go_to", { cursor: this._flight });
+  }
+
+  _landed() {
+    clearTimeout(this._patience);
+    this._flight = null;
+    if (this._wanted !== null && this._wanted !== this.cursor) this._launch();
+    else this._wanted = null;
+  }
+
+  // Playing
+
+  toggle() {
+    if (this.playing) {
+      this.stop();
+      return;
+    }
+    if (this.empty) return;
+    this.playing = true;
+    if (this.shown >= this.last) this._ask(0);
+    this._tell();
+    this._tick();
+  }
+
+  stop() {
+    if (!this.playing) return;
+    this.playing = false;
+    clearTimeout(this._due);
+    this._tell();
+  }
+
+  _tick() {
+    const speed = Number(this.speed.value);
+    const pause = Math.max(1000 / speed, 1000 / TIMELINE_PICTURES);
+    this._due = setTimeout(() => {
+      if (!this.playing) return;
+      const idle = this._flight === null;
+      if (idle && this.cursor >= this.last) {
+        this.stop();
+        return;
+      }
+      if (idle) this._ask(this.cursor + Math.max(1, Math.round((speed * pause) / 1000)));
+      this._tick();
+    }, pause);
+  }
+
+  // What is shown
+
+  hover(state) {
+    if (state === this._hovered) return;
+    this._hovered = state;
+    this._tell();
+    this.repaint();
+  }
+
+  /** Say in words and on the buttons where one is. */
+  _tell() {
+    const { track, empty, last, shown } = this;
+    const looked = this._hovered >= 0 && this._hovered <= last ? this._hovered : shown;
+    this.root.classList.toggle("mw-timeline-empty", empty);
+    this.slider.setAttribute("aria-disabled", String(empty));
+    this.slider.setAttribute("aria-valuemax", last);
+    this.slider.setAttribute("aria-valuenow", shown);
+    this.slider.setAttribute("aria-valuetext", empty ? "no steps yet" : this.sentence(shown));
+    this.words.textContent = empty ? "No steps yet. Their scores will be drawn here." : this.sentence(looked);
+    this.words.classList.toggle("mw-timeline-looked", looked !== shown);
+    for (const made of [this.first, this.back]) made.disabled = shown <= 0;
+    for (const made of [this.ahead, this.end]) made.disabled = shown >= last;
+    this.best.disabled = empty || shown === track.best;
+    this.play.disabled = empty;
+    const label = this.playing ? "Pause" : "Play what was recorded";
+    if (this.play.title !== label) {
+      this.play.title = label;
+      this.play.setAttribute("aria-label", label);
+      this.play.replaceChildren(timelineIcon(this.playing ? "pause" : "play"));
+    }
+    this.legend.hidden = empty || track.others === 0 || track.others === last;
+  }
+
+  /** "State 4 of 12, s 8 (−2), Flip left by you". */
+  sentence(state) {
+    const { track } = this;
+    const best = state === track.best && state > 0 ? ", the best" : "";
+    const where = `State ${trackNumber(state)} of ${trackNumber(this.last)}`;
+    return `${where}, s ${trackNumber(track.scores[state])}${track.change(state)}, ${track.words(state)}${best}`;
+  }
+
+  repaint() {
+    if (this._painting) return;
+    this._painting = requestAnimationFrame(() => {
+      this._painting = 0;
+      this._paint();
+    });
+  }
+
+  _paint() {
+    if (this.empty || !this.slider.clientWidth) return;
+    const ratio = devicePixelRatio || 1;
+    const width = this.slider.clientWidth;
+    const { left, right, top, bottom } = TIMELINE_ROOM;
+    this.canvas.width = Math.round(width * ratio);
+    this.canvas.height = Math.round(TIMELINE_HEIGHT * ratio);
+    this.frame = new TrackFrame(this.track, left, top, width - left - right, TIMELINE_HEIGHT - top - bottom);
+    const pen = this.canvas.getContext("2d");
+    pen.scale(ratio, ratio);
+    paintTrack(pen, this.frame, this.track, this.card, { shown: this.shown, hovered: this._hovered });
+  }
+
+  release() {
+    clearTimeout(this._due);
+    clearTimeout(this._patience);
+    cancelAnimationFrame(this._painting);
+    this._observer.disconnect();
+  }
+}
+
+/** Outlines in a square of 16; "play" and "pause" are filled. */
+const TIMELINE_ICONS = {
+  first: "M4 4v8 M11.5 4l-4 4 4 4",
+  back: "M10 4L6 8l4 4",
+  play: "M5 3.5v9l7.5-4.5z",
+  pause: "M5.5 4v8 M10.5 4v8",
+  ahead: "M6 4l4 4-4 4",
+  end: "M12 4v8 M4.5 4l4 4-4 4",
+  best: "M8 3l5 5-5 5-5-5z",
+};
+
+/** "2 steps/s". */
+function timelineSpeed(speed) {
+  return `${speed} step${speed === 1 ? "" : "s"}/s`;
+}
+
+function timelineElement(tag, name, attributes = {}) {
+  const made = document.createElement(tag);
+  if (name) made.className = name;
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  return made;
+}
+
+function timelineIcon(name) {
+  const space = "http://www.w3.org/2000/svg";
+  const icon = document.createElementNS(space, "svg");
+  icon.setAttribute("viewBox", "0 0 16 16");
+  icon.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS(space, "path");
+  path.setAttribute("d", TIMELINE_ICONS[name]);
+  if (name === "play") path.setAttribute("fill", "currentColor");
+  icon.append(path);
+  return icon;
+}

@@ -1,0 +1,165 @@
+// The track: score and optimum of every state of a history, and the lines to draw them with.
+//
+// State 0 is the start, state i the one after step i; steps that were undone count too.
+
+/** Times the span of a curve beyond which what is left to the optimum is left out of it. */
+const TRACK_FAR = 4;
+const TRACK_COLUMNS = ["scores", "optima", "titles", "by"];
+
+class Track {
+  constructor() {
+    this.clear();
+  }
+
+  clear() {
+    this.scores = [];
+    this.optima = [];
+    this.titles = [];
+    this.by = [];
+    this._best = -1;
+    this._others = -1;
+  }
+
+  get length() {
+    return this.scores.length;
+  }
+
+  /** Take over what a head tells: the states from `from` on are new, those beyond its end are gone. */
+  follow(head) {
+    const fresh = head.track;
+    if (fresh) {
+      const by = fresh.by || [];
+      const begin = Math.min(fresh.from, this.length);
+      for (const name of TRACK_COLUMNS) this[name].length = begin;
+      fresh.scores.forEach((score, i) => {
+        this.scores.push(score);
+        this.optima.push(fresh.optima[i]);
+        this.titles.push(fresh.titles[i] || "");
+        this.by.push(by[i] || "");
+      });
+    }
+    for (const name of TRACK_COLUMNS) this[name].length = Math.min(this[name].length, head.length + 1);
+    this._best = -1;
+    this._others = -1;
+  }
+
+  /** The earliest state with the lowest score of those that share the last state's optimum. */
+  get best() {
+    if (this._best >= 0) return this._best;
+    const last = this.length - 1;
+    let best = last;
+    for (let i = last; i >= 0 && this.optima[i] === this.optima[last]; i -= 1) {
+      if (this.scores[i] <= this.scores[best]) best = i;
+    }
+    this._best = Math.max(best, 0);
+    return this._best;
+  }
+
+  /** "Flip left by quad-paper": what led to a state. */
+  words(state) {
+    if (state <= 0) return "the start";
+    return `${this.titles[state] || "a step"}${this.by[state] ? ` by ${this.by[state]}` : ""}`;
+  }
+
+  /** " (−2)": what that did to the score; nothing for the start. */
+  change(state) {
+    return state <= 0 ? "" : ` (${trackSigned(this.scores[state] - this.scores[state - 1])})`;
+  }
+
+  /** How many steps an agent took. */
+  get others() {
+    if (this._others < 0) this._others = this.by.reduce((sum, _, i) => sum + (i > 0 && !this.mine(i)), 0);
+    return this._others;
+  }
+
+  /** True if a person took the step that led to a state. */
+  mine(state) {
+    return this.by[state] === "" || this.by[state] === "you";
+  }
+}
+
+/** "+1", "−2" with a true minus sign, "±0". */
+function trackSigned(change) {
+  if (change === 0) return "±0";
+  return change > 0 ? `+${change}` : `−${-change}`;
+}
+
+/** "12,345". */
+function trackNumber(value) {
+  return value.toLocaleString("en-US");
+}
+
+/** Where a curve is drawn: pixels of states and scores.
+ *
+ * The frame is `broken` where the optimum lies so far below all that has happened that the curve
+ * would be a level line; the optimum is drawn at the lower edge then.
+ */
+class TrackFrame {
+  constructor(track, left, top, width, height) {
+    this.left = left;
+    this.top = top;
+    this.width = Math.max(width, 1);
+    this.height = height;
+    this.last = Math.max(track.length - 1, 1);
+    let goal = Infinity;
+    let lowest = Infinity;
+    let high = -Infinity;
+    for (let i = 0; i < track.length; i += 1) {
+      goal = Math.min(goal, track.optima[i]);
+      lowest = Math.min(lowest, track.scores[i]);
+      high = Math.max(high, track.scores[i]);
+    }
+    this.high = Math.max(high, goal + 1);
+    const room = Math.max(this.high - lowest, 4);
+    this.broken = lowest - goal > TRACK_FAR * room;
+    this.low = this.broken ? lowest - 0.5 * room : goal;
+  }
+
+  x(state) {
+    return this.left + (state * this.width) / this.last;
+  }
+
+  y(score) {
+    return this.top + this.height * (1 - Math.max(score - this.low, 0) / (this.high - this.low));
+  }
+
+  state(x) {
+    const nearest = Math.round(((x - this.left) / this.width) * this.last);
+    return Math.min(Math.max(nearest, 0), this.last);
+  }
+
+  /** Pixels from one state to the next. */
+  get pace() {
+    return this.width / this.last;
+  }
+
+  /** Values from state `first` to `last` as a line of steps [[x, y], ...].
+   *
+   * With more states than pixels each column of pixels shows the lowest and the highest value in
+   * it, so that the line grows with the width and not with the history.
+   */
+  steps(values, first, last) {
+    const line = [];
+    if (this.pace >= 0.5) {
+      for (let i = first; i <= last; i += 1) {
+        if (i > first && values[i] === values[i - 1] && i < last) continue;
+        if (i > first) line.push([this.x(i), this.y(values[i - 1])]);
+        line.push([this.x(i), this.y(values[i])]);
+      }
+      return line;
+    }
+    for (let i = first; i <= last;) {
+      const column = Math.floor(this.x(i));
+      let low = values[i];
+      let high = values[i];
+      const begin = i;
+      for (; i <= last && Math.floor(this.x(i)) === column; i += 1) {
+        low = Math.min(low, values[i]);
+        high = Math.max(high, values[i]);
+      }
+      const rising = values[i - 1] >= values[begin];
+      line.push([column + 0.5, this.y(rising ? low : high)], [column + 0.5, this.y(rising ? high : low)]);
+    }
+    return line;
+  }
+}
