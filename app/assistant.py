@@ -185,9 +185,12 @@ class Assistant:
         """Take one decision (an operation and the clean-ups that follow it)."""
         self._begin(State.STEPPING)
 
-    def play(self) -> None:
-        """Take decisions at :attr:`speed` until finished, paused or cancelled."""
+    def play(self, hurry: bool = False) -> None:
+        """Decide at :attr:`speed`, or as fast as it can, until finished, paused or cancelled."""
         self._begin(State.PLAYING)
+        if hurry and self._run is not None:
+            self._run.speed = float("inf")
+            self._run.wake.set()
 
     def pause(self) -> None:
         """Hold a played run; :meth:`play` goes on, :meth:`step` takes one decision more."""

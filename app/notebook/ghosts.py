@@ -1,0 +1,59 @@
+"""What the operations at one half-edge would do, for the view whose pointer is there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app.notebook.wire import Frame, Packet
+from app.preview import Choice, best, choices, ghost
+from meshcore import HalfEdgeMesh
+
+
+def ghost_packet(mesh: HalfEdgeMesh, frame: Frame, halfedge: int, operation: str | None) -> Packet:
+    """Offers of every operation at a live half-edge, and the ghost of one of them.
+
+    Of ``operation``, or where that is None of the best that is allowed; no ghost where it is
+    refused.
+    """
+    offered = choices(mesh, halfedge)
+    if operation is None:
+        meant = best(offered)
+    else:
+        meant = next((c for c in offered if c.operation == operation and c.allowed), None)
+    content = {
+        "say": "ghost",
+        "halfedge": halfedge,
+        "offers": [_offer(choice) for choice in offered],
+        "operation": str(meant.operation) if meant is not None else None,
+        "change": meant.change if meant is not None else None,
+    }
+    if meant is None:
+        return Packet(content, [b""] * 5)
+    seen = ghost(mesh, meant.operation, halfedge)
+    places = (seen.added, seen.removed, seen.gone, seen.places)
+    buffers = [frame.normalised(np.asarray(part)).tobytes() for part in places]
+    delta = np.clip(seen.delta, -127, 127).astype(np.int8)
+    return Packet(content, [*buffers, delta.tobytes()])
+
+
+def no_ghost() -> Packet:
+    """The pointer is over no half-edge."""
+    content: dict[str, Any] = {
+        "say": "ghost",
+        "halfedge": -1,
+        "offers": [],
+        "operation": None,
+        "change": None,
+    }
+    return Packet(content, [b""] * 5)
+
+
+def _offer(choice: Choice) -> dict[str, Any]:
+    return {
+        "operation": str(choice.operation),
+        "allowed": choice.allowed,
+        "reason": choice.verdict.reason,
+        "change": choice.change,
+    }

@@ -1,0 +1,142 @@
+"""What a browser is told beside the mesh: scores, counts, where the history is, and its curve."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app.curve import Track
+from app.document import Document
+from meshcore import HalfEdgeMesh
+from meshcore.halfedge import ELEMENT_SLOTS, ORIGIN
+from meshcore.outline import Outline
+from meshcore.quality import TOLERANCE, corner_sines, inverted
+
+BLOCKS_UP_TO = 20_000
+"""Elements of a quad mesh above which its blocks are not counted after every step."""
+
+
+class Folded:
+    """How many elements are inverted, followed at the cost of what has changed."""
+
+    def __init__(self) -> None:
+        self._normal: np.ndarray | None = None
+        self._folded = np.zeros(0, dtype=bool)
+
+    def __len__(self) -> int:
+        return int(self._folded.sum())
+
+    def reset(self, mesh: HalfEdgeMesh) -> None:
+        """Look at all elements."""
+        self._normal = Outline.of(mesh).normal(mesh.points[mesh.vertices()])
+        self._folded = np.zeros(_element_slots(mesh), dtype=bool)
+        self._folded[inverted(mesh)] = True
+
+    def follow(self, mesh: HalfEdgeMesh, vertices: np.ndarray, halfedges: np.ndarray) -> None:
+        """Look again where ``vertices`` have moved and ``halfedges`` run elsewhere."""
+        slots = _element_slots(mesh)
+        if self._normal is None or 4 * len(vertices) > mesh.n_vertices:
+            self.reset(mesh)
+            return
+        corners = mesh.arrays.edge[: slots * mesh.k, ORIGIN].reshape(slots, mesh.k)
+        moved = np.zeros(len(mesh.arrays.vertex), dtype=bool)
+        moved[vertices[vertices < len(moved)]] = True
+        look = moved[corners].any(axis=1)  # a dead element's -1 is harmless: it is sorted out below
+        touched = halfedges // mesh.k
+        look[touched[touched < slots]] = True
+        folded = np.zeros(slots, dtype=bool)
+        kept = min(slots, len(self._folded))
+        folded[:kept] = self._folded[:kept]
+        folded[look] = False
+        elements = np.flatnonzero(look & (corners[:, 0] >= 0))
+        reference = np.broadcast_to(self._normal, (len(elements), 3))
+        sines = corner_sines(mesh.points, corners[elements].astype(np.int64), reference)
+        folded[elements] = sines.min(axis=1, initial=np.inf) <= TOLERANCE
+        self._folded = folded
+
+
+class Head:
+    """The numbers of one document, as they go with every state and patch."""
+
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._track = Track()
+        self.folded = Folded()
+
+    def reset(self) -> None:
+        """Another mesh is here."""
+        if self._document.mesh is not None:
+            self.folded.reset(self._document.mesh)
+
+    def whole(self) -> dict[str, Any]:
+        """For who knows nothing yet."""
+        self._track.follow(self._document.history)
+        return self._told(0)
+
+    def news(self) -> dict[str, Any]:
+        """For who knows what was told last."""
+        return self._told(self._track.follow(self._document.history))
+
+    def _told(self, first: int) -> dict[str, Any]:
+        document, mesh = self._document, self._document.mesh
+        history = document.history
+        return {
+            "score": document.score,
+            "optimum": document.optimum,
+            "start": document.start_score,
+            "best": document.best_score,
+            "return": round(document.normalised_return, 6),
+            "elements": mesh.n_elements if mesh is not None else 0,
+            "vertices": mesh.n_vertices if mesh is not None else 0,
+            "irregular": mesh.irregular_count if mesh is not None else 0,
+            "inverted": len(self.folded),
+            "cursor": history.cursor,
+            "length": len(history),
+            "can_undo": document.can_undo,
+            "can_redo": document.can_redo,
+            "name": document.name,
+            "kind": document.kind,
+            "auto_smooth": document.auto_smooth,
+            "at_optimum": document.at_optimum,
+            "blocks": _blocks(mesh),
+            "row": self._row(),
+            "track": {
+                "from": first,
+                "scores": self._track.scores[first:].tolist(),
+                "optima": self._track.optima[first:].tolist(),
+                "titles": [
+                    history[state - 1].title if state else "Start"
+                    for state in range(first, len(history) + 1)
+                ],
+                "by": [
+                    history[state - 1].by if state else ""
+                    for state in range(first, len(history) + 1)
+                ],
+            },
+        }
+
+    def _row(self) -> dict[str, Any] | None:
+        row = self._document.history.last
+        if row is None:
+            return None
+        return {
+            "number": self._document.history.cursor,
+            "title": row.title,
+            "by": row.by,
+            "change": row.change,
+            "halfedge": row.halfedge,
+            "operation": row.action,
+        }
+
+
+def _element_slots(mesh: HalfEdgeMesh) -> int:
+    return int(mesh.arrays.counters[ELEMENT_SLOTS])
+
+
+def _blocks(mesh: HalfEdgeMesh | None) -> int | None:
+    if mesh is None or mesh.k != 4 or mesh.n_elements > BLOCKS_UP_TO:
+        return None
+    from meshcore.blocks import block_count  # imported late, for it pulls in scipy
+
+    return block_count(mesh)

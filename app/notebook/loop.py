@@ -1,0 +1,132 @@
+"""Calls into the thread that owns a document, from whichever thread.
+
+Notebooks run their cells in a thread with an asyncio loop, which is blocked while a cell runs.
+Every call waits in one queue. The loop empties it when it has its turn; :meth:`Loop.pump` empties
+it meanwhile, and where there is no loop at all. Messages from a browser may arrive in another
+thread (JupyterLab sends them to a subshell), a policy's decisions always do.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import TypeVar
+
+Result = TypeVar("Result")
+Call = Callable[[], None]
+
+PATIENCE = 60.0
+"""Seconds that another thread waits for a call of :meth:`Loop.do`."""
+_NAP = 0.05
+
+_log = logging.getLogger(__name__)
+
+
+class Loop:
+    """The thread that made it owns the document; calling the object queues a call into it."""
+
+    def __init__(self, failed: Callable[[Exception], None] | None = None) -> None:
+        """``failed(error)`` is told, in the owner's thread, what a queued call has raised; the
+        traceback goes to the log.
+        """
+        self._owner = threading.get_ident()
+        self._calls: deque[Call] = deque()
+        self._news = threading.Condition()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._failed = failed
+        self.find()
+
+    @property
+    def here(self) -> bool:
+        """Whether this is the owner's thread."""
+        return threading.get_ident() == self._owner
+
+    @property
+    def running(self) -> bool:
+        """Whether there is an event loop that will come to the queue by itself."""
+        self.find()
+        return self._loop is not None
+
+    def find(self) -> None:
+        """Look, in the owner's thread, which event loop runs there now."""
+        if self.here:
+            try:
+                self._loop = asyncio.get_running_loop()
+            except RuntimeError:
+                self._loop = None
+            if self._loop is not None and self._calls:
+                self._loop.call_soon(self.drain)
+
+    def __call__(self, call: Call) -> None:
+        """Have ``call()`` called soon, in order; returns at once, from any thread."""
+        with self._news:
+            self._calls.append(call)
+            self._news.notify_all()
+        loop = self._loop
+        if loop is not None:
+            try:
+                loop.call_soon_threadsafe(self._turn)
+            except RuntimeError:  # that loop is closed: the queue waits for the next one
+                self._loop = None
+
+    def do(self, call: Callable[[], Result]) -> Result:
+        """The result of ``call()``, called in the owner's thread; what it raises is raised here."""
+        if self.here:
+            return call()
+        answer: Future[Result] = Future()
+
+        def work() -> None:
+            if answer.set_running_or_notify_cancel():
+                try:
+                    answer.set_result(call())
+                except BaseException as error:  # goes on in the thread that asked
+                    answer.set_exception(error)
+
+        self(work)
+        try:
+            return answer.result(PATIENCE)
+        except TimeoutError:
+            if answer.done():
+                raise
+            answer.cancel()
+            raise TimeoutError(
+                f"The notebook has been busy with another cell for {PATIENCE:.0f} s: nothing done."
+            ) from None
+
+    def drain(self) -> None:
+        """Make all calls that are waiting now, in the owner's thread."""
+        for _ in range(len(self._calls)):
+            self._turn()
+
+    def pump(self, until: Callable[[], bool], timeout: float | None = None) -> bool:
+        """Make calls, and wait for more, until ``until()``; returns whether it came to that."""
+        if not self.here:
+            raise RuntimeError("Only the thread that owns the mesh can wait here.")
+        end = None if timeout is None else time.monotonic() + timeout
+        while not until():
+            left = _NAP if end is None else min(_NAP, end - time.monotonic())
+            if left <= 0:
+                return False
+            with self._news:
+                if not self._calls:
+                    self._news.wait(left)
+            self._turn()
+        return True
+
+    def _turn(self) -> None:
+        """Make the next call, if there is one left: a pump may have been quicker."""
+        with self._news:
+            if not self._calls:
+                return
+            call = self._calls.popleft()
+        try:
+            call()
+        except Exception as error:  # whoever queued it has gone on: the log and a person are told
+            _log.error("a queued call broke off", exc_info=error)
+            if self._failed is not None:
+                self._failed(error)

@@ -1,0 +1,253 @@
+"""A session: what all widgets on one document share."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar, TypeVar
+from weakref import WeakValueDictionary, finalize
+
+from app.assistant import Assistant
+from app.document import NO_MESH, Document
+from app.notebook.deeds import DEEDS, Deed, require_halfedge, require_operation
+from app.notebook.ghosts import ghost_packet, no_ghost
+from app.notebook.helper import Helper
+from app.notebook.loop import Loop
+from app.notebook.messages import RefusedError, Request, parse
+from app.notebook.telling import Port, Telling
+from app.notebook.wire import Packet
+from app.signals import Signal
+from meshcore import HalfEdgeMesh, MeshError
+
+Result = TypeVar("Result")
+
+_log = logging.getLogger(__name__)
+
+
+class Session:
+    """A document with its assistant and all widgets that show it.
+
+    It lives as long as one of the widgets. Everything happens in the thread that made it, wherever
+    a message comes from. Events: ``agent_changed()`` what the agent does has changed,
+    ``level_changed(level)`` for who plays levels to emit.
+    """
+
+    _all: ClassVar[WeakValueDictionary[int, Session]] = WeakValueDictionary()
+
+    def __init__(self, document: Document) -> None:
+        """For :meth:`of`."""
+        self.document = document
+        self.loop = Loop(self._on_broken)
+        self.assistant = Assistant(document, self.loop)
+        self.agent = Helper(document, self.assistant, self.loop)
+        self.telling = Telling(document, self.agent, self.loop)
+        self.agent_changed = Signal()
+        self.level_changed = Signal()
+        self.words: dict[str, Deed] = dict(DEEDS)
+        """What is done for each word that a browser may say: others may add theirs, which get the
+        session and the request, may raise MeshError to refuse, and return a sentence or none.
+        """
+        self.greetings: list[Callable[[], Packet]] = []
+        """What else a view is told when it comes."""
+        self.level: Any = None
+        """The level that is being played; None where none is."""
+        self._hovers: dict[str, tuple[Port, Request]] = {}
+        self._calling = self._ended = False
+        self.agent.settle()
+        document.replaced.connect(self._on_replaced)
+        document.changed.connect(self.telling.touch)
+        document.score_changed.connect(self._on_score_changed)
+        self.assistant.changed.connect(self._on_agent_changed)
+        self.assistant.hinting.changed.connect(self._on_agent_changed)
+        self.assistant.said.connect(self._on_said)
+        self.assistant.failed.connect(self._on_failed)
+
+    @classmethod
+    def of(cls, document: Document) -> Session:
+        """The session of a document; a new one if no widget shows it yet."""
+        for session in list(cls._all.values()):
+            for port in session.telling.lost:
+                port.close()
+        found = cls._all.get(id(document))  # it holds the document, so the number is still its own
+        if found is None:
+            found = cls._all[id(document)] = cls(document)
+        return found
+
+    @property
+    def mesh(self) -> HalfEdgeMesh:
+        """The mesh; MeshError while there is none."""
+        if self.document.mesh is None:
+            raise MeshError(NO_MESH)
+        return self.document.mesh
+
+    # Who takes part
+
+    def join(self, port: Port) -> None:
+        """A widget begins to show the document."""
+        self.telling.add(port)
+        finalize(port, self._end_if_alone).atexit = False
+
+    def leave(self, port: Port) -> None:
+        """A widget is closed; after the last one the agent's thread ends."""
+        self.telling.remove(port)
+        self._hovers = {view: held for view, held in self._hovers.items() if held[0] is not port}
+        self._end_if_alone()
+
+    def _end_if_alone(self) -> None:
+        if not self.telling.alone:
+            return
+        if self._all.get(id(self.document)) is self:
+            del self._all[id(self.document)]
+        self._ended = True
+        self.assistant.close()
+        self.document.replaced.disconnect(self._on_replaced)
+        self.document.changed.disconnect(self.telling.touch)
+        self.document.score_changed.disconnect(self._on_score_changed)
+
+    # What Python asks for
+
+    def do(self, call: Callable[[], Result]) -> Result:
+        """The result of ``call()``, called in the thread that owns the document."""
+        self._require_open()
+        return self.loop.do(call)
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Let the agent work until it is at rest; returns whether it is."""
+        self._require_open()
+        if self._calling:
+            raise MeshError("A callback cannot wait for the agent: it would wait for itself.")
+        return self.loop.pump(lambda: self.agent.idle, timeout)
+
+    def finish(self, begin: Callable[[], None]) -> None:
+        """Begin something of the agent's and wait for its end, in whichever thread.
+
+        Raises MeshError where it broke off. An interrupt ends it, too.
+        """
+        failures: list[str] = []
+        self.do(lambda: self.assistant.failed.connect(failures.append))
+        try:
+            self.do(begin)
+            self.wait()
+        except KeyboardInterrupt:
+            self.loop(self.assistant.cancel)
+            raise
+        finally:
+            self.assistant.failed.disconnect(failures.append)
+        self.telling.flush()
+        if failures:
+            raise MeshError(failures[-1])
+
+    def call_back(self, callback: Callable[..., Any], *arguments: Any) -> None:
+        """Call what a person has connected; what it raises is told and logged, and goes no
+        further.
+        """
+        outer, self._calling = self._calling, True
+        try:
+            callback(*arguments)
+        except Exception as error:  # not ours: the document must go on
+            _log.error("a callback broke off", exc_info=error)
+            self.telling.notice("failed", broken(error))
+        finally:
+            self._calling = outer
+
+    def _require_open(self) -> None:
+        if self._ended:
+            raise MeshError("This widget is closed; make another one on its document.")
+
+    # What browsers say
+
+    def receive(self, port: Port, content: Any, buffers: Sequence[Any] | None = None) -> None:
+        """A message of a widget's browser, in whichever thread it comes; never raises."""
+        try:
+            request = parse(content, buffers)
+        except RefusedError as error:
+            self.telling.answer(port, error.request, "refused", error.sentence)
+            return
+        if request.do == "hover":
+            self._hovers[request.view] = port, request  # the latest of a view wins
+        if self.loop.here:
+            self._serve(port, request)
+        else:
+            self.loop(lambda: self._serve(port, request))
+
+    def _serve(self, port: Port, request: Request) -> None:
+        self.telling.hold(request)
+        try:
+            self._do(port, request)
+        except MeshError as error:
+            self.telling.answer(port, request, "refused", sentence(str(error)))
+        except Exception as error:  # the kernel lives on: the person and the log are told
+            _log.error("'%s' broke off", request.do, exc_info=error)
+            self.telling.answer(port, request, "failed", broken(error))
+        finally:
+            self.telling.release()
+
+    def _do(self, port: Port, request: Request) -> None:
+        if request.do == "hello":
+            self.telling.greet(port, request)
+            for greeting in self.greetings:
+                self.telling.post(port, greeting(), request)
+        elif request.do == "hover":
+            self._point(request)
+        elif port.read_only:
+            raise MeshError("this view is for looking only")
+        elif request.do not in self.words:
+            raise MeshError(f"there is nothing to '{request.do}' here")
+        else:
+            said = self.words[request.do](self, request)
+            if said:
+                self.telling.answer(port, request, "said", said)
+
+    def _point(self, request: Request) -> None:
+        held = self._hovers.pop(request.view, None)
+        if held is None:
+            return  # a later one was served in its place
+        port, request = held
+        halfedge, operation = request["halfedge"], request["operation"]
+        if halfedge < 0:
+            self.document.hover = -1
+            self.telling.post(port, no_ghost(), request)
+            return
+        require_halfedge(self.mesh, halfedge)
+        if operation is not None:
+            require_operation(self.mesh.kind, operation)
+        self.document.hover = halfedge
+        packet = ghost_packet(self.mesh, self.telling.mirror.frame, halfedge, operation)
+        self.telling.post(port, packet, request)
+
+    # What happens here
+
+    def _on_replaced(self) -> None:
+        self.telling.start_over()
+        self.agent.settle()
+
+    def _on_score_changed(self) -> None:
+        for port in self.telling.ports:
+            port.show_score()
+
+    def _on_agent_changed(self) -> None:
+        self.telling.touch_agent()
+        self.agent_changed.emit()
+
+    def _on_said(self, words: str) -> None:
+        self.telling.notice("said", sentence(words))
+
+    def _on_failed(self, words: str) -> None:
+        self.telling.notice("failed", sentence(words))
+
+    def _on_broken(self, error: Exception) -> None:
+        """A queued call has raised, and is in the log already."""
+        self.telling.notice("failed", broken(error))
+
+
+def sentence(text: str) -> str:
+    """``text`` with a capital and a full stop, as it stands alone."""
+    text = text[:1].upper() + text[1:]
+    return text if text.endswith((".", "\u2026", "!", "?")) else text + "."
+
+
+def broken(error: Exception) -> str:
+    """What a person hears of a mistake of ours, or of a callback."""
+    words = str(error).splitlines()[0][:120] if str(error) else ""
+    told = f"{type(error).__name__}: {words}" if words else type(error).__name__
+    return f"Something went wrong ({told}); the traceback is in the log."

@@ -1,0 +1,307 @@
+"""The widget: a document in a notebook's cell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import anywidget
+import traitlets
+
+from app.assistant import Assistant
+from app.document import Document
+from app.history import History, Row
+from app.notebook import front
+from app.notebook.opening import document_of
+from app.notebook.session import Session
+from app.notebook.wire import Packet
+from app.searching import COMPLETE_SECONDS, Effort
+from app.signals import Signal
+from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
+from meshcore.domain import Domain
+
+if TYPE_CHECKING:
+    from agent.choices import Choice
+
+LOWEST, HIGHEST = 160, 4000
+"""Bounds of a widget's height in pixels."""
+
+
+class MeshWidget(anywidget.AnyWidget):
+    """A mesh in a cell that a person can edit, with the agent beside it.
+
+    What is changed in the browser is changed here, and the other way round; several widgets on one
+    document stay in step. Change the mesh through the widget, or its document: what
+    ``widget.mesh.apply`` does is in no history, and no view hears of it.
+    """
+
+    height = traitlets.Int(480, min=LOWEST, max=HIGHEST).tag(sync=True)
+    """Pixels of the canvas."""
+    theme = traitlets.Enum(("auto", "light", "dark"), "auto").tag(sync=True)
+    """The colours: those of the notebook, or always light, or always dark."""
+    label = traitlets.Unicode("").tag(sync=True)
+    """What the mesh is called, for the browser."""
+    score = traitlets.Int(0, read_only=True).tag(sync=True)
+    """s of the mesh now."""
+    optimum = traitlets.Int(0, read_only=True).tag(sync=True)
+    """s*, the lowest score that any connectivity can have."""
+
+    def __init__(
+        self,
+        source: HalfEdgeMesh | Document | MeshWidget | Domain | str | Path,
+        *,
+        kind: str | None = None,
+        policy: str | None = None,
+        level: Any = None,
+        height: int = 480,
+        theme: str = "auto",
+        name: str = "",
+        read_only: bool = False,
+    ) -> None:
+        """Show ``source``; a document, or another widget's, is shared with whoever has it.
+
+        Args:
+            source: see :func:`app.notebook.opening.document_of`; or another widget.
+            kind: what a shape is meshed with, "tri" or "quad"; quads by default.
+            policy: what the agent follows: a shipped policy, or a file; by default the first that
+                is shipped for this kind of mesh.
+            level: a level to be played.
+            height: of the canvas, in pixels.
+            theme: "auto" as the notebook, "light" or "dark".
+            name: what the mesh is called.
+            read_only: whether the browser may look only; Python may go on changing the mesh.
+
+        Raises:
+            MeshError: one sentence on what is wrong with the source or the policy.
+            TypeError: the source is none of these.
+            traitlets.TraitError: the height or the theme cannot be.
+        """
+        shown = source.document if isinstance(source, MeshWidget) else source
+        document = document_of(shown, kind, name)
+        self.session = Session.of(document)
+        self.read_only = bool(read_only)
+        self._connected: list[tuple[Signal, Callable[..., None]]] = []
+        if policy is not None:
+            self.session.agent.choose(policy)
+        super().__init__(
+            _esm=front.module(),
+            _css=front.style(),
+            height=height,
+            theme=theme,
+            label=name or document.name,
+        )
+        self.session.join(self)
+        self.show_score()
+
+    # What is here
+
+    @property
+    def document(self) -> Document:
+        """What all views share: mesh, history, selection and their events."""
+        return self.session.document
+
+    @property
+    def mesh(self) -> HalfEdgeMesh:
+        """The mesh, live; change it by the widget's own methods. MeshError while there is none."""
+        return self.session.mesh
+
+    @property
+    def history(self) -> History:
+        """One row for every step."""
+        return self.document.history
+
+    @property
+    def assistant(self) -> Assistant:
+        """The agent's side, shared by all widgets on the document."""
+        return self.session.assistant
+
+    @property
+    def at_optimum(self) -> bool:
+        """True if s = s*."""
+        return self.document.at_optimum
+
+    @property
+    def level(self) -> Any:
+        """The level that is being played, None where none is."""
+        return self.session.level
+
+    # Changing the mesh
+
+    def check(self, operation: Operation | str, halfedge: int) -> Verdict:
+        """Whether an operation may be done at a half-edge: true, or false with a ``reason``."""
+        return self._do(lambda: self.document.check(operation, halfedge))
+
+    def apply(self, operation: Operation | str, halfedge: int) -> Edit:
+        """Do an operation and smooth around it, as one step; OperationRefused if it is refused."""
+        return self._do(lambda: self.document.submit(operation, halfedge))
+
+    def undo(self) -> Row | None:
+        """Take back the last step; returns its row, None if there is none."""
+        return self._do(self.document.undo)
+
+    def redo(self) -> Row | None:
+        """Do again what was taken back last; returns its row, None if there is none."""
+        return self._do(self.document.redo)
+
+    def go_to(self, cursor: int) -> None:
+        """Undo or redo until ``cursor`` steps are done; beyond either end it stops there."""
+        self._do(lambda: self.document.go_to(cursor))
+
+    def smooth(self) -> None:
+        """Smooth and untangle the whole mesh, as one step."""
+        self._do(self.document.smooth)
+
+    def untangle(self) -> tuple[int, int]:
+        """Mend inverted elements; returns how many there were, and how many stay."""
+        return self._do(self.document.untangle)
+
+    def clean_all(self) -> int:
+        """Remove every global line of a quad mesh that can be removed; returns their number."""
+        return self._do(self.document.clean_all)
+
+    def set_desired(self, vertex: int, degree: int) -> None:
+        """Ask for another degree at a vertex; s and s* follow."""
+        self._do(lambda: self.document.set_desired(vertex, degree))
+
+    def lock(self, vertex: int, flag: bool = True) -> None:
+        """Lock a vertex, so that it neither moves nor vanishes, or unlock it."""
+        self._do(lambda: self.document.set_locked(vertex, flag))
+
+    # The agent
+
+    def play(
+        self, policy: str | None = None, *, speed: float | None = None, wait: bool = False
+    ) -> None:
+        """Let the agent play, visibly, while the notebook goes on.
+
+        Args:
+            policy: another one from now on.
+            speed: decisions per second from now on.
+            wait: return only at the end of the run, which then goes as fast as it can.
+
+        Raises:
+            MeshError: the policy does not fit, or (where the call waits) the run broke off.
+        """
+        agent = self.session.agent
+        self._choose(policy)
+        self._ask(lambda: agent.play(speed, hurry=wait), wait)
+
+    def step(self, policy: str | None = None, wait: bool = True) -> None:
+        """One decision of the agent: an operation, and the clean-ups that follow it."""
+        self._choose(policy)
+        self._ask(self.assistant.step, wait)
+
+    def pause(self) -> None:
+        """Hold a run; :meth:`play` and :meth:`step` go on from there."""
+        self._do(self.assistant.pause)
+
+    def complete(self, seconds: float = COMPLETE_SECONDS, wait: bool = True) -> None:
+        """Search for the best state within so many seconds, and go there."""
+        if not 0 < seconds < float("inf"):
+            raise MeshError(f"seconds must be a number above 0, not {seconds}.")
+        self._ask(lambda: self.assistant.search(Effort(seconds=seconds)), wait)
+
+    def hint(self, wait: bool = True) -> tuple[Choice, ...]:
+        """The policy's best few operations in the present state.
+
+        Where the call does not wait: the hints that are known already.
+        """
+        self._ask(self.assistant.hint, wait)
+        return self.assistant.hinting.hints
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait until the agent is at rest; returns False if that took longer than ``timeout`` s.
+
+        The browsers follow meanwhile.
+        """
+        return self.session.wait(timeout)
+
+    def _choose(self, policy: str | None) -> None:
+        if policy is not None:
+            self._do(lambda: self.session.agent.choose(policy))
+
+    def _ask(self, begin: Callable[[], None], wait: bool) -> None:
+        if wait:
+            self.session.finish(begin)
+        else:
+            self._do(begin)
+
+    # Events
+
+    def on(self, event: str, callback: Callable[..., Any]) -> Callable[[], None]:
+        """Call ``callback`` at every later ``event``; returns a function that ends this.
+
+        Events are "changed", "history" (no arguments), "score" (s), "hover" (a half-edge or -1),
+        "agent" (what it is doing, a word) and "level" (the level or None). What a callback raises
+        goes to the log and, as a sentence, to the browser.
+        """
+        session, document = self.session, self.document
+        events: dict[str, tuple[Signal, Callable[..., tuple[Any, ...]]]] = {
+            "changed": (document.changed, lambda: ()),
+            "score": (document.score_changed, lambda: (document.score,)),
+            "history": (document.history_changed, lambda: ()),
+            "hover": (document.hover_changed, lambda halfedge: (halfedge,)),
+            "agent": (session.agent_changed, lambda: (str(session.assistant.state),)),
+            "level": (session.level_changed, lambda level: (level,)),
+        }
+        if event not in events:
+            raise MeshError(f"There is no event {event!r}; there are {', '.join(events)}.")
+        signal, told = events[event]
+
+        def slot(*arguments: Any) -> None:
+            session.call_back(callback, *told(*arguments))
+
+        entry = (signal, signal.connect(slot))
+        self._connected.append(entry)
+
+        def disconnect() -> None:
+            signal.disconnect(slot)
+            if entry in self._connected:
+                self._connected.remove(entry)
+
+        return disconnect
+
+    # Its place in the notebook
+
+    def close(self) -> None:
+        """Take the views away. The agent's thread ends with the document's last widget."""
+        session = self.__dict__.get("session")  # an __init__ that has failed leaves none
+        if session is not None:
+            for signal, slot in self._connected:
+                signal.disconnect(slot)
+            self._connected.clear()
+            session.leave(self)
+        super().close()
+
+    @property
+    def reachable(self) -> bool:
+        """Whether there still is a way to the browser; marimo cuts it when a cell runs again."""
+        return self.comm is not None and not getattr(self.comm, "_closed", False)
+
+    def post(self, packet: Packet) -> None:
+        """For the session: send a message to all views."""
+        self.send(packet.content, packet.buffers)
+
+    def show_score(self) -> None:
+        """For the session: the score, or the optimum, is another."""
+        self.set_trait("score", self.document.score)
+        self.set_trait("optimum", self.document.optimum)
+
+    def set_state(self, sync_data: Any) -> None:
+        """What a browser wants the traits to be is nothing to us: it asks by messages."""
+
+    def _handle_msg(self, message: Any) -> None:
+        """Whatever comes from the browser; never raises."""
+        content = message.get("content") if isinstance(message, dict) else None
+        data = content.get("data") if isinstance(content, dict) else None
+        method = data.get("method") if isinstance(data, dict) else None
+        if method == "request_state":
+            self.send_state()
+        elif method != "update":
+            asked = data.get("content") if method == "custom" else None
+            self.session.receive(self, asked, message.get("buffers"))
+
+    def _do(self, call: Callable[[], Any]) -> Any:
+        """In the thread that owns the document."""
+        return self.session.do(call)

@@ -1,0 +1,216 @@
+"""The mesh as a browser gets it: once as a whole, then only what differs from what was sent last.
+
+Differences are found by comparing arrays, so that nothing that changes a mesh needs to report what
+it does: operations, smoothing, undo and a jump through the history are all the same here. Arrays
+travel as little-endian buffers beside a small object. Places are float32 in a frame in which the
+mesh reaches from about -1 to 1.
+
+Every entry is a slot of the mesh: vertex v, half-edge h. Flags of a dead vertex are 0, the origin
+of a dead half-edge is -1. Slots never become fewer: an undo leaves dead ones behind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from meshcore import HalfEdgeMesh
+from meshcore.halfedge import (
+    DEGREE,
+    DESIRED,
+    ELEMENT_SLOTS,
+    FLAGS,
+    GEOMETRIC,
+    HALF,
+    LOCKED,
+    ORIGIN,
+    TWIN,
+)
+
+VERSION = 1
+ALIVE, BOUNDARY, CORNER, FIXED = 1, 2, 4, 8
+"""Bits of a vertex's flags; FIXED is a vertex that a person has locked."""
+
+
+@dataclass
+class Packet:
+    """A message to the browser: a small object and the arrays that go with it."""
+
+    content: dict[str, Any]
+    buffers: list[bytes] = field(default_factory=list)
+
+    @property
+    def size(self) -> int:
+        """Bytes of the arrays."""
+        return sum(map(len, self.buffers))
+
+
+@dataclass(frozen=True)
+class Frame:
+    """From places of the mesh to places that are sent: x' = (x - cx) / scale, y' likewise."""
+
+    cx: float = 0.0
+    cy: float = 0.0
+    scale: float = 1.0
+
+    @classmethod
+    def of(cls, mesh: HalfEdgeMesh) -> Frame:
+        """The frame in which the live vertices lie between -1 and 1."""
+        live = mesh.points[mesh.vertices(), :2]
+        if not len(live):
+            return cls()
+        low, high = live.min(axis=0), live.max(axis=0)
+        (cx, cy), scale = (0.5 * (low + high)).tolist(), 0.5 * float((high - low).max())
+        return cls(cx, cy, scale if scale > 0 else 1.0)
+
+    def normalised(self, places: np.ndarray) -> np.ndarray:
+        """Places (..., 2 or 3) as float32 (..., 2)."""
+        moved = (places[..., :2] - (self.cx, self.cy)) / self.scale
+        return moved.astype("<f4")
+
+
+@dataclass(frozen=True)
+class Slots:
+    """What is sent of a mesh of ``V`` vertex slots and ``H`` half-edge slots."""
+
+    places: np.ndarray
+    """(V, 2) float32; dead ones are at 0."""
+    delta: np.ndarray
+    """(V,) int8."""
+    flags: np.ndarray
+    """(V,) uint8."""
+    origin: np.ndarray
+    """(H,) int32."""
+    twin: np.ndarray
+    """(H,) int32."""
+
+    @classmethod
+    def of(cls, mesh: HalfEdgeMesh, frame: Frame, vertices: int = 0, halfedges: int = 0) -> Slots:
+        """Copies from the mesh, with at least so many slots."""
+        arrays = mesh.arrays
+        used, held = mesh.slots, mesh.k * int(arrays.counters[ELEMENT_SLOTS])
+        rows, edges = arrays.vertex[:used], arrays.edge[:held]
+        half = rows[:, HALF]
+        alive = half >= 0
+        flags = np.zeros(max(used, vertices), np.uint8)
+        flags[:used] = np.where(
+            alive,
+            ALIVE
+            + BOUNDARY * (arrays.edge[np.maximum(half, 0), TWIN] < 0)
+            + CORNER * ((rows[:, FLAGS] & GEOMETRIC) > 0)
+            + FIXED * ((rows[:, FLAGS] & LOCKED) > 0),
+            0,
+        )
+        delta = np.zeros(len(flags), np.int8)
+        delta[:used] = np.clip(rows[:, DEGREE] - rows[:, DESIRED], -127, 127) * alive
+        places = np.zeros((len(flags), 2), "<f4")
+        places[:used][alive] = frame.normalised(mesh.points[alive])
+        origin = np.full(max(held, halfedges), -1, "<i4")
+        origin[:held] = np.maximum(edges[:, ORIGIN], -1)
+        twin = np.full(len(origin), -1, "<i4")
+        twin[:held] = np.where(edges[:, ORIGIN] >= 0, edges[:, TWIN], -1)
+        return cls(places, delta, flags, origin, twin)
+
+    @classmethod
+    def none(cls) -> Slots:
+        """No slots at all."""
+        return cls(
+            np.zeros((0, 2), "<f4"),
+            np.zeros(0, np.int8),
+            np.zeros(0, np.uint8),
+            np.zeros(0, "<i4"),
+            np.zeros(0, "<i4"),
+        )
+
+    @property
+    def buffers(self) -> list[bytes]:
+        """All arrays, in the order of a state message."""
+        arrays = (self.places, self.delta, self.flags, self.origin, self.twin)
+        return [array.tobytes() for array in arrays]
+
+
+class Mirror:
+    """What the browsers know of a mesh: all views of a session know the same.
+
+    :attr:`revision` counts the patches that were made.
+    """
+
+    def __init__(self) -> None:
+        self.revision = 0
+        self.frame = Frame()
+        self.moved = self.turned = np.zeros(0, np.int64)
+        """The vertices and the half-edges of the last patch."""
+        self._k = 3
+        self._known = Slots.none()
+
+    def reset(self, mesh: HalfEdgeMesh | None) -> None:
+        """Another mesh is here, or the first, or none: whoever follows needs :meth:`state`."""
+        self.revision += 1
+        self.frame, self._k = Frame(), 3
+        self._known = Slots.none()
+        if mesh is not None:
+            self.frame, self._k = Frame.of(mesh), mesh.k
+            self._known = Slots.of(mesh, self.frame)
+
+    def state(self) -> Packet:
+        """Everything that is known, as it was sent last."""
+        known = self._known
+        content = {
+            "say": "state",
+            "version": VERSION,
+            "revision": self.revision,
+            "k": self._k,
+            "vertices": len(known.flags),
+            "halfedges": len(known.origin),
+            "frame": {"cx": self.frame.cx, "cy": self.frame.cy, "scale": self.frame.scale},
+        }
+        return Packet(content, known.buffers)
+
+    def patch(self, mesh: HalfEdgeMesh | None) -> Packet:
+        """What differs from what was sent last, and from now on counts as sent.
+
+        Where a patch would be larger than the whole it is the state.
+        """
+        old = self._known
+        new = old
+        if mesh is not None:
+            new = Slots.of(mesh, self.frame, len(old.flags), len(old.origin))
+        changed = _differing((new.places, new.delta, new.flags), (old.places, old.delta, old.flags))
+        turned = _differing((new.origin, new.twin), (old.origin, old.twin))
+        self._known, self.moved, self.turned = new, changed, turned
+        self.revision += 1
+        buffers = [
+            changed.astype("<i4").tobytes(),
+            new.places[changed].tobytes(),
+            new.delta[changed].tobytes(),
+            new.flags[changed].tobytes(),
+            turned.astype("<i4").tobytes(),
+            new.origin[turned].tobytes(),
+            new.twin[turned].tobytes(),
+        ]
+        content = {
+            "say": "patch",
+            "from": self.revision - 1,
+            "to": self.revision,
+            "vertices": len(new.flags),
+            "halfedges": len(new.origin),
+        }
+        packet = Packet(content, buffers)
+        whole = 10 * len(new.flags) + 8 * len(new.origin)
+        return self.state() if packet.size > whole else packet
+
+
+def _differing(new: Sequence[np.ndarray], old: Sequence[np.ndarray]) -> np.ndarray:
+    """Indices where any of the arrays differ from those before, to the bit; all new slots do."""
+    count = len(old[0])
+    differs = np.ones(len(new[0]), dtype=bool)
+    differs[:count] = False
+    for now, before in zip(new, old, strict=True):
+        # floats as bits: what is no number equals itself
+        a, b = (x.view("<u4") if x.dtype.kind == "f" else x for x in (now[:count], before))
+        unlike = a != b
+        differs[:count] |= unlike.any(axis=1) if unlike.ndim == 2 else unlike
+    return np.flatnonzero(differs)
