@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 from typing import Protocol
 
-from app.commands import bench, demo, evaluate, improve, mesh, shapes, train, view
+from app.commands import bench, demo, evaluate, improve, lessons, mesh, shapes, train, view
 from app.report import Report
 
 
@@ -34,5 +34,6 @@ COMMANDS: dict[str, Command] = {
     "improve": improve,
     "evaluate": evaluate,
     "train": train,
+    "lessons": lessons,
     "bench": bench,
 }

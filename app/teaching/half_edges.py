@@ -1,0 +1,97 @@
+"""Checks of lesson 1: half-edges and degrees."""
+
+from __future__ import annotations
+
+from app.teaching.exercises import declare
+from app.teaching.given import called, edited, expect, whole
+from app.teaching.patches import fan, grid
+
+STAR = 24
+"""Quads of the star of the gallery."""
+
+
+@declare("1.1", "How many sides does each of the 24 quads own? Put the number where the dots are.")
+def halfedges_of_the_star(answer: object) -> str:
+    """Half-edges of 24 quads."""
+    n = whole(answer)
+    expect(n != STAR, "That is the number of quads. Each of them owns one half-edge for each side.")
+    expect(
+        n != 58,
+        "That is the number of edges; an edge between two quads has two half-edges.",
+    )
+    expect(n == 4 * STAR, "Count by quads, not by edges: no half-edge belongs to two quads.")
+    return "Each quad owns four, whether its neighbours are there or not: 4 \u00b7 24 = 96."
+
+
+@declare("1.2", "Start at half-edge 5 in the picture and take three steps along the arrows.")
+def three_steps(answer: object) -> str:
+    """Three times next from 5."""
+    n = whole(answer)
+    expect(n != 8, "After 7 there is no half-edge 8 in this quad: the walk closes.")
+    expect(n != 7, "That is where two steps end; one is missing.")
+    expect(n != 5, "That is where four steps end: all the way round.")
+    expect(n == 4, "Stay inside the right-hand quad and follow its arrows, head to tail.")
+    return "Three times `next` in a quad is once `prev`: 5, 6, 7, 4."
+
+
+@declare("1.3", "Ask each half-edge for its twin: which number does it give where there is none?")
+def count_boundary(function: object) -> str:
+    """A function that counts half-edges without twin."""
+    for mesh, name in (
+        (grid(2, 1), "the pair"),
+        (grid(3, 2), "a grid of 3 by 2 quads"),
+        (fan(), "a fan of triangles"),
+    ):
+        n = whole(called(function, mesh), "what the function returns")
+        wanted = int(mesh.boundary().sum())
+        expect(
+            n != mesh.k * mesh.n_elements - wanted,
+            "These are the half-edges that have a twin; it is the others that are wanted.",
+        )
+        expect(n == wanted, f"On {name} it returns {n}; count the sides of its outline by hand.")
+    return "A half-edge without a twin lies on the boundary, and each boundary edge has just one."
+
+
+@declare("1.4", "From h go to the half-edge that ends where h starts, then to its other side.")
+def turn(function: object) -> str:
+    """The next half-edge out of the same vertex, counter-clockwise."""
+    for mesh, h in ((grid(2, 2), grid(2, 2).halfedge(4, 5)), (fan(), fan().halfedge(0, 1))):
+        here, wanted = mesh.origin(h), mesh.twin(mesh.prev(h))
+        found = whole(called(function, mesh, h), "what the function returns")
+        expect(
+            0 <= found < mesh.k * mesh.n_elements,
+            f"It returns {found}: no half-edge here has that id.",
+        )
+        expect(found != h, "It returns h itself.")
+        expect(
+            mesh.origin(found) == here,
+            f"From the vertex {here} it comes to a half-edge that leaves {mesh.origin(found)}: "
+            "the two must start at the same vertex.",
+        )
+        expect(
+            found == wanted,
+            "It turns about the vertex, but clockwise; try the two steps in "
+            "the other order, with `prev`.",
+        )
+    return "Repeat it and you meet every edge at the vertex once: that is how a degree is counted."
+
+
+@declare("1.5", "Add the sizes of the five numbers, without their signs.")
+def score(answer: object) -> str:
+    """s of +1, -1, -2, +1, 0."""
+    n = whole(answer)
+    expect(n != -1, "That is the sum with signs, which the next lesson is about. s counts sizes.")
+    expect(n != 4, "That is how many vertices are irregular; one of them counts twice.")
+    expect(n == 5, "Take each number without its sign, then add.")
+    return "1 + 1 + 2 + 1 + 0: too many and too few cost the same, and two too few cost double."
+
+
+@declare("1.6", "Click the half-edge in the middle of the four discs, or point at it and press R.")
+def one_flip(widget: object) -> str:
+    """A grid that one flip makes regular."""
+    mesh = edited(widget)
+    expect(
+        mesh.score == 0,
+        f"s is {mesh.score} now, and some discs are left. Undo, and flip the other way.",
+    )
+    return "Every vertex has the degree it wants: s is 0, and no mesh can do better."

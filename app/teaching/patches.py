@@ -1,0 +1,122 @@
+"""The small meshes that the lessons look at, by name."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+
+import numpy as np
+
+from meshcore import HalfEdgeMesh, MeshError
+
+
+def patch(name: str) -> HalfEdgeMesh:
+    """The small mesh called ``name``, one of :data:`PATCHES`, new each time.
+
+    Raises MeshError, in one sentence, where there is none.
+    """
+    if name not in PATCHES:
+        near = difflib.get_close_matches(str(name), PATCHES, 3, 0.5)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(PATCHES)}."
+        raise MeshError(f"There is no patch named {name!r}; {hint}")
+    return PATCHES[name]()
+
+
+def grid(columns: int, rows: int) -> HalfEdgeMesh:
+    """A grid of unit squares; its corners are geometric, s is 0."""
+    points = [(x, y) for y in range(rows + 1) for x in range(columns + 1)]
+    return HalfEdgeMesh.from_elements(np.array(points, dtype=float), _squares(columns, rows))
+
+
+def _squares(columns: int, rows: int) -> np.ndarray:
+    wide = columns + 1
+    first = [y * wide + x for y in range(rows) for x in range(columns)]
+    return np.array([(i, i + 1, i + wide + 1, i + wide) for i in first])
+
+
+def fan() -> HalfEdgeMesh:
+    """Six triangles around a vertex, s 0."""
+    return _hexagon(1)
+
+
+def hexagon() -> HalfEdgeMesh:
+    """Twenty-four triangles in two rings around a vertex, s 0."""
+    return _hexagon(2)
+
+
+def _hexagon(rings: int) -> HalfEdgeMesh:
+    reach = range(-rings, rings + 1)
+    places = [(i, j) for j in reach for i in reach if abs(i + j) <= rings]
+    number = {place: n for n, place in enumerate(places)}
+    rows = []
+    for i, j in places:
+        right, above, left = (i + 1, j), (i, j + 1), (i - 1, j + 1)
+        for corners in ([(i, j), right, above], [(i, j), above, left]):
+            if all(corner in number for corner in corners):
+                rows.append([number[corner] for corner in corners])
+    points = np.array([(i + 0.5 * j, np.sqrt(0.75) * j) for i, j in places])
+    return HalfEdgeMesh.from_elements(points, np.array(rows))
+
+
+def trap() -> HalfEdgeMesh:
+    """A hexagon with two more vertices inside the triangle 9, 10, 14, whose sides cannot collapse:
+    their ends have the third corner in common besides the vertices across.
+    """
+    mesh = hexagon()
+    rows = [row for row in mesh.elements().tolist() if set(row) != {9, 10, 14}]
+    points = np.vstack([mesh.points, (0.3, 0.26, 0.0), (0.64, 0.34, 0.0)])
+    rows += [(9, 10, 19), (19, 10, 20), (20, 10, 14), (19, 20, 14), (9, 19, 14)]
+    return HalfEdgeMesh.from_elements(points, np.array(rows))
+
+
+def flipped_grid() -> HalfEdgeMesh:
+    """A grid of 3 by 3 after one flip to the left: s 4, s* 0."""
+    return _edited(grid(3, 3), ("flip_left", 5, 6))
+
+
+def split_hexagon() -> HalfEdgeMesh:
+    """A hexagon after the split of an edge: s 4, s* 0."""
+    return _edited(hexagon(), ("split", 9, 10))
+
+
+def knot() -> HalfEdgeMesh:
+    """A hexagon after two flips near each other: s 4, s* 0, and no single flip back is enough."""
+    return _edited(hexagon(), ("flip", 5, 9), ("flip", 10, 14))
+
+
+def doublet() -> HalfEdgeMesh:
+    """A grid of 3 by 3 whose middle quad was cut by a vertex with two edges: s 4, s* 0."""
+    mesh = grid(3, 3)
+    rows = [row for row in mesh.elements().tolist() if row != [5, 6, 10, 9]]
+    points = np.vstack([mesh.points, (1.6, 1.4, 0.0)])
+    rows += [(5, 6, 10, 16), (5, 16, 10, 9)]
+    return HalfEdgeMesh.from_elements(points, np.array(rows))
+
+
+def three_to_one() -> HalfEdgeMesh:
+    """A rectangle with three edges below and one above: s 4, s* 0."""
+    points = [(0, 0), (1, 0), (2, 0), (3, 0), (3, 2), (0, 2), (1, 1), (2, 1)]
+    rows = [(0, 1, 6, 5), (1, 2, 7, 6), (2, 3, 4, 7), (6, 7, 4, 5)]
+    return HalfEdgeMesh.from_elements(np.array(points, dtype=float), np.array(rows))
+
+
+def _edited(mesh: HalfEdgeMesh, *edits: tuple[str, int, int]) -> HalfEdgeMesh:
+    """The mesh after operations at the half-edges between two vertices, and without a history."""
+    for operation, a, b in edits:
+        mesh.apply(operation, mesh.halfedge(a, b))
+    return mesh.copy()
+
+
+PATCHES: dict[str, Callable[[], HalfEdgeMesh]] = {
+    "grid": lambda: grid(3, 3),
+    "wide grid": lambda: grid(4, 3),
+    "flipped grid": flipped_grid,
+    "doublet": doublet,
+    "three to one": three_to_one,
+    "fan": fan,
+    "hexagon": hexagon,
+    "split hexagon": split_hexagon,
+    "knot": knot,
+    "trap": trap,
+}
+"""What makes each of them."""

@@ -1,0 +1,305 @@
+"""Makes the pictures of the lessons and puts them into the notebooks, as attachments.
+
+    python docs/make_lesson_pictures.py              all of them
+    python docs/make_lesson_pictures.py 01 03        only those of these lessons
+    python docs/make_lesson_pictures.py --out FOLDER write PNG files, leave the notebooks alone
+
+A notebook refers to a picture as ``attachment:NAME.png``; only those that are referred to are made.
+Pictures are drawn twice as large as they are shown.
+"""
+
+import argparse
+import base64
+import io
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from make_pictures import gap, most_central, quads, triangles
+from PIL import Image, ImageDraw
+
+from app.drawing import Disc, Drawing, Line, Polygon, Segments, Text, raster, text_width
+from app.figure import Look, figure
+from app.filmstrip import side_by_side
+from app.lessons import FOLDER
+from app.theme import LIGHT
+from app.viewport import Viewport
+from meshcore import HalfEdgeMesh, shapes, smoothing
+
+ARROW, NUMBER, UNIT = 5.0, 24.0, 1.6
+"""Pixels: width of arrows, height of letters; and what lines are scaled by."""
+
+ROUND = 24
+"""Pixels by which the corners of a picture are rounded: it is a card on any page."""
+COLOURS = 63
+"""In a picture; the next number is what is transparent."""
+
+
+def view_of(mesh: HalfEdgeMesh, size: tuple[int, int], margin: float = 56.0) -> Viewport:
+    """The view that shows the whole mesh."""
+    return Viewport(size=size).fitted(mesh.points[mesh.vertices()], margin)
+
+
+def picture(mesh: HalfEdgeMesh, size: tuple[int, int], view: Viewport | None = None) -> Drawing:
+    """The mesh with its irregular vertices, without words."""
+    view = view or view_of(mesh, size)
+    return figure(mesh, Look(size, score=False, unit=UNIT), viewport=view)
+
+
+def arrow(
+    drawing: Drawing,
+    view: Viewport,
+    mesh: HalfEdgeMesh,
+    h: int,
+    words: str = "",
+    colour: str = LIGHT.arrow,
+) -> None:
+    """The arrow of half-edge h on its own side of the edge, with words beside it."""
+    a, b = view.to_screen(mesh.points[[mesh.origin(h), mesh.target(h)]])
+    length = float(np.hypot(*(b - a)))
+    along = (b - a) / length
+    inward = np.array([along[1], -along[0]])  # left of the direction, y pointing down
+    aside = 0.07 * length * inward
+    tail, tip = a + 0.16 * length * along + aside, b - 0.16 * length * along + aside
+    neck = tip - 22.0 * along
+    drawing.add(
+        Line(np.array([tail, neck]), colour, ARROW),
+        Polygon(np.array([tip, neck + 10.0 * inward, neck - 10.0 * inward]), colour),
+    )
+    if words:
+        wide = text_width(words, NUMBER, bold=True) / 2.0
+        x, y = (tail + tip) / 2.0 + (14.0 + max(12.0, wide * abs(float(inward[0])))) * inward
+        drawing.add(Text(words, (float(x), float(y)), NUMBER, colour, "middle", True))
+
+
+def vertex_number(drawing: Drawing, view: Viewport, mesh: HalfEdgeMesh, v: int) -> None:
+    """The id of a vertex in a pale disc."""
+    x, y = view.to_screen(mesh.points[v]).tolist()
+    drawing.add(
+        Disc((x, y), 23.0, LIGHT.boundary),
+        Disc((x, y), 21.0, LIGHT.raised),
+        Text(str(v), (x, y), NUMBER, LIGHT.text, "middle"),
+    )
+
+
+def pair() -> HalfEdgeMesh:
+    """Two quads side by side."""
+    points = np.array([(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)], dtype=float)
+    return HalfEdgeMesh.from_elements(points, np.array([(0, 1, 4, 3), (1, 2, 5, 4)]))
+
+
+def two_quads() -> Any:
+    """Every half-edge of two quads, with its id."""
+    mesh, size = pair(), (1120, 640)
+    view = view_of(mesh, size, 72.0)
+    drawing = picture(mesh, size, view)
+    for h in range(8):
+        arrow(drawing, view, mesh, h, str(h), LIGHT.plus if h in (1, 7) else LIGHT.arrow)
+    for v in range(6):
+        vertex_number(drawing, view, mesh, v)
+    return raster(drawing)
+
+
+def turn() -> Any:
+    """Four half-edges that leave a vertex, and the step from one to the next."""
+    mesh, size = quads(2, 2), (720, 640)
+    view = view_of(mesh, size, 48.0)
+    drawing = picture(mesh, size, view)
+    h = mesh.halfedge(4, 5)
+    before = mesh.prev(h)
+    arrow(drawing, view, mesh, h, "h")
+    arrow(drawing, view, mesh, before, "prev", LIGHT.muted)
+    arrow(drawing, view, mesh, mesh.twin(before), "twin", LIGHT.plus)
+    vertex_number(drawing, view, mesh, 4)
+    return raster(drawing)
+
+
+def corners_of_star() -> Any:
+    """The outline of the star; at each corner the edges it wants, and the edges it is given."""
+    domain, size = shapes.shape("star"), (960, 800)
+    outline = np.asarray(domain.outline, dtype=float)
+    view = Viewport(size=size).fitted(outline, 112.0)
+    drawing = Drawing(size, LIGHT.background, "the corners of a star")
+    seen = view.to_screen(outline)
+    drawing.add(Polygon(seen, LIGHT.fill), Line(np.vstack([seen, seen[:1]]), LIGHT.boundary, 4.0))
+    middle = seen.mean(axis=0)
+    for i, here in enumerate(seen):
+        come, go = outline[i] - outline[i - 1], outline[(i + 1) % len(outline)] - outline[i]
+        turned = np.degrees(np.arctan2(come[0] * go[1] - come[1] * go[0], come @ go))
+        wants = (180.0 - turned) / 90.0 + 1.0
+        gets = max(int(np.floor(wants + 0.5)), 2)
+        out = (here - middle) / np.linalg.norm(here - middle)
+        aside = 54.0 + 34.0 * abs(float(out[0]))
+        x, y = (here + aside * out).tolist()
+        drawing.add(
+            Disc(tuple(here.tolist()), 8.0, LIGHT.boundary),
+            Text(f"{wants:.1f} \u2192 {gets}", (x, y), 26.0, LIGHT.text, "middle", True),
+        )
+    return raster(drawing)
+
+
+def before_after(mesh: HalfEdgeMesh, operation: str, h: int, size: tuple[int, int]) -> Any:
+    """A patch with an arrow, and what the operation makes of it."""
+    view = view_of(mesh, size, 28.0)
+    first = picture(mesh, size, view)
+    arrow(first, view, mesh, h)
+    changed = mesh.copy()
+    changed.apply(operation, h)
+    smoothing.relax(changed)
+    return side_by_side([raster(first), gap(size[1]), raster(picture(changed, size, view))])
+
+
+def stacked(rows: list[Any], between: int = 8) -> Any:
+    """Pictures one below the other."""
+    width, height = max(row.width for row in rows), sum(row.height for row in rows)
+    image = Image.new("RGB", (width, height + between * (len(rows) - 1)), LIGHT.background)
+    y = 0
+    for row in rows:
+        image.paste(row, ((width - row.width) // 2, y))
+        y += row.height + between
+    return image
+
+
+def titled(image: Any, words: str) -> Any:
+    """A picture with a word above it."""
+    head = Drawing((image.width, 56), LIGHT.background)
+    head.add(Text(words, (28.0, 32.0), 26.0, LIGHT.text, "left", True))
+    return stacked([raster(head), image], 0)
+
+
+def triangle_operations() -> Any:
+    """Flip, split and collapse, before and after."""
+    mesh = triangles(2)
+    rows = [
+        titled(before_after(mesh, name, most_central(mesh, name), (480, 340)), name)
+        for name in ("flip", "split", "collapse")
+    ]
+    return stacked(rows)
+
+
+def hexagon_of_two_quads() -> Any:
+    """The three ways to cut a hexagon into two quads."""
+    angles = np.radians(60.0 * np.arange(6) + 30.0)
+    points = np.column_stack([1.2 * np.cos(angles), np.sin(angles)])
+    size, panels = (400, 360), []
+    for first in (1, 2, 0):
+        a, b = first, first + 3
+        cells = [[(a + i) % 6 for i in range(4)], [(b + i) % 6 for i in range(4)]]
+        geometric = np.zeros(6, dtype=bool)
+        mesh = HalfEdgeMesh.from_elements(
+            points, np.array(cells), geometric=geometric, desired_degree=np.full(6, 2)
+        )
+        view = view_of(mesh, size, 40.0)
+        drawing = Drawing(size, LIGHT.background)
+        seen = view.to_screen(points)
+        drawing.add(
+            Polygon(seen, LIGHT.fill),
+            Segments(seen[[[a, b]]], LIGHT.arrow, 6.0),
+            Line(np.vstack([seen, seen[:2]]), LIGHT.boundary, 4.0),
+        )
+        panels.append(raster(drawing))
+    arrow_between = gap(size[1])
+    return side_by_side([panels[0], arrow_between, panels[1], arrow_between, panels[2]])
+
+
+def three_to_one() -> HalfEdgeMesh:
+    """A rectangle with three edges below and one above: s 4, s* 0."""
+    points = [(0, 0), (1, 0), (2, 0), (3, 0), (3, 2), (0, 2), (1, 1), (2, 1)]
+    cells = [(0, 1, 6, 5), (1, 2, 7, 6), (2, 3, 4, 7), (6, 7, 4, 5)]
+    return HalfEdgeMesh.from_elements(np.array(points, dtype=float), np.array(cells))
+
+
+def unequal_sides() -> Any:
+    """Three edges below, one above."""
+    return raster(picture(three_to_one(), (720, 520)))
+
+
+def quad_operations() -> Any:
+    """A vertex split and the collapse that undoes it."""
+    mesh = quads(4, 3)
+    rows = [
+        titled(before_after(mesh, name, most_central(mesh, name), (480, 380)), name)
+        for name in ("split", "collapse")
+    ]
+    return stacked(rows)
+
+
+def global_operations() -> Any:
+    """A global split and a clean-up."""
+    split, clean = quads(4, 3), quads(4, 3)
+    rows = [
+        titled(
+            before_after(split, "global_split", most_central(split, "global_split"), (480, 380)),
+            "global split",
+        ),
+        titled(
+            before_after(clean, "cleanup", most_central(clean, "cleanup"), (480, 380)), "clean-up"
+        ),
+    ]
+    return stacked(rows)
+
+
+PICTURES: dict[str, Callable[[], Any]] = {
+    "two-quads": two_quads,
+    "turn": turn,
+    "corners-of-star": corners_of_star,
+    "triangle-operations": triangle_operations,
+    "hexagon": hexagon_of_two_quads,
+    "quad-operations": quad_operations,
+    "global-operations": global_operations,
+    "unequal-sides": unequal_sides,
+}
+
+
+def png(image: Any) -> bytes:
+    """The picture as a PNG with rounded corners and few colours."""
+    few = image.convert("RGB").quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=0)
+    outside = Image.new("1", image.size, 1)
+    ImageDraw.Draw(outside).rounded_rectangle(
+        (0, 0, image.width - 1, image.height - 1), ROUND, fill=0
+    )
+    few.paste(COLOURS, (0, 0, *image.size), outside)
+    stream = io.BytesIO()
+    few.save(stream, format="PNG", optimize=True, transparency=COLOURS)
+    return stream.getvalue()
+
+
+def put_into(path: Path) -> list[str]:
+    """Make the pictures that a notebook refers to and attach them; returns their names."""
+    import nbformat
+
+    notebook = nbformat.read(path, as_version=4)
+    made = []
+    for cell in notebook.cells:
+        for name in re.findall(r"attachment:([\w-]+)\.png", cell.source):
+            if name in PICTURES:
+                data = base64.b64encode(png(PICTURES[name]())).decode()
+                cell.setdefault("attachments", {})[f"{name}.png"] = {"image/png": data}
+                made.append(name)
+    if made:
+        nbformat.write(notebook, path)
+    return made
+
+
+def main() -> None:
+    """Make the pictures of the lessons that are named, or of all."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("lessons", nargs="*", metavar="NUMBER")
+    parser.add_argument("--out", type=Path, help="write PNG files here instead")
+    arguments = parser.parse_args()
+    if arguments.out is not None:
+        arguments.out.mkdir(parents=True, exist_ok=True)
+        for name, make in PICTURES.items():
+            (arguments.out / f"{name}.png").write_bytes(png(make()))
+        return
+    for path in sorted(FOLDER.glob("*.ipynb")):
+        if not arguments.lessons or path.name.startswith(tuple(arguments.lessons)):
+            made = put_into(path)
+            sys.stdout.write(f"{path.name}: {', '.join(made) or 'none'}\n")
+
+
+if __name__ == "__main__":
+    main()
