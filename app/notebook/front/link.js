@@ -20,8 +20,9 @@ class KernelLink {
     this._model = model;
     this._last = 0;
     this._receive = (content, buffers) => {
-      const mine = !content || content.to === undefined || content.to === null || content.to === this.view;
-      if (content && mine) this.onmessage(content, buffers || []);
+      // a patch is for all, and its "to" is a revision
+      const mine = content && (content.say === "patch" || !content.to || content.to === this.view);
+      if (mine) this.onmessage(content, buffers || []);
     };
     model.on("msg:custom", this._receive);
   }

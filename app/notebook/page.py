@@ -1,0 +1,137 @@
+"""The frozen page: one HTML file that goes through the film of a history, without any Python.
+
+Everything is in the file: it asks nothing of a network, works from a disk and in a frame. A policy
+in the page itself says so to the browser, and that no script may run but ours.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from base64 import b64encode
+from hashlib import sha256
+from html import escape
+from typing import Any
+
+from app.document import Document
+from app.figure import elements
+from app.notebook import front
+from app.notebook.recording import record
+from app.theme import DARK, LIGHT, Theme
+from meshcore import atomic
+
+LONGEST = 200
+"""Characters of a title."""
+HEAD_AND_FOOT = 296
+"""Pixels of the page above and below the canvas."""
+LOWEST, HIGHEST = 240, 640
+"""Bounds of the canvas in pixels."""
+
+
+def page(document: Document, title: str = "", path: str | os.PathLike[str] | None = None) -> str:
+    """The page of ``document`` as text, which with ``path`` is written there, too.
+
+    Without a title it is that of the document's name. It begins in the state in which the document
+    is now. Raises MeshError, in one sentence, where there is no mesh or nothing can be written at
+    ``path``; an old file stays as it was then.
+    """
+    film = record(document)
+    heading = _heading(title or document.name or elements(document.mesh))
+    text = _html(heading, _note(film), film)
+    if path is not None:
+        with atomic.replacing(path) as temporary:
+            temporary.write_text(text, encoding="utf-8", newline="\n")
+    return text
+
+
+def _html(heading: str, note: str, film: dict[str, Any]) -> str:
+    script = _script()
+    return f"""<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="{_policy(script)}">
+<meta name="generator" content="Meshwright">
+<title>{escape(heading)}</title>
+<style>
+{_page_style()}
+{front.style()}</style>
+</head>
+<body>
+<main>
+<h1>{escape(heading)}</h1>
+<p>{escape(note)}</p>
+<div id="film"></div>
+<noscript><p>A script in this page would show the film; here scripts are switched off.</p></noscript>
+<p class="end">Made with Meshwright</p>
+</main>
+<script type="application/json" id="recording">{_embedded(film)}</script>
+<script>{script}</script>
+</body>
+</html>
+"""
+
+
+def _heading(title: str) -> str:
+    """One line, not too long."""
+    line = " ".join(title.split())
+    return line if len(line) <= LONGEST else line[: LONGEST - 1] + "\u2026"
+
+
+def _note(film: dict[str, Any]) -> str:
+    """What is seen here, in words."""
+    scores, optima = film["track"]["scores"], film["track"]["optima"]
+    count = len(scores) - 1
+    if count == 0:
+        way = f"no steps, s {scores[0]:,}"
+    else:
+        steps = f"{count:,} step{'' if count == 1 else 's'}"
+        way = f"{steps}, from s {scores[0]:,} to {scores[-1]:,}"
+    return f"A frozen film: {way}, optimum {optima[-1]:,}. It can be watched, not changed."
+
+
+def _embedded(film: dict[str, Any]) -> str:
+    """JSON that cannot end the element it stands in, whatever names are in it."""
+    text = json.dumps(film, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _script() -> str:
+    """The front, and what puts the film into the page."""
+    return f"""(() => {{
+"use strict";
+{front.script()}
+const recording = JSON.parse(document.getElementById("recording").textContent);
+const room = Math.min(Math.max(innerHeight - {HEAD_AND_FOOT}, {LOWEST}), {HIGHEST});
+mount(document.getElementById("film"), new FilmLink(recording), {{ height: room, theme: "auto" }});
+}})();
+"""
+
+
+def _policy(script: str) -> str:
+    """What the browser may do for this page: run this one script and nothing else."""
+    hashed = b64encode(sha256(script.encode()).digest()).decode("ascii")
+    return (
+        f"default-src 'none'; script-src 'sha256-{hashed}'; style-src 'unsafe-inline'; "
+        "img-src data:; base-uri 'none'; form-action 'none'"
+    )
+
+
+def _page_style() -> str:
+    """What stands around the card, light and dark as the system is."""
+    return f"""{_colours(LIGHT)}
+@media (prefers-color-scheme: dark) {{ {_colours(DARK)} }}
+html {{ background: var(--page); color: var(--ink); }}
+body {{ margin: 0; font: 14px/1.5 system-ui, sans-serif; }}
+main {{ max-width: 1120px; margin: 0 auto; padding: 16px; }}
+h1 {{ margin: 0; font-size: 20px; line-height: 1.3; overflow-wrap: anywhere; }}
+p {{ margin: 4px 0 16px; color: var(--quiet); }}
+p.end {{ margin: 8px 0 0; font-size: 12px; text-align: right; }}"""
+
+
+def _colours(theme: Theme) -> str:
+    return (
+        f":root {{ --page: {theme.background}; --ink: {theme.text}; --quiet: {theme.muted}; "
+        f"color-scheme: {theme.name}; }}"
+    )
