@@ -1,0 +1,154 @@
+"""The blocks of a quad mesh: a picture of them, and each as a structured grid."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from app.drawing import Disc, Drawing, Polygon, Segments, Text, text_width
+from app.experiments.picture import Picture, ThemedLook
+from app.experiments.still import MARGIN, given_mesh
+from app.figure import figure
+from app.theme import LIGHT, Theme
+from app.viewport import Viewport
+from meshcore import HalfEdgeMesh
+from meshcore.block_grids import Grid, grids
+from meshcore.blocks import separatrices
+from meshcore.halfedge import ORIGIN, TWIN
+
+SIZE = 480
+FOOT = 40.0
+
+
+def block_view(mesh: Any, corners: bool = False) -> BlockView:
+    """Cut a quad mesh into its blocks.
+
+    Args:
+        mesh: as :func:`app.experiments.compare` takes it; it is copied.
+        corners: cut also from corners of the outline that lie in the middle of a block's side.
+
+    Raises MeshError with one sentence for triangles.
+    """
+    shown = given_mesh(mesh)
+    return BlockView(shown, grids(shown, corners), separatrices(shown, corners))
+
+
+class BlockView(Picture):
+    """A quad mesh as blocks."""
+
+    def __init__(self, mesh: HalfEdgeMesh, found: list[Grid], cut: np.ndarray) -> None:
+        self.mesh = mesh
+        self.grids = found
+        """One for each block: its vertices and its elements in rows."""
+        self._cut = cut
+
+    def __len__(self) -> int:
+        return len(self.grids)
+
+    def __repr__(self) -> str:
+        sizes = Counter(_size(grid) for grid in self.grids)
+        said = ", ".join(f"{count} of {size}" for size, count in sizes.most_common())
+        noun = "block" if len(self) == 1 else "blocks"
+        return f"{len(self)} {noun}: {said}"
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """A plain row for each block."""
+        return [
+            {
+                "block": i,
+                "rows": grid.shape[0],
+                "columns": grid.shape[1],
+                "elements": grid.elements.size,
+                "closed": grid.closed,
+            }
+            for i, grid in enumerate(self.grids)
+        ]
+
+    def drawing(self, theme: Theme = LIGHT) -> Drawing:
+        """Each block in a tint that its neighbours do not have, its size in it; thick lines where
+        blocks meet.
+        """
+        mesh = self.mesh
+        extent = np.ptp(mesh.points[mesh.vertices(), :2], axis=0)
+        tall = round(SIZE * float(np.clip(extent[1] / max(extent[0], 1e-12), 0.35, 1.0)))
+        size = (SIZE, tall)
+        look = ThemedLook(size=size, score=False, curve=False, unit=1.0, given=theme)
+        view = Viewport(size=size).fitted(mesh.points[mesh.vertices()], MARGIN)
+        picture = figure(mesh, look, None, view)
+        drawing = Drawing((SIZE, round(tall + FOOT)), theme.background, repr(self))
+        drawing.add(*self._tints(theme, view), *picture.shapes[1:2], self._lines(theme, view))
+        drawing.add(*picture.shapes[2:])
+        for grid in self.grids:
+            _add_size(drawing, theme, view.to_screen(self._middle(grid)), _size(grid))
+        noun = "block" if len(self) == 1 else "blocks"
+        quads = "quad" if mesh.n_elements == 1 else "quads"
+        words = f"{len(self)} {noun}"
+        drawing.add(
+            Text(words, (MARGIN, tall + 16.0), 14.0, theme.text, "left", True),
+            Text(f"{mesh.n_elements} {quads},  s {mesh.score},  s* {mesh.optimum}",
+                 (MARGIN + text_width(words, 14.0, True) + 16.0, tall + 16.0), 12.0, theme.muted),
+        )  # fmt: skip
+        return drawing
+
+    def _tints(self, theme: Theme, view: Viewport) -> list[Polygon]:
+        tints = (theme.fill, theme.accent_soft, theme.pressed, theme.warning_soft)
+        chosen = self._chosen(len(tints))
+        points = self.mesh.points
+        shapes = []
+        for grid, tint in zip(self.grids, chosen, strict=True):
+            v = grid.vertices
+            quads = np.stack([v[:-1, :-1], v[:-1, 1:], v[1:, 1:], v[1:, :-1]], axis=-1)
+            shapes += [
+                Polygon(view.to_screen(points[quad]), tints[tint]) for quad in quads.reshape(-1, 4)
+            ]
+        return shapes
+
+    def _chosen(self, tints: int) -> list[int]:
+        """A tint for each block, where possible another than its neighbours have."""
+        block = np.full(len(self.mesh.arrays.element_mark), -1)
+        for i, grid in enumerate(self.grids):
+            block[grid.elements.ravel()] = i
+        h = np.flatnonzero(self._cut)
+        meeting = np.column_stack([block[h // 4], block[self.mesh.arrays.edge[h, TWIN] // 4]])
+        chosen: list[int] = []
+        for i in range(len(self.grids)):
+            near = {int(j) for j in meeting[meeting[:, 0] == i, 1] if j < i}
+            taken = {chosen[j] for j in near}
+            free = [tint for tint in range(tints) if tint not in taken]
+            chosen.append(free[0] if free else i % tints)
+        return chosen
+
+    def _lines(self, theme: Theme, view: Viewport) -> Segments:
+        """The edges on which blocks meet."""
+        h = np.flatnonzero(self._cut)
+        ends = self.mesh.arrays.edge[:, ORIGIN]
+        pairs = np.column_stack([ends[h], ends[h - h % 4 + (h + 1) % 4]])
+        return Segments(view.to_screen(self.mesh.points[pairs]), theme.accent, 3.0)
+
+    def _middle(self, grid: Grid) -> np.ndarray:
+        """A place for words: the middle of the middle quad."""
+        rows, columns = grid.shape
+        i, j = rows // 2, columns // 2
+        # an even number of quads has a line in its middle, an odd one a quad
+        some = grid.vertices[i : i + 1 + rows % 2, j : j + 1 + columns % 2]
+        return self.mesh.points[some.ravel(), :2].mean(axis=0)
+
+
+def _size(grid: Grid) -> str:
+    rows, columns = grid.shape
+    return f"{rows} \N{MULTIPLICATION SIGN} {columns}" + (" ring" if grid.closed else "")
+
+
+def _add_size(drawing: Drawing, theme: Theme, at: np.ndarray, words: str) -> None:
+    x, y = at.tolist()
+    width = text_width(words, 11.5) / 2.0 + 6.0
+    box = np.array([[-width, -9], [width, -9], [width, 9], [-width, 9]]) + (x, y)
+    drawing.add(
+        Disc((x - width, y), 9.0, theme.raised),
+        Disc((x + width, y), 9.0, theme.raised),
+        Polygon(box, theme.raised),
+        Text(words, (x, y), 11.5, theme.text, "middle"),
+    )

@@ -1,0 +1,180 @@
+"""Learning curves: trainings side by side, as data and in one figure."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.drawing import Drawing, Text
+from app.experiments import training_log
+from app.experiments.axes import DASHES, Axes, legend, series_colours
+from app.experiments.picture import Picture
+from app.theme import LIGHT, Theme
+from meshcore import MeshError
+
+TITLES = {
+    "mean": "normalised return of single rollouts, unseen polygons",
+    "at_optimum": "share of single rollouts at the optimum",
+    "played": "normalised return in self-play",
+    "entropy": "entropy of a decision",
+    "decisions_per_second": "decisions a second",
+}
+WIDTH, HEIGHT, LEFT, GAP = 400.0, 216.0, 56.0, 72.0
+MOST = 4
+"""Trainings in one figure: there are no more kinds of line."""
+
+
+@dataclass(frozen=True, eq=False)
+class Training:
+    """What one training has written."""
+
+    name: str
+    points: dict[str, np.ndarray]
+    """iteration, decisions, seconds, mean, std, at_optimum: (n,) at each evaluation."""
+    updates: dict[str, tuple[np.ndarray, np.ndarray]]
+    """Numbers of every update, where events were written: updates (m,) and values (m,)."""
+
+    def series(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Decisions (n,) and the values (n,) of a quantity; updates in place of decisions for
+        those that are known of every update only. MeshError where it was not written.
+        """
+        if name in self.points:
+            return self.points["decisions"], self.points[name]
+        if name in self.updates:
+            return self.updates[name]
+        known = ", ".join([*self.points, *(set(self.updates) - set(self.points))])
+        raise MeshError(f"{self.name}: this training has no {name!r}; it has {known}.")
+
+
+def learning_curves(*paths: str | os.PathLike[str], names: Sequence[str] | None = None) -> Curves:
+    """Read what ``meshwright train`` has written, and go on writing.
+
+    Args:
+        paths: folders of trainings, or files in them: ``checkpoint.safetensors``, ``curve.json``,
+            ``policy.safetensors``. A shipped policy's name will do too.
+        names: what to call them; None: the folders' or policies' own.
+
+    Raises MeshError with one sentence for a file that is torn, or something else.
+    """
+    if not paths:
+        raise MeshError("There is nothing to read: name the folder of a training, or more.")
+    if not all(isinstance(path, str | os.PathLike) for path in paths):
+        raise MeshError("The folder of a training is named by text or by a path.")
+    found = [_located(path) for path in paths]
+    called = [_name_of(path) for path in found] if names is None else [str(n) for n in names]
+    if len(called) != len(found):
+        raise MeshError(f"There are {len(found)} trainings, but {len(called)} names.")
+    trainings = []
+    for path, name in zip(found, called, strict=True):
+        folder = path if path.is_dir() else path.parent
+        trainings.append(Training(name, training_log.points(path), training_log.updates(folder)))
+    return Curves(trainings)
+
+
+def _located(path: str | os.PathLike[str]) -> Path:
+    """Where it is: a path, or the file of a shipped policy."""
+    from importlib.resources import files
+
+    place = Path(path)
+    shipped = Path(str(files("assets") / "policies" / f"{place}.safetensors"))
+    return (
+        shipped if not place.exists() and place.name == str(place) and shipped.exists() else place
+    )
+
+
+def _name_of(path: Path) -> str:
+    if path.is_file() and path.name not in training_log.FILES:
+        return path.stem
+    return (path if path.is_dir() else path.parent).resolve().name
+
+
+class Curves(Picture):
+    """Trainings in one figure."""
+
+    def __init__(self, trainings: list[Training], quantities: Sequence[str] = ()) -> None:
+        self.trainings = trainings
+        self.quantities = tuple(quantities) or ("mean", "at_optimum")
+
+    def __len__(self) -> int:
+        return len(self.trainings)
+
+    def __getitem__(self, key: int | str) -> Training:
+        """A training by its place or its name."""
+        if isinstance(key, str):
+            found = [one for one in self.trainings if one.name == key]
+            if not found:
+                raise MeshError(
+                    f"There is no training {key!r} here; there are"
+                    f" {', '.join(one.name for one in self.trainings)}."
+                )
+            return found[0]
+        return self.trainings[key]
+
+    def __repr__(self) -> str:
+        return "\n".join(
+            f"{one.name}: {len(one.points['mean'])} evaluations,"
+            f" {one.points['decisions'][-1]:,.0f} decisions, return {one.points['mean'][0]:.3f} to"
+            f" {one.points['mean'].max():.3f}"
+            for one in self.trainings
+        )
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """A plain row for each evaluation of each training."""
+        return [
+            {"training": one.name, **{name: float(v[i]) for name, v in one.points.items()}}
+            for one in self.trainings
+            for i in range(len(one.points["mean"]))
+        ]
+
+    def plot(self, *quantities: str) -> Curves:
+        """The same trainings with other quantities in the figure, a panel for each: any of
+        :data:`app.experiments.training_log.POINT`, and of the updates where there are events:
+        "played", "entropy", "policy", "value", "learning_rate", ...
+        """
+        for name in quantities:
+            for training in self.trainings:
+                training.series(name)
+        return Curves(self.trainings, quantities)
+
+    def drawing(self, theme: Theme = LIGHT) -> Drawing:
+        """A panel for each quantity, a line for each training."""
+        if len(self.trainings) > MOST:
+            raise MeshError(f"One figure shows up to {MOST} trainings, not {len(self.trainings)}.")
+        count = len(self.quantities)
+        many = len(self.trainings) > 1
+        top = 72.0 if many else 40.0
+        size = (round(LEFT + count * WIDTH + (count - 1) * GAP + 24.0), round(top + HEIGHT + 56.0))
+        drawing = Drawing(size, theme.background, repr(self))
+        if many:
+            legend(drawing, theme, [one.name for one in self.trainings], LEFT, 20.0)
+        for panel, name in enumerate(self.quantities):
+            self._add_panel(drawing, theme, name, LEFT + panel * (WIDTH + GAP), top)
+        return drawing
+
+    def _add_panel(
+        self, drawing: Drawing, theme: Theme, name: str, left: float, top: float
+    ) -> None:
+        series = [one.series(name) for one in self.trainings]
+        share = name in ("mean", "at_optimum", "played")
+        values = np.concatenate([y[np.isfinite(y)] for _, y in series] or [np.zeros(1)])
+        low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+        span = max(high - low, 1e-9 + 0.02 * abs(high))
+        y_range = (min(0.0, low), 1.02) if share else (low - 0.06 * span, high + 0.06 * span)
+        last = max((float(x[-1]) for x, _ in series if len(x)), default=1.0)
+        axes = Axes(left, top, WIDTH, HEIGHT, (0.0, max(last, 1.0)), y_range)
+        colours = series_colours(theme)
+        if name == "mean" and len(series) == 1:
+            mean, std = self.trainings[0].points["mean"], self.trainings[0].points["std"]
+            axes.band(drawing, series[0][0], mean - std, mean + std, theme.accent_soft)
+        by_update = any(name not in one.points for one in self.trainings)
+        axes.frame(drawing, theme, "updates" if by_update else "decisions")
+        for i, (x, y) in enumerate(series):
+            axes.line(drawing, x, y, colours[i % len(colours)], 2.2, DASHES[i % len(DASHES)])
+        title = TITLES.get(name, name.replace("_", " "))
+        drawing.add(Text(title, (left, top - 16.0), 12.5, theme.text, "left", True))

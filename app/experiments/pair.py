@@ -1,0 +1,39 @@
+"""Runs side by side as widgets: each can be scrubbed, and edited on."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from app.experiments.comparison import Comparison
+from meshcore import MeshError
+
+
+def side_by_side(
+    comparison: Comparison, policies: Sequence[str] | None = None, height: int = 400
+) -> Any:
+    """The best run of each policy in a widget of its own, in a row.
+
+    Args:
+        comparison: what :func:`app.experiments.compare` brought.
+        policies: two or more of its names; None: the first two.
+        height: of the meshes, in pixels.
+
+    Returns a box of widgets for Jupyter, in marimo a row; its ``children`` in Jupyter are the
+    :class:`app.notebook.MeshWidget` themselves.
+    """
+    if not isinstance(comparison, Comparison):
+        raise MeshError("Side by side go the runs of a comparison: make one by compare().")
+    names = list(comparison.policies[:2] if policies is None else policies)
+    widgets = [comparison.widget(name, height=height, name=name) for name in names]
+    marimo = sys.modules.get("marimo")
+    if marimo is not None and marimo.running_in_notebook():
+        views = [marimo.ui.anywidget(widget) for widget in widgets]
+        return marimo.hstack(views, widths="equal")
+    from ipywidgets import HBox, Layout
+
+    for widget in widgets:
+        widget.layout.flex = "1 1 0%"
+        widget.layout.min_width = "0"
+    return HBox(widgets, layout=Layout(width="100%"))

@@ -1,0 +1,184 @@
+"""Rollouts on one mesh, kept whole: every score, every operation, of every run."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from meshcore import HalfEdgeMesh, MeshError, Operation
+
+if TYPE_CHECKING:
+    from agent.policies import Policy
+    from agent.task import Task
+
+Step = tuple[tuple[Operation, int], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Rollout:
+    """One run of a policy."""
+
+    policy: str
+    number: int
+    """Among the runs of its policy, from 0."""
+    scores: np.ndarray
+    """(T + 1,) int64: s at the start and after each decision."""
+    steps: tuple[Step, ...]
+    """T decisions: the operation with its half-edge, and the clean-ups that followed it. They
+    replay on the mesh that the run started from."""
+    optimum: int
+    """s*, the same all the way."""
+
+    @property
+    def start(self) -> int:
+        """s at the start."""
+        return int(self.scores[0])
+
+    @property
+    def best(self) -> int:
+        """The lowest s of the run."""
+        return int(self.scores.min())
+
+    @property
+    def last(self) -> int:
+        """s where the run ended."""
+        return int(self.scores[-1])
+
+    @property
+    def decisions(self) -> int:
+        """Decisions to the best state."""
+        return int(self.scores.argmin())
+
+    @property
+    def normalised(self) -> float:
+        """(s at the start - best s) / (s at the start - s*): 1 is the optimum."""
+        gap = self.start - self.optimum
+        return (self.start - self.best) / gap if gap else 1.0
+
+    def operations(self, decisions: int | None = None) -> list[tuple[Operation, int]]:
+        """All operations of the first so many decisions; None: up to the best state."""
+        count = self.decisions if decisions is None else decisions
+        return [one for step in self.steps[:count] for one in step]
+
+
+def known_policy(name: object) -> Policy:
+    """The policy that is meant: a shipped one by name, one from a file, or one that is there.
+
+    Raises MeshError with one sentence.
+    """
+    from agent.policies import Policy, PolicyError, load
+
+    if isinstance(name, Policy):
+        return name
+    if not isinstance(name, str) and not hasattr(name, "__fspath__"):
+        raise MeshError(f"A policy is named by text, not by {type(name).__name__}.")
+    try:
+        return load(name)
+    except PolicyError as error:
+        raise MeshError(str(error)) from None
+
+
+def require_kind(policy: Policy, mesh: HalfEdgeMesh) -> None:
+    """Refuse a policy for the other kind of mesh, by MeshError."""
+    if policy.kind != mesh.kind:
+        noun = {"tri": "triangles", "quad": "quads"}
+        raise MeshError(
+            f"{policy.name}: this policy is for {noun[policy.kind]}, and the mesh is of"
+            f" {noun[mesh.kind]}."
+        )
+
+
+def whole_number(value: object, least: int, name: str) -> int:
+    """The number if it is a whole one that is large enough; MeshError else."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise MeshError(f"{name} is a whole number of at least {least}, not {value!r}.")
+    return int(value)
+
+
+def play(
+    mesh: HalfEdgeMesh, policy: Policy, rollouts: int, steps: int | None, seed: int
+) -> tuple[tuple[Rollout, ...], float]:
+    """So many runs side by side from the mesh, which is not changed; and the seconds they took.
+
+    steps: decisions that a run may take; None: as many as the policy was trained with.
+    """
+    from agent.evaluate import roll_out
+
+    if mesh.score > mesh.optimum:
+        _warm_up(policy.task)
+    began = time.perf_counter()
+    if mesh.score == mesh.optimum:
+        still = np.array([mesh.score], np.int64)
+        rows = [Rollout(policy.name, k, still, (), mesh.optimum) for k in range(rollouts)]
+        return tuple(rows), time.perf_counter() - began
+    with one_thread():
+        rolled = roll_out(_limited(policy, mesh, steps), [mesh] * rollouts, 1, seed)
+    trace = rolled.traces[0]
+    gaps, acted = trace.gaps, trace.codes >= 0
+    lengths = acted.sum(axis=0)
+    if steps is not None:
+        lengths = np.minimum(lengths, steps)
+    seconds = time.perf_counter() - began
+    whole = replace(rolled, operations=lengths[:, None])
+    runs = []
+    for k, length in enumerate(lengths.tolist()):
+        taken = whole.steps(policy.task, mesh, k, 0)
+        scores = (gaps[: length + 1, k] + mesh.optimum).astype(np.int64)
+        found = tuple(tuple(step) for step in taken)
+        runs.append(Rollout(policy.name, k, scores, found, mesh.optimum))
+    return tuple(runs), seconds
+
+
+@cache
+def _warm_up(task: Task) -> None:
+    """What is compiled, or loaded, at the first look of a policy is not measured."""
+    from agent.batch import Batch
+    from meshcore import generate, shapes
+
+    start = generate.mesh_domain(shapes.shape("l-shape"), task.kind)
+    batch = Batch(task, [start], 1, np.random.default_rng(0), endless=False)
+    batch.step(batch.observe(), np.array([-1]))
+
+
+def _limited(policy: Policy, mesh: HalfEdgeMesh, steps: int | None) -> Policy:
+    """The policy with runs of so many decisions; a task does not go below ten, runs are cut."""
+    from agent.evaluate import longer
+
+    if steps is None:
+        return policy
+    wanted = (steps + 0.5) / mesh.n_elements
+    return longer(policy, wanted / policy.task.steps)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let torch use one thread meanwhile: the matrices of a decision are small."""
+    import torch
+
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
+
+def best_of(values: np.ndarray, k: int) -> tuple[float, float]:
+    """Mean and standard deviation of the largest among k of the values (n,), over all ways to
+    choose them; MeshError unless 1 <= k <= n.
+    """
+    n = len(values)
+    if not 1 <= k <= n:
+        raise MeshError(f"Of {n} rollouts the best of {k} cannot be had: k is from 1 to {n}.")
+    ordered = np.sort(np.asarray(values, float))
+    # the i-th smallest is the largest in as many choices as there are of k - 1 below it
+    weights = np.array([math.comb(i, k - 1) for i in range(n)], float) / math.comb(n, k)
+    mean = float(weights @ ordered)
+    return mean, float(np.sqrt(max(weights @ (ordered - mean) ** 2, 0.0)))

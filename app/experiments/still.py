@@ -1,0 +1,43 @@
+"""Stills: the mesh that somebody gave, and small figures of meshes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app import sources
+from app.drawing import Drawing
+from app.experiments.picture import ThemedLook
+from app.figure import figure
+from app.theme import Theme
+from app.viewport import Viewport
+from meshcore import HalfEdgeMesh, MeshError
+
+MARGIN = 16.0
+
+
+def given_mesh(source: Any) -> HalfEdgeMesh:
+    """A copy of the mesh that is meant: one, that of a document or widget or film, or what
+    :func:`app.sources.mesh` makes a mesh of. MeshError where there is none or it is empty.
+    """
+    inner = source if isinstance(source, HalfEdgeMesh) else getattr(source, "mesh", source)
+    if inner is None:
+        raise MeshError("There is no mesh here yet.")
+    mesh = sources.mesh(inner)
+    if mesh.n_elements == 0:
+        raise MeshError("This mesh has no elements.")
+    return mesh
+
+
+def still(
+    mesh: HalfEdgeMesh, size: tuple[int, int], theme: Theme, window: np.ndarray | None = None
+) -> Drawing:
+    """A small figure of the mesh, lines and letters as large as in the window.
+
+    window (n, 2): points that are to fill it, in place of the whole mesh.
+    """
+    look = ThemedLook(size=size, score=False, curve=False, unit=1.0, given=theme)
+    shown = mesh.points[mesh.vertices()] if window is None else window
+    view = Viewport(size=size).fitted(shown, MARGIN)
+    return figure(mesh, look, None, view)

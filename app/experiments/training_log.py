@@ -1,0 +1,152 @@
+"""What a training has written, read back: points of its learning curve, numbers of every update."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshcore import MeshError
+
+POINT = ("iteration", "decisions", "seconds", "mean", "std", "at_optimum")
+"""The numbers of a point of a learning curve; see :class:`agent.training.Progress`."""
+FILES = ("checkpoint.safetensors", "curve.json", "policy.safetensors")
+"""What holds a learning curve, the newest first: a training that goes on has a checkpoint only."""
+_LONGEST_HEADER = 64 * 1024 * 1024
+_EVENTS = "events.out.tfevents.*"
+
+
+def points(path: Path) -> dict[str, np.ndarray]:
+    """The learning curve in a training's folder, or in one of its FILES: for each of POINT the
+    numbers (n,). MeshError where there is none, it is torn, or it is something else.
+    """
+    if path.is_dir():
+        found = next((path / name for name in FILES if (path / name).is_file()), None)
+        if found is None:
+            raise MeshError(f"{path}: this folder holds no training; it has none of its files.")
+        return points(found)
+    if not path.is_file():
+        raise MeshError(f"{path}: there is no such file or folder.")
+    try:
+        rows = _rows(path)
+        columns = {name: np.array([float(row[name]) for row in rows]) for name in POINT}
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        raise MeshError(
+            f"{path}: this is no learning curve of a training, or only part of one."
+        ) from None
+    if not rows:
+        raise MeshError(f"{path}: this training has not been evaluated yet.")
+    return columns
+
+
+def _rows(path: Path) -> list[dict[str, Any]]:
+    """The points in a file of any of the three kinds."""
+    if path.suffix != ".safetensors":
+        rows = json.loads(path.read_text(encoding="utf-8"))
+    else:
+        rows = _notes(path)["progress"]["curve"]
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise ValueError("no list of points")
+    return rows
+
+
+def _notes(path: Path) -> dict[str, Any]:
+    """The plain values in the header of a checkpoint or of a policy; no tensor is read."""
+    with path.open("rb") as file:
+        length = int.from_bytes(file.read(8), "little")
+        if not 0 < length <= _LONGEST_HEADER:
+            raise ValueError("no header")
+        header = json.loads(file.read(length))
+        # the tensors must be there, too: a torn file is no training to trust
+        ends = [entry["data_offsets"][1] for name, entry in header.items() if name[:2] != "__"]
+        if path.stat().st_size < 8 + length + max(ends, default=0):
+            raise ValueError("torn")
+    values = header["__metadata__"]
+    notes: dict[str, Any] = json.loads(values.get("checkpoint") or values["meshwright"])
+    return notes
+
+
+def updates(folder: Path) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """The numbers of every update in the events beside a curve, by the names that
+    :data:`agent.events.TAGS` has for them: updates (n,) and values (n,). Empty without events,
+    whose writing needs an optional package; MeshError where they are torn.
+    """
+    from agent.events import TAGS
+
+    names = {tag: name for name, tag in TAGS.items()}
+    found: dict[str, dict[int, float]] = {}
+    for path in sorted((folder / "events").glob(_EVENTS)):
+        try:
+            for step, tag, value in _scalars(path.read_bytes()):
+                # of two runs over the same updates the later one counts
+                found.setdefault(names.get(tag, tag), {})[step] = value
+        except (ValueError, struct.error, IndexError, UnicodeDecodeError):
+            raise MeshError(f"{path}: these are no events of a training, or torn ones.") from None
+    return {
+        name: (np.array(sorted(values)), np.array([values[step] for step in sorted(values)]))
+        for name, values in found.items()
+    }
+
+
+# TensorBoard's files: records of length, checksum, content, checksum; the content is a message of
+# fields, each a key (number and form) and a value.
+
+
+def _scalars(content: bytes) -> Iterator[tuple[int, str, float]]:
+    """Step, tag and value of every scalar in an event file."""
+    at = 0
+    while at < len(content):
+        (length,) = struct.unpack_from("<Q", content, at)
+        event = content[at + 12 : at + 12 + length]
+        if len(event) < length:
+            raise ValueError("torn")
+        at += 12 + length + 4
+        fields = _fields(event)
+        step = next((value for number, value in fields if number == 2), 0)
+        for summary in (value for number, value in fields if number == 5):
+            for _, row in _fields(summary):
+                entries = dict(_fields(row))
+                if isinstance(entries.get(1), bytes) and isinstance(entries.get(2), bytes):
+                    yield int(step), entries[1].decode(), struct.unpack("<f", entries[2])[0]
+
+
+def _fields(message: Any) -> list[tuple[int, Any]]:
+    """Number and value of each field; values are ints, or bytes as they stand."""
+    if not isinstance(message, bytes):
+        raise ValueError("no message")
+    found: list[tuple[int, Any]] = []
+    at = 0
+    while at < len(message):
+        key, at = _integer(message, at)
+        number, form = key >> 3, key & 7
+        if form == 0:
+            value: Any
+            value, at = _integer(message, at)
+        elif form in (1, 2, 5):
+            size = 8 if form == 1 else 4
+            if form == 2:
+                size, at = _integer(message, at)
+            value, at = message[at : at + size], at + size
+            if at > len(message):
+                raise ValueError("torn")
+        else:
+            raise ValueError("no such form")
+        found.append((number, value))
+    return found
+
+
+def _integer(message: bytes, at: int) -> tuple[int, int]:
+    """A number in pieces of seven bits, and where it ends."""
+    value = shift = 0
+    while True:
+        byte = message[at]
+        value |= (byte & 127) << shift
+        at, shift = at + 1, shift + 7
+        if byte < 128:
+            return value, at
+        if shift > 63:
+            raise ValueError("too long")

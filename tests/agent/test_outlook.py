@@ -1,0 +1,64 @@
+"""An outlook is what the policy's own decision would be among the same half-edges."""
+
+import numpy as np
+import pytest
+
+from agent import policies
+from agent.outlook import candidates, outlook, template_slots
+from agent.policies import PolicyError
+from agent.rollout import Runner
+from meshcore import generate, shapes
+from meshcore.operations import CODES, score_change
+
+
+@pytest.fixture(params=["quad", "quad-paper", "tri", "tri-paper"])
+def policy(request):
+    return policies.load(request.param)
+
+
+def star(kind):
+    return generate.mesh_domain(shapes.shape("star"), kind)
+
+
+def test_it_is_what_a_run_would_do(policy):
+    runner = Runner(star(policy.kind), policy, 3)
+    insight = runner.look()
+    seen = outlook(runner.mesh, policy, insight.halfedges)
+    assert seen.probabilities.sum(axis=1) == pytest.approx(insight.weights, abs=1e-5)
+    assert seen.value == pytest.approx(insight.value, abs=1e-5)
+
+
+def test_probabilities_lie_on_what_is_permitted_and_changes_are_exact(policy):
+    mesh = star(policy.kind)
+    seen = outlook(mesh, policy, candidates(mesh, policy))
+    assert seen.probabilities.sum() == pytest.approx(1.0)
+    assert (seen.probabilities[~seen.permitted] == 0).all()
+    operations = list(CODES[mesh.k].values())[: seen.permitted.shape[1]]
+    for i, j in np.argwhere(seen.permitted):
+        change = score_change(mesh.arrays, operations[j], int(seen.halfedges[i]))
+        assert seen.changes[i, j] == change
+
+
+def test_candidates_hold_the_half_edge_that_is_asked_for_once(policy):
+    mesh = star(policy.kind)
+    for h in range(0, mesh.k * mesh.n_elements, 5):
+        found = candidates(mesh, policy, h)
+        assert (found == h).sum() == 1 and len(np.unique(found)) == len(found)
+        assert template_slots(mesh.arrays, policy.task, h)[0] == h
+
+
+def test_looking_changes_nothing_and_needs_no_permission(policy):
+    mesh = star(policy.kind)
+    before = mesh.points.copy(), mesh.elements()
+    boundary = np.flatnonzero(mesh.arrays.edge[: mesh.k * mesh.n_elements, 1] < 0)[:1]
+    seen = outlook(mesh, policy, boundary)
+    assert seen.probabilities.shape == (1, policy.task.operations)
+    assert np.array_equal(before[0], mesh.points) and np.array_equal(before[1], mesh.elements())
+
+
+def test_wrong_questions_are_refused(policy):
+    with pytest.raises(PolicyError, match="this policy is for"):
+        outlook(star("tri" if policy.kind == "quad" else "quad"), policy, np.array([0]))
+    for h in (-1, 10**6):
+        with pytest.raises(PolicyError, match="no half-edge"):
+            outlook(star(policy.kind), policy, np.array([h]))

@@ -1,0 +1,147 @@
+"""Policies compared on one mesh: what is said of a run is what it does."""
+
+import subprocess
+import sys
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from app.document import Document
+from app.experiments import Comparison, compare
+from app.experiments.runs import best_of
+from meshcore import HalfEdgeMesh, MeshError, generate, shapes
+
+
+@pytest.fixture(scope="module")
+def mesh() -> HalfEdgeMesh:
+    return generate.mesh_domain(shapes.shape("l-shape"), "quad")
+
+
+@pytest.fixture(scope="module")
+def both(mesh: HalfEdgeMesh) -> Comparison:
+    return compare(mesh, rollouts=4, seed=5)
+
+
+def test_importing_brings_no_torch_no_matplotlib_no_qt() -> None:
+    code = (
+        "import sys, app.experiments;"
+        "print([m for m in ('torch', 'matplotlib', 'qtpy', 'PIL', 'scipy.optimize') "
+        "if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_run_replays_to_its_scores(mesh: HalfEdgeMesh, both: Comparison) -> None:
+    for runs in both.rollouts.values():
+        assert len(runs) == 4
+        for run in runs:
+            played = mesh.copy()
+            assert run.scores[0] == mesh.score and len(run.scores) == len(run.steps) + 1
+            for step, score in zip(run.steps, run.scores[1:], strict=True):
+                for operation, halfedge in step:
+                    played.apply(operation, halfedge)
+                assert played.score == score
+            played.validate()
+            assert played.optimum == run.optimum
+            assert run.best == run.scores.min() == run.scores[run.decisions]
+
+
+def test_the_mesh_stays_as_it_was_and_the_same_seed_brings_the_same(mesh: HalfEdgeMesh) -> None:
+    before = mesh.elements(), mesh.points.copy()
+    one, two = (compare(mesh, ["quad-paper"], rollouts=3, seed=9) for _ in range(2))
+    assert np.array_equal(before[0], mesh.elements()) and np.array_equal(before[1], mesh.points)
+    for a, b in zip(one.rollouts["quad-paper"], two.rollouts["quad-paper"], strict=True):
+        assert a.steps == b.steps and np.array_equal(a.scores, b.scores)
+
+
+def test_rows_are_plain_and_say_what_the_runs_did(both: Comparison) -> None:
+    for row in both.rows:
+        returns = both.returns(row["policy"])
+        best = both.best(row["policy"])
+        assert all(isinstance(value, str | int | float) for value in row.values())
+        assert row["single_mean"] == pytest.approx(returns.mean())
+        assert row["single_std"] == pytest.approx(returns.std())
+        assert row["best_return"] == returns.max() == best.normalised
+        assert (row["best_score"], row["operations"]) == (best.best, best.decisions)
+    assert len(both.rollout_rows) == 8
+    assert [row["return"] for row in both.rollout_rows[:4]] == both.returns("quad").tolist()
+    assert "quad-paper" in both.table() and repr(both) == both.table()
+
+
+def test_the_best_of_k_is_the_mean_over_all_choices(both: Comparison) -> None:
+    values = np.array([0.5, 0.9, 0.9, 0.2, 1.0])
+    for k in range(1, 6):
+        largest = [max(some) for some in combinations(values, k)]
+        assert best_of(values, k) == pytest.approx((np.mean(largest), np.std(largest)))
+    assert both.best_of("quad", 4)[0] == both.returns("quad").max()
+    for k in (0, 5, 1.5, True):
+        with pytest.raises(MeshError):
+            both.best_of("quad", k)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("steps", [1, 3, 12])
+def test_steps_are_the_decisions_that_a_run_may_take(mesh: HalfEdgeMesh, steps: int) -> None:
+    found = compare(mesh, ["quad-paper"], rollouts=3, steps=steps)
+    assert max(len(run.steps) for run in found.rollouts["quad-paper"]) <= steps
+
+
+def test_the_film_goes_to_the_best_state(mesh: HalfEdgeMesh, both: Comparison) -> None:
+    best = both.best("quad")
+    film = both.film("quad")
+    film.go_to(0)
+    assert film.mesh.score == mesh.score
+    film.go_to(len(film) - 1)
+    assert film.mesh.score == best.best
+    assert both.meshes["quad"].score == best.best
+    assert both.document("quad-paper", 2).score == both.rollouts["quad-paper"][2].best
+
+
+def test_a_mesh_at_its_optimum_has_runs_without_steps(both: Comparison) -> None:
+    done = both.meshes["quad"]
+    assert done.score == done.optimum
+    found = compare(done, rollouts=2)
+    assert found.returns("quad").tolist() == [1.0, 1.0]
+    assert found.best("quad-paper").steps == ()
+    assert "s 0" in found.to_svg()
+
+
+def test_triangles_documents_and_names_are_meshes_too() -> None:
+    triangles = Document(generate.mesh_domain(shapes.shape("star"), "tri"))
+    found = compare(triangles, "tri-paper", rollouts=2, steps=4)
+    assert found.policies == ("tri-paper",)
+    assert compare("square", "quad", rollouts=1, steps=1).start > 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"policies": ["quad", "none-such"]}, "there is no such policy file"),
+        ({"policies": ["tri"]}, "this policy is for triangles"),
+        ({"policies": []}, "no policy to compare"),
+        ({"policies": ["quad", "quad"]}, "named twice"),
+        ({"policies": [3]}, "named by text"),
+        ({"rollouts": 0}, "rollouts is a whole number"),
+        ({"rollouts": True}, "rollouts is a whole number"),
+        ({"steps": 0}, "steps is a whole number"),
+        ({"seed": -1}, "seed is a whole number"),
+        ({"mesh": "l-shpe"}, "no shape named"),
+        ({"mesh": None}, "no mesh here"),
+        ({"mesh": Document()}, "no mesh here"),
+        ({"mesh": 7}, "cannot be made of int"),
+    ],
+)
+def test_what_is_wrong_is_said_in_a_sentence(
+    mesh: HalfEdgeMesh, arguments: dict[str, object], words: str
+) -> None:
+    with pytest.raises(MeshError, match=words) as told:
+        compare(**({"mesh": mesh, "rollouts": 1} | arguments))  # type: ignore[arg-type]
+    assert "\n" not in str(told.value)
+
+
+def test_unknown_runs_are_refused(both: Comparison) -> None:
+    with pytest.raises(MeshError, match="no rollouts of 'tri'"):
+        both.film("tri")
+    with pytest.raises(MeshError, match="rollouts 0 to 3"):
+        both.film("quad", 4)
