@@ -19,15 +19,28 @@ _HOMES = {
     "MeshWidget": "app.notebook",
     "Operation": "meshcore",
     "OperationRefused": "meshcore",
+    "block_count": "meshcore.blocks",
+    "block_of": "meshcore.blocks",
+    "block_view": "app.experiments",
+    "compare": "app.experiments",
+    "exercise": "app.teaching",
+    "learning_curves": "app.experiments",
     "mesh": "app.sources",
+    "patch": "app.teaching",
+    "policy_view": "app.experiments",
     "random_polygon": "meshcore.shapes",
     "read": "meshcore",
     "shape": "meshcore.shapes",
+    "side_by_side": "app.experiments",
+    "small_multiples": "app.experiments",
     "write": "meshcore",
 }
 """The module that each name comes from."""
 
-_OTHER_NAMES = {"shapes": ("meshcore.shapes", "names")}
+_OTHER_NAMES = {
+    "block_grids": ("meshcore.block_grids", "grids"),
+    "shapes": ("meshcore.shapes", "names"),
+}
 """Names that are called otherwise at home."""
 
 __all__ = sorted([*_HOMES, *_OTHER_NAMES])
