@@ -9,13 +9,13 @@ from __future__ import annotations
 import io
 from base64 import b64encode
 from html import escape
-from typing import Any
 from urllib.parse import quote
 
 from app.drawing import raster, svg
 from app.figure import Look, elements, figure
 from app.movie import flat
 from meshcore import HalfEdgeMesh
+from meshcore.display import Bundle
 
 SIZE = (480, 360)
 """Pixels that the picture takes on the page."""
@@ -27,7 +27,7 @@ UNIT = 0.8
 """Of the picture's lines and letters: it is small, and they shall be read."""
 
 
-def mimebundle(mesh: HalfEdgeMesh, name: str = "") -> tuple[dict[str, Any], dict[str, Any]]:
+def mimebundle(mesh: HalfEdgeMesh, name: str = "") -> Bundle:
     """HTML with a picture, its words for who cannot see it, and a caption; no metadata."""
     words = f"{name}: {caption(mesh)}" if name else caption(mesh)
     width, height = SIZE
@@ -39,6 +39,12 @@ def mimebundle(mesh: HalfEdgeMesh, name: str = "") -> tuple[dict[str, Any], dict
         "</figure>"
     )
     return {"text/html": html}, {}
+
+
+def still(mesh: HalfEdgeMesh) -> Bundle:
+    """The picture for whoever shows images only: PNG, with its size and words as metadata."""
+    data = {"image/png": b64encode(png(mesh)).decode("ascii")}
+    return data, {"image/png": {"width": SIZE[0], "height": SIZE[1], "alt": caption(mesh)}}
 
 
 def caption(mesh: HalfEdgeMesh) -> str:

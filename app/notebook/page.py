@@ -63,7 +63,7 @@ def _html(heading: str, note: str, film: dict[str, Any]) -> str:
 <h1>{escape(heading)}</h1>
 <p>{escape(note)}</p>
 <div id="film"></div>
-<noscript><p>A script in this page would show the film; here scripts are switched off.</p></noscript>
+<noscript><p>The film is shown by a script, and scripts are switched off here.</p></noscript>
 <p class="end">Made with Meshwright</p>
 </main>
 <script type="application/json" id="recording">{_embedded(film)}</script>

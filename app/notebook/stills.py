@@ -1,0 +1,122 @@
+"""Pictures and films of a document as bytes, and as files where a path is given."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from app.document import Document
+from app.film import Film
+from app.pictures import Order, save_order
+from app.theme import THEMES
+from meshcore import MeshError, atomic
+
+SIZE = (960, 720)
+"""Pixels of a picture that is not told otherwise."""
+SMALLEST, LARGEST = 32, 8192
+"""Bounds of a side in pixels."""
+SECONDS = 0.25
+"""How long a frame of a film stays that is not told otherwise."""
+LONGEST = 60.0
+
+File = str | os.PathLike[str] | None
+
+
+def png(
+    document: Document, size: tuple[int, int] = SIZE, path: File = None, theme: str = "light"
+) -> bytes:
+    """A picture of the present state as PNG, ``size`` in pixels; also written at ``path``.
+
+    This and all others raise MeshError, in one sentence, where there is no mesh, a number cannot
+    be, or nothing can be written at ``path``; an old file stays as it was then.
+    """
+    return _made(document, ".png", size, path, theme)
+
+
+def svg(
+    document: Document, size: tuple[int, int] = SIZE, path: File = None, theme: str = "light"
+) -> str:
+    """A picture of the present state as SVG; also written at ``path``."""
+    return _made(document, ".svg", size, path, theme).decode("utf-8")
+
+
+def gif(
+    document: Document,
+    seconds: float = SECONDS,
+    size: tuple[int, int] = SIZE,
+    path: File = None,
+    theme: str = "light",
+) -> bytes:
+    """The film of the history as GIF, each frame ``seconds`` long; also written at ``path``.
+
+    A long history is shown in a few hundred frames, each of them some steps.
+    """
+    return _made(document, ".gif", size, path, theme, seconds)
+
+
+def mp4(
+    document: Document,
+    path: File = None,
+    seconds: float = SECONDS,
+    size: tuple[int, int] = SIZE,
+    theme: str = "light",
+) -> bytes:
+    """The film of the history as MP4 (H.264); otherwise as :func:`gif`."""
+    return _made(document, ".mp4", size, path, theme, seconds)
+
+
+def _made(
+    document: Document,
+    ending: str,
+    size: tuple[int, int],
+    path: File,
+    theme: str,
+    seconds: float = SECONDS,
+) -> bytes:
+    """Drawn into a folder of its own, and only then put where it shall be."""
+    order = Order(
+        ending, _checked_size(size), _checked_theme(theme), seconds=_checked_seconds(seconds)
+    )
+    if path is not None:
+        _check_ending(path, ending)
+    film = Film(document)
+    with TemporaryDirectory(prefix="meshwright-") as folder:
+        made = Path(folder) / f"picture{ending}"
+        save_order(film, order, made)
+        whole = made.read_bytes()
+    if path is not None:
+        with atomic.replacing(path) as temporary:
+            temporary.write_bytes(whole)
+    return whole
+
+
+def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
+    sides = tuple(size) if isinstance(size, tuple | list) else ()
+    fit = len(sides) == 2 and all(
+        isinstance(side, int) and not isinstance(side, bool) and SMALLEST <= side <= LARGEST
+        for side in sides
+    )
+    if not fit:
+        raise MeshError(
+            f"A size is two whole numbers of pixels from {SMALLEST} to {LARGEST:,}, not {size!r}."
+        )
+    return sides
+
+
+def _checked_theme(theme: str) -> str:
+    if theme not in THEMES:
+        raise MeshError(f"There is no theme {theme!r}; choose one of {', '.join(THEMES)}.")
+    return theme
+
+
+def _checked_seconds(seconds: float) -> float:
+    number = isinstance(seconds, int | float) and not isinstance(seconds, bool)
+    if not number or not 0.0 < seconds <= LONGEST:
+        raise MeshError(f"A frame stays between 0 and {LONGEST:g} seconds, not {seconds!r}.")
+    return float(seconds)
+
+
+def _check_ending(path: str | os.PathLike[str], ending: str) -> None:
+    if Path(path).suffix.lower() != ending:
+        raise MeshError(f"{os.fspath(path)}: the name must end in {ending}.")
