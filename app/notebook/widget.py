@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import index
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,22 +14,23 @@ from app.assistant import Assistant
 from app.document import Document
 from app.history import History, Row
 from app.notebook import front
+from app.notebook.exports import Exports
 from app.notebook.opening import document_of
 from app.notebook.session import Session
 from app.notebook.wire import Packet
 from app.searching import COMPLETE_SECONDS, Effort
 from app.signals import Signal
 from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
-from meshcore.domain import Domain
 
 if TYPE_CHECKING:
     from agent.choices import Choice
+    from meshcore.domain import Domain
 
 LOWEST, HIGHEST = 160, 4000
 """Bounds of a widget's height in pixels."""
 
 
-class MeshWidget(anywidget.AnyWidget):
+class MeshWidget(Exports, anywidget.AnyWidget):
     """A mesh in a cell that a person can edit, with the agent beside it.
 
     What is changed in the browser is changed here, and the other way round; several widgets on one
@@ -74,7 +76,6 @@ class MeshWidget(anywidget.AnyWidget):
 
         Raises:
             MeshError: one sentence on what is wrong with the source or the policy.
-            TypeError: the source is none of these.
             traitlets.TraitError: the height or the theme cannot be.
         """
         shown = source.document if isinstance(source, MeshWidget) else source
@@ -130,11 +131,11 @@ class MeshWidget(anywidget.AnyWidget):
 
     def check(self, operation: Operation | str, halfedge: int) -> Verdict:
         """Whether an operation may be done at a half-edge: true, or false with a ``reason``."""
-        return self._do(lambda: self.document.check(operation, halfedge))
+        return self._do(lambda: self.document.check(operation, index(halfedge)))
 
     def apply(self, operation: Operation | str, halfedge: int) -> Edit:
         """Do an operation and smooth around it, as one step; OperationRefused if it is refused."""
-        return self._do(lambda: self.document.submit(operation, halfedge))
+        return self._do(lambda: self.document.submit(operation, index(halfedge)))
 
     def undo(self) -> Row | None:
         """Take back the last step; returns its row, None if there is none."""
@@ -146,7 +147,7 @@ class MeshWidget(anywidget.AnyWidget):
 
     def go_to(self, cursor: int) -> None:
         """Undo or redo until ``cursor`` steps are done; beyond either end it stops there."""
-        self._do(lambda: self.document.go_to(cursor))
+        self._do(lambda: self.document.go_to(index(cursor)))
 
     def smooth(self) -> None:
         """Smooth and untangle the whole mesh, as one step."""

@@ -1,0 +1,120 @@
+"""A browser in a few lines: a port that keeps messages, and a replica that applies them."""
+
+from __future__ import annotations
+
+from itertools import count
+from typing import Any
+
+import numpy as np
+
+from app.notebook.session import Session
+from app.notebook.wire import Frame, Packet, Slots
+from meshcore import HalfEdgeMesh
+
+TYPES = ("<f4", "i1", "u1", "<i4", "<i4")
+
+
+class Replica:
+    """The mesh as a browser holds it, made of messages only."""
+
+    def __init__(self) -> None:
+        self.revision = -1
+        self.slots = Slots.none()
+        self.scores: list[int] = []
+
+    def take(self, packet: Packet) -> None:
+        said = packet.content["say"]
+        if said == "state":
+            self._state(packet)
+        elif said == "patch":
+            self._patch(packet)
+        if said in ("state", "patch") and "head" in packet.content:
+            track = packet.content["head"]["track"]
+            self.scores[track["from"] :] = track["scores"]
+
+    def _state(self, packet: Packet) -> None:
+        arrays = [np.frombuffer(b, t) for b, t in zip(packet.buffers, TYPES, strict=True)]
+        self.slots = Slots(arrays[0].reshape(-1, 2).copy(), *(a.copy() for a in arrays[1:]))
+        self.revision = packet.content["revision"]
+        assert len(self.slots.flags) == packet.content["vertices"]
+        assert len(self.slots.origin) == packet.content["halfedges"]
+
+    def _patch(self, packet: Packet) -> None:
+        types = ("<i4", "<f4", "i1", "u1", "<i4", "<i4", "<i4")
+        v, places, delta, flags, h, origin, twin = (
+            np.frombuffer(b, t) for b, t in zip(packet.buffers, types, strict=True)
+        )
+        assert packet.content["from"] == self.revision
+        self.revision = packet.content["to"]
+        old, new = self.slots, []
+        sizes = [packet.content["vertices"]] * 3 + [packet.content["halfedges"]] * 2
+        olds = (old.places, old.delta, old.flags, old.origin, old.twin)
+        values = (places.reshape(-1, 2), delta, flags, origin, twin)
+        for before, size, value, at in zip(olds, sizes, values, (v, v, v, h, h), strict=True):
+            grown = np.full((size, *before.shape[1:]), 99, before.dtype)
+            grown[: len(before)] = before
+            grown[at] = value
+            new.append(grown)
+        self.slots = Slots(*new)
+
+    def shows(self, mesh: HalfEdgeMesh, frame: Frame) -> bool:
+        """Whether it is this mesh, to the bit."""
+        real = Slots.of(mesh, frame, len(self.slots.flags), len(self.slots.origin))
+        return real.buffers == self.slots.buffers
+
+
+class Port:
+    """Stands in for a widget: keeps what it is told, and follows it in a replica."""
+
+    def __init__(self, session: Session, view: str = "v", read_only: bool = False) -> None:
+        self.session, self.view, self.read_only = session, view, read_only
+        self.reachable = True
+        self.packets: list[Packet] = []
+        self.replica = Replica()
+        self.score = -1
+        self._ids = count(1)
+        session.join(self)
+
+    def post(self, packet: Packet) -> None:
+        self.packets.append(packet)
+        addressee = packet.content.get("to")  # a patch, which all get, has its revision there
+        if addressee == self.view or not isinstance(addressee, str):
+            self.replica.take(packet)
+
+    def show_score(self) -> None:
+        self.score = self.session.document.score
+
+    def close(self) -> None:
+        self.session.leave(self)
+
+    def ask(self, do: str, **fields: Any) -> list[dict[str, Any]]:
+        """Say something; returns the contents of what was answered at once."""
+        before = len(self.packets)
+        content = {"do": do, "id": next(self._ids), "view": self.view, **fields}
+        self.session.receive(self, content, [])
+        return [packet.content for packet in self.packets[before:]]
+
+    def operate(self, operation: str, halfedge: int) -> list[dict[str, Any]]:
+        mesh = self.session.mesh
+        ends = [mesh.origin(halfedge), mesh.target(halfedge)]
+        return self.ask("operate", operation=operation, halfedge=halfedge, ends=ends)
+
+    def of(self, say: str) -> list[dict[str, Any]]:
+        """The contents of all messages of one kind so far."""
+        return [packet.content for packet in self.packets if packet.content["say"] == say]
+
+    @property
+    def sentence(self) -> str:
+        """The last notice."""
+        return str(self.of("notice")[-1]["sentence"])
+
+
+def allowed(mesh: HalfEdgeMesh, names: tuple[str, ...] = ("flip_left", "flip")) -> tuple[str, int]:
+    """The first of these operations that may be done, and where."""
+    k = mesh.k
+    for element in mesh.element_ids().tolist():
+        for halfedge in range(k * element, k * element + k):
+            for operation, verdict in mesh.allowed(halfedge).items():
+                if verdict and operation in names:
+                    return str(operation), halfedge
+    raise AssertionError("nothing is allowed")

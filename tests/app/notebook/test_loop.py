@@ -1,0 +1,110 @@
+"""Calls into the document's thread: in order, once, from anywhere, with a loop or without."""
+
+import asyncio
+import threading
+import time
+
+import pytest
+
+from app.notebook import loop as loops
+from app.notebook.loop import Loop
+
+
+def in_thread(work) -> None:
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join(10)
+    assert not thread.is_alive()
+
+
+def test_without_an_event_loop_the_queue_waits_for_a_pump():
+    loop, seen = Loop(), []
+    assert loop.here and not loop.running
+    in_thread(lambda: [loop(lambda i=i: seen.append(i)) for i in range(100)])
+    assert seen == []
+    assert loop.pump(lambda: len(seen) == 100, timeout=5)
+    assert seen == list(range(100))
+
+
+def test_an_event_loop_comes_to_the_queue_by_itself_and_a_pump_may_be_quicker():
+    seen = []
+
+    async def cell() -> None:
+        loop = Loop()
+        assert loop.running
+        in_thread(lambda: [loop(lambda i=i: seen.append(i)) for i in range(10)])
+        assert loop.pump(lambda: len(seen) >= 5)  # the event loop is blocked meanwhile
+        assert seen == list(range(5))
+        await asyncio.sleep(0.05)
+        assert seen == list(range(10))
+
+    asyncio.run(cell())
+
+
+def test_the_queue_outlives_an_event_loop():
+    seen, kept = [], []
+
+    async def cell() -> None:
+        kept.append(Loop())
+
+    async def later() -> None:
+        assert kept[0].running
+        await asyncio.sleep(0.02)
+
+    asyncio.run(cell())
+    kept[0](lambda: seen.append(1))
+    assert not kept[0].running and seen == []
+    asyncio.run(later())
+    assert seen == [1]
+
+
+def test_another_thread_gets_the_answer_or_the_error():
+    loop, got = Loop(), []
+
+    def ask() -> None:
+        got.append(loop.do(threading.get_ident))
+        with pytest.raises(ValueError, match="mine"):
+            loop.do(lambda: (_ for _ in ()).throw(ValueError("mine")))
+        got.append("end")
+
+    thread = threading.Thread(target=ask)
+    thread.start()
+    assert loop.pump(lambda: len(got) == 2, timeout=5)
+    thread.join(5)
+    assert got == [threading.get_ident(), "end"]
+
+
+def test_another_thread_does_not_wait_for_ever(monkeypatch):
+    monkeypatch.setattr(loops, "PATIENCE", 0.05)
+    loop, done = Loop(), []
+
+    def ask() -> None:
+        with pytest.raises(TimeoutError, match="busy"):
+            loop.do(lambda: done.append(1))
+
+    in_thread(ask)
+    loop.drain()
+    assert done == []  # what was given up is not done later
+
+
+def test_a_pump_gives_up_in_time_and_belongs_to_the_owner():
+    loop = Loop()
+    begun = time.monotonic()
+    assert not loop.pump(lambda: False, timeout=0.1)
+    assert 0.09 < time.monotonic() - begun < 2
+
+    def elsewhere() -> None:
+        with pytest.raises(RuntimeError):
+            loop.pump(lambda: True)
+
+    in_thread(elsewhere)
+
+
+def test_a_call_that_raises_is_told_and_logged_and_the_next_one_comes(caplog):
+    errors, seen = [], []
+    loop = Loop(errors.append)
+    loop(lambda: 1 / 0)
+    loop(lambda: seen.append(1))
+    loop.drain()
+    assert [type(error) for error in errors] == [ZeroDivisionError] and seen == [1]
+    assert "ZeroDivisionError" in caplog.text
