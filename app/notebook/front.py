@@ -5,26 +5,54 @@ a name may be declared once only. Joining them is all there is of a build. The c
 :mod:`app.theme`, as CSS variables; the scripts read them from there, too.
 """
 
+import json
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
+from app.strokes import STROKES
 from app.theme import FONTS, GRID, THEMES, Theme
 
 FOLDER = Path(__file__).parent / "front"
 SCRIPTS = (
+    "node.js",
+    "host.js",
     "mirror.js",
     "link.js",
-    "host.js",
     "film_link.js",
+    "viewport.js",
+    "facts.js",
+    "grid.js",
+    "picking.js",
+    "work.js",
+    "palette.js",
+    "marks.js",
+    "hatching.js",
+    "picture.js",
+    "ghost.js",
+    "hint_badges.js",
+    "overlay.js",
+    "stage.js",
+    "stage_tools.js",
+    "pointing.js",
+    "popup.js",
+    "menus.js",
+    "pointer.js",
+    "walking.js",
+    "keys.js",
+    "score_panel.js",
+    "operations_panel.js",
+    "agent_panel.js",
+    "notice.js",
     "track.js",
     "track_paint.js",
     "timeline.js",
     "levels.js",
+    "card.js",
     "main.js",
 )
 """The files of the module in the order in which they are joined."""
-STYLES = ("card.css", "timeline.css", "levels.css")
+STYLES = ("card.css", "panel.css", "popups.css", "timeline.css", "levels.css")
 """The files of the style, likewise."""
 ROOT = "meshwright"
 """The class of the card, below which every rule of the style applies."""
@@ -40,7 +68,16 @@ def module() -> str:
 @cache
 def script() -> str:
     """The module without its last line, for pages that bring their own link."""
-    return "".join(f"// {name}\n{_read(name)}\n" for name in SCRIPTS if _there(name))
+    return constants() + "".join(f"// {name}\n{_read(name)}\n" for name in SCRIPTS if _there(name))
+
+
+def constants() -> str:
+    """What the scripts know from Python: names of the colours, and the icons."""
+    names = [field.name for field in fields(Theme) if field.name != "name"]
+    return (
+        f"const PALETTE_NAMES = {json.dumps(names)};\n"
+        f"const ICON_STROKES = {json.dumps(STROKES, indent=1)};\n"
+    )
 
 
 @cache

@@ -1,0 +1,82 @@
+// A grid of cells that knows which elements are near a place; kept up cheaply after a patch.
+
+class Grid {
+  /** All live elements of `mirror`, about one a cell. */
+  constructor(mirror) {
+    const box = mirror.bounds() || { left: 0, bottom: 0, right: 1, top: 1 };
+    const [wide, high] = [box.right - box.left || 1, box.top - box.bottom || 1];
+    this._mirror = mirror;
+    this._left = box.left;
+    this._bottom = box.bottom;
+    this._size = Math.sqrt((wide * high) / Math.max(mirror.elements, 1)) || 1;
+    this._size = Math.max(this._size, Math.max(wide, high) / 1000);
+    this._columns = Math.floor(wide / this._size) + 1;
+    this._rows = Math.floor(high / this._size) + 1;
+    this._cells = Array.from({ length: this._columns * this._rows }, () => []);
+    this._ranges = new Map();
+    this._stamps = new Int32Array(mirror.elements + 64);
+    this._stamp = 0;
+    this.made = mirror.elements;
+    for (let e = 0; e < mirror.elements; e += 1) this.add(e);
+  }
+
+  /** Take in an element where it is now; dead ones are passed over. */
+  add(e) {
+    const { k, origin, places } = this._mirror;
+    if (k * e >= this._mirror.halfedges || origin[k * e] < 0) return;
+    let [left, bottom, right, top] = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let h = k * e; h < k * e + k; h += 1) {
+      const [x, y] = [places[2 * origin[h]], places[2 * origin[h] + 1]];
+      if (x < left) left = x;
+      if (x > right) right = x;
+      if (y < bottom) bottom = y;
+      if (y > top) top = y;
+    }
+    const range = this._range(left, bottom, right, top);
+    this._ranges.set(e, range);
+    this._each(range, (cell) => cell.push(e));
+  }
+
+  /** Take an element out of where it was put. */
+  remove(e) {
+    const range = this._ranges.get(e);
+    if (!range) return;
+    this._ranges.delete(e);
+    this._each(range, (cell) => {
+      const at = cell.indexOf(e);
+      cell[at] = cell[cell.length - 1];
+      cell.pop();
+    });
+  }
+
+  /** Elements that may touch a box of the plane, each once. */
+  near(left, bottom, right, top) {
+    this._stamp += 1;
+    this._stamps = withRoom(this._stamps, this._mirror.elements);
+    const found = [];
+    this._each(this._range(left, bottom, right, top), (cell) => {
+      for (const e of cell) {
+        if (this._stamps[e] === this._stamp) continue;
+        this._stamps[e] = this._stamp;
+        found.push(e);
+      }
+    });
+    return found;
+  }
+
+  _range(left, bottom, right, top) {
+    const column = (x) => clamp(Math.floor((x - this._left) / this._size), 0, this._columns - 1);
+    const row = (y) => clamp(Math.floor((y - this._bottom) / this._size), 0, this._rows - 1);
+    return [column(left), row(bottom), column(right), row(top)];
+  }
+
+  _each([left, bottom, right, top], visit) {
+    for (let j = bottom; j <= top; j += 1) {
+      for (let i = left; i <= right; i += 1) visit(this._cells[j * this._columns + i]);
+    }
+  }
+}
+
+function clamp(value, low, high) {
+  return Math.min(Math.max(value, low), high);
+}

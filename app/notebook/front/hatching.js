@@ -1,0 +1,97 @@
+// Inverted elements in plain sight: hatched, tinted, and with a sign where they are small.
+
+const HATCH_GAP = 6;
+const MOST_HATCHED = 1500;
+const SMALLEST_HATCHED = 9;
+
+class Hatching {
+  constructor(palette) {
+    this._palette = palette;
+    this._tile = null;
+    this._ratio = 0;
+  }
+
+  /** Colours are others. */
+  forget() {
+    this._tile = null;
+  }
+
+  /** Paint these elements as `view` shows them. */
+  paint(pen, ratio, view, mirror, elements) {
+    const seen = [];
+    for (const e of elements) {
+      const corners = mirror.corners(e).map(([x, y]) => view.toScreen(x, y));
+      const inside = corners.some(([x, y]) => x > -200 && x < view.width + 200 && y > -200 && y < view.height + 200);
+      if (inside) seen.push(corners);
+      if (seen.length >= MOST_HATCHED) break;
+    }
+    if (!seen.length) return;
+    const pattern = pen.createPattern(this._strokes(ratio), "repeat");
+    // the strokes are of the plane: they move with the picture
+    const [x, y] = view.toScreen(0, 0).map((value) => Math.round(value * ratio) / ratio);
+    pattern.setTransform(new DOMMatrix([1 / ratio, 0, 0, 1 / ratio, x, y]));
+    pen.lineWidth = 1.5;
+    pen.strokeStyle = this._palette.warning;
+    for (const corners of seen) {
+      pen.beginPath();
+      corners.forEach((at, i) => (i ? pen.lineTo(...at) : pen.moveTo(...at)));
+      pen.closePath();
+      pen.globalAlpha = 0.18;
+      pen.fillStyle = this._palette.warning;
+      pen.fill();
+      pen.globalAlpha = 1;
+      pen.fillStyle = pattern;
+      pen.fill();
+      pen.stroke();
+    }
+    for (const corners of seen) {
+      const xs = corners.map((at) => at[0]);
+      const ys = corners.map((at) => at[1]);
+      const size = Math.min(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));
+      if (size < SMALLEST_HATCHED) this._paintSign(pen, middleOf(corners));
+    }
+  }
+
+  _strokes(ratio) {
+    if (this._tile && this._ratio === ratio) return this._tile;
+    const size = Math.round(HATCH_GAP * ratio);
+    const tile = document.createElement("canvas");
+    tile.width = tile.height = size;
+    const pen = tile.getContext("2d");
+    pen.strokeStyle = this._palette.warning;
+    pen.lineWidth = 0.9 * ratio;
+    pen.beginPath();
+    for (const shift of [-size, 0, size]) {
+      pen.moveTo(shift - size, 2 * size);
+      pen.lineTo(shift + 2 * size, -size);
+    }
+    pen.stroke();
+    this._ratio = ratio;
+    this._tile = tile;
+    return tile;
+  }
+
+  _paintSign(pen, [cx, cy]) {
+    const [x, y] = [cx - 11, cy - 13];
+    const triangle = () => {
+      pen.beginPath();
+      pen.moveTo(x, y - 8);
+      pen.lineTo(x + 9, y + 7);
+      pen.lineTo(x - 9, y + 7);
+      pen.closePath();
+    };
+    pen.fillStyle = this._palette.warning;
+    pen.strokeStyle = this._palette.background;
+    pen.lineWidth = 3;
+    triangle();
+    pen.stroke();
+    pen.fill();
+    pen.lineWidth = 1.75;
+    pen.beginPath();
+    pen.moveTo(x, y - 3);
+    pen.lineTo(x, y + 1.5);
+    pen.moveTo(x, y + 4.4);
+    pen.lineTo(x, y + 4.6);
+    pen.stroke();
+  }
+}

@@ -1,0 +1,77 @@
+// The keys of the canvas. All other controls are buttons, which have keys of their own.
+
+const KEY_HELP = [
+  ["\u2190 \u2192", "Half-edge before and after"],
+  ["\u2191", "Other side of the edge"],
+  ["\u2193", "Next irregular vertex"],
+  ["Return", "Do the operation that is shown"],
+  ["[ ]", "Show another operation"],
+  ["M", "Menu of the half-edge"],
+  ["U", "Undo; with Shift redo"],
+  ["+ \u2212 0", "Zoom, and see all"],
+  ["H", "Hints; then 1 to 5 take one"],
+  [".", "One step of the agent"],
+  ["Space", "Play or pause the agent"],
+  ["Esc", "Put down, close, stop"],
+];
+const MOUSE_HELP = [
+  ["Click", "Operations of a half-edge"],
+  ["Right click", "Desired degree, corner, lock"],
+  ["Drag", "Move the picture"],
+  ["Ctrl + wheel", "Zoom"],
+  ["Double click", "See all"],
+];
+
+class Keys {
+  constructor(card) {
+    this._card = card;
+    const walking = card.walking;
+    this._deeds = {
+      ArrowRight: () => walking.along(1),
+      ArrowLeft: () => walking.along(-1),
+      ArrowUp: () => walking.across(),
+      ArrowDown: (event) => walking.toIrregular(event.shiftKey ? -1 : 1),
+      Enter: () => card.pointing.act(),
+      "[": () => card.cycle(-1),
+      "]": () => card.cycle(1),
+      m: () => card.openMenuByKey(),
+      ContextMenu: () => card.openMenuByKey(),
+      u: () => card.ask("undo"),
+      U: () => card.ask("redo"),
+      "+": () => card.zoomMiddle(1.25),
+      "=": () => card.zoomMiddle(1.25),
+      "-": () => card.zoomMiddle(0.8),
+      0: () => card.fit(),
+      h: () => card.agent.ask("hint"),
+      ".": () => card.agent.ask("step"),
+      " ": () => card.agent.toggle(),
+      "?": () => card.toggleHelp(),
+      Escape: () => card.escape(),
+    };
+  }
+
+  /** A key on the canvas; returns whether it was ours. */
+  press(event) {
+    if (event.altKey) return false;
+    if (event.ctrlKey || event.metaKey) return this._pressWithControl(event);
+    const key = event.key.length === 1 && event.key !== "U" ? event.key.toLowerCase() : event.key;
+    if (event.key === "F10" && event.shiftKey) {
+      this._card.openMenuByKey();
+      return true;
+    }
+    const info = this._card.mirror.catalogue.find((one) => one.key.toLowerCase() === key);
+    if (info) this._card.operateByKey(info.operation);
+    else if (/^[1-9]$/.test(key)) return this._card.agent.take(Number(key) - 1);
+    else if (this._deeds[key]) this._deeds[key](event);
+    else return false;
+    return true;
+  }
+
+  _pressWithControl(event) {
+    const key = event.key.toLowerCase();
+    if (key === "z") this._card.ask(event.shiftKey ? "redo" : "undo");
+    else if (key === "y") this._card.ask("redo");
+    else return false;
+    return true;
+  }
+}

@@ -1,0 +1,140 @@
+// What stands on vertices: corners, irregular vertices with their signed number, locks.
+//
+// The sizes are those of app/markers.py. In a crowd a disc keeps its number as long as it does not
+// cover the next one; where it would, it is a plain dot until one looks closer.
+
+const BASE_RADIUS = 10;
+const RADIUS_GROWTH = 2.5;
+const LARGEST_RADIUS = 16;
+const SMALLEST_RADIUS = 2.5;
+const CROWDED = 0.36;
+const READABLE = 6.5;
+const CORNER_HALF = 4;
+const FEW_CORNERS = 64;
+const LOCK_RADIUS = 12.5;
+/** Pixels beside a vertex that its mark, or one that makes room for it, may reach. */
+const MARK_SLACK = 36;
+
+/** "+1", with a true minus sign for negative numbers. */
+function signed(number) {
+  if (number > 0) return `+${number.toLocaleString("en")}`;
+  return number < 0 ? `\u2212${(-number).toLocaleString("en")}` : "0";
+}
+
+/** Radius in pixels: larger with |delta|, smaller where the edges or the next disc are near. */
+function discRadius(delta, reach, apart) {
+  const wanted = Math.min(BASE_RADIUS + RADIUS_GROWTH * (Math.abs(delta) - 1), LARGEST_RADIUS);
+  const room = Math.max(CROWDED * reach, Math.min(READABLE + 0.5, 0.48 * apart));
+  return Math.max(Math.min(wanted, room), SMALLEST_RADIUS);
+}
+
+class Marks {
+  constructor(palette) {
+    this._palette = palette;
+    this._sprites = new Map();
+    this._ratio = 0;
+  }
+
+  /** Colours or pixels are others. */
+  forget() {
+    this._sprites.clear();
+  }
+
+  /** Paint the marks whose vertices lie in `box` {left, top, right, bottom} of the screen. */
+  paint(pen, ratio, view, mirror, facts, box) {
+    if (ratio !== this._ratio) {
+      this._sprites.clear();
+      this._ratio = ratio;
+    }
+    const inside = (v) => {
+      const [x, y] = view.toScreen(mirror.places[2 * v], mirror.places[2 * v + 1]);
+      const near = x > box.left - MARK_SLACK && x < box.right + MARK_SLACK
+        && y > box.top - MARK_SLACK && y < box.bottom + MARK_SLACK;
+      return near ? [x, y] : null;
+    };
+    this._paintCorners(pen, view, facts, inside);
+    for (const v of facts.irregular) {
+      const at = inside(v);
+      if (at) this._paintDisc(pen, view, mirror, facts, v, at);
+    }
+    pen.lineWidth = 1.5;
+    pen.strokeStyle = this._palette.boundary;
+    for (const v of facts.locked) {
+      const at = inside(v);
+      if (!at) continue;
+      pen.beginPath();
+      pen.arc(at[0], at[1], LOCK_RADIUS, 0, 2 * Math.PI);
+      pen.stroke();
+    }
+  }
+
+  /** Radius of the disc of an irregular vertex, in pixels. */
+  radius(view, mirror, facts, v) {
+    const apart = facts.apart.get(v) * view.pixels;
+    return discRadius(mirror.delta[v], facts.reach[v] * view.pixels, apart);
+  }
+
+  _paintCorners(pen, view, facts, inside) {
+    const many = facts.corners.length > FEW_CORNERS;
+    const half = many ? clamp(0.3 * facts.typical * view.pixels, 1, CORNER_HALF) : CORNER_HALF;
+    pen.fillStyle = this._palette.corner;
+    for (const v of facts.corners) {
+      const at = inside(v);
+      if (at) pen.fillRect(at[0] - half, at[1] - half, 2 * half, 2 * half);
+    }
+  }
+
+  _paintDisc(pen, view, mirror, facts, v, [x, y]) {
+    const radius = Math.round(2 * this.radius(view, mirror, facts, v)) / 2;
+    const sprite = this._sprite(mirror.delta[v], radius, (mirror.flags[v] & FLAG_CORNER) !== 0);
+    const ratio = this._ratio;
+    const [left, top] = [x - sprite.width / ratio / 2, y - sprite.height / ratio / 2];
+    pen.drawImage(
+      sprite, Math.round(left * ratio) / ratio, Math.round(top * ratio) / ratio,
+      sprite.width / ratio, sprite.height / ratio,
+    );
+  }
+
+  _sprite(delta, radius, corner) {
+    const key = `${delta} ${radius} ${corner}`;
+    let sprite = this._sprites.get(key);
+    if (!sprite) {
+      sprite = this._made(delta, radius, corner);
+      this._sprites.set(key, sprite);
+    }
+    return sprite;
+  }
+
+  _made(delta, radius, corner) {
+    const palette = this._palette;
+    const half = Math.ceil((radius + 2) * this._ratio);
+    const sprite = document.createElement("canvas");
+    sprite.width = sprite.height = 2 * half;
+    const pen = sprite.getContext("2d");
+    pen.setTransform(this._ratio, 0, 0, this._ratio, half, half);
+    if (corner) {
+      pen.fillStyle = palette.corner;
+      pen.fillRect(-radius - 0.5, -radius - 0.5, 2 * radius + 1, 2 * radius + 1);
+    }
+    const disc = (colour, r) => {
+      pen.fillStyle = colour;
+      pen.beginPath();
+      pen.arc(0, 0, r, 0, 2 * Math.PI);
+      pen.fill();
+    };
+    if (radius > 4) disc(palette.background, radius + 1.2);
+    disc(delta > 0 ? palette.plus : palette.minus, radius);
+    if (radius >= READABLE) {
+      const text = signed(delta);
+      const size = Math.max(9, (text.length > 2 ? 0.95 : 1.2) * radius);
+      pen.font = `600 ${size}px ${palette.font}`;
+      pen.fillStyle = palette.marker_text;
+      const box = pen.measureText(text); // centred by its ink: fonts differ in their metrics
+      pen.fillText(
+        text, (box.actualBoundingBoxLeft - box.actualBoundingBoxRight) / 2,
+        (box.actualBoundingBoxAscent - box.actualBoundingBoxDescent) / 2,
+      );
+    }
+    return sprite;
+  }
+}

@@ -1,0 +1,51 @@
+// Making elements of the page in few words.
+
+/** An element with a class, attributes (true: present, false or null: not) and children. */
+function node(tag, name = "", attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  if (name) made.className = name;
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value === true) made.setAttribute(key, "");
+    else if (value !== false && value !== null && value !== undefined) made.setAttribute(key, value);
+  }
+  made.append(...children.filter((child) => child !== null));
+  return made;
+}
+
+/** One of the icons of app/strokes.py, in the colour of the text around it. */
+function icon(name, size = 18) {
+  const space = "http://www.w3.org/2000/svg";
+  const svg = document.createElementNS(space, "svg");
+  const path = document.createElementNS(space, "path");
+  for (const [key, value] of Object.entries({
+    viewBox: "0 0 20 20", width: size, height: size, "aria-hidden": "true", class: "mw-icon",
+  })) svg.setAttribute(key, value);
+  path.setAttribute("d", ICON_STROKES[name]);
+  svg.append(path);
+  return svg;
+}
+
+/** A button with an icon, words or both; `label` is for those who cannot see it, and its tooltip. */
+function button(name, label, { sign = null, text = "", act = null } = {}) {
+  const made = node("button", name, { type: "button", "aria-label": label, title: label });
+  if (sign) made.append(icon(sign));
+  if (text) made.append(node("span", "", {}, text));
+  if (act) made.addEventListener("click", act);
+  return made;
+}
+
+/** Put text where it differs, so that nothing is laid out again for nothing. */
+function tell(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+/** "1 quad", "1,200 quads". */
+function counted(count, one, many = `${one}s`) {
+  return `${count.toLocaleString("en")} ${count === 1 ? one : many}`;
+}
+
+/** `text` with a capital and a full stop. */
+function asSentence(text) {
+  const begun = text.charAt(0).toUpperCase() + text.slice(1);
+  return /[.!?\u2026]$/.test(begun) ? begun : `${begun}.`;
+}

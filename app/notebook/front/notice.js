@@ -1,0 +1,76 @@
+// Sentences for a person: refusals and news over the lower edge of the canvas, what is pointed at in
+// the corner, and the same for those who hear the page instead.
+
+const NOTICE_TIME = { refused: 5000, said: 3500, failed: 60000, hint: 2500 };
+const SPOKEN_AFTER = 250;
+const WAITING_AFTER = 700;
+const SILENT_AFTER = 6000;
+
+class Notice {
+  constructor(stage) {
+    this._timers = { hide: 0, speak: 0, wait: 0 };
+    this._text = node("span", "mw-notice-text");
+    this._close = button("mw-notice-close", "Close this message", { sign: "close", act: () => this.hide() });
+    this._box = node("div", "mw-notice", { hidden: true }, icon("alert", 16), this._text, this._close);
+    this._live = node("div", "mw-unseen", { "aria-live": "polite", role: "status" });
+    this._walk = node("div", "mw-unseen", { "aria-live": "polite" });
+    this._where = node("div", "mw-where", { "aria-hidden": "true" });
+    this._waiting = node("div", "mw-waiting", { hidden: true },
+      node("span", "mw-waiting-dot"), node("span", "mw-waiting-text"));
+    stage.append(this._where, this._waiting, this._box, this._live, this._walk);
+  }
+
+  /** Show a sentence for a while; tone "refused", "said", "failed" or "hint" (how to use it). */
+  show(tone, sentence) {
+    this._box.dataset.tone = tone;
+    this._box.hidden = false;
+    this._close.hidden = tone !== "failed";
+    this._text.textContent = sentence;
+    if (tone !== "hint") this._live.textContent = sentence;
+    clearTimeout(this._timers.hide);
+    this._timers.hide = setTimeout(() => this.hide(), NOTICE_TIME[tone] || NOTICE_TIME.said);
+  }
+
+  hide() {
+    clearTimeout(this._timers.hide);
+    this._box.hidden = true;
+    this._live.textContent = "";
+  }
+
+  /** What is pointed at, for those who see it. */
+  where(text) {
+    tell(this._where, text);
+  }
+
+  /** What is pointed at, for those who hear it; the last of a quick series only. */
+  speak(makeText) {
+    clearTimeout(this._timers.speak);
+    this._timers.speak = setTimeout(() => {
+      this._walk.textContent = makeText();
+    }, SPOKEN_AFTER);
+  }
+
+  /** Something has been asked that Python has not answered yet, or (false) nothing is. */
+  wait(waits, empty) {
+    clearTimeout(this._timers.wait);
+    this._waiting.hidden = true;
+    if (!waits) return;
+    this._timers.wait = setTimeout(() => {
+      this._sayWaiting("Waiting for Python\u2026");
+      this._timers.wait = setTimeout(() => {
+        this._sayWaiting(empty
+          ? "Python does not answer: run this cell again to see the mesh."
+          : "Python is busy, or its kernel has stopped.");
+      }, SILENT_AFTER);
+    }, WAITING_AFTER);
+  }
+
+  _sayWaiting(text) {
+    this._waiting.hidden = false;
+    this._waiting.lastChild.textContent = text;
+  }
+
+  release() {
+    for (const timer of Object.values(this._timers)) clearTimeout(timer);
+  }
+}

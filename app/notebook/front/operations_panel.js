@@ -1,0 +1,58 @@
+// A row for each operation: its key, how it would change s where one points, and which is armed.
+
+class OperationsPanel {
+  constructor(card) {
+    this._card = card;
+    this._rows = [];
+    this._catalogue = null;
+    this._hint = node("p", "mw-hint");
+    this._list = node("div", "mw-operations", { role: "group", "aria-label": "Operations" });
+    this.root = node("section", "mw-part mw-part-operations", { "aria-label": "Operations" },
+      node("h4", "mw-heading", {}, "Operations"), this._hint, this._list);
+  }
+
+  /** Tell what is known of the half-edge that is pointed at. */
+  update() {
+    const { mirror, pointing, palette } = this._card;
+    if (this._catalogue !== mirror.catalogue) this._fill(mirror.catalogue);
+    for (const { info, row, change } of this._rows) {
+      const offer = pointing.offers ? pointing.offers.get(info.operation) : null;
+      const refused = Boolean(offer) && !offer.allowed;
+      const known = Boolean(offer) && offer.change !== null && !refused;
+      tell(change, known ? signed(offer.change) : "");
+      change.style.color = known ? palette.ofChange(offer.change) : "";
+      row.classList.toggle("mw-refused", refused);
+      row.classList.toggle("mw-meant", pointing.meant === info.operation);
+      const armed = pointing.armed === info.operation;
+      row.setAttribute("aria-pressed", String(armed));
+      const summary = asSentence(info.summary);
+      const told = refused ? `${summary}\nNot here: ${asSentence(offer.reason)}`
+        : `${summary}\n${armed ? "A click on the mesh does it." : "Click to arm it: then each click on the mesh does it."}`;
+      if (row.title !== told) row.title = told;
+    }
+    tell(this._hint, this._words());
+  }
+
+  _words() {
+    const { mirror, pointing, readOnly } = this._card;
+    if (readOnly) return "This view is for looking only.";
+    const armed = mirror.catalogue.find((info) => info.operation === pointing.armed);
+    if (!armed) return "Point at a half-edge: its operations and how each would change s.";
+    const offer = pointing.offers ? pointing.offers.get(armed.operation) : null;
+    if (offer && !offer.allowed) return `${armed.title}, not here: ${asSentence(offer.reason)}`;
+    return `${armed.title}: a click on a half-edge does it. Esc puts it down.`;
+  }
+
+  _fill(catalogue) {
+    this._catalogue = catalogue;
+    this._rows = catalogue.map((info) => {
+      const change = node("span", "mw-change");
+      const row = node("button", "mw-operation", { type: "button", "aria-pressed": "false" },
+        node("kbd", "mw-key", { "aria-hidden": "true" }, info.key),
+        node("span", "mw-operation-title", {}, info.title), change);
+      row.addEventListener("click", () => this._card.pointing.arm(info.operation));
+      return { info, row, change };
+    });
+    this._list.replaceChildren(...this._rows.map(({ row }) => row));
+  }
+}

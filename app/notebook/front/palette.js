@@ -1,0 +1,18 @@
+// The colours of the card as it is now, read from its CSS variables once after each change.
+
+class Palette {
+  /** Read again from `element`. */
+  read(element) {
+    const style = getComputedStyle(element);
+    for (const name of PALETTE_NAMES) {
+      this[name] = style.getPropertyValue(`--mw-${name.replace(/_/g, "-")}`).trim();
+    }
+    this.font = style.fontFamily;
+  }
+
+  /** The colour of a change of s: the accent for better, that of warnings for worse. */
+  ofChange(change) {
+    if (!change) return this.muted;
+    return change < 0 ? this.accent : this.warning;
+  }
+}

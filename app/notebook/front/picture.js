@@ -1,0 +1,270 @@
+// The picture of the mesh on the lower canvas. It is kept as long as it can be: panning moves its
+// pixels and paints what comes into view, an edit paints the tiles it touches, and while one zooms in
+// a large mesh the pixels are stretched until the fingers rest.
+
+const TILE = 64;
+const CHUNK = 1500;
+const COSTLY = 9;
+const SETTLED = 90;
+const EDGE_WIDTH = 1.1;
+const BOUNDARY_WIDTH = 1.75;
+
+class Picture {
+  constructor(canvas, palette, marks, afterwards) {
+    this.view = null; // what the canvas shows; at most half a pixel from what was asked for
+    this.paints = 0;
+    this._canvas = canvas;
+    this._pen = canvas.getContext("2d");
+    this._palette = palette;
+    this._marks = marks;
+    this._hatching = new Hatching(palette);
+    this._afterwards = afterwards;
+    this._ratio = 1;
+    this._cost = 0;
+    this._stale = true;
+    this._boxes = [];
+    this._stretched = null;
+    this._timer = 0;
+  }
+
+  /** Paint this mesh from now on. */
+  show(mirror, facts, grid) {
+    this._mirror = mirror;
+    this._facts = facts;
+    this._grid = grid;
+  }
+
+  /** The canvas has another size in device pixels. */
+  resize(width, height, ratio) {
+    this._canvas.width = width;
+    this._canvas.height = height;
+    this._ratio = ratio;
+    this.forget();
+  }
+
+  /** Colours or everything else are others. */
+  forget() {
+    this._stale = true;
+    this._hatching.forget();
+  }
+
+  /** These boxes {left, bottom, right, top} of the plane have changed. */
+  touch(boxes) {
+    this._boxes.push(...boxes);
+  }
+
+  /** See to it that the canvas shows `view`. */
+  paint(view) {
+    if (!this._mirror || !this._canvas.width) return;
+    const shown = this.view;
+    if (this._stale || !shown) this._paintAll(view);
+    else if (shown.pixels !== view.pixels || this._stretched) this._zoom(view);
+    else {
+      this._scroll(view);
+      this._repaint();
+    }
+    this._boxes = [];
+    this.paints += 1;
+  }
+
+  release() {
+    clearTimeout(this._timer);
+  }
+
+  // All of it, or parts
+
+  _paintAll(view) {
+    clearTimeout(this._timer);
+    const began = performance.now();
+    this.view = view;
+    this._stale = false;
+    this._stretched = null;
+    this._edgeWidth = Math.min(EDGE_WIDTH, Math.max(0.12 * this._facts.typical * view.pixels, 0.34));
+    this._paintRegion([[0, 0, this._canvas.width, this._canvas.height]]);
+    this._cost = performance.now() - began;
+  }
+
+  /** Move the pixels, and paint the strips that come into view. */
+  _scroll(view) {
+    const { width, height } = this._canvas;
+    const [ratio, shown] = [this._ratio, this.view];
+    const dx = Math.round((shown.x - view.x) * view.pixels * ratio);
+    const dy = Math.round((view.y - shown.y) * view.pixels * ratio);
+    if (!dx && !dy) return;
+    if (Math.abs(dx) > 0.7 * width || Math.abs(dy) > 0.7 * height) {
+      this._paintAll(view);
+      return;
+    }
+    const pen = this._pen;
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.globalCompositeOperation = "copy";
+    pen.drawImage(this._canvas, dx, dy);
+    pen.globalCompositeOperation = "source-over";
+    this.view = shown.panned(dx / ratio, dy / ratio);
+    const strips = [];
+    const [across, down] = [Math.abs(dx), Math.abs(dy)];
+    if (dy) strips.push([0, dy > 0 ? 0 : height - down, width, down]);
+    if (dx) strips.push([dx > 0 ? 0 : width - across, dy > 0 ? down : 0, across, height - down]);
+    this._paintRegion(strips);
+  }
+
+  /** Stretch what was painted last, and paint crisply once it rests. */
+  _zoom(view) {
+    if (this._cost < COSTLY) {
+      this._paintAll(view);
+      return;
+    }
+    if (!this._stretched) {
+      const copy = document.createElement("canvas");
+      copy.width = this._canvas.width;
+      copy.height = this._canvas.height;
+      copy.getContext("2d").drawImage(this._canvas, 0, 0);
+      this._stretched = { copy, view: this.view };
+    }
+    this.view = view;
+    const { copy, view: old } = this._stretched;
+    const pen = this._pen;
+    this._ground(pen);
+    const scale = view.pixels / old.pixels;
+    const [x, y] = view.toScreen(...old.toPlane(0, 0));
+    pen.drawImage(copy, x, y, old.width * scale, old.height * scale);
+    clearTimeout(this._timer);
+    this._timer = setTimeout(() => {
+      this._paintAll(this.view);
+      this._afterwards();
+    }, SETTLED);
+  }
+
+  /** Paint the tiles that the touched boxes reach. */
+  _repaint() {
+    if (!this._boxes.length) return;
+    const [ratio, view] = [this._ratio, this.view];
+    const tile = TILE * Math.ceil(ratio);
+    const columns = Math.ceil(this._canvas.width / tile);
+    const rows = Math.ceil(this._canvas.height / tile);
+    const dirty = new Uint8Array(columns * rows);
+    let count = 0;
+    for (const box of this._boxes) {
+      const [left, top] = view.toScreen(box.left, box.top);
+      const [right, bottom] = view.toScreen(box.right, box.bottom);
+      const column = (x) => Math.floor((x * ratio) / tile);
+      const first = Math.max(column(left - MARK_SLACK), 0);
+      const last = Math.min(column(right + MARK_SLACK), columns - 1);
+      const low = Math.min(column(bottom + MARK_SLACK), rows - 1);
+      for (let j = Math.max(column(top - MARK_SLACK), 0); j <= low; j += 1) {
+        for (let i = first; i <= last; i += 1) {
+          if (!dirty[j * columns + i]) count += 1;
+          dirty[j * columns + i] = 1;
+        }
+      }
+    }
+    if (count > 0.6 * columns * rows) this._paintAll(view);
+    else if (count) this._paintRegion(tileRuns(dirty, columns, rows, tile));
+  }
+
+  /** Paint rectangles [x, y, width, height] of device pixels. */
+  _paintRegion(rectangles) {
+    const [pen, ratio, view] = [this._pen, this._ratio, this.view];
+    pen.save();
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.beginPath();
+    for (const rectangle of rectangles) pen.rect(...rectangle);
+    pen.clip();
+    this._ground(pen);
+    const elements = this._elementsIn(rectangles.map((r) => r.map((value) => value / ratio)));
+    this._paintEdges(pen, elements);
+    this._hatching.paint(pen, ratio, view, this._mirror, this._facts.inverted);
+    pen.lineWidth = Math.max(BOUNDARY_WIDTH, 1.3 * this._edgeWidth);
+    pen.strokeStyle = this._palette.boundary;
+    this._outline(pen);
+    pen.stroke();
+    this._marks.paint(pen, ratio, view, this._mirror, this._facts, boundsOf(rectangles, ratio));
+    pen.restore();
+  }
+
+  _ground(pen) {
+    const { width, height } = this._canvas;
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.fillStyle = this._palette.background;
+    pen.fillRect(0, 0, width, height);
+    pen.setTransform(this._ratio, 0, 0, this._ratio, 0, 0);
+    pen.lineJoin = "round";
+    pen.lineCap = "round";
+    pen.fillStyle = this._palette.fill;
+    this._outline(pen);
+    pen.fill("evenodd");
+  }
+
+  /** Begin a path of all boundary loops. */
+  _outline(pen) {
+    const { places } = this._mirror;
+    pen.beginPath();
+    for (const loop of this._facts.loops) {
+      loop.forEach((v, i) => {
+        const at = this.view.toScreen(places[2 * v], places[2 * v + 1]);
+        if (i) pen.lineTo(...at);
+        else pen.moveTo(...at);
+      });
+      pen.closePath();
+    }
+  }
+
+  _elementsIn(rectangles) {
+    const found = rectangles.map(([x, y, width, height]) => {
+      const [left, top] = this.view.toPlane(x - 2, y - 2);
+      const [right, bottom] = this.view.toPlane(x + width + 2, y + height + 2);
+      return this._grid.near(left, bottom, right, top);
+    });
+    return found.length === 1 ? found[0] : new Set(found.flat());
+  }
+
+  /** Every inner edge of these elements once. */
+  _paintEdges(pen, elements) {
+    const { k, origin, twin, places } = this._mirror;
+    const { pixels, width, height, x, y } = this.view;
+    const [shiftX, shiftY] = [width / 2 - x * pixels, height / 2 + y * pixels];
+    pen.strokeStyle = this._palette.edge;
+    pen.lineWidth = this._edgeWidth;
+    pen.beginPath();
+    let count = 0;
+    for (const e of elements) {
+      for (let h = k * e, last = h + k - 1; h <= last; h += 1) {
+        if (twin[h] < h) continue; // the boundary, and what the other side draws
+        const a = 2 * origin[h];
+        const b = 2 * origin[h === last ? k * e : h + 1];
+        pen.moveTo(places[a] * pixels + shiftX, shiftY - places[a + 1] * pixels);
+        pen.lineTo(places[b] * pixels + shiftX, shiftY - places[b + 1] * pixels);
+        count += 1;
+      }
+      if (count >= CHUNK) {
+        pen.stroke();
+        pen.beginPath();
+        count = 0;
+      }
+    }
+    pen.stroke();
+  }
+}
+
+/** Neighbouring dirty tiles of a row as one rectangle. */
+function tileRuns(dirty, columns, rows, tile) {
+  const runs = [];
+  for (let j = 0; j < rows; j += 1) {
+    for (let i = 0; i < columns; i += 1) {
+      if (!dirty[j * columns + i]) continue;
+      const start = i;
+      while (i + 1 < columns && dirty[j * columns + i + 1]) i += 1;
+      runs.push([start * tile, j * tile, (i + 1 - start) * tile, tile]);
+    }
+  }
+  return runs;
+}
+
+function boundsOf(rectangles, ratio) {
+  return {
+    left: Math.min(...rectangles.map((r) => r[0])) / ratio,
+    top: Math.min(...rectangles.map((r) => r[1])) / ratio,
+    right: Math.max(...rectangles.map((r) => r[0] + r[2])) / ratio,
+    bottom: Math.max(...rectangles.map((r) => r[1] + r[3])) / ratio,
+  };
+}

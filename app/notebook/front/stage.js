@@ -1,0 +1,145 @@
+// The stage: two canvases, the view of the mesh, and when they are painted.
+
+const FIT_SHARE = 0.08;
+const FIT_MOST = 48;
+const FIT_LEAST = 22;
+
+class Stage {
+  constructor(element, palette, painted) {
+    this.element = element;
+    this.work = new MeshWork();
+    this.view = new Viewport();
+    this.fitted = true; // nobody has moved the view: it keeps showing all
+    this.shown = { halfedge: -1, ghost: null, title: "", hints: [], meant: 0 };
+    this._palette = palette;
+    this._painted = painted;
+    this._lower = node("canvas", "mw-lower", { "aria-hidden": "true" });
+    this.surface = node("canvas", "mw-upper", { tabindex: "0", role: "application" });
+    element.append(this._lower, this.surface);
+    this._marks = new Marks(palette);
+    this.picture = new Picture(this._lower, palette, this._marks, () => this.repaint());
+    this.overlay = new Overlay(this.surface, palette, this._marks);
+    this._ratio = 0;
+    this._frame = 0;
+    this._observer = new ResizeObserver(() => this.resize());
+    this._observer.observe(element);
+  }
+
+  release() {
+    this._observer.disconnect();
+    cancelAnimationFrame(this._frame);
+    this.picture.release();
+  }
+
+  // The mesh
+
+  load(content, buffers) {
+    const before = this.work.mirror.frame;
+    const first = this.work.mirror.revision < 0;
+    this.work.load(content, buffers);
+    const moved = ["cx", "cy", "scale"].some((name) => before[name] !== content.frame[name]);
+    if (first || moved) this.fitted = true;
+    this.picture.forget();
+    this._show();
+  }
+
+  /** False if the patch is not for what is here. */
+  patch(content, buffers) {
+    const boxes = this.work.patch(content, buffers);
+    if (boxes === undefined) return false;
+    if (boxes) this.picture.touch(boxes);
+    else this.picture.forget();
+    this._show();
+    return true;
+  }
+
+  _show() {
+    const { mirror, facts, grid } = this.work;
+    this.picture.show(mirror, facts, grid);
+    if (this.fitted) this._fit();
+    this.repaint();
+  }
+
+  // The view
+
+  /** Look through another view. */
+  see(view) {
+    this.view = view;
+    this.fitted = false;
+    this.repaint();
+  }
+
+  /** Show all of the mesh. */
+  fit() {
+    this.fitted = true;
+    this._fit();
+    this.repaint();
+  }
+
+  _fit() {
+    const box = this.work.mirror.bounds();
+    const { width, height } = this.view;
+    const margin = clamp(FIT_SHARE * Math.min(width, height), FIT_LEAST, FIT_MOST);
+    if (box) this.view = this.view.fitted(box, margin);
+  }
+
+  /** Follow size and pixel ratio of the place on the page. */
+  resize() {
+    const ratio = globalThis.devicePixelRatio || 1;
+    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
+    if (!width || !height) return;
+    const [across, down] = [Math.floor(width * ratio), Math.floor(height * ratio)];
+    const same = across === this._lower.width && down === this._lower.height && ratio === this._ratio;
+    if (same) return;
+    this._ratio = ratio;
+    for (const canvas of [this._lower, this.surface]) {
+      canvas.style.width = `${across / ratio}px`;
+      canvas.style.height = `${down / ratio}px`;
+    }
+    this.picture.resize(across, down, ratio);
+    this.overlay.resize(across, down, ratio);
+    this.view = this.view.resized(across / ratio, down / ratio);
+    if (this.fitted) this._fit();
+    this.paint(); // a canvas that was resized is empty
+  }
+
+  // Painting
+
+  /** The colours are others. */
+  recolour() {
+    this._marks.forget();
+    this.picture.forget();
+    this.repaint();
+  }
+
+  /** Paint with the next frame. */
+  repaint() {
+    if (!this._frame) this._frame = requestAnimationFrame(() => this.paint());
+  }
+
+  paint() {
+    cancelAnimationFrame(this._frame);
+    this._frame = 0;
+    const { mirror, facts } = this.work;
+    if (mirror.revision < 0 || !this._lower.width) return;
+    if ((globalThis.devicePixelRatio || 1) !== this._ratio) {
+      this.resize();
+      return;
+    }
+    this.picture.paint(this.view);
+    this.overlay.paint(this.picture.view, mirror, facts, this.shown);
+    this._painted();
+  }
+
+  /** The half-edge at [x, y] of the canvas, or of the boundary within `reach` pixels; or -1. */
+  pick([x, y], reach) {
+    const [px, py] = this.view.toPlane(x, y);
+    return halfedgeAt(this.work.mirror, this.work.grid, px, py, reach / this.view.pixels);
+  }
+
+  /** A half-edge that starts at the vertex within `reach` pixels of [x, y]; or -1. */
+  pickVertex([x, y], reach) {
+    const [px, py] = this.view.toPlane(x, y);
+    return vertexAt(this.work.mirror, this.work.grid, px, py, reach / this.view.pixels);
+  }
+}

@@ -1,0 +1,69 @@
+// From half-edge to half-edge and from one irregular vertex to the next, by keyboard.
+
+const KEEP_IN_VIEW = 48;
+const WALKED_SIZE = 120;
+
+class Walking {
+  constructor(card) {
+    this._card = card;
+    this._vertex = -1;
+  }
+
+  /** To the next half-edge of the element (1), or the one before (-1). */
+  along(step) {
+    const { mirror } = this._card;
+    const h = this._here();
+    if (h >= 0) this._go(step > 0 ? mirror.next(h) : mirror.prev(h));
+  }
+
+  /** To the other side of the edge. */
+  across() {
+    const { mirror } = this._card;
+    const h = this._here();
+    if (h < 0) return;
+    if (mirror.twin[h] < 0) this._card.say("said", "The boundary has no other side.");
+    else this._go(mirror.twin[h]);
+  }
+
+  /** To a half-edge at the next irregular vertex (1), or the one before (-1), as one reads. */
+  toIrregular(step) {
+    const { mirror, facts } = this._card;
+    const found = inReadingOrder(mirror, facts);
+    if (!found.length) {
+      this._card.say("said", "Every vertex is regular.");
+      return;
+    }
+    const at = found.indexOf(this._vertex);
+    const place = at < 0 ? (step > 0 ? 0 : found.length - 1) : (at + step + found.length) % found.length;
+    const vertex = this._vertex = found[place];
+    const halfedge = mirror.origin.indexOf(vertex);
+    const reach = Math.max(...mirror.around(halfedge).map((h) => edgeLength(mirror, h)));
+    const [x, y] = mirror.place(vertex);
+    this._card.reveal(x, y, reach, WALKED_SIZE);
+    this._go(halfedge, `Irregular vertex ${place + 1} of ${found.length}. `);
+  }
+
+  /** The half-edge that is pointed at; the one in the middle of the view if there is none yet. */
+  _here() {
+    const { mirror, pointing, view } = this._card;
+    if (mirror.live(pointing.halfedge)) return pointing.halfedge;
+    this._go(halfedgeNear(mirror, view.x, view.y));
+    return -1;
+  }
+
+  _go(halfedge, before = "") {
+    if (halfedge < 0) return;
+    this._card.pin(halfedge);
+    this._card.keepInView(halfedge, KEEP_IN_VIEW);
+    this._card.announceSoon(before);
+  }
+}
+
+/** Irregular vertices from the top down in bands, so that neighbours follow one another. */
+function inReadingOrder(mirror, facts) {
+  const band = Math.max(3 * facts.typical, 1e-9);
+  const row = (v) => Math.floor(-mirror.places[2 * v + 1] / band);
+  return [...facts.irregular].sort(
+    (a, b) => row(a) - row(b) || mirror.places[2 * a] - mirror.places[2 * b],
+  );
+}
