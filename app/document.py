@@ -18,6 +18,7 @@ from app.selection import Selection
 from app.timeline import NO_MESH as NO_MESH
 from app.timeline import Timeline
 from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict, io
+from meshcore.display import Bundle
 from meshcore.enclosure import holding
 from meshcore.formats import SHAPES
 from meshcore.operations import CATALOGUE
@@ -141,6 +142,15 @@ class Document(Timeline):
         self.noted.emit("saved", 0)
         self.saved_changed.emit()
         return target
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> Bundle:
+        """A still picture at the end of a notebook's cell."""
+        if self._mesh is None:
+            return {"text/plain": NO_MESH}, {}
+        from app.mimebundle import mimebundle  # imported late: who shows no document needs none
+
+        data, metadata = mimebundle(self._mesh, self._name)
+        return {"text/plain": repr(self._mesh), **data}, metadata
 
     def _adopt(self, mesh: HalfEdgeMesh | None, name: str, path: str | Path | None) -> None:
         self._mesh = mesh

@@ -74,21 +74,24 @@ def _made(
     theme: str,
     seconds: float = SECONDS,
 ) -> bytes:
-    """Drawn into a folder of its own, and only then put where it shall be."""
+    """The bytes of a picture or a film; without a path they go through a folder of their own."""
     order = Order(
         ending, _checked_size(size), _checked_theme(theme), seconds=_checked_seconds(seconds)
     )
     if path is not None:
         _check_ending(path, ending)
     film = Film(document)
-    with TemporaryDirectory(prefix="meshwright-") as folder:
-        made = Path(folder) / f"picture{ending}"
-        save_order(film, order, made)
-        whole = made.read_bytes()
     if path is not None:
         with atomic.replacing(path) as temporary:
-            temporary.write_bytes(whole)
-    return whole
+            save_order(film, order, temporary)
+            return temporary.read_bytes()
+    try:
+        with TemporaryDirectory(prefix="meshwright-") as folder:
+            made = Path(folder) / f"picture{ending}"
+            save_order(film, order, made)
+            return made.read_bytes()
+    except OSError as error:
+        raise MeshError(f"The picture cannot be made ({atomic.reason(error)}).") from error
 
 
 def _checked_size(size: tuple[int, int]) -> tuple[int, int]:

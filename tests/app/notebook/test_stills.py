@@ -1,0 +1,165 @@
+"""Still pictures and films for notebooks, as bytes and as files."""
+
+import io
+import re
+import xml.etree.ElementTree as ElementTree
+from base64 import b64decode
+from html.parser import HTMLParser
+from urllib.parse import unquote
+
+import pytest
+from PIL import Image
+
+from app import mimebundle
+from app.document import Document
+from app.notebook import MeshWidget, stills
+from app.timeline import NO_MESH
+from meshcore import MeshError, generate, shapes
+
+SMALL = (160, 120)
+
+
+@pytest.fixture
+def document(star) -> Document:
+    """The star after two operations."""
+    document = Document(star, "star")
+    for _ in range(2):
+        h = next(h for h in range(star.k * 20) if star.live(h) and star.check("flip_left", h))
+        document.submit("flip_left", h)
+    return document
+
+
+def image_of(html: str) -> dict[str, str]:
+    """The attributes of the first image."""
+    found = []
+
+    class Parser(HTMLParser):
+        def handle_starttag(self, tag, attributes):
+            if tag == "img":
+                found.append(dict(attributes))
+
+    Parser().feed(html)
+    return found[0]
+
+
+# The picture of a mesh
+
+
+def test_a_small_mesh_is_vectors_with_words(star):
+    data, metadata = mimebundle.mimebundle(star)
+    image = image_of(data["text/html"])
+    assert image["alt"] == f"24 quads, s {star.score}, optimum 4"
+    assert (image["width"], image["height"]) == ("480", "360")
+    kind, _, text = image["src"].partition(",")
+    assert kind == "data:image/svg+xml"
+    assert ElementTree.fromstring(unquote(text)).get("width") == "480"
+    assert image["alt"] in data["text/html"].partition("<figcaption")[2]
+    assert len(data["text/html"]) < 16_000
+    assert metadata == {}
+
+
+def test_a_large_mesh_is_pixels_for_sharp_screens():
+    mesh = generate.mesh_domain(shapes.shape("l-shape"), "quad", 0.08)
+    assert 800 < mesh.n_elements < 1200
+    html = mimebundle.mimebundle(mesh)[0]["text/html"]
+    kind, _, text = image_of(html)["src"].partition(",")
+    assert kind == "data:image/png;base64"
+    assert Image.open(io.BytesIO(b64decode(text))).size == (960, 720)
+    assert len(html) < 120_000
+
+
+def test_a_name_is_words_and_never_markup(star):
+    name = '</figure><img src=x onerror="alert(1)">\''
+    document = Document(star, name)
+    data, _ = document._repr_mimebundle_()
+    html = data["text/html"]
+    assert html.count("<img") == 1 and html.count("</figure>") == 1
+    assert image_of(html)["alt"].startswith(name)
+    assert data["text/plain"] == repr(star)
+
+
+def test_an_empty_document_shows_a_sentence():
+    assert Document()._repr_mimebundle_() == ({"text/plain": NO_MESH}, {})
+
+
+def test_a_saved_notebook_keeps_a_picture_beside_the_widget(document):
+    widget = MeshWidget(document)
+    data, metadata = widget._repr_mimebundle_()
+    assert data["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
+    assert Image.open(io.BytesIO(b64decode(data["image/png"]))).size == (960, 720)
+    assert metadata["image/png"]["width"] == 480
+    assert metadata["image/png"]["alt"] == mimebundle.caption(document.mesh)
+    widget.close()
+
+
+# Pictures and films of a document
+
+
+def test_pictures_as_bytes_and_as_files(document, tmp_path):
+    path = tmp_path / "star.png"
+    whole = stills.png(document, SMALL, path)
+    assert path.read_bytes() == whole
+    assert Image.open(io.BytesIO(whole)).size == SMALL
+    drawing = stills.svg(document, SMALL)
+    assert ElementTree.fromstring(drawing).get("height") == "120"
+    assert "#121416" in stills.svg(document, SMALL, theme="dark")
+    assert document.history.cursor == 2
+
+
+def test_films_as_bytes_and_as_files(document, tmp_path):
+    document.go_to(1)
+    film = Image.open(io.BytesIO(stills.gif(document, 0.1, SMALL)))
+    assert film.size == SMALL and film.n_frames == 3
+    path = tmp_path / "star.mp4"
+    whole = stills.mp4(document, path, 0.1, SMALL)
+    assert path.read_bytes() == whole and whole[4:8] == b"ftyp"
+    assert document.history.cursor == 1
+
+
+def test_a_widget_gives_away_the_same(document, tmp_path):
+    widget = MeshWidget(document, theme="dark")
+    assert widget.to_png(size=SMALL) == stills.png(document, SMALL, theme="dark")
+    assert widget.to_svg(size=SMALL) == stills.svg(document, SMALL, theme="dark")
+    assert widget.to_gif(tmp_path / "a.gif", 0.1, SMALL)[:6] == b"GIF89a"
+    assert widget.to_mp4(tmp_path / "a.mp4", 0.1, SMALL)[4:8] == b"ftyp"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.mp4"]
+    widget.close()
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda d, at: stills.png(d, (0, 100)), "A size is two whole numbers"),
+        (lambda d, at: stills.png(d, (True, 100)), "A size is two whole numbers"),
+        (lambda d, at: stills.png(d, "large"), "A size is two whole numbers"),
+        (lambda d, at: stills.svg(d, (100, 100_000)), "A size is two whole numbers"),
+        (lambda d, at: stills.gif(d, 0), "A frame stays between 0 and 60 seconds, not 0"),
+        (lambda d, at: stills.gif(d, float("nan")), "not nan"),
+        (lambda d, at: stills.gif(d, "fast"), "not 'fast'"),
+        (lambda d, at: stills.png(d, theme="pink"), "There is no theme 'pink'"),
+        (lambda d, at: stills.png(d, path=at / "a.jpg"), "the name must end in .png"),
+        (lambda d, at: stills.mp4(d, at / "a.gif"), "the name must end in .mp4"),
+        (lambda d, at: stills.png(d, SMALL, at / "no" / "a.png"), "no does not exist"),
+        (lambda d, at: stills.png(Document()), re.escape(NO_MESH)),
+    ],
+)
+def test_what_cannot_be_is_said_in_one_sentence(document, tmp_path, call, words):
+    with pytest.raises(MeshError, match=words) as caught:
+        call(document, tmp_path)
+    assert str(caught.value).endswith(".") and "\n" not in str(caught.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_old_file_stays_where_the_new_one_fails(document, tmp_path, monkeypatch):
+    path = tmp_path / "star.png"
+    path.write_bytes(b"old")
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("app.pictures.save_picture", full)
+    with pytest.raises(MeshError, match=r"star.png: cannot be written \(no space left on device\)"):
+        stills.png(document, SMALL, path)
+    assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 1
+    with pytest.raises(MeshError, match=r"^The picture cannot be made \(no space left on device\)"):
+        stills.png(document, SMALL)

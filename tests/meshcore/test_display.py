@@ -1,0 +1,51 @@
+"""How a mesh shows itself at the end of a notebook's cell."""
+
+from importlib.metadata import EntryPoint
+
+import pytest
+from tiny_meshes import grid
+
+from meshcore import display
+
+
+@pytest.fixture(autouse=True)
+def _forgotten():
+    display.drawer.cache_clear()
+    yield
+    display.drawer.cache_clear()
+
+
+def installed(monkeypatch, *points: EntryPoint) -> None:
+    monkeypatch.setattr(
+        display, "entry_points", lambda group: [p for p in points if p.group == group]
+    )
+
+
+def squares(mesh):
+    """A drawer."""
+    return {"image/svg+xml": f"<svg>{mesh.n_elements}</svg>"}, {"image/svg+xml": {"alt": "grid"}}
+
+
+def test_without_a_drawer_the_line_of_text_remains(monkeypatch):
+    installed(monkeypatch)
+    mesh = grid(2)
+    assert mesh._repr_mimebundle_() == ({"text/plain": repr(mesh)}, {})
+
+
+def test_the_drawer_is_found_by_its_name_and_asked_when_a_mesh_is_shown(monkeypatch):
+    group, here = display.GROUP, f"{__name__}:squares"
+    installed(
+        monkeypatch,
+        EntryPoint("other", "nowhere:nothing", group),
+        EntryPoint(display.NAME, here, group),
+    )
+    mesh = grid(3)
+    data, metadata = mesh._repr_mimebundle_(include=None, exclude=None)
+    assert data == {"text/plain": repr(mesh), "image/svg+xml": "<svg>9</svg>"}
+    assert metadata == {"image/svg+xml": {"alt": "grid"}}
+
+
+def test_a_drawer_that_is_broken_says_so(monkeypatch):
+    installed(monkeypatch, EntryPoint(display.NAME, "no_such_module:draw", display.GROUP))
+    with pytest.raises(ModuleNotFoundError):
+        grid(2)._repr_mimebundle_()
