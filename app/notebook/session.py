@@ -55,7 +55,7 @@ class Session:
         self._calling = self._ended = False
         self.agent.settle()
         document.replaced.connect(self._on_replaced)
-        document.changed.connect(self.telling.touch)
+        document.changed.connect(self.telling.follow)
         document.score_changed.connect(self._on_score_changed)
         self.assistant.changed.connect(self._on_agent_changed)
         self.assistant.hinting.changed.connect(self._on_agent_changed)
@@ -101,7 +101,7 @@ class Session:
         self._ended = True
         self.assistant.close()
         self.document.replaced.disconnect(self._on_replaced)
-        self.document.changed.disconnect(self.telling.touch)
+        self.document.changed.disconnect(self.telling.follow)
         self.document.score_changed.disconnect(self._on_score_changed)
 
     # What Python asks for

@@ -58,6 +58,7 @@ class Telling:
         self._fresh = self._dirty = self._agent_dirty = self._due = False
         self._asked: list[Request] = []
         self._sent = 0.0
+        self._told = document.revision
 
     # To whom
 
@@ -87,6 +88,11 @@ class Telling:
         self._ports = [known for known in self._ports if known() not in (port, None)]
 
     # What has changed
+
+    def follow(self) -> None:
+        """The document says that it has changed; of a mesh that is new all has been told."""
+        if self._told != self._document.revision:
+            self.touch()
 
     def touch(self) -> None:
         """The mesh has changed, or what goes with it."""
@@ -136,6 +142,7 @@ class Telling:
     def _send_news(self, request: Request | None) -> None:
         agent, self._agent_dirty = self._agent_dirty, False
         dirty, self._dirty = self._dirty, False
+        self._told = self._document.revision
         if self._fresh:
             self._take_all()
             self._send_states(request)
@@ -162,6 +169,7 @@ class Telling:
 
     def _take_all(self) -> None:
         self._fresh = self._dirty = False
+        self._told = self._document.revision
         self.mirror.reset(self._document.mesh)
         self.head.reset()
 

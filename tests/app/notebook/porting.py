@@ -118,3 +118,28 @@ def allowed(mesh: HalfEdgeMesh, names: tuple[str, ...] = ("flip_left", "flip")) 
                 if verdict and operation in names:
                     return str(operation), halfedge
     raise AssertionError("nothing is allowed")
+
+
+def script_agent(monkeypatch: Any, greedy: Any) -> None:
+    """Let every assistant that is made from now on follow a scripted policy: no torch, no search.
+
+    greedy: the class ``Greedy`` of the tests of the application.
+    """
+
+    def ask(mesh: HalfEdgeMesh, policy: str, near: Any) -> Any:
+        seen = greedy(mesh).look()
+        return () if seen is None else seen.choices[:5]
+
+    monkeypatch.setattr("app.worker._load_policy", lambda name: name)
+    monkeypatch.setattr("app.worker._make_runner", lambda mesh, policy, seed: greedy(mesh))
+    monkeypatch.setattr("app.worker._ask_policy", ask)
+    monkeypatch.setattr(
+        "app.searching.SearchRunner._search", lambda self: _all_of(greedy(self._mesh))
+    )
+
+
+def _all_of(runner: Any) -> list[Any]:
+    found = []
+    while not runner.finished:
+        found += runner.step()
+    return found
