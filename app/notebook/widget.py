@@ -38,6 +38,9 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     ``widget.mesh.apply`` does is in no history, and no view hears of it.
     """
 
+    # anywidget passes on only what the class has; the texts are made for each widget
+    _esm = traitlets.Unicode("").tag(sync=True)
+    _css = traitlets.Unicode("").tag(sync=True)
     height = traitlets.Int(480, min=LOWEST, max=HIGHEST).tag(sync=True)
     """Pixels of the canvas."""
     theme = traitlets.Enum(("auto", "light", "dark"), "auto").tag(sync=True)
