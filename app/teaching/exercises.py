@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -57,6 +58,10 @@ class Exercise:
         """
         if any(_has_gap(one) for one in given) or not given:
             return Answer(self.name, BLANK, self.nudge)
+        wanted = len(inspect.signature(self.judge).parameters)
+        if len(given) != wanted:
+            said = f"{wanted} {'thing' if wanted == 1 else 'things'}"
+            return Answer(self.name, WRONG, f"This check takes {said}, not {len(given)}.")
         try:
             return Answer(self.name, RIGHT, self.judge(*given))
         except Blank:

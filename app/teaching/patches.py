@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh, MeshError
+from meshcore import HalfEdgeMesh, MeshError, smoothing
 
 
 def patch(name: str) -> HalfEdgeMesh:
@@ -100,16 +100,31 @@ def three_to_one() -> HalfEdgeMesh:
     return HalfEdgeMesh.from_elements(np.array(points, dtype=float), np.array(rows))
 
 
+def fine_l() -> HalfEdgeMesh:
+    """An L of 5 by 5 squares without 2 by 3 of them, s 0: three blocks."""
+    wide, tall, low = 5, 5, 2
+    kept = [(x, y) for y in range(tall) for x in range(wide) if x < 3 or y < low]
+    squares = [((x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)) for x, y in kept]
+    points = sorted({corner for square in squares for corner in square}, key=lambda p: p[::-1])
+    number = {point: i for i, point in enumerate(points)}
+    rows = [[number[corner] for corner in square] for square in squares]
+    return HalfEdgeMesh.from_elements(np.array(points, dtype=float), np.array(rows))
+
+
 def _edited(mesh: HalfEdgeMesh, *edits: tuple[str, int, int]) -> HalfEdgeMesh:
-    """The mesh after operations at the half-edges between two vertices, and without a history."""
+    """The mesh after operations at the half-edges between two vertices, smooth, and without a
+    history.
+    """
     for operation, a, b in edits:
         mesh.apply(operation, mesh.halfedge(a, b))
+    smoothing.relax(mesh)
     return mesh.copy()
 
 
 PATCHES: dict[str, Callable[[], HalfEdgeMesh]] = {
     "grid": lambda: grid(3, 3),
     "wide grid": lambda: grid(4, 3),
+    "fine l": fine_l,
     "flipped grid": flipped_grid,
     "doublet": doublet,
     "three to one": three_to_one,

@@ -45,17 +45,7 @@ def doublet(widget: object) -> str:
     return "The doublet merged with the corner across, and its two quads are one again."
 
 
-@declare("4.4", "Count the lines inside: across and down.")
-def lines_of_the_grid(answer: object) -> str:
-    """Clean-ups of a grid of 4 by 3 quads."""
-    n = whole(answer)
-    expect(n != 7, "Sides of the rectangle are not lines to be deleted; only those inside count.")
-    expect(n != 12, "That is the number of quads.")
-    expect(n == 5, "A grid of 4 by 3 quads has lines from top to bottom and from left to right.")
-    return "Three down and two across; then one quad is left, and the score was 0 all the time."
-
-
-@declare("4.5", "Remember what a flip, a split and a collapse do to the boundary: nothing.")
+@declare("4.4", "Remember what a flip, a split and a collapse do to the boundary: nothing.")
 def local_is_enough(answer: object) -> str:
     """Whether local operations can make the rectangle regular."""
     expect(
@@ -66,7 +56,7 @@ def local_is_enough(answer: object) -> str:
     return "Three edges below and one above stay three and one: no grid has that."
 
 
-@declare("4.6", "Point at a blue vertex, along the edge to the +1 that is next to it, and press G.")
+@declare("4.5", "Point at a blue vertex, along the edge to the +1 that is next to it, and press G.")
 def three_to_one(widget: object) -> str:
     """The rectangle with unequal sides made regular."""
     mesh = mesh_of(edited(widget))
@@ -76,3 +66,13 @@ def three_to_one(widget: object) -> str:
         "starts, and takes one from the vertex where it ends: which wants which?",
     )
     return "Lines were carried to the upper side, and now it has as many edges as the lower one."
+
+
+@declare("4.6", "Count the lines inside: across and down.")
+def lines_of_the_grid(answer: object) -> str:
+    """Clean-ups of a grid of 4 by 3 quads."""
+    n = whole(answer)
+    expect(n != 7, "Sides of the rectangle are not lines to be deleted; only those inside count.")
+    expect(n != 12, "That is the number of quads.")
+    expect(n == 5, "A grid of 4 by 3 quads has lines from top to bottom and from left to right.")
+    return "Three down and two across; then one quad is left, and the score was 0 all the time."

@@ -1,0 +1,183 @@
+"""Every lesson runs from top to bottom in a kernel, blank and solved, and is fit to be read."""
+
+import copy
+import itertools
+import re
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+from nbformat import v4
+
+from app import lessons
+from app.lessons import Lesson
+from app.teaching.answer import BLANK, MIME, RIGHT, WRONG
+
+WIDGET = "application/vnd.jupyter.widget-view+json"
+ALLOWED_LINKS = {
+    "https://en.wikipedia.org/wiki/Doubly_connected_edge_list",
+    "https://en.wikipedia.org/wiki/Euler_characteristic",
+    "https://en.wikipedia.org/wiki/Gauss%E2%80%93Bonnet_theorem",
+}
+"""Pages outside that a lesson may send a reader to."""
+
+LONGEST_CELL = 10
+WORDS = (500, 1800)
+
+LESSONS = lessons.shipped()
+every_lesson = pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
+
+
+def book(lesson: Lesson) -> Any:
+    return nbformat.read(lesson.path, as_version=4)
+
+
+def exercise_of(cell: Any) -> dict[str, Any] | None:
+    about = cell.metadata.get("meshwright", {})
+    return about if "exercise" in about else None
+
+
+def tried(cell: Any, code: str, state: str) -> Any:
+    """The cell with an answer, marked with what should come of it."""
+    name = cell.metadata.meshwright.exercise
+    source = lessons.ExerciseCell(name, cell.source, "", ()).answered(code)
+    made = v4.new_code_cell(source)
+    made.metadata["wanted"] = state
+    return made
+
+
+def blank_then_solved(notebook: Any) -> Any:
+    """The cells of a lesson as shipped, then from an empty namespace with wrong answers and with
+    solutions: one notebook, so that one kernel is started.
+    """
+    cells = []
+    for cell in notebook.cells:
+        shipped = copy.deepcopy(cell)
+        if exercise_of(cell) is not None:
+            shipped.metadata["wanted"] = BLANK
+        cells.append(shipped)
+    cells.append(v4.new_code_cell("%reset -f"))
+    for cell in notebook.cells:
+        about = exercise_of(cell)
+        if about is None:
+            cells.append(copy.deepcopy(cell))
+            continue
+        cells += [tried(cell, code, WRONG) for code in about["wrong"]]
+        cells.append(tried(cell, about["solution"], RIGHT))
+    made = v4.new_notebook(metadata=notebook.metadata)
+    made.cells = [cell for cell in cells if cell.cell_type == "code"]
+    for i, cell in enumerate(made.cells):
+        cell["id"] = f"cell-{i}"
+    return made
+
+
+@every_lesson
+def test_runs_blank_and_solved(lesson: Lesson, tmp_path: Path):
+    notebook = blank_then_solved(book(lesson))
+    client = NotebookClient(
+        notebook,
+        timeout=120,
+        kernel_name="python3",
+        resources={"metadata": {"path": str(tmp_path)}},
+    )
+    client.execute()  # an error in a cell is raised here
+    for cell in notebook.cells:
+        wanted = cell.metadata.get("wanted")
+        answers = [out.data[MIME] for out in cell.outputs if MIME in out.get("data", {})]
+        if wanted is not None:
+            assert [answer["state"] for answer in answers] == [wanted], cell.source
+    first = notebook.cells[0]
+    assert any(WIDGET in out.get("data", {}) for out in first.outputs)
+
+
+@every_lesson
+def test_is_valid_and_carries_no_outputs(lesson: Lesson):
+    notebook = book(lesson)
+    nbformat.validate(notebook)
+    for number, cell in enumerate(notebook.cells, 1):
+        assert cell.id == f"{lesson.name[3:]}-{number:02d}"
+        if cell.cell_type == "code":
+            assert cell.outputs == []
+            assert cell.execution_count is None
+
+
+@every_lesson
+def test_begins_with_a_picture_and_a_widget(lesson: Lesson):
+    first, second = book(lesson).cells[:2]
+    assert first.cell_type == "markdown"
+    assert first.source.startswith("# ")
+    assert "attachment:" in first.source
+    assert second.cell_type == "code"
+    assert "MeshWidget(" in second.source
+    assert len([line for line in second.source.split("\n") if line.strip()]) <= 3
+
+
+@every_lesson
+def test_cells_are_short(lesson: Lesson):
+    for cell in book(lesson).cells:
+        if cell.cell_type == "code":
+            assert len(cell.source.split("\n")) <= LONGEST_CELL, cell.source
+
+
+@every_lesson
+def test_pictures_are_there_and_have_words(lesson: Lesson):
+    for cell in book(lesson).cells:
+        if cell.cell_type == "markdown":
+            wanted = set(re.findall(r"attachment:([\w.-]+)", cell.source))
+            assert wanted == set(cell.get("attachments", {}))
+            for tag in re.findall(r"<img[^>]*>", cell.source):
+                assert re.search(r'alt="[^"]{20,}"', tag)
+
+
+@every_lesson
+def test_links_lead_somewhere(lesson: Lesson):
+    text = "\n".join(cell.source for cell in book(lesson).cells if cell.cell_type == "markdown")
+    for target in re.findall(r"\]\(([^)]+)\)", text):
+        if target.startswith("http"):
+            assert target in ALLOWED_LINKS
+        elif not target.startswith("attachment:"):
+            assert (lesson.path.parent / target.split("#")[0]).is_file(), target
+
+
+@every_lesson
+def test_names_the_next_lesson(lesson: Lesson):
+    place = LESSONS.index(lesson)
+    last = book(lesson).cells[-1]
+    assert "## What you know now" in last.source
+    if place + 1 < len(LESSONS):
+        following = LESSONS[place + 1]
+        assert (
+            f"[Lesson {following.number}: {following.title}]({following.path.name})" in last.source
+        )
+
+
+@every_lesson
+def test_takes_as_long_as_it_says(lesson: Lesson):
+    cells = book(lesson).cells
+    words = sum(len(cell.source.split()) for cell in cells if cell.cell_type == "markdown")
+    exercises = len(list(lesson.exercises()))
+    others = sum(cell.cell_type == "code" for cell in cells) - exercises
+    assert WORDS[0] <= words <= WORDS[1]
+    assert exercises >= 3
+    assert 10 <= lesson.minutes <= 20
+    assert abs(words / 180 + 1.25 * exercises + 0.4 * others - lesson.minutes) <= 2
+
+
+@every_lesson
+def test_exercises_are_numbered_and_asked(lesson: Lesson):
+    cells = book(lesson).cells
+    numbers = [about["exercise"] for cell in cells if (about := exercise_of(cell))]
+    assert numbers == [f"{lesson.number}.{i}" for i in range(1, len(numbers) + 1)]
+    for before, cell in itertools.pairwise(cells):
+        if about := exercise_of(cell):
+            assert f"### Exercise {about['exercise']}\n" in before.source
+            assert f'mw.exercise("{about["exercise"]}").check(' in cell.source.split("\n")[-1]
+            assert about["solution"].strip()
+            assert about["wrong"]
+
+
+def test_there_are_enough_lessons_in_order():
+    assert [lesson.number for lesson in LESSONS] == list(range(1, len(LESSONS) + 1))
+    assert all(lesson.name.startswith(f"{lesson.number:02d}-") for lesson in LESSONS)
