@@ -104,18 +104,20 @@ class Loop:
             self._turn()
 
     def pump(self, until: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Make calls, and wait for more, until ``until()``; returns whether it came to that."""
-        if not self.here:
-            raise RuntimeError("Only the thread that owns the mesh can wait here.")
+        """Make calls, and wait for more, until ``until()``; returns whether it came to that.
+
+        In another thread it only waits.
+        """
         end = None if timeout is None else time.monotonic() + timeout
         while not until():
             left = _NAP if end is None else min(_NAP, end - time.monotonic())
             if left <= 0:
                 return False
             with self._news:
-                if not self._calls:
+                if not (self._calls and self.here):
                     self._news.wait(left)
-            self._turn()
+            if self.here:
+                self._turn()
         return True
 
     def _turn(self) -> None:

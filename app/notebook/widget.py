@@ -303,8 +303,9 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         if method == "request_state":
             self.send_state()
         elif method != "update":
-            asked = data.get("content") if method == "custom" else None
-            self.session.receive(self, asked, message.get("buffers"))
+            custom = isinstance(data, dict) and method == "custom"
+            buffers = message.get("buffers") if custom else None
+            self.session.receive(self, data.get("content") if custom else None, buffers)
 
     def _do(self, call: Callable[[], Any]) -> Any:
         """In the thread that owns the document."""

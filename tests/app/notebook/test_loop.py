@@ -87,17 +87,19 @@ def test_another_thread_does_not_wait_for_ever(monkeypatch):
     assert done == []  # what was given up is not done later
 
 
-def test_a_pump_gives_up_in_time_and_belongs_to_the_owner():
-    loop = Loop()
+def test_a_pump_gives_up_in_time_and_elsewhere_it_only_waits():
+    loop, seen, waited = Loop(), [], []
     begun = time.monotonic()
     assert not loop.pump(lambda: False, timeout=0.1)
     assert 0.09 < time.monotonic() - begun < 2
-
-    def elsewhere() -> None:
-        with pytest.raises(RuntimeError):
-            loop.pump(lambda: True)
-
-    in_thread(elsewhere)
+    loop(lambda: seen.append(threading.get_ident()))
+    in_thread(lambda: waited.append(loop.pump(lambda: bool(seen), timeout=0.1)))
+    assert waited == [False] and seen == []
+    thread = threading.Thread(target=lambda: waited.append(loop.pump(lambda: bool(seen), 5)))
+    thread.start()
+    loop.drain()
+    thread.join(5)
+    assert waited == [False, True] and seen == [threading.get_ident()]
 
 
 def test_a_call_that_raises_is_told_and_logged_and_the_next_one_comes(caplog):
