@@ -103,8 +103,9 @@ def _script() -> str:
 "use strict";
 {front.script()}
 const recording = JSON.parse(document.getElementById("recording").textContent);
-const room = Math.min(Math.max(innerHeight - {HEAD_AND_FOOT}, {LOWEST}), {HIGHEST});
-mount(document.getElementById("film"), new FilmLink(recording), {{ height: room, theme: "auto" }});
+const place = document.getElementById("film");
+const room = Math.min(innerHeight - {HEAD_AND_FOOT}, place.clientWidth, {HIGHEST});
+mount(place, new FilmLink(recording), {{ height: Math.max(room, {LOWEST}), theme: "auto" }});
 }})();
 """
 

@@ -261,6 +261,7 @@ class Timeline {
     this.frame = new TrackFrame(this.track, left, top, width - left - right, TIMELINE_HEIGHT - top - bottom);
     const pen = this.canvas.getContext("2d");
     pen.scale(ratio, ratio);
+    pen.font = `11px ${getComputedStyle(this.slider).fontFamily}`;
     paintTrack(pen, this.frame, this.track, this.card, { shown: this.shown, hovered: this._hovered });
   }
 

@@ -7,7 +7,6 @@ const TRACK_APART = 7;
 function paintTrack(pen, frame, track, card, where) {
   const last = track.length - 1;
   const bottom = frame.top + frame.height;
-  pen.font = `11px ${card.colour("font") || "sans-serif"}`;
   pen.textBaseline = "middle";
   pen.lineJoin = "round";
   trackLevels(pen, frame, track, card);
