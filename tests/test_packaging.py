@@ -1,5 +1,6 @@
 """The wheel carries the three packages and every file that travels with the program."""
 
+import re
 import subprocess
 import sys
 import tomllib
@@ -7,6 +8,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
+
+from app.notebook import front
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("meshcore", "agent", "app", "assets", "meshwright")
@@ -47,6 +50,14 @@ def test_wheel_carries_a_policy_of_each_kind(wheel):
     policies = [name for name in wheel.namelist() if name.endswith(".safetensors")]
     assert any("tri" in name for name in policies)
     assert any("quad" in name for name in policies)
+
+
+def test_wheel_carries_the_widget_and_the_lessons(wheel):
+    carried = set(wheel.namelist())
+    for name in (*front.SCRIPTS, *front.STYLES):
+        assert f"app/notebook/front/{name}" in carried
+    lessons = [name for name in carried if re.fullmatch(r"assets/lessons/[^/]+\.ipynb", name)]
+    assert len(lessons) >= 6
 
 
 def test_wheel_carries_command_and_licence(wheel):

@@ -1,0 +1,82 @@
+"""The notebook's widget measured, in JupyterLab and a real Chromium.
+
+A real mouse clicks at half-edges all over a scrambled mesh that is wholly in view, and the page
+notes when the click came, when the request went out, when the answer was there, and when a frame
+showed it. JupyterLab, Playwright and Chromium must be installed.
+"""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from app.benchmarks.notebook.chromium import browser
+from app.benchmarks.notebook.lab import LabNotebook
+from app.benchmarks.notebook.probe import NOTING, Probe
+from app.benchmarks.notebook.servers import jupyterlab
+from app.report import Update, table
+
+SUMMARY = "the notebook's widget in JupyterLab: click to redrawn, panning, bytes sent"
+SIZES = (100, 1_000, 10_000)
+"""Quads of the meshes."""
+CLICKS = 40
+QUICK = 3
+SECONDS_OF_PANNING = 3.0
+WINDOW = {"width": 1280, "height": 1000}
+
+
+def run(
+    seed: int = 0, quick: bool = False, update: Update = lambda done, remark: None
+) -> dict[str, Any]:
+    """Medians by number of elements; ``quick`` takes the smaller meshes and a few clicks.
+
+    Keys of each size: ``click_to_redrawn_ms`` from the mouse button to the frame, with its parts
+    ``browser`` (until the request is sent), ``python`` (from its arrival in the kernel until the
+    answer is sent), ``transport`` (the rest of the way there and back, through Jupyter's server),
+    ``paint`` (from the answer to the frame) and the ``slowest``; ``bytes`` of the ``patch`` alone,
+    of ``all`` that Python sends for one operation, and of a whole ``state``; ``panning`` with
+    painted ``frames_per_second`` and the ``slowest_frame_ms``. Raises UserError where something is
+    not installed.
+    """
+    sizes = SIZES[:2] if quick else SIZES
+    results: dict[str, Any] = {}
+    with browser() as chromium, jupyterlab() as server:
+        page = chromium.new_page(viewport=WINDOW)
+        page.add_init_script(NOTING)
+        notebook = LabNotebook(page, server)
+        for size in sizes:
+            update(0, f"{size:,} elements")
+            probe = Probe(notebook, size, seed)
+            clicks = [probe.click() for _ in range((QUICK if quick else CLICKS) + 2)][2:]
+            results[f"{size:,} elements"] = {
+                "click_to_redrawn_ms": shares([click.milliseconds for click in clicks]),
+                "bytes": {
+                    "patch": int(statistics.median(click.patch_bytes for click in clicks)),
+                    "all": int(statistics.median(click.all_bytes for click in clicks)),
+                    "state": probe.state_bytes,
+                },
+                "panning": probe.pan(0.5 if quick else SECONDS_OF_PANNING),
+            }
+    return results
+
+
+def shares(rows: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """The median of each column, and the slowest total."""
+    found = {name: round(statistics.median(row[name] for row in rows), 1) for name in rows[0]}
+    return {**found, "slowest": round(max(row["total"] for row in rows), 1)}
+
+
+def text(results: Mapping[str, Any]) -> str:
+    """The results as a table."""
+    head = "elements", "redrawn ms", "browser", "python", "transport", "paint", "slowest"
+    head += "patch bytes", "all bytes", "state bytes", "frames/s panning", "slowest frame ms"
+    rows = [head]
+    for size, row in results.items():
+        click, sent, panning = row["click_to_redrawn_ms"], row["bytes"], row["panning"]
+        times = [click["total"], *(click[name] for name in head[2:7])]
+        pan = [panning["frames_per_second"], panning["slowest_frame_ms"]]
+        cells = [f"{value:.1f}" for value in times]
+        cells += [f"{sent[name]:,}" for name in ("patch", "all", "state")]
+        rows.append((size.split()[0], *cells, *(f"{value:.1f}" for value in pan)))
+    return table(rows)

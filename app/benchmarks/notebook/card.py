@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -91,8 +92,32 @@ class Card:
             self.page.keyboard.press(key)
 
     def button(self, name: str) -> Locator:
-        """A button by what a screen reader says of it."""
-        return self.root.get_by_role("button", name=name).first
+        """A button of the card by the words on it, or by what a screen reader begins with."""
+        return self.root.get_by_role("button", name=re.compile(rf"^{name}\b")).first
+
+    def agent(self, name: str) -> Locator:
+        """A button of the agent's by the words on it."""
+        panel = self.root.locator(".mw-part-agent")
+        return panel.locator("button", has_text=re.compile(rf"^{name}$"))
+
+    def row(self, operation: str) -> Locator:
+        """The operation's row in the panel."""
+        return self.root.locator(".mw-part-operations button", has_text=self.title(operation))
+
+    def title(self, operation: str) -> str:
+        """What the operation is called."""
+        found: str = self.look(
+            "(root, name) => root.meshwright.mirror.catalogue"
+            ".find(row => row.operation === name).title",
+            operation,
+        )
+        return found
+
+    def arm(self, operation: str) -> None:
+        """Let each click on the mesh do this operation, by a click on its row."""
+        row = self.row(operation)
+        if row.get_attribute("aria-pressed") != "true":
+            row.click()
 
     def send(self, content: Any, buffers: list[int] | None = None) -> None:
         """Send this to Python behind the card's back, with zeroed buffers of these lengths."""
@@ -109,7 +134,10 @@ class Card:
         return pixels(self.root.locator(".mw-stage").screenshot(animations="disabled"))
 
     def layer(self, name: str) -> np.ndarray:
-        """What one canvas alone has drawn, (height, width, 4) uint8."""
+        """What one canvas alone has drawn, (height, width, 4) uint8.
+
+        The ``lower`` shows the mesh, the ``upper`` what is pointed at.
+        """
         url = self.root.locator(f"canvas.mw-{name}").evaluate(
             "canvas => canvas.toDataURL('image/png')"
         )

@@ -1,0 +1,247 @@
+"""The widget in JupyterLab, in a real Chromium: real mouse and keys, real pixels, a real kernel."""
+
+import pytest
+from browser import Lab
+
+from app.benchmarks.notebook.card import Card, differing
+
+SETUP = "import time\nfrom app.notebook import MeshWidget\n"
+STAR = SETUP + "widget = MeshWidget('star')\nwidget"
+TURNED = "flip_left"
+
+
+def aside(card: Card) -> None:
+    """Move the mouse off the card, so that pictures show the mesh alone."""
+    card.page.mouse.move(2, 2)
+    card.until("root => Number(root.dataset.halfedge) === -1")
+
+
+@pytest.fixture
+def star(lab: Lab) -> Card:
+    """A star in quads, s 12 over an optimum of 4, in a cell of its own."""
+    return lab.card(STAR)
+
+
+def test_widget_shows_the_mesh(lab, star, tmp_path):
+    aside(star)
+    picture = star.picture()
+    star.page.screenshot(path=tmp_path / "star.png")
+    assert star.head["score"] == lab.ask("widget.score") == 12
+    assert star.head["optimum"] == lab.ask("widget.optimum") == 4
+    assert len(set(map(tuple, picture[::3, ::3].reshape(-1, 3).tolist()))) > 20
+    mesh = star.layer("lower")
+    assert (mesh[..., 3] > 0).mean() > 0.05
+    assert "12" in star.root.inner_text() and "4" in star.root.inner_text()
+
+
+def test_hover_shows_the_ghost_and_says_what_is_allowed(lab, star, tmp_path):
+    aside(star)
+    empty = star.layer("upper")
+    spot = lab.spot(TURNED)
+    star.hover(spot)
+    star.until("root => root.meshwright.pointing.ghost && root.dataset.meant")
+    shown = star.layer("upper")
+    star.page.screenshot(path=tmp_path / "hover.png")
+    assert differing(empty, shown) > 50
+    offers = star.look("root => Object.fromEntries(root.meshwright.pointing.offers)")
+    assert len(offers) == len(star.look("root => root.meshwright.mirror.catalogue"))
+    for name, row in offers.items():
+        assert row["allowed"] == lab.ask(f"bool(widget.check('{name}', {spot}))")
+        assert row["allowed"] or row["reason"]
+    aside(star)
+    star.until("root => root.dataset.meant === ''")
+    assert differing(empty, star.layer("upper")) == 0
+    assert lab.ask("widget.history.cursor") == 0
+
+
+def test_click_changes_the_mesh_in_the_kernel_and_undo_brings_it_back(lab, star, tmp_path):
+    aside(star)
+    before, picture = lab.elements(), star.picture()
+    spot = lab.spot(TURNED)
+    star.arm(TURNED)
+    star.click(spot)
+    star.await_head(cursor=1)
+    aside(star)
+    changed = star.picture()
+    star.page.screenshot(path=tmp_path / "edited.png")
+    assert lab.elements() != before
+    assert lab.ask("widget.history.cursor") == 1
+    assert star.head["score"] == lab.ask("widget.score")
+    assert differing(picture, changed) > 200
+
+    star.button("Undo").click()
+    star.await_head(cursor=0)
+    aside(star)
+    assert lab.elements() == before
+    assert differing(picture, star.picture()) < differing(picture, changed) / 20
+    star.button("Redo").click()
+    star.await_head(cursor=1)
+    aside(star)
+    assert lab.elements() != before
+    assert differing(changed, star.picture()) < differing(picture, changed) / 20
+
+
+def test_two_widgets_on_one_document_stay_in_step(lab, tmp_path):
+    lab.show(
+        SETUP + "widget = MeshWidget('star', height=240)\nwidget",
+        "other = MeshWidget(widget)\nother",
+    )
+    first, second = Card(lab.page), Card(lab.page, 1)
+    aside(first)
+    before = second.picture()
+    first.arm(TURNED)
+    first.click(lab.spot(TURNED))
+    for card in (first, second):
+        card.await_head(cursor=1)
+    aside(first)
+    assert first.revision == second.revision
+    assert first.head["score"] == second.head["score"] == lab.ask("other.score")
+    assert differing(before, second.picture()) > 200
+    lab.page.screenshot(path=tmp_path / "two.png")
+    second.button("Undo").click()
+    first.await_head(cursor=0)
+
+
+def test_what_python_does_is_painted(lab, star):
+    aside(star)
+    before = star.picture()
+    lab.ask("None", f"widget.apply('{TURNED}', {lab.spot(TURNED)})")
+    star.await_head(cursor=1)
+    assert differing(before, star.picture()) > 200
+    lab.ask("None", "widget.undo()")
+    star.await_head(cursor=0)
+
+
+def test_agent_plays_until_it_is_paused(lab, tmp_path):
+    star = lab.card(SETUP + "widget = MeshWidget('star', kind='tri')\nwidget")
+    star.agent("Play").click()
+    star.until("root => root.meshwright.mirror.head.cursor >= 2")
+    star.agent("Pause").click()
+    star.agent("Go on").wait_for()
+    at = lab.ask("widget.history.cursor")
+    star.await_head(cursor=at)
+    star.page.screenshot(path=tmp_path / "paused.png")
+    lab.page.wait_for_timeout(600)
+    assert lab.ask("widget.history.cursor") == at == star.head["cursor"]
+    assert star.head["score"] == lab.ask("widget.score")
+    star.agent("Step").click()
+    star.await_head(cursor=at + 1)
+    assert lab.ask("widget.history.cursor") == at + 1
+
+
+def test_everything_goes_by_keys_alone(lab, star, tmp_path):
+    before = lab.elements()
+    aside(star)
+    star.root.locator("[tabindex='0']").first.focus()
+    star.press("ArrowDown")
+    star.until("root => Number(root.dataset.halfedge) >= 0")
+    at = star.look("root => Number(root.dataset.halfedge)")
+    walk = ["ArrowRight", "ArrowLeft", *60 * ["ArrowRight", "ArrowRight", "ArrowUp"]]
+    for step, key in enumerate(walk):
+        if step > 2 and lab.ask(f"bool(widget.check('{TURNED}', {at}))"):
+            break
+        way = {"ArrowRight": "next", "ArrowLeft": "prev", "ArrowUp": "twin"}[key]
+        there = lab.ask(f"widget.mesh.{way}({at})")
+        if there >= 0:
+            at = there
+            star.press(key)
+            star.until("(root, h) => Number(root.dataset.halfedge) === h", at)
+    star.until("(root, h) => root.innerText.includes(`Half-edge ${h}`)", at)
+    key = star.look(
+        "(root, name) => root.meshwright.mirror.catalogue.find(row => row.operation === name).key",
+        TURNED,
+    )
+    star.page.screenshot(path=tmp_path / "keys.png")
+    star.press(key)
+    star.await_head(cursor=1)
+    assert lab.elements() != before
+    star.press("u")
+    star.await_head(cursor=0)
+    assert lab.elements() == before
+    star.press("Shift+U")
+    star.await_head(cursor=1)
+
+
+WRONG = (
+    "go",
+    {"do": "dance"},
+    {"do": "operate", "operation": "flip_left", "halfedge": True, "ends": [0, 1]},
+    {"do": "operate", "operation": "flip_left", "halfedge": 2**31 - 1, "ends": [0, 1]},
+    {"do": "operate", "operation": "flip_left", "halfedge": -5, "ends": [0, 1]},
+    {"do": "operate", "operation": "__class__", "halfedge": 0, "ends": [0, 1]},
+    {"do": "operate", "operation": "flip_left", "halfedge": 0, "ends": [7, 7]},
+    {"do": "operate", "operation": "flip_left", "halfedge": 0},
+    {"do": "go_to", "cursor": 1e9},
+    {"do": "desired", "vertex": 0, "degree": 10**12},
+    {"do": "lock", "vertex": 10**6, "on": True},
+    {"do": "undo", "twice": True},
+    {"do": "policy", "name": "x" * 10_000},
+    {"do": "speed", "value": "fast"},
+)
+
+
+def test_malformed_messages_are_refused_with_a_reason(lab, star):
+    before = lab.ask("[widget.history.mark, widget.score, widget.mesh.points.tolist()]")
+    elements = lab.elements()
+    star.look(
+        "root => { const link = root.meshwright.link; root.refused = [];"
+        " const plain = link.onmessage; link.onmessage = (content, buffers) => {"
+        " if (content.say === 'notice') root.refused.push(content); plain(content, buffers); }; }"
+    )
+    view = star.look("root => root.meshwright.link.view")
+    for number, wrong in enumerate(WRONG):
+        content = {**wrong, "id": number, "view": view} if isinstance(wrong, dict) else wrong
+        star.send(content)
+        star.until("(root, count) => root.refused.length >= count", number + 1)
+    star.send({"do": "undo", "id": 99, "view": view}, buffers=[8_000_000])
+    star.until("(root, count) => root.refused.length >= count", len(WRONG) + 1)
+    refused = star.look("root => root.refused")
+    assert [row["tone"] for row in refused] == ["refused"] * (len(WRONG) + 1)
+    assert all(row["sentence"].endswith((".", "!")) for row in refused)
+    assert [row.get("reply") for row in refused[1:-1]] == list(range(1, len(WRONG)))
+    assert refused[-1]["reply"] == 99
+    assert refused[-1]["sentence"] in star.root.inner_text()
+    assert before == lab.ask("[widget.history.mark, widget.score, widget.mesh.points.tolist()]")
+    assert lab.elements() == elements
+    lab.ask("None", "widget.mesh.validate()")
+
+
+def test_page_loaded_again_shows_the_mesh_as_it_is_now(lab, star, tmp_path):
+    star.arm(TURNED)
+    star.click(lab.spot(TURNED))
+    star.await_head(cursor=1)
+    aside(star)
+    shown = star.layer("lower")
+    lab.save()
+    lab.ask("None", f"widget.apply('{TURNED}', {lab.spot(TURNED)})")
+    star.await_head(cursor=2)
+    aside(star)
+    later = star.layer("lower")
+    assert differing(shown, later) > 200
+    lab.open()
+    again = Card(lab.page)
+    again.await_head(cursor=2)
+    aside(again)
+    lab.page.screenshot(path=tmp_path / "again.png")
+    assert again.head["score"] == lab.ask("widget.score")
+    assert differing(later, again.layer("lower")) < 50
+    again.button("Undo").click()
+    again.await_head(cursor=1)
+    assert lab.ask("widget.history.cursor") == 1
+
+
+def test_light_and_dark_follow_the_notebook(lab, star, tmp_path):
+    aside(star)
+    light = star.picture()
+    try:
+        lab.theme("Dark")
+        star.until("root => root.dataset.theme === 'dark'")
+        lab.page.wait_for_timeout(200)
+        dark = star.picture()
+        star.page.screenshot(path=tmp_path / "dark.png")
+    finally:
+        lab.theme("Light")
+    star.until("root => root.dataset.theme === 'light'")
+    lab.page.wait_for_timeout(200)
+    assert dark.mean() < 90 < 180 < light.mean()
+    assert differing(light, star.picture()) < 50

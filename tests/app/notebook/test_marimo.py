@@ -1,0 +1,116 @@
+"""The widget in marimo, in a real Chromium: another host, another way to the kernel."""
+
+from collections.abc import Iterator
+
+import pytest
+from browser import Marimo, Watched
+
+from app.benchmarks.notebook import servers
+from app.benchmarks.notebook.card import Card, differing
+
+TURNED = "flip_left"
+
+
+def aside(card: Card) -> None:
+    """Move the mouse off the card, so that pictures show the mesh alone."""
+    card.page.mouse.move(2, 2)
+    card.until("root => Number(root.dataset.halfedge) === -1")
+
+
+@pytest.fixture(scope="module")
+def _marimo(browser, warm, tmp_path_factory) -> Iterator[Marimo]:
+    path = Marimo.write(tmp_path_factory.mktemp("marimo"), "star", TURNED)
+    with servers.marimo(path) as server:
+        page = browser.new_page(viewport={"width": 1280, "height": 1100}, color_scheme="light")
+        yield Marimo(Watched(page), server)
+
+
+@pytest.fixture
+def marimo(_marimo: Marimo) -> Iterator[Marimo]:
+    """The star in marimo's editor; the test must leave no complaint in the browser's console."""
+    _marimo.watched.complaints.clear()
+    yield _marimo
+    assert not _marimo.watched.complaints
+
+
+def test_click_changes_the_kernel_and_undo_brings_it_back(marimo, tmp_path):
+    card = marimo.card
+    aside(card)
+    before, picture = marimo.kernel(), card.picture()
+    assert before["score"] == card.head["score"] == 12
+    empty = card.layer("upper")
+    card.hover(before["allowed"][0])
+    card.until("root => root.dataset.meant !== ''")
+    assert differing(empty, card.layer("upper")) > 50
+    card.arm(TURNED)
+    card.click(before["allowed"][0])
+    card.await_head(cursor=1)
+    aside(card)
+    card.page.screenshot(path=tmp_path / "marimo.png")
+    changed, later = card.picture(), marimo.kernel()
+    assert later["cursor"] == 1 and later["elements"] != before["elements"]
+    assert later["score"] == card.head["score"]
+    assert differing(picture, changed) > 200
+    card.button("Undo").click()
+    card.await_head(cursor=0)
+    aside(card)
+    assert marimo.kernel()["elements"] == before["elements"]
+    assert differing(picture, card.picture()) < differing(picture, changed) / 20
+
+
+def test_agent_plays_until_it_is_paused_and_cells_follow(marimo, tmp_path):
+    card = marimo.card
+    card.agent("Play").click()
+    card.until("root => root.meshwright.mirror.head.cursor >= 2")
+    card.agent("Pause").click()
+    card.agent("Go on").wait_for()
+    at = marimo.kernel()
+    card.await_head(cursor=at["cursor"])
+    marimo.page.wait_for_timeout(500)
+    assert marimo.kernel()["cursor"] == at["cursor"] == card.head["cursor"]
+    assert marimo.follows == f"s is {at['score']}"
+    card.page.screenshot(path=tmp_path / "paused.png")
+
+
+def test_page_loaded_again_shows_the_mesh_as_it_is_now(marimo):
+    head = marimo.card.head
+    marimo.open()
+    marimo.card.await_head(cursor=head["cursor"], score=head["score"])
+
+
+def test_dark_follows_the_notebook(marimo, tmp_path):
+    card = marimo.card
+    aside(card)
+    light = card.picture()
+    marimo.page.emulate_media(color_scheme="dark")
+    card.until("root => root.dataset.theme === 'dark'")
+    marimo.page.wait_for_timeout(200)
+    dark = card.picture()
+    card.page.screenshot(path=tmp_path / "dark.png")
+    marimo.page.emulate_media(color_scheme="light")
+    card.until("root => root.dataset.theme === 'light'")
+    assert dark.mean() < 90 < 180 < light.mean()
+
+
+def test_touch_on_a_narrow_screen(browser, warm, tmp_path):
+    """``marimo run``: the notebook as an application, on a telephone."""
+    path = Marimo.write(tmp_path, "star", TURNED)
+    with servers.marimo(path, run=True) as server:
+        context = browser.new_context(
+            viewport={"width": 420, "height": 1400}, has_touch=True, device_scale_factor=2
+        )
+        try:
+            watched = Watched(context.new_page())
+            marimo = Marimo(watched, server)
+            card, before = marimo.card, marimo.kernel()
+            spot = before["allowed"][0]
+            card.arm(TURNED, touch=True)
+            marimo.page.touchscreen.tap(*card.place(spot))
+            card.until("(root, h) => Number(root.dataset.halfedge) === h", spot)
+            marimo.page.screenshot(path=tmp_path / "touch.png")
+            card.act(TURNED, touch=True)
+            card.await_head(cursor=1)
+            assert marimo.kernel()["elements"] != before["elements"]
+            assert not watched.complaints
+        finally:
+            context.close()
