@@ -18,13 +18,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from make_pictures import gap, most_central, quads, triangles
+from make_pictures import gap, most_central, quads
 from PIL import Image, ImageDraw
 
 from app.drawing import Disc, Drawing, Line, Polygon, Segments, Text, raster, text_width
-from app.figure import Look, figure
+from app.figure import Look, edges, figure
 from app.filmstrip import side_by_side
 from app.lessons import FOLDER
+from app.teaching import patch
 from app.theme import LIGHT
 from app.viewport import Viewport
 from meshcore import HalfEdgeMesh, shapes, smoothing
@@ -75,25 +76,21 @@ def arrow(
         drawing.add(Text(words, (float(x), float(y)), NUMBER, colour, "middle", True))
 
 
-def vertex_number(drawing: Drawing, view: Viewport, mesh: HalfEdgeMesh, v: int) -> None:
+def vertex_number(
+    drawing: Drawing, view: Viewport, mesh: HalfEdgeMesh, v: int, radius: float = 21.0
+) -> None:
     """The id of a vertex in a pale disc."""
     x, y = view.to_screen(mesh.points[v]).tolist()
     drawing.add(
-        Disc((x, y), 23.0, LIGHT.boundary),
-        Disc((x, y), 21.0, LIGHT.raised),
-        Text(str(v), (x, y), NUMBER, LIGHT.text, "middle"),
+        Disc((x, y), radius + 2.0, LIGHT.boundary),
+        Disc((x, y), radius, LIGHT.raised),
+        Text(str(v), (x, y), 1.1 * radius, LIGHT.text, "middle"),
     )
-
-
-def pair() -> HalfEdgeMesh:
-    """Two quads side by side."""
-    points = np.array([(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)], dtype=float)
-    return HalfEdgeMesh.from_elements(points, np.array([(0, 1, 4, 3), (1, 2, 5, 4)]))
 
 
 def two_quads() -> Any:
     """Every half-edge of two quads, with its id."""
-    mesh, size = pair(), (1120, 640)
+    mesh, size = quads(2, 1), (1120, 640)
     view = view_of(mesh, size, 72.0)
     drawing = picture(mesh, size, view)
     for h in range(8):
@@ -172,7 +169,7 @@ def titled(image: Any, words: str) -> Any:
 
 def triangle_operations() -> Any:
     """Flip, split and collapse, before and after."""
-    mesh = triangles(2)
+    mesh = patch("hexagon")
     rows = [
         titled(before_after(mesh, name, most_central(mesh, name), (480, 340)), name)
         for name in ("flip", "split", "collapse")
@@ -205,16 +202,22 @@ def hexagon_of_two_quads() -> Any:
     return side_by_side([panels[0], arrow_between, panels[1], arrow_between, panels[2]])
 
 
-def three_to_one() -> HalfEdgeMesh:
-    """A rectangle with three edges below and one above: s 4, s* 0."""
-    points = [(0, 0), (1, 0), (2, 0), (3, 0), (3, 2), (0, 2), (1, 1), (2, 1)]
-    cells = [(0, 1, 6, 5), (1, 2, 7, 6), (2, 3, 4, 7), (6, 7, 4, 5)]
-    return HalfEdgeMesh.from_elements(np.array(points, dtype=float), np.array(cells))
-
-
-def unequal_sides() -> Any:
-    """Three edges below, one above."""
-    return raster(picture(three_to_one(), (720, 520)))
+def trap_with_numbers() -> Any:
+    """A hexagon with a triangle that is no element, and the numbers of its vertices."""
+    mesh, size = patch("trap"), (880, 720)
+    view = view_of(mesh, size, 56.0)
+    drawing = Drawing(size, LIGHT.background, "a hexagon of triangles with a trap")
+    rim = view.to_screen(mesh.points[mesh.boundary_loops()[0]])
+    drawing.add(
+        Polygon(rim, LIGHT.fill),
+        Polygon(view.to_screen(mesh.points[[9, 10, 14]]), LIGHT.accent_soft),
+        Segments(view.to_screen(mesh.points[edges(mesh)]), LIGHT.edge, 2.0),
+        Line(np.vstack([rim, rim[:1]]), LIGHT.boundary, 4.0),
+        Line(view.to_screen(mesh.points[[9, 10, 14, 9]]), LIGHT.arrow, 4.0),
+    )
+    for v in (0, 1, 9, 10, 14, 19, 20):
+        vertex_number(drawing, view, mesh, v, 17.0)
+    return raster(drawing)
 
 
 def quad_operations() -> Any:
@@ -247,16 +250,17 @@ PICTURES: dict[str, Callable[[], Any]] = {
     "turn": turn,
     "corners-of-star": corners_of_star,
     "triangle-operations": triangle_operations,
+    "trap": trap_with_numbers,
     "hexagon": hexagon_of_two_quads,
     "quad-operations": quad_operations,
     "global-operations": global_operations,
-    "unequal-sides": unequal_sides,
 }
 
 
 def png(image: Any) -> bytes:
     """The picture as a PNG with rounded corners and few colours."""
     few = image.convert("RGB").quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=0)
+    few.putpalette([*(few.getpalette() or [])[: 3 * COLOURS], 255, 255, 255])
     outside = Image.new("1", image.size, 1)
     ImageDraw.Draw(outside).rounded_rectangle(
         (0, 0, image.width - 1, image.height - 1), ROUND, fill=0
