@@ -34,7 +34,7 @@ class Loop:
         """``failed(error)`` is told, in the owner's thread, what a queued call has raised; the
         traceback goes to the log.
         """
-        self._owner = threading.get_ident()
+        self._owner = threading.current_thread()
         self._calls: deque[Call] = deque()
         self._news = threading.Condition()
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -43,8 +43,10 @@ class Loop:
 
     @property
     def here(self) -> bool:
-        """Whether this is the owner's thread."""
-        return threading.get_ident() == self._owner
+        """Whether this is the owner's thread; one that has ended leaves its place to this one."""
+        if not self._owner.is_alive():
+            self._owner = threading.current_thread()
+        return threading.current_thread() is self._owner
 
     @property
     def running(self) -> bool:
@@ -55,12 +57,13 @@ class Loop:
     def find(self) -> None:
         """Look, in the owner's thread, which event loop runs there now."""
         if self.here:
+            before = self._loop
             try:
                 self._loop = asyncio.get_running_loop()
             except RuntimeError:
                 self._loop = None
-            if self._loop is not None and self._calls:
-                self._loop.call_soon(self.drain)
+            if self._loop not in (before, None) and self._calls:
+                self._loop.call_soon(self.drain)  # what no loop was there for
 
     def __call__(self, call: Call) -> None:
         """Have ``call()`` called soon, in order; returns at once, from any thread."""

@@ -9,17 +9,25 @@ from weakref import WeakValueDictionary, finalize
 
 from app.assistant import Assistant
 from app.document import NO_MESH, Document
+from app.notebook import preparing
 from app.notebook.deeds import DEEDS, Deed, require_halfedge, require_operation
 from app.notebook.ghosts import ghost_packet, no_ghost
 from app.notebook.helper import Helper
 from app.notebook.loop import Loop
 from app.notebook.messages import RefusedError, Request, parse
+from app.notebook.preparing import DONE, WAITS, Stage
 from app.notebook.telling import Port, Telling
 from app.notebook.wire import Packet
 from app.signals import Signal
 from meshcore import HalfEdgeMesh, MeshError
 
 Result = TypeVar("Result")
+
+NEEDS: dict[Stage, tuple[str, ...]] = {
+    Stage.EDITING: ("operate", "smooth", "untangle", "clean_all", "agent", "take_hint", "level"),
+    Stage.AGENT: ("agent",),
+}
+"""What has to wait while something is compiled for the first time."""
 
 _log = logging.getLogger(__name__)
 
@@ -66,8 +74,9 @@ class Session:
     def of(cls, document: Document) -> Session:
         """The session of a document; a new one if no widget shows it yet."""
         for session in list(cls._all.values()):
-            for port in session.telling.lost:
-                port.close()
+            if session.loop.here:  # marimo's readers have a thread each
+                for port in session.telling.lost:
+                    port.close()
         found = cls._all.get(id(document))  # it holds the document, so the number is still its own
         if found is None:
             found = cls._all[id(document)] = cls(document)
@@ -187,12 +196,15 @@ class Session:
             self.telling.greet(port, request)
             for greeting in self.greetings:
                 self.telling.post(port, greeting(), request)
+            self._prepare(port, request)
         elif request.do == "hover":
             self._point(request)
         elif port.read_only:
             raise MeshError("this view is for looking only")
         elif request.do not in self.words:
             raise MeshError(f"there is nothing to '{request.do}' here")
+        elif request.do in NEEDS.get(preparing.PREPARATION.compiling, ()):
+            raise MeshError(WAITS[preparing.PREPARATION.compiling])
         else:
             said = self.words[request.do](self, request)
             if said:
@@ -204,7 +216,7 @@ class Session:
             return  # a later one was served in its place
         port, request = held
         halfedge, operation = request["halfedge"], request["operation"]
-        if halfedge < 0:
+        if halfedge < 0 or preparing.PREPARATION.compiling is Stage.EDITING:
             self.document.hover = -1
             self.telling.post(port, no_ghost(), request)
             return
@@ -214,6 +226,16 @@ class Session:
         self.document.hover = halfedge
         packet = ghost_packet(self.mesh, self.telling.mirror.frame, halfedge, operation)
         self.telling.post(port, packet, request)
+
+    def _prepare(self, port: Port, request: Request) -> None:
+        """Behind the first view everything is made ready, if it is not."""
+        preparing.PREPARATION.begin(self.loop, self._on_prepared)
+        stage = preparing.PREPARATION.compiling
+        if stage is not Stage.READY:
+            self.telling.answer(port, request, "said", WAITS[stage])
+
+    def _on_prepared(self) -> None:
+        self.telling.notice("said", DONE[preparing.PREPARATION.compiling])
 
     # What happens here
 

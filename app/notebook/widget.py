@@ -41,6 +41,8 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     # anywidget passes on only what the class has; the texts are made for each widget
     _esm = traitlets.Unicode("").tag(sync=True)
     _css = traitlets.Unicode("").tag(sync=True)
+    _esm = traitlets.Unicode().tag(sync=True)
+    _css = traitlets.Unicode().tag(sync=True)
     height = traitlets.Int(480, min=LOWEST, max=HIGHEST).tag(sync=True)
     """Pixels of the canvas."""
     theme = traitlets.Enum(("auto", "light", "dark"), "auto").tag(sync=True)
@@ -89,14 +91,20 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         if policy is not None:
             self.session.agent.choose(policy)
         super().__init__(
-            _esm=front.module(),
-            _css=front.style(),
             height=height,
             theme=theme,
             label=name or document.name,
         )
         self.session.join(self)
         self.show_score()
+
+    @traitlets.default("_esm")
+    def _module(self) -> str:
+        return front.module()
+
+    @traitlets.default("_css")
+    def _style(self) -> str:
+        return front.style()
 
     # What is here
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from app.notebook.preparing import Preparation, Stage
 from app.notebook.session import Session
 from app.notebook.wire import Frame, Packet, Slots
 from meshcore import HalfEdgeMesh
@@ -130,12 +131,20 @@ def script_agent(monkeypatch: Any, greedy: Any) -> None:
         seen = greedy(mesh).look()
         return () if seen is None else seen.choices[:5]
 
+    monkeypatch.setattr("app.notebook.preparing.PREPARATION", _ready())
     monkeypatch.setattr("app.worker._load_policy", lambda name: name)
     monkeypatch.setattr("app.worker._make_runner", lambda mesh, policy, seed: greedy(mesh))
     monkeypatch.setattr("app.worker._ask_policy", ask)
     monkeypatch.setattr(
         "app.searching.SearchRunner._search", lambda self: _all_of(greedy(self._mesh))
     )
+
+
+def _ready() -> Preparation:
+    """Kernels are compiled in the tests' own process: nothing is to be made ready behind them."""
+    preparation = Preparation()
+    preparation._stage = Stage.READY
+    return preparation
 
 
 def _all_of(runner: Any) -> list[Any]:

@@ -58,6 +58,15 @@ def test_the_queue_outlives_an_event_loop():
     assert seen == [1]
 
 
+def test_an_owner_that_has_ended_leaves_its_place():
+    made, seen = [], []
+    in_thread(lambda: made.append(Loop()))
+    made[0](lambda: seen.append(1))
+    assert made[0].here
+    made[0].drain()
+    assert seen == [1]
+
+
 def test_another_thread_gets_the_answer_or_the_error():
     loop, got = Loop(), []
 

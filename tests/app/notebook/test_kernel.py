@@ -1,0 +1,211 @@
+"""A widget in a real kernel: cells that block the loop, cells that end, subshells, and errors."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from queue import Empty
+from typing import Any
+
+import pytest
+
+BEGIN = """
+import sys
+sys.path.insert(0, {folder!r})
+import app.worker, app.notebook.preparing as preparing
+from app.notebook import MeshWidget
+from app.preview import best, choices
+
+class Runner:
+    "Takes the best operation anywhere until nothing makes s lower."
+    finished, reason = False, "nothing more"
+    def __init__(self, mesh, policy, seed):
+        self.mesh = mesh.copy()
+    def look(self):
+        return None
+    def step(self):
+        mesh = self.mesh
+        halves = [4 * e + i for e in mesh.element_ids().tolist() for i in range(4)]
+        offers = [(h, c) for h in halves if (c := best(choices(mesh, h)))]
+        h, c = min(offers, key=lambda offer: offer[1].change)
+        mesh.apply(c.operation, h)
+        self.finished = mesh.score == mesh.optimum or c.change >= 0
+        return [(c.operation, h)]
+
+app.worker._load_policy = lambda name: name
+app.worker._make_runner = Runner
+preparing.PREPARATION._stage = preparing.Stage.READY
+w = MeshWidget("star")
+"""
+
+
+class Kernel:
+    """A kernel, and a browser in the place of a notebook."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._id = 0
+        self.comm = ""
+        self.subshell = ""
+        self.heard: list[dict[str, Any]] = []
+        self.printed = ""
+
+    def run(self, code: str) -> str:
+        """Run a cell to its end; returns what it printed."""
+        self.printed = ""
+        sent = self._client.execute(code)
+        self.until(lambda m: m["msg_type"] == "status" and self._ends(m, sent))
+        reply = self._client.get_shell_msg(timeout=30)
+        while reply["parent_header"].get("msg_id") != sent:
+            reply = self._client.get_shell_msg(timeout=30)
+        assert reply["content"]["status"] == "ok", self.printed
+        return self.printed.strip()
+
+    def begin(self, code: str) -> None:
+        """Begin a cell."""
+        self._client.execute(code)
+
+    def say(self, do: str, **fields: Any) -> int:
+        """Send what the browser says, as JupyterLab does: to the subshell, if there is one."""
+        self._id += 1
+        content = {"do": do, "id": self._id, "view": "v", **fields}
+        message = self._client.session.msg(
+            "comm_msg",
+            {"comm_id": self.comm, "data": {"method": "custom", "content": content}},
+        )
+        if self.subshell:
+            message["header"]["subshell_id"] = self.subshell
+        self._client.shell_channel.send(message)
+        return self._id
+
+    def until(self, wanted: Callable[[dict[str, Any]], Any], seconds: float = 30.0) -> None:
+        """Listen until a message is what is wanted."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            try:
+                message = self._client.get_iopub_msg(timeout=1)
+            except Empty:
+                continue
+            self._note(message)
+            if wanted(message):
+                return
+        pytest.fail(f"the kernel did not say it; last: {self.heard[-3:]} {self.printed}")
+
+    def answer(self, number: int) -> dict[str, Any]:
+        """Listen until a message of this number is answered."""
+        self.until(lambda m: self.heard and self.heard[-1].get("reply") == number)
+        return self.heard[-1]
+
+    def _note(self, message: dict[str, Any]) -> None:
+        content = message["content"]
+        if message["msg_type"] == "comm_open":
+            if content["data"]["state"].get("_model_module") == "anywidget":
+                self.comm = content["comm_id"]
+        elif message["msg_type"] == "comm_msg" and content["data"].get("method") == "custom":
+            self.heard.append(content["data"]["content"])
+        elif message["msg_type"] == "stream":
+            self.printed += content["text"]
+        elif message["msg_type"] == "error":
+            self.printed += "\n".join(content["traceback"])
+
+    def _ends(self, message: dict[str, Any], sent: str) -> bool:
+        idle = message["content"]["execution_state"] == "idle"
+        return idle and message["parent_header"].get("msg_id") == sent
+
+
+@pytest.fixture(scope="module")
+def kernel() -> Iterator[Kernel]:
+    from jupyter_client.manager import start_new_kernel
+
+    from app import document
+
+    manager, client = start_new_kernel()
+    try:
+        started = Kernel(client)
+        started.run(BEGIN.format(folder=document.__file__.removesuffix("app/document.py")))
+        state = started.answer(started.say("hello"))
+        assert state["say"] in ("state", "agent")
+        yield started
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
+
+
+def position(kernel: Kernel) -> int:
+    return int(kernel.run("print(w.history.cursor)"))
+
+
+def test_a_run_goes_on_after_its_cell_has_ended(kernel):
+    assert kernel.run("w.play(speed=30); print(w.history.cursor)") == "0"
+    kernel.heard.clear()
+    kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("state") == "idle")
+    patches = [heard for heard in kernel.heard if heard["say"] == "patch"]
+    assert len(patches) > 1  # it was seen on its way
+    assert position(kernel) == patches[-1]["head"]["cursor"]
+    score = kernel.run("print(w.score)")
+    assert score == str(patches[-1]["head"]["score"])
+
+
+def test_waiting_inside_a_cell_lets_the_run_come_to_its_end(kernel):
+    kernel.run("w.go_to(0)")
+    kernel.heard.clear()
+    assert int(kernel.run("w.play(wait=True); print(w.history.cursor)")) > 1
+    assert any(heard["say"] == "patch" for heard in kernel.heard)
+    kernel.run("w.go_to(0); w.step(); assert w.history.cursor >= 1")
+
+
+def test_a_cell_that_works_on_is_seen_while_it_works(kernel):
+    kernel.run("w.go_to(1)")
+    kernel.begin("import time\nw.undo(); time.sleep(1.5); w.redo()")
+    begun = time.monotonic()
+    kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("head", {}).get("cursor") == 0)
+    assert time.monotonic() - begun < 1.2
+    kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("head", {}).get("cursor") == 1)
+
+
+def test_clicks_come_through_a_subshell_in_the_cells_thread(kernel):
+    kernel.run("w.go_to(1)")
+    kernel._client.control_channel.send(kernel._client.session.msg("create_subshell_request"))
+    kernel.subshell = kernel._client.get_control_msg(timeout=10)["content"]["subshell_id"]
+    kernel.run(
+        "import threading\nseen = []\n"
+        "off = w.on('changed', lambda: seen.append(threading.current_thread().name))"
+    )
+    try:
+        kernel.answer(kernel.say("undo"))
+        assert kernel.run("print(seen)") == "['MainThread']"
+        # a cell that runs keeps the mesh to itself, unless it waits
+        kernel.begin("import time; time.sleep(0.6); print('slept', w.history.cursor)")
+        time.sleep(0.2)
+        kernel.heard.clear()
+        kernel.answer(kernel.say("redo"))
+        assert "slept 0" in kernel.printed
+        assert position(kernel) == 1
+    finally:
+        kernel.subshell = ""
+        kernel.run("off()")
+
+
+def test_mistakes_of_callbacks_are_seen_in_the_notebook_and_in_the_browser(kernel):
+    kernel.run("w.go_to(1); off = w.on('changed', lambda: 1 / 0)")
+    kernel.heard.clear()
+    kernel.answer(kernel.say("undo"))
+    assert any(heard.get("tone") == "failed" for heard in kernel.heard)
+    assert "ZeroDivisionError" in kernel.printed
+    kernel.run("off()")
+
+
+def test_nonsense_is_refused_and_the_kernel_lives(kernel):
+    before = kernel.run("print(hash(w.mesh.arrays.points.tobytes()))")
+    for content in ({"do": "operate"}, {"do": "undo", "more": 1}, {"do": 5}, {"halfedge": [[[]]]}):
+        number = kernel.say(content.pop("do", "hover"), **content)
+        assert kernel.answer(number)["tone"] == "refused"
+    assert kernel.run("print(hash(w.mesh.arrays.points.tobytes()))") == before
+
+
+def test_the_agents_thread_ends_with_the_widget(kernel):
+    names = kernel.run(
+        "import time\nw.close(); time.sleep(0.3)\n"
+        "print([t.name for t in threading.enumerate() if t.name in ('assistant', 'preparing')])"
+    )
+    assert names == "[]"

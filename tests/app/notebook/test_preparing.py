@@ -1,0 +1,111 @@
+"""Kernels are made ready behind the first view; what needs them is put off with a sentence."""
+
+import sys
+import threading
+import time
+
+import pytest
+from porting import Port, allowed, script_agent
+
+from app.document import Document
+from app.notebook.preparing import Preparation, Stage
+from app.notebook.session import Session
+
+
+@pytest.fixture
+def port(star, monkeypatch, greedy):
+    script_agent(monkeypatch, greedy)
+    port = Port(Session.of(Document(star)))
+    yield port
+    port.close()
+
+
+class Gates:
+    """A preparation whose processes end when they are told to."""
+
+    def __init__(self, tmp_path, cold: tuple[Stage, ...], code: int = 0) -> None:
+        self.cold, self.loaded = list(cold), 0
+        self._folder, self._code = tmp_path, code
+        self.preparation = Preparation(lambda stage: stage not in self.cold, self._load, self._go)
+
+    def _load(self) -> None:
+        self.loaded += 1
+
+    def _go(self, stage: Stage) -> list[str]:
+        code = (
+            "import os, sys, time\n"
+            "while not os.path.exists(sys.argv[1]): time.sleep(0.01)\n"
+            f"sys.exit({self._code})"
+        )
+        return [sys.executable, "-c", code, str(self._folder / stage)]
+
+    def open(self, stage: Stage) -> None:
+        self.cold.remove(stage)
+        (self._folder / stage).touch()
+
+
+def until(port, condition) -> None:
+    assert port.session.loop.pump(condition, 20)
+
+
+def test_all_is_ready_at_once_where_it_was_compiled_before(port, tmp_path, monkeypatch):
+    gates = Gates(tmp_path, ())
+    monkeypatch.setattr("app.notebook.preparing.PREPARATION", gates.preparation)
+    port.ask("hello")
+    port.operate(*allowed(port.session.mesh))
+    assert port.of("notice") == [] and len(port.session.document.history) == 1
+    until(port, lambda: gates.loaded == 1)
+    time.sleep(0.05)
+    port.session.loop.drain()
+    assert port.of("notice") == []
+
+
+@pytest.mark.parametrize("code", [0, 1])
+def test_what_needs_it_waits_for_the_compiler(port, tmp_path, monkeypatch, code):
+    gates = Gates(tmp_path, (Stage.EDITING, Stage.AGENT), code)
+    monkeypatch.setattr("app.notebook.preparing.PREPARATION", gates.preparation)
+    state, *_, notice = port.ask("hello")
+    assert state["say"] == "state" and notice["tone"] == "said"
+    assert notice["sentence"].startswith("Preparing the operations")
+    [ghost] = port.ask("hover", halfedge=4, operation=None)
+    assert ghost["halfedge"] == -1
+    port.operate(*allowed(port.session.mesh))
+    assert (
+        port.sentence.startswith("Preparing the operations") and not port.session.document.history
+    )
+    gates.open(Stage.EDITING)
+    until(port, lambda: port.sentence == "The operations are ready.")
+    port.operate(*allowed(port.session.mesh))
+    assert port.session.document.history.cursor == 1
+    port.ask("agent", action="step")
+    assert port.sentence.startswith("Preparing the agent")
+    gates.open(Stage.AGENT)
+    until(port, lambda: port.sentence == "Everything is ready.")
+    port.ask("agent", action="step")
+    assert port.session.wait(10) and port.session.document.history.cursor > 1
+    assert gates.loaded == 1
+
+
+def test_a_preparation_that_cannot_be_is_logged_and_stops_nobody(port, monkeypatch, caplog):
+    def broken() -> None:
+        raise RuntimeError("no compiler")
+
+    preparation = Preparation(lambda stage: True, broken)
+    monkeypatch.setattr("app.notebook.preparing.PREPARATION", preparation)
+    port.ask("hello")
+    until(port, lambda: "no compiler" in caplog.text)
+    port.operate(*allowed(port.session.mesh))
+    assert port.session.document.history.cursor == 1
+
+
+def test_two_sessions_are_told_and_one_thread_works(port, triangles, tmp_path, monkeypatch):
+    gates = Gates(tmp_path, (Stage.EDITING,))
+    monkeypatch.setattr("app.notebook.preparing.PREPARATION", gates.preparation)
+    other = Port(Session.of(Document(triangles)))
+    port.ask("hello")
+    other.ask("hello")
+    assert sum(thread.name == "preparing" for thread in threading.enumerate()) == 1
+    gates.open(Stage.EDITING)
+    until(port, lambda: port.sentence == "Everything is ready.")
+    until(other, lambda: other.sentence == "Everything is ready.")
+    other.close()
