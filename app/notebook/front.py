@@ -34,6 +34,7 @@ SCRIPTS = (
     "overlay.js",
     "stage.js",
     "stage_tools.js",
+    "words.js",
     "pointing.js",
     "popup.js",
     "menus.js",
@@ -98,7 +99,7 @@ def variables(theme: Theme) -> str:
     families = ", ".join(f'"{family}"' if " " in family else family for family in FONTS)
     lines += [
         f"  --mw-grid: {GRID}px;",
-        f"  --mw-font: system-ui, {families}, sans-serif;",
+        f"  --mw-font: -apple-system, {families}, system-ui, sans-serif;",
         f"  color-scheme: {theme.name};",
     ]
     return f'.{ROOT}[data-theme="{theme.name}"] {{\n' + "\n".join(lines) + "\n}\n"

@@ -12,11 +12,11 @@ class AgentPanel {
     this._known = this._away = ""; // the hints that were told last, and those that were put away
     this._make();
     this.root = node("section", "mw-part mw-part-agent", { "aria-label": "Agent", hidden: true },
-      node("h4", "mw-heading", {}, "Agent"), this._policy,
+      node("div", "mw-head-line", {}, node("h4", "mw-heading", {}, "Agent"), this._policy),
       node("div", "mw-buttons", {}, this._hint, this._step, this._play),
-      this._list,
-      node("label", "mw-speed", {}, this._speed, this._pace),
-      node("div", "mw-buttons", {}, this._complete, this._stop), this._words);
+      node("div", "mw-buttons", {}, this._complete, this._stop,
+        node("label", "mw-speed", {}, this._speed, this._pace)),
+      this._words, this._list);
   }
 
   /** Whether something runs that changes the mesh by itself. */
@@ -92,9 +92,12 @@ class AgentPanel {
     this._play.setAttribute("aria-label", playing ? "Pause" : "Let the policy play at this speed");
     this._play.title = playing ? "Hold the run (Space)" : "Let the policy go on at this speed (Space)";
     const none = !content.policies.length;
-    for (const one of [this._hint, this._step, this._complete]) one.disabled = none || this.busy;
+    for (const one of [this._hint, this._step, this._complete]) {
+      one.disabled = none || content.loading || this.busy;
+    }
     this._play.disabled = none || (this.busy && !playing);
-    this._stop.disabled = content.state === "idle";
+    this._stop.hidden = content.state === "idle";
+    this._complete.hidden = !this._stop.hidden;
     if (!this._speed.matches(":active")) {
       const away = AGENT_SPEEDS.map((speed) => Math.abs(speed - content.speed));
       this._speed.value = away.indexOf(Math.min(...away));
@@ -125,8 +128,10 @@ class AgentPanel {
   }
 
   _tellPace(speed) {
-    tell(this._pace, `${speed.toLocaleString("en")} per second`);
-    this._speed.setAttribute("aria-valuetext", this._pace.textContent);
+    const words = `${speed.toLocaleString("en")} operations per second`;
+    tell(this._pace, `${speed.toLocaleString("en")}\u2009/\u2009s`);
+    this._speed.setAttribute("aria-valuetext", words);
+    this._speed.title = `Speed of playing: ${words}`;
   }
 
   _tellPolicies({ policies, policy }) {
@@ -142,6 +147,7 @@ class AgentPanel {
   }
 
   _setHints(hints) {
+    const before = this.hints.length;
     this.hints = hints.slice(0, MOST_HINTS);
     this._list.hidden = !this.hints.length;
     const { palette } = this._card;
@@ -162,5 +168,7 @@ class AgentPanel {
       return row;
     }));
     this._card.showHints(this.hints);
+    const side = this.root.closest(".mw-side-scroll");
+    if (side && this.hints.length && !before) side.scrollTop = side.scrollHeight;
   }
 }

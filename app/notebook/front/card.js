@@ -3,6 +3,7 @@
 const WHEEL_HINT = /Mac|iPhone|iPad/.test(navigator.platform)
   ? "Hold \u2318 and scroll to zoom, or click the mesh first."
   : "Hold Ctrl and scroll to zoom, or click the mesh first.";
+const MOST_TOUCH_HINTS = 2;
 const TOUCH_HINT = "Two fingers move the mesh.";
 const ANSWERED = ["hello", "operate", "undo", "redo", "smooth", "untangle", "clean_all", "take_hint"];
 
@@ -11,10 +12,10 @@ class Card {
     this.link = link;
     this.palette = new Palette();
     this.wanted = options.theme || "auto";
-    this.menu = null;
     this._followers = [];
     this._pending = [];
     this._paints = 0;
+    this._touchHints = 0;
     this._helloed = false;
     this._make(options.height || 480);
     this._unwatch = watchHost(() => this.retheme());
@@ -35,6 +36,7 @@ class Card {
     const under = node("div", "mw-timeline");
     const above = node("div", "mw-levels");
     this.pointing = new Pointing(this);
+    this.menus = new Menus(this);
     this.stage = new Stage(place, this.palette, () => this._onPainted());
     this.tools = new StageTools(this, place);
     this.notice = new Notice(place);
@@ -45,7 +47,8 @@ class Card {
     this.panel = node("div", "mw-panel", {}, this.score.root, this.operations.root, this.agent.root);
     this.root.append(
       node("div", "mw-body", {},
-        node("div", "mw-main", {}, place, under), node("div", "mw-side", {}, above, this.panel)),
+        node("div", "mw-main", {}, place, under),
+        node("div", "mw-side", {}, node("div", "mw-side-scroll", {}, above, this.panel))),
     );
     this.pointer = new Pointer(this, this.stage.surface);
     this._keys = new Keys(this);
@@ -60,7 +63,7 @@ class Card {
 
   release() {
     this._unwatch();
-    if (this.menu) this.menu.close(false);
+    this.menus.close(false);
     for (const part of [this.pointer, this.notice, this.stage, this.timeline, this.levels]) {
       if (part && part.release) part.release();
     }
@@ -112,7 +115,7 @@ class Card {
    */
   screenOf(halfedge) {
     if (!this.mirror.live(halfedge)) return null;
-    const [x, y] = middleOf(arrowOf(this.mirror, this.stage.picture.view || this.view, halfedge));
+    const [x, y] = this.stage.middle(halfedge);
     const box = this.stage.surface.getBoundingClientRect();
     return { x: box.left + x, y: box.top + y };
   }
@@ -167,12 +170,13 @@ class Card {
     const { head } = this.mirror;
     this.score.update(head);
     if (this.timeline) this.timeline.update(head);
-    this._label(head);
-    if (this.pointer.place && !this.pointing.pinned && !this.menu) {
+    this.root.setAttribute("aria-label", meshName(head));
+    this.stage.surface.setAttribute("aria-label", canvasLabel(head));
+    if (this.pointer.place && !this.pointing.pinned && !this.menus.open) {
       this.pointing.halfedge = this.pointer.halfedge();
     }
     this.pointing.renew();
-    if (this.menu) this.menu.refresh();
+    this.menus.refresh();
   }
 
   _onAgent(content) {
@@ -215,7 +219,7 @@ class Card {
     const badge = this.stage.overlay.badges.at(...at);
     this.stage.surface.style.cursor = badge >= 0 ? "pointer" : "";
     if (badge >= 0) this.meanHint(badge);
-    else if (!this.menu) {
+    else if (!this.menus.open) {
       this.pointing.preview(null);
       this.pointing.point(halfedge);
     }
@@ -223,7 +227,7 @@ class Card {
 
   /** The mouse has left the canvas. */
   left() {
-    if (!this.menu && !this.pointing.pinned) this.pointing.point(-1);
+    if (!this.menus.open && !this.pointing.pinned) this.pointing.point(-1);
   }
 
   /** Point at a half-edge by other means than the mouse. */
@@ -243,43 +247,13 @@ class Card {
     this.pointing.point(halfedge);
     if (halfedge < 0 || this.readOnly) return;
     if (this.pointing.armed) this.operate(this.pointing.armed, halfedge);
-    else this._openMenu(halfedge, at, touch);
+    else this.menus.openOperations(halfedge, at, touch);
   }
 
   doubleClick(halfedge) {
     if (halfedge >= 0 && this.pointing.armed) return;
-    if (this.menu) this.menu.close();
-    this.fit();
-  }
-
-  openMenuByKey() {
-    const { halfedge } = this.pointing;
-    if (this.readOnly) return;
-    if (halfedge < 0) {
-      this.say("refused", "Point at a half-edge first.");
-      return;
-    }
-    const at = middleOf(arrowOf(this.mirror, this.view, halfedge));
-    this.pointing.pinned = true;
-    this._openMenu(halfedge, at, false);
-    this.menu.element.querySelector("button").focus();
-  }
-
-  _openMenu(halfedge, at, touch) {
-    if (this.menu) this.menu.close(false);
-    this.menu = new OperationMenu(this, halfedge, { ...this._onCard(at), touch });
-  }
-
-  openVertexMenu(at, reach, touch) {
-    const halfedge = this.stage.pickVertex(at, reach);
-    if (halfedge < 0 || this.readOnly) return;
-    if (this.menu) this.menu.close(false);
-    this.menu = new VertexMenu(this, halfedge, { ...this._onCard(at), touch });
-  }
-
-  _onCard([x, y]) {
-    const [inner, outer] = [this.stage.surface, this.root].map((part) => part.getBoundingClientRect());
-    return { x: x + inner.left - outer.left, y: y + inner.top - outer.top };
+    this.menus.close();
+    this.stage.fit();
   }
 
   cycle(step) {
@@ -292,14 +266,15 @@ class Card {
     const { pointing, mirror, stage } = this;
     const info = mirror.catalogue.find((one) => one.operation === pointing.meant);
     Object.assign(stage.shown, {
-      halfedge: pointing.halfedge, ghost: pointing.ghost, title: info ? info.title : "",
+      halfedge: pointing.halfedge, ghost: pointing.ghost,
+      title: info && !this.menus.open ? info.title : "", // an open menu says it already
     });
     this.root.dataset.halfedge = pointing.halfedge;
     this.root.dataset.meant = pointing.meant || "";
     this.operations.update();
-    if (this.menu) this.menu.refresh();
+    this.menus.refresh();
     const h = pointing.halfedge;
-    this.notice.where(h < 0 ? "" : `Half-edge ${h}:  ${mirror.origin[h]} \u2192 ${mirror.target(h)}`);
+    this.notice.where(h < 0 ? "" : placed(mirror, pointing));
     stage.repaint();
     pointing.ask();
   }
@@ -320,61 +295,21 @@ class Card {
     this.stage.repaint();
   }
 
-  // The view
-
-  pan(dx, dy) {
-    this.stage.see(this.view.panned(dx, dy));
-  }
-
-  zoom(factor, x, y) {
-    this.stage.see(this.view.zoomed(factor, x, y));
-  }
-
-  zoomMiddle(factor) {
-    this.zoom(factor, this.view.width / 2, this.view.height / 2);
-  }
-
-  fit() {
-    this.stage.fit();
-  }
-
-  /** Look at a place so closely that `reach` around it is `least` pixels wide. */
-  reveal(x, y, reach, least) {
-    if (this.view.pixels * 2 * reach < least) this.stage.see(this.view.around(x, y, reach, least));
-  }
-
-  /** Move the picture where a half-edge lies beside it. */
-  keepInView(halfedge, margin) {
-    const [x, y] = middleOf(arrowOf(this.mirror, this.view, halfedge));
-    const { width, height } = this.view;
-    const [keepX, keepY] = [Math.min(margin, width / 3), Math.min(margin, height / 3)];
-    const [dx, dy] = [clamp(x, keepX, width - keepX) - x, clamp(y, keepY, height - keepY) - y];
-    if (dx || dy) this.pan(dx, dy);
-  }
-
   // Words
 
   tellWheel() {
     this.say("hint", WHEEL_HINT);
   }
 
+  /** One finger has scrolled the page: nobody wants to read that every time. */
   tellTouch() {
-    this.say("hint", TOUCH_HINT);
+    this._touchHints += 1;
+    if (this._touchHints <= MOST_TOUCH_HINTS) this.say("hint", TOUCH_HINT);
   }
 
   /** Say what is pointed at, once the keys rest. */
   announceSoon(before = "") {
     this.notice.speak(() => before + described(this));
-  }
-
-  _label(head) {
-    const name = head.name ? `Mesh ${head.name}` : "Mesh";
-    this.root.setAttribute("aria-label", name);
-    const noun = head.kind === "quad" ? "quad" : "triangle";
-    this.stage.surface.setAttribute("aria-label",
-      `${name}: ${counted(head.elements, noun)}, score ${head.score}, optimum ${head.optimum}. `
-      + "Arrow keys walk from half-edge to half-edge, Return does the operation shown, M opens the "
-      + "menu, question mark lists all keys.");
   }
 
   toggleHelp() {
@@ -383,8 +318,8 @@ class Card {
 
   /** Put down what is in hand, one thing at a time. */
   escape() {
-    if (this.menu) this.menu.close();
-    else if (this.tools.close()) this.focusCanvas();
+    if (this.menus.close()) return;
+    if (this.tools.close()) this.focusCanvas();
     else if (this.pointing.armed) this.pointing.arm(this.pointing.armed);
     else if (!this.agent.escape() && this.pointing.pinned) this.pointing.point(-1);
   }
@@ -395,7 +330,7 @@ class Card {
 
   _focusMoved(event) {
     const inside = event.relatedTarget && this.root.contains(event.relatedTarget);
-    if (!inside && this.pointing.pinned && !this.menu) this.pointing.point(-1);
+    if (!inside && this.pointing.pinned && !this.menus.open) this.pointing.point(-1);
   }
 
   // Looks
@@ -427,18 +362,4 @@ class Card {
     this.root.dataset.revision = this.mirror.revision;
     this.root.dataset.painted = this._paints;
   }
-}
-
-/** What is pointed at, in words: ends, degrees, and what the operation meant would do. */
-function described({ mirror, pointing }) {
-  const h = pointing.halfedge;
-  if (!mirror.live(h)) return "No half-edge.";
-  const end = (at) => {
-    const delta = mirror.delta[mirror.origin[at]];
-    return `vertex ${mirror.origin[at]}, degree ${mirror.degree(at)}, ${delta ? signed(delta) : "regular"}`;
-  };
-  const side = mirror.twin[h] < 0 ? ", on the boundary" : "";
-  const info = mirror.catalogue.find((one) => one.operation === pointing.meant);
-  const meant = info ? ` ${info.title}: s ${signed(pointing.ghost.change)}.` : "";
-  return `Half-edge ${h}${side}, from ${end(h)}, to ${end(mirror.next(h))}.${meant}`;
 }

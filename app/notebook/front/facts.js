@@ -9,13 +9,14 @@ const NEAR_RINGS = 5;
 
 class Facts {
   constructor(mirror) {
+    this.box = mirror.bounds();
     this.loops = boundaryLoops(mirror);
     this.irregular = verticesWith(mirror, (v) => mirror.delta[v] !== 0);
     this.corners = verticesWith(mirror, (v) => (mirror.flags[v] & FLAG_CORNER) !== 0);
     this.locked = verticesWith(mirror, (v) => (mirror.flags[v] & FLAG_LOCKED) !== 0);
     this.typical = typicalEdge(mirror);
     this.reach = shortestEdges(mirror);
-    this.apart = distancesApart(mirror, this.irregular, this.typical);
+    this.apart = distancesApart(mirror, this.irregular, this.typical, this.box);
     this.inverted = invertedElements(mirror);
   }
 }
@@ -60,17 +61,23 @@ function typicalEdge(mirror) {
 }
 
 function edgeLength(mirror, h) {
-  const [a, b] = [2 * mirror.origin[h], 2 * mirror.target(h)];
-  return Math.hypot(mirror.places[b] - mirror.places[a], mirror.places[b + 1] - mirror.places[a + 1]);
+  const { places } = mirror;
+  const a = 2 * mirror.origin[h];
+  const b = 2 * mirror.target(h);
+  const x = places[b] - places[a];
+  const y = places[b + 1] - places[a + 1];
+  return Math.sqrt(x * x + y * y);
 }
 
 /** Length of the shortest edge at every irregular vertex, by vertex id. */
 function shortestEdges(mirror) {
+  const { k, origin, delta } = mirror;
   const shortest = new Float32Array(mirror.vertices).fill(Infinity);
   for (let h = 0; h < mirror.halfedges; h += 1) {
-    if (mirror.origin[h] < 0) continue;
-    const [a, b] = [mirror.origin[h], mirror.target(h)];
-    if (mirror.delta[a] === 0 && mirror.delta[b] === 0) continue;
+    const a = origin[h];
+    if (a < 0) continue;
+    const b = origin[h % k === k - 1 ? h - k + 1 : h + 1];
+    if (delta[a] === 0 && delta[b] === 0) continue;
     const length = edgeLength(mirror, h);
     if (length < shortest[a]) shortest[a] = length;
     if (length < shortest[b]) shortest[b] = length;
@@ -78,38 +85,42 @@ function shortestEdges(mirror) {
   return shortest;
 }
 
-/** How far the nearest other of `vertices` is from each, by vertex id; at most some edges. */
-function distancesApart(mirror, vertices, typical) {
-  const cell = 1.5 * typical;
-  const key = (i, j) => i * 65536 + j;
-  const cells = new Map();
-  const at = (v, axis) => Math.floor(mirror.places[2 * v + axis] / cell) + 32768;
+/** How far the nearest other of `vertices` is from each, by vertex id; no more than a few edges. */
+function distancesApart(mirror, vertices, typical, box) {
+  const { places } = mirror;
+  const apart = new Float32Array(mirror.vertices);
+  if (!box) return apart;
+  const cell = Math.max(1.5 * typical, (box.right - box.left) / 1000, (box.top - box.bottom) / 1000);
+  const columns = Math.floor((box.right - box.left) / cell) + 1;
+  const rows = Math.floor((box.top - box.bottom) / cell) + 1;
+  const first = new Int32Array(columns * rows).fill(-1);
+  const after = new Int32Array(vertices.length);
+  const column = (v) => Math.floor((places[2 * v] - box.left) / cell);
+  const row = (v) => Math.floor((places[2 * v + 1] - box.bottom) / cell);
+  vertices.forEach((v, i) => {
+    const at = row(v) * columns + column(v);
+    after[i] = first[at];
+    first[at] = i;
+  });
   for (const v of vertices) {
-    const here = key(at(v, 0), at(v, 1));
-    if (cells.has(here)) cells.get(here).push(v);
-    else cells.set(here, [v]);
-  }
-  const apart = new Map();
-  for (const v of vertices) {
-    let nearest = Infinity;
+    const [x, y, i, j] = [places[2 * v], places[2 * v + 1], column(v), row(v)];
+    let nearest = Infinity; // squared
     let ring = 0;
-    for (; ring < NEAR_RINGS && nearest > (ring - 1) * cell; ring += 1) {
-      for (let i = -ring; i <= ring; i += 1) {
-        const edge = Math.abs(i) === ring;
-        for (let j = -ring; j <= ring; j += edge ? 1 : 2 * ring) {
-          for (const u of cells.get(key(at(v, 0) + i, at(v, 1) + j)) || []) {
-            if (u === v) continue;
-            const away = Math.hypot(
-              mirror.places[2 * u] - mirror.places[2 * v],
-              mirror.places[2 * u + 1] - mirror.places[2 * v + 1],
-            );
-            if (away < nearest) nearest = away;
+    for (; ring < NEAR_RINGS && nearest > ((ring - 1) * cell) ** 2; ring += 1) {
+      for (let q = Math.max(j - ring, 0), top = Math.min(j + ring, rows - 1); q <= top; q += 1) {
+        const step = Math.abs(q - j) === ring || ring === 0 ? 1 : 2 * ring;
+        for (let p = i - ring; p <= i + ring; p += step) {
+          if (p < 0 || p >= columns) continue;
+          for (let n = first[q * columns + p]; n >= 0; n = after[n]) {
+            const u = vertices[n];
+            const [dx, dy] = [places[2 * u] - x, places[2 * u + 1] - y];
+            const squared = dx * dx + dy * dy;
+            if (u !== v && squared < nearest) nearest = squared;
           }
-          if (ring === 0) break;
         }
       }
     }
-    apart.set(v, Math.min(nearest, ring * cell));
+    apart[v] = Math.min(Math.sqrt(nearest), ring * cell);
   }
   return apart;
 }

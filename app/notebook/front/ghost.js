@@ -4,8 +4,9 @@ const GHOST_DASHES = [7, 4.5];
 const MOST_NUMBERS = 24;
 const NUMBERS_ROOM = 26;
 const CROSS_HALF = 5;
+const PILL_HEIGHT = 15;
 const TAG_HEIGHT = 24;
-const TAG_GAP = 14;
+const TAG_GAPS = [14, 36];
 const TAG_HIDES = 60;
 
 /** What a ghost message says, in the plane: {halfedge, operation, change, added, removed, gone,
@@ -69,17 +70,21 @@ class GhostPainter {
   }
 
   /** Pills with the irregularity that vertices would have, crosses on those that would go, and the
-   * tag. `corners`: of the half-edge's element, on the screen, its own ends first.
+   * tag unless `title` is empty. `corners`: of the half-edge's element, on the screen, its own ends
+   * first.
    */
   paintNumbers(pen, view, ghost, title, corners, marks) {
     const size = Math.max(
       ...corners.map((at) => Math.hypot(at[0] - corners[0][0], at[1] - corners[0][1])),
     );
+    const busy = [...marks];
     if (size > NUMBERS_ROOM && ghost.delta.length <= MOST_NUMBERS) {
-      this._paintPills(pen, view, ghost);
+      busy.push(...this._paintPills(pen, view, ghost, corners, marks));
       this._paintCrosses(pen, view, ghost);
     }
-    this._paintTag(pen, view, ghost, title, corners, marks);
+    const [x, y] = middleOf(corners);
+    const seen = title && x > 0 && y > 0 && x < view.width && y < view.height;
+    if (seen) this._paintTag(pen, view, ghost, title, corners, busy);
   }
 
   _paintCrosses(pen, view, ghost) {
@@ -100,25 +105,37 @@ class GhostPainter {
     }
   }
 
-  _paintPills(pen, view, ghost) {
+  /** Beside their vertices, off the arrow, the marks and one another; returns their middles. */
+  _paintPills(pen, view, ghost, corners, marks) {
     const palette = this._palette;
     pen.font = `600 11px ${palette.font}`;
     pen.textBaseline = "middle";
     pen.textAlign = "center";
+    const [a, b] = corners;
+    const along = (t) => [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+    const busy = [...marks, ...[0.15, 0.4, 0.65, 0.9].map(along)];
+    const pills = [];
     ghost.delta.forEach((delta, i) => {
       const [x, y] = view.toScreen(ghost.places[2 * i], ghost.places[2 * i + 1]);
       const text = signed(delta);
       const width = Math.max(pen.measureText(text).width + 8, 15);
+      const tries = [[x + 9, y - 23], [x - 9 - width, y - 23], [x + 9, y + 8], [x - 9 - width, y + 8]];
+      const hits = tries.map(([left, top]) => busy.filter(([px, py]) => px > left - 9
+        && px < left + width + 9 && py > top - 9 && py < top + PILL_HEIGHT + 9).length);
+      const [left, top] = tries[hits.indexOf(Math.min(...hits))];
+      pills.push([left + width / 2, top + PILL_HEIGHT / 2]);
+      busy.push(pills[pills.length - 1]);
       pen.fillStyle = palette.raised;
       pen.lineWidth = 1.25;
       pen.strokeStyle = delta > 0 ? palette.plus : delta < 0 ? palette.minus : palette.faint;
       pen.beginPath();
-      pen.roundRect(x + 9, y - 23, width, 15, 7.5);
+      pen.roundRect(left, top, width, PILL_HEIGHT, PILL_HEIGHT / 2);
       pen.fill();
       pen.stroke();
       pen.fillStyle = palette.text;
-      pen.fillText(text, x + 9 + width / 2, y - 15);
+      pen.fillText(text, left + width / 2, top + PILL_HEIGHT / 2 + 0.5);
     });
+    return pills;
   }
 
   _paintTag(pen, view, ghost, title, corners, marks) {
@@ -159,12 +176,12 @@ class GhostPainter {
         }
       }
     }
-    const tries = [
-      [Math.max(...xs) + TAG_GAP, y - TAG_HEIGHT / 2],
-      [Math.min(...xs) - TAG_GAP - width, y - TAG_HEIGHT / 2],
-      [x - width / 2, Math.min(...ys) - TAG_GAP - TAG_HEIGHT],
-      [x - width / 2, Math.max(...ys) + TAG_GAP],
-    ];
+    const tries = TAG_GAPS.flatMap((gap) => [
+      [Math.max(...xs) + gap, y - TAG_HEIGHT / 2],
+      [Math.min(...xs) - gap - width, y - TAG_HEIGHT / 2],
+      [x - width / 2, Math.min(...ys) - gap - TAG_HEIGHT],
+      [x - width / 2, Math.max(...ys) + gap],
+    ]);
     let best = null;
     let least = Infinity;
     for (const [wantedX, wantedY] of tries) {
@@ -172,7 +189,7 @@ class GhostPainter {
       const top = clamp(wantedY, 8, Math.max(view.height - TAG_HEIGHT - 8, 8));
       let cost = Math.hypot(left + width / 2 - x, 2 * (top + TAG_HEIGHT / 2 - y));
       for (const [px, py] of hidden) {
-        const inside = px > left - 8 && px < left + width + 8 && py > top - 8 && py < top + TAG_HEIGHT + 24;
+        const inside = px > left - 8 && px < left + width + 8 && py > top - 8 && py < top + TAG_HEIGHT + 8;
         if (inside) cost += TAG_HIDES;
       }
       if (cost < least) [best, least] = [[left, top], cost];

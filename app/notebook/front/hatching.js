@@ -3,6 +3,7 @@
 const HATCH_GAP = 6;
 const MOST_HATCHED = 1500;
 const SMALLEST_HATCHED = 9;
+const MOST_SIGNS = 24;
 
 class Hatching {
   constructor(palette) {
@@ -44,12 +45,13 @@ class Hatching {
       pen.fill();
       pen.stroke();
     }
-    for (const corners of seen) {
+    const small = seen.filter((corners) => {
       const xs = corners.map((at) => at[0]);
       const ys = corners.map((at) => at[1]);
       const size = Math.min(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));
-      if (size < SMALLEST_HATCHED) this._paintSign(pen, middleOf(corners));
-    }
+      return size < SMALLEST_HATCHED;
+    });
+    if (elements.length <= MOST_SIGNS) small.forEach((corners) => this._paintSign(pen, middleOf(corners)));
   }
 
   _strokes(ratio) {

@@ -16,10 +16,22 @@ class HintBadges {
     this._boxes = [];
   }
 
+  /** There are none. */
+  clear() {
+    this._boxes = [];
+  }
+
   /** The index of the hint whose badge lies at (x, y), -1 for none. */
   at(x, y) {
     return this._boxes.findIndex((box) => box && x >= box.x && x <= box.x + box.width
       && y >= box.y && y <= box.y + BADGE_HEIGHT);
+  }
+
+  /** Places [x, y] that the badges take, for what has to keep clear of them. */
+  get places() {
+    const shares = [0, 0.25, 0.5, 0.75, 1];
+    return this._boxes.flatMap((box) => (box
+      ? shares.map((share) => [box.x + share * box.width, box.y + BADGE_HEIGHT / 2]) : []));
   }
 
   /** Paint all, the one that is meant in front. `marks`: places that badges keep clear of. */

@@ -34,14 +34,14 @@ class Keys {
       Enter: () => card.pointing.act(),
       "[": () => card.cycle(-1),
       "]": () => card.cycle(1),
-      m: () => card.openMenuByKey(),
-      ContextMenu: () => card.openMenuByKey(),
+      m: () => card.menus.openByKey(),
+      ContextMenu: () => card.menus.openByKey(),
       u: () => card.ask("undo"),
       U: () => card.ask("redo"),
-      "+": () => card.zoomMiddle(1.25),
-      "=": () => card.zoomMiddle(1.25),
-      "-": () => card.zoomMiddle(0.8),
-      0: () => card.fit(),
+      "+": () => card.stage.zoom(1.25),
+      "=": () => card.stage.zoom(1.25),
+      "-": () => card.stage.zoom(0.8),
+      0: () => card.stage.fit(),
       h: () => card.agent.ask("hint"),
       ".": () => card.agent.ask("step"),
       " ": () => card.agent.toggle(),
@@ -56,7 +56,7 @@ class Keys {
     if (event.ctrlKey || event.metaKey) return this._pressWithControl(event);
     const key = event.key.length === 1 && event.key !== "U" ? event.key.toLowerCase() : event.key;
     if (event.key === "F10" && event.shiftKey) {
-      this._card.openMenuByKey();
+      this._card.menus.openByKey();
       return true;
     }
     const info = this._card.mirror.catalogue.find((one) => one.key.toLowerCase() === key);

@@ -6,13 +6,16 @@
 const BASE_RADIUS = 10;
 const RADIUS_GROWTH = 2.5;
 const LARGEST_RADIUS = 16;
-const SMALLEST_RADIUS = 2.5;
+const SMALLEST_RADIUS = 2;
 const CROWDED = 0.36;
-const READABLE = 6.5;
+const CROWDED_DISCS = 0.58;
+const READABLE = 5.5;
+const READABLE_BEST = 7;
 const CORNER_HALF = 4;
 const FEW_CORNERS = 64;
 const LOCK_RADIUS = 12.5;
-/** Pixels beside a vertex that its mark, or one that makes room for it, may reach. */
+/** Pixels beside a vertex that its mark reaches; and those that make room for it. */
+const MARK_REACH = 20;
 const MARK_SLACK = 36;
 
 /** "+1", with a true minus sign for negative numbers. */
@@ -24,7 +27,7 @@ function signed(number) {
 /** Radius in pixels: larger with |delta|, smaller where the edges or the next disc are near. */
 function discRadius(delta, reach, apart) {
   const wanted = Math.min(BASE_RADIUS + RADIUS_GROWTH * (Math.abs(delta) - 1), LARGEST_RADIUS);
-  const room = Math.max(CROWDED * reach, Math.min(READABLE + 0.5, 0.48 * apart));
+  const room = Math.max(CROWDED * reach, Math.min(READABLE_BEST, CROWDED_DISCS * apart));
   return Math.max(Math.min(wanted, room), SMALLEST_RADIUS);
 }
 
@@ -40,17 +43,20 @@ class Marks {
     this._sprites.clear();
   }
 
-  /** Paint the marks whose vertices lie in `box` {left, top, right, bottom} of the screen. */
-  paint(pen, ratio, view, mirror, facts, box) {
+  /** Paint the marks that reach one of `boxes` {left, top, right, bottom} of the screen. */
+  paint(pen, ratio, view, mirror, facts, boxes) {
     if (ratio !== this._ratio) {
       this._sprites.clear();
       this._ratio = ratio;
     }
+    const { places } = mirror;
+    const [shiftX, shiftY] = view.toScreen(0, 0);
     const inside = (v) => {
-      const [x, y] = view.toScreen(mirror.places[2 * v], mirror.places[2 * v + 1]);
-      const near = x > box.left - MARK_SLACK && x < box.right + MARK_SLACK
-        && y > box.top - MARK_SLACK && y < box.bottom + MARK_SLACK;
-      return near ? [x, y] : null;
+      const x = shiftX + places[2 * v] * view.pixels;
+      const y = shiftY - places[2 * v + 1] * view.pixels;
+      const near = (box) => x > box.left - MARK_REACH && x < box.right + MARK_REACH
+        && y > box.top - MARK_REACH && y < box.bottom + MARK_REACH;
+      return boxes.some(near) ? [x, y] : null;
     };
     this._paintCorners(pen, view, facts, inside);
     for (const v of facts.irregular) {
@@ -70,7 +76,7 @@ class Marks {
 
   /** Radius of the disc of an irregular vertex, in pixels. */
   radius(view, mirror, facts, v) {
-    const apart = facts.apart.get(v) * view.pixels;
+    const apart = facts.apart[v] * view.pixels;
     return discRadius(mirror.delta[v], facts.reach[v] * view.pixels, apart);
   }
 
@@ -126,7 +132,7 @@ class Marks {
     disc(delta > 0 ? palette.plus : palette.minus, radius);
     if (radius >= READABLE) {
       const text = signed(delta);
-      const size = Math.max(9, (text.length > 2 ? 0.95 : 1.2) * radius);
+      const size = Math.max(8, (text.length > 2 ? 0.95 : 1.2) * radius, Math.min(9, 1.45 * radius));
       pen.font = `600 ${size}px ${palette.font}`;
       pen.fillStyle = palette.marker_text;
       const box = pen.measureText(text); // centred by its ink: fonts differ in their metrics

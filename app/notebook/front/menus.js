@@ -1,29 +1,78 @@
 // The menus at the pointer: the operations of a half-edge, and what there is to do with a vertex.
 
+/** At most one menu of a card is open. */
+class Menus {
+  constructor(card) {
+    this._card = card;
+    this._open = null;
+  }
+
+  get open() {
+    return this._open !== null;
+  }
+
+  /** Open the menu of operations of a half-edge at [x, y] of the canvas. */
+  openOperations(halfedge, at, touch) {
+    this._show((closed) => new OperationMenu(this._card, halfedge, { ...this._onCard(at), touch, closed }));
+  }
+
+  /** The same for the half-edge that is pointed at, with the focus in it. */
+  openByKey() {
+    const { pointing, stage, readOnly } = this._card;
+    if (readOnly) return;
+    if (pointing.halfedge < 0) {
+      this._card.say("refused", "Point at a half-edge first.");
+      return;
+    }
+    pointing.pinned = true;
+    this.openOperations(pointing.halfedge, stage.middle(pointing.halfedge), false);
+    this._open.popup.focusRow(0);
+  }
+
+  /** Open the menu of the vertex near [x, y] of the canvas. */
+  openVertex(at, reach, touch) {
+    const halfedge = this._card.stage.pickVertex(at, reach);
+    if (halfedge < 0 || this._card.readOnly) return;
+    this._show((closed) => new VertexMenu(this._card, halfedge, { ...this._onCard(at), touch, closed }));
+  }
+
+  /** Something has changed. */
+  refresh() {
+    if (this._open) this._open.refresh();
+  }
+
+  /** Close what is open; returns whether there was something. */
+  close(focus = true) {
+    const was = this._open;
+    if (was) was.popup.close(focus);
+    return was !== null;
+  }
+
+  _show(makeMenu) {
+    this.close(false);
+    this._open = makeMenu(() => {
+      this._open = null;
+      this._card.pointing.preview(null);
+    });
+  }
+
+  _onCard([x, y]) {
+    const { stage, root } = this._card;
+    const [inner, outer] = [stage.surface, root].map((part) => part.getBoundingClientRect());
+    return { x: x + inner.left - outer.left, y: y + inner.top - outer.top };
+  }
+}
+
 /** Everything that can be done at a half-edge, with what it would change and why it may not be. */
 class OperationMenu {
-  constructor(card, halfedge, { x, y, touch }) {
+  constructor(card, halfedge, { x, y, touch, closed }) {
     this._card = card;
     this.halfedge = halfedge;
     const { mirror } = card;
     this._ends = [mirror.origin[halfedge], mirror.target(halfedge)];
-    this._popup = new Popup(card, `Half-edge ${this._ends.join(" \u2192 ")}`, {
-      touch,
-      closed: () => {
-        card.pointing.preview(null);
-        card.menu = null;
-      },
-    });
+    this.popup = new Popup(card, `Half-edge ${this._ends.join(" \u2192 ")}`, { touch, closed });
     this._fill();
-    this._popup.show(x, y);
-  }
-
-  get element() {
-    return this._popup.root;
-  }
-
-  close(focus = true) {
-    this._popup.close(focus);
+    this.popup.show(x, y);
   }
 
   /** Offers have come, or are others. */
@@ -31,15 +80,15 @@ class OperationMenu {
     const { mirror, pointing } = this._card;
     const same = mirror.live(this.halfedge) && mirror.origin[this.halfedge] === this._ends[0]
       && mirror.target(this.halfedge) === this._ends[1];
-    if (!same || pointing.halfedge !== this.halfedge) this.close();
+    if (!same || pointing.halfedge !== this.halfedge) this.popup.close();
     else if (pointing.offers !== this._offers) this._fill();
   }
 
   _fill() {
     const { mirror, pointing, palette } = this._card;
     this._offers = pointing.offers;
-    const focused = this._popup.rows.findIndex((row) => row.element.matches(":focus"));
-    this._popup.clear();
+    const focused = this.popup.rows.findIndex((row) => row.element.matches(":focus"));
+    this.popup.clear();
     for (const info of mirror.catalogue) {
       const offer = this._offers ? this._offers.get(info.operation) : null;
       const refused = offer ? !offer.allowed : false;
@@ -47,7 +96,7 @@ class OperationMenu {
       const change = node("span", "mw-change", {}, known ? signed(offer.change) : "");
       if (known) change.style.color = palette.ofChange(offer.change);
       const reason = refused ? asSentence(offer.reason) : "";
-      this._popup.addRow({
+      this.popup.addRow({
         label: `${info.title}${known ? `, s ${signed(offer.change)}` : ""}${reason ? `. Not here: ${reason}` : ""}`,
         parts: [
           node("span", "mw-row-line", {},
@@ -60,13 +109,13 @@ class OperationMenu {
         pointed: () => pointing.preview(refused || !offer ? null : info.operation),
       });
     }
-    if (focused >= 0) this._popup.focusRow(focused);
+    if (focused >= 0) this.popup.focusRow(focused);
   }
 }
 
 /** Desired degree, corner and lock of the vertex where a half-edge starts. */
 class VertexMenu {
-  constructor(card, halfedge, { x, y, touch }) {
+  constructor(card, halfedge, { x, y, touch, closed }) {
     const { mirror } = card;
     this._card = card;
     this.vertex = mirror.origin[halfedge];
@@ -75,9 +124,9 @@ class VertexMenu {
     const delta = mirror.delta[this.vertex];
     const flags = mirror.flags[this.vertex];
     const words = `Vertex ${this.vertex}: degree ${degree}, \u0394 ${signed(delta)}`;
-    this._popup = new Popup(card, words, { touch, closed: () => (card.menu = null) });
+    this.popup = new Popup(card, words, { touch, closed });
     const desired = degree - delta;
-    const choice = (title, checked, act) => this._popup.addRow({
+    const choice = (title, checked, act) => this.popup.addRow({
       label: title, checked, act,
       parts: [node("span", "mw-row-line", {},
         node("span", "mw-check", {}, ...(checked ? [icon("check", 14)] : [])),
@@ -90,19 +139,11 @@ class VertexMenu {
     const [corner, locked] = [(flags & FLAG_CORNER) !== 0, (flags & FLAG_LOCKED) !== 0];
     choice("Corner: it stays where it is", corner, () => this._send("corner", { on: !corner }));
     choice("Locked: nothing changes it", locked, () => this._send("lock", { on: !locked }));
-    this._popup.show(x, y);
-  }
-
-  get element() {
-    return this._popup.root;
-  }
-
-  close(focus = true) {
-    this._popup.close(focus);
+    this.popup.show(x, y);
   }
 
   refresh() {
-    if (this._card.mirror.revision !== this._revision) this.close();
+    if (this._card.mirror.revision !== this._revision) this.popup.close();
   }
 
   _send(word, fields) {

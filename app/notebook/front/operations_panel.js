@@ -30,6 +30,7 @@ class OperationsPanel {
         : `${summary}\n${armed ? "A click on the mesh does it." : "Click to arm it: then each click on the mesh does it."}`;
       if (row.title !== told) row.title = told;
     }
+    this.root.hidden = this._card.link.readOnly; // a film says in its page what it is
     tell(this._hint, this._words());
   }
 
@@ -37,10 +38,7 @@ class OperationsPanel {
     const { mirror, pointing, readOnly } = this._card;
     if (readOnly) return "This view is for looking only.";
     const armed = mirror.catalogue.find((info) => info.operation === pointing.armed);
-    if (!armed) return "Point at a half-edge: its operations and how each would change s.";
-    const offer = pointing.offers ? pointing.offers.get(armed.operation) : null;
-    if (offer && !offer.allowed) return `${armed.title}, not here: ${asSentence(offer.reason)}`;
-    return `${armed.title}: a click on a half-edge does it. Esc puts it down.`;
+    return armed ? "A click does it. Esc puts it down." : "Point at a half-edge of the mesh.";
   }
 
   _fill(catalogue) {

@@ -34,13 +34,15 @@ class Overlay {
       this._clear = true;
     }
     const pointed = mirror.live(shown.halfedge);
+    this.badges.clear();
     if (!pointed && !shown.hints.length) return;
     this._clear = false;
     pen.setTransform(this._ratio, 0, 0, this._ratio, 0, 0);
     pen.lineJoin = "round";
     const marks = this._markPlaces(view, mirror, facts);
     if (pointed) this._paintPointed(pen, view, mirror, facts, shown);
-    if (shown.hints.length) this.badges.paint(pen, view, mirror, shown.hints, shown.meant, marks);
+    this.badges.paint(pen, view, mirror, shown.hints, shown.meant, marks);
+    marks.push(...this.badges.places);
     if (pointed && shown.ghost) {
       const corners = cornersFrom(mirror, view, shown.halfedge);
       this._ghosts.paintNumbers(pen, view, shown.ghost, shown.title, corners, marks);
@@ -58,7 +60,7 @@ class Overlay {
     pen.fill();
     pen.globalAlpha = 1;
     if (ghost) this._ghosts.paintEdges(pen, view, ghost);
-    this._marks.paint(pen, this._ratio, view, mirror, facts, ghostBounds(view, ghost, corners));
+    this._marks.paint(pen, this._ratio, view, mirror, facts, [ghostBounds(view, ghost, corners)]);
     paintArrow(pen, ...arrowOf(mirror, view, halfedge), palette.arrow, palette.background);
   }
 

@@ -178,7 +178,7 @@ class Picture {
     pen.strokeStyle = this._palette.boundary;
     this._outline(pen);
     pen.stroke();
-    this._marks.paint(pen, ratio, view, this._mirror, this._facts, boundsOf(rectangles, ratio));
+    this._marks.paint(pen, ratio, view, this._mirror, this._facts, boxesOf(rectangles, ratio));
     pen.restore();
   }
 
@@ -260,11 +260,9 @@ function tileRuns(dirty, columns, rows, tile) {
   return runs;
 }
 
-function boundsOf(rectangles, ratio) {
-  return {
-    left: Math.min(...rectangles.map((r) => r[0])) / ratio,
-    top: Math.min(...rectangles.map((r) => r[1])) / ratio,
-    right: Math.max(...rectangles.map((r) => r[0] + r[2])) / ratio,
-    bottom: Math.max(...rectangles.map((r) => r[1] + r[3])) / ratio,
-  };
+/** Rectangles [x, y, width, height] of device pixels as boxes of pixels. */
+function boxesOf(rectangles, ratio) {
+  return rectangles.map(([x, y, width, height]) => ({
+    left: x / ratio, top: y / ratio, right: (x + width) / ratio, bottom: (y + height) / ratio,
+  }));
 }

@@ -84,7 +84,7 @@ class Pointer {
     if (this._down.size === 2) this._pinch(event.pointerId, at);
     else if (this._moved && held.type !== "touch") {
       this.place = at;
-      this._card.pan(at[0] - held.at[0], at[1] - held.at[1]);
+      this._card.stage.pan(at[0] - held.at[0], at[1] - held.at[1]);
     }
     held.at = at;
   }
@@ -102,6 +102,8 @@ class Pointer {
   }
 
   _onCancel(event) {
+    const held = this._down.get(event.pointerId);
+    if (held && held.type === "touch" && this._down.size === 1) this._card.tellTouch();
     this._end(event.pointerId);
     this._moved = false;
   }
@@ -135,8 +137,8 @@ class Pointer {
     const was = this._down.get(id).at;
     const spread = (p) => Math.max(Math.hypot(p[0] - other[0], p[1] - other[1]), 1);
     const middle = middleOf([at, other]);
-    this._card.pan((at[0] - was[0]) / 2, (at[1] - was[1]) / 2);
-    this._card.zoom(spread(at) / spread(was), ...middle);
+    this._card.stage.pan((at[0] - was[0]) / 2, (at[1] - was[1]) / 2);
+    this._card.stage.zoom(spread(at) / spread(was), ...middle);
   }
 
   _onTouch(event) {
@@ -153,7 +155,7 @@ class Pointer {
     const unit = event.deltaMode === 1 ? LINE_HEIGHT : event.deltaMode === 2 ? 400 : 1;
     const delta = clamp(event.deltaY * unit, -240, 240);
     const fine = event.ctrlKey && Math.abs(delta) < 40; // a pinch on a trackpad comes in small steps
-    this._card.zoom(Math.exp(-delta * (fine ? 0.01 : 0.002)), ...this._at(event));
+    this._card.stage.zoom(Math.exp(-delta * (fine ? 0.01 : 0.002)), ...this._at(event));
   }
 
   _onDouble(event) {
@@ -167,6 +169,6 @@ class Pointer {
   }
 
   _openVertex(at, type) {
-    this._card.openVertexMenu(at, VERTEX_REACH[type], type === "touch");
+    this._card.menus.openVertex(at, VERTEX_REACH[type], type === "touch");
   }
 }

@@ -19,6 +19,7 @@ class ScorePanel {
     this._facts = node("dl", "mw-facts");
     this._irregular = this._fact("Irregular vertices");
     this._elements = this._fact("Elements");
+    this._blocks = this._fact("Blocks, each a regular grid");
     this._inverted = this._fact("Inverted elements");
     this._makeSteps();
     this.root = node("section", "mw-part mw-part-score", { "aria-label": "Score" },
@@ -42,9 +43,9 @@ class ScorePanel {
     this._barBox.setAttribute("aria-valuenow", String(Math.round(100 * share)));
     const [count, all] = [head.irregular, head.vertices].map((n) => n.toLocaleString("en"));
     tell(this._irregular, `${count} of ${all}`);
-    const quads = counted(head.elements, "quad");
-    const blocks = head.blocks === null ? "" : ` in ${counted(head.blocks, "block")}`;
-    tell(this._elements, head.kind === "quad" ? quads + blocks : counted(head.elements, "triangle"));
+    tell(this._elements, counted(head.elements, head.kind === "quad" ? "quad" : "triangle"));
+    tell(this._blocks, head.blocks === null ? "" : head.blocks.toLocaleString("en"));
+    this._blocks.parentElement.hidden = head.blocks === null;
     tell(this._inverted, head.inverted.toLocaleString("en"));
     this._inverted.parentElement.hidden = !head.inverted;
     this._tellSteps(head);
@@ -78,6 +79,7 @@ class ScorePanel {
 
   _tellSteps(head) {
     const locked = this._card.readOnly;
+    this._steps.hidden = locked;
     this._undo.disabled = locked || !head.can_undo;
     this._redo.disabled = locked || !head.can_redo;
     for (const tool of [this._smooth, this._auto, this._clean, this._mend]) tool.hidden = locked;

@@ -62,9 +62,9 @@ class Stage {
 
   // The view
 
-  /** Look through another view. */
+  /** Look through another view; the mesh stays in sight. */
   see(view) {
-    this.view = view;
+    this.view = view.over(this.work.facts.box);
     this.fitted = false;
     this.repaint();
   }
@@ -77,7 +77,7 @@ class Stage {
   }
 
   _fit() {
-    const box = this.work.mirror.bounds();
+    const { box } = this.work.facts;
     const { width, height } = this.view;
     const margin = clamp(FIT_SHARE * Math.min(width, height), FIT_LEAST, FIT_MOST);
     if (box) this.view = this.view.fitted(box, margin);
@@ -101,6 +101,34 @@ class Stage {
     this.view = this.view.resized(across / ratio, down / ratio);
     if (this.fitted) this._fit();
     this.paint(); // a canvas that was resized is empty
+  }
+
+  pan(dx, dy) {
+    this.see(this.view.panned(dx, dy));
+  }
+
+  /** Closer by `factor` at (x, y), in the middle if that is left out. */
+  zoom(factor, x = this.view.width / 2, y = this.view.height / 2) {
+    this.see(this.view.zoomed(factor, x, y));
+  }
+
+  /** Look at a place so closely that `reach` around it is `least` pixels wide. */
+  reveal(x, y, reach, least) {
+    if (this.view.pixels * 2 * reach < least) this.see(this.view.around(x, y, reach, least));
+  }
+
+  /** Move the picture where a half-edge lies beside it. */
+  keepInView(halfedge, margin) {
+    const [x, y] = this.middle(halfedge);
+    const { width, height } = this.view;
+    const [keepX, keepY] = [Math.min(margin, width / 3), Math.min(margin, height / 3)];
+    const [dx, dy] = [clamp(x, keepX, width - keepX) - x, clamp(y, keepY, height - keepY) - y];
+    if (dx || dy) this.pan(dx, dy);
+  }
+
+  /** Where on the canvas the arrow of a half-edge has its middle. */
+  middle(halfedge) {
+    return middleOf(arrowOf(this.work.mirror, this.view, halfedge));
   }
 
   // Painting

@@ -12,9 +12,9 @@ class StageTools {
     this._question = tool("Mouse and keys (?)", icon("help"), () => this.toggle());
     this._question.setAttribute("aria-expanded", "false");
     stage.append(node("div", "mw-stage-tools", { role: "toolbar", "aria-label": "View" },
-      tool("Zoom in (+)", zoomSign(true), () => card.zoomMiddle(1.25)),
-      tool("Zoom out (\u2212)", zoomSign(false), () => card.zoomMiddle(0.8)),
-      tool("See all of the mesh (0)", icon("fit"), () => card.fit()),
+      tool("Zoom in (+)", zoomSign(true), () => card.stage.zoom(1.25)),
+      tool("Zoom out (\u2212)", zoomSign(false), () => card.stage.zoom(0.8)),
+      tool("See all of the mesh (0)", icon("fit"), () => card.stage.fit()),
       this._question));
     this._stage = stage;
   }

@@ -65,7 +65,10 @@ class Viewport {
     return new Viewport(x, y, Math.min(pixels, FARTHEST_PIXELS), this.width, this.height);
   }
 
-  same(other) {
-    return ["x", "y", "pixels", "width", "height"].every((name) => this[name] === other[name]);
+  /** This view, or the nearest one whose middle lies over a box {left, bottom, right, top}. */
+  over(box) {
+    if (!box) return this;
+    const [x, y] = [clamp(this.x, box.left, box.right), clamp(this.y, box.bottom, box.top)];
+    return new Viewport(x, y, this.pixels, this.width, this.height);
   }
 }

@@ -39,7 +39,7 @@ class Walking {
     const halfedge = mirror.origin.indexOf(vertex);
     const reach = Math.max(...mirror.around(halfedge).map((h) => edgeLength(mirror, h)));
     const [x, y] = mirror.place(vertex);
-    this._card.reveal(x, y, reach, WALKED_SIZE);
+    this._card.stage.reveal(x, y, reach, WALKED_SIZE);
     this._go(halfedge, `Irregular vertex ${place + 1} of ${found.length}. `);
   }
 
@@ -54,7 +54,7 @@ class Walking {
   _go(halfedge, before = "") {
     if (halfedge < 0) return;
     this._card.pin(halfedge);
-    this._card.keepInView(halfedge, KEEP_IN_VIEW);
+    this._card.stage.keepInView(halfedge, KEEP_IN_VIEW);
     this._card.announceSoon(before);
   }
 }
