@@ -94,7 +94,7 @@ class Autosave:
     # Events
 
     def _on_noted(self, event: str, number: int) -> None:
-        if event == "saved":
+        if event == "saved" or self._document.passing:
             self._remove()
         elif self._enabled and self._path is None:
             self._begin()

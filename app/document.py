@@ -47,6 +47,7 @@ class Document(Timeline):
     _name: str
     _path: Path | None
     _saved: tuple[int, int]
+    _passing: bool
 
     def __init__(
         self, mesh: HalfEdgeMesh | None = None, name: str = "", path: str | Path | None = None
@@ -71,11 +72,19 @@ class Document(Timeline):
         return self._path
 
     @property
+    def passing(self) -> bool:
+        """True while nothing of it is worth keeping, as in a level; saving it ends that."""
+        return self._passing
+
+    @property
     def modified(self) -> bool:
         """True if the mesh differs from the file, or from the shape it began as.
 
-        A project keeps the history too: there a step counts even when it has been undone.
+        A project keeps the history too: there a step counts even when it has been undone. A mesh
+        that is :attr:`passing` never counts as modified.
         """
+        if self._passing:
+            return False
         mark, given = self.saved_state
         keeps_all = self._path is not None and project.is_project(self._path)
         return mark != self._saved[0] or (keeps_all and given != self._saved[1])
@@ -85,13 +94,27 @@ class Document(Timeline):
         """Two numbers that tell the present state from others: where it is, and all there is."""
         return self.history.mark, self.history.given[0]
 
+    def keep(self) -> None:
+        """A mesh that was passing is worth keeping from now on; as it is, it counts as saved."""
+        if self._passing:
+            self._passing, self._saved = False, self.saved_state
+            self.saved_changed.emit()
+
     # Another mesh
 
     def replace(
-        self, mesh: HalfEdgeMesh | None, name: str = "", path: str | Path | None = None
+        self,
+        mesh: HalfEdgeMesh | None,
+        name: str = "",
+        path: str | Path | None = None,
+        passing: bool = False,
     ) -> None:
-        """Put ``mesh`` in the place of the present one; the history starts again."""
+        """Put ``mesh`` in the place of the present one; the history starts again.
+
+        ``passing``: nobody needs to be asked before it is dropped, and no step of it is kept.
+        """
         self._adopt(mesh, name, path)
+        self._passing = passing
         self.revision += 1
         self.replaced.emit()
         self._emit_all()
@@ -137,7 +160,7 @@ class Document(Timeline):
             project.write(target, self.kept())
         else:
             io.write(target, self._need())
-        self._path, self._name = target, target.stem
+        self._path, self._name, self._passing = target, target.stem, False
         self._saved = self.saved_state
         self.noted.emit("saved", 0)
         self.saved_changed.emit()
@@ -159,6 +182,7 @@ class Document(Timeline):
         self._hover = -1
         self.history = History(self.score, self.optimum)
         self._saved = (0, 0)
+        self._passing = False
         self.settings = {}
 
     # Changing the mesh

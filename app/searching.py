@@ -28,6 +28,8 @@ class Effort:
     seconds: float | None = COMPLETE_SECONDS
     elements: np.ndarray | None = field(default=None, compare=False)
     """(n,) ids of the only elements that may change; None: all."""
+    coarsen: bool = True
+    """Whether to go on for fewer elements (quads) once the score is as low as it gets."""
 
 
 class SearchRunner:
@@ -79,6 +81,7 @@ class SearchRunner:
             seconds=self._effort.seconds,
             seed=self._seed,
             workers=max(1, (os.cpu_count() or 2) - 1),
+            coarsen=self._effort.coarsen,
             progress=self._progress,
             cancelled=self._enough.is_set,
         )

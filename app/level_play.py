@@ -1,0 +1,296 @@
+"""Playing levels on a document: what counts, what is won, and the agent beside you.
+
+Neither Qt nor torch is imported here: the window and the notebook show the same play.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app import levels
+from app.document import Document
+from app.hinting import Hinting
+from app.history import YOU, History
+from app.level_progress import Progress
+from app.levels import Level
+from app.rival import MakeAssistant, Rival, Standing
+from app.signals import Signal
+from meshcore import HalfEdgeMesh, MeshError, Operation
+
+STRIP = Operation.CHORD_COLLAPSE.value
+COUNTED = frozenset(operation.value for operation in Operation)
+FREE = frozenset(("smooth", "untangle", "move"))
+"""Steps that move vertices only: they cost nothing."""
+BARRED = {
+    STRIP: "Collapse strip goes beyond the paper's operations, and is not played in levels",
+    "clean_all": "Clean all deletes several lines at once: in a level they are deleted one by one",
+    "desired": "A level keeps its desired degrees",
+    "geometric": "A level keeps its corners",
+    "locked": "In a level nothing is locked",
+}
+"""Steps that are not played, and why."""
+NAMES = {1: "one star", 2: "two stars", 3: "three stars"}
+SLACK = 2
+"""Operations beyond par, at least, that still win two stars."""
+
+
+@dataclass(frozen=True)
+class Tally:
+    """What is on the way from the start of a history to its cursor."""
+
+    used: int = 0
+    """Operations."""
+    helped: bool = False
+    """Whether an agent has taken some of them."""
+    barred: str = ""
+    """The first step that is not played in levels; empty if there is none."""
+
+
+def tally(history: History) -> Tally:
+    """Count; what was undone is not on the way."""
+    used, helped, barred = 0, False, ""
+    for index in range(history.cursor):
+        row = history[index]
+        used += row.action in COUNTED
+        helped = helped or (row.by != YOU and row.action not in FREE)
+        if row.action not in FREE and (row.action in BARRED or row.action not in COUNTED):
+            barred = barred or row.action
+    return Tally(used, helped, barred)
+
+
+def stars(level: Level, used: int, hinted: bool = False) -> int:
+    """Stars for reaching the goal with so many operations of one's own."""
+    if used > level.par + max(SLACK, level.par // 3):
+        return 1
+    return 2 if used > level.par or hinted else 3
+
+
+class LevelPlay:
+    """One person at the levels, on ``document``; ``progress`` keeps what is won.
+
+    ``make_rival`` makes an assistant for another document, on which the agent solves the level.
+    Events: ``changed()`` anything here differs; ``won(stars)`` the goal was reached by oneself.
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        hinting: Hinting,
+        make_rival: MakeAssistant,
+        progress: Progress | None = None,
+    ) -> None:
+        self.changed = Signal()
+        self.won = Signal()
+        self.level: Level | None = None
+        self.tally = Tally()
+        self.done = False
+        """Whether the mesh is at the goal, by steps that count."""
+        self.hinted = False
+        """Whether the agent was asked for a hint since the start."""
+        self.rival: Rival | None = None
+        self.notice = ""
+        """What went wrong with the stars that are kept, as one sentence."""
+        self.progress = progress or Progress()
+        self._document, self._hinting, self._make_rival = document, hinting, make_rival
+        self._showing = False
+        document.replaced.connect(self._on_replaced)
+        document.history_changed.connect(self._on_history_changed)
+        hinting.changed.connect(self._on_hints_changed)
+
+    def release(self) -> None:
+        """Let go of the document, and end the agent's answer."""
+        self._document.replaced.disconnect(self._on_replaced)
+        self._document.history_changed.disconnect(self._on_history_changed)
+        self._hinting.changed.disconnect(self._on_hints_changed)
+        self._drop_rival()
+
+    # What a person does
+
+    def open(self, name: str | Level) -> Level:
+        """Begin a level; MeshError if there is none of this name."""
+        level = levels.load(name) if isinstance(name, str) else name
+        if self.level != level:
+            self._drop_rival()
+        self._begin(level)
+        return level
+
+    def again(self) -> None:
+        """Begin the level again."""
+        self._begin(self._need())
+
+    def next(self) -> Level:
+        """Begin the level after this one; MeshError after the last."""
+        name = levels.after(self._need().name)
+        if name is None:
+            raise MeshError("This is the last level.")
+        return self.open(name)
+
+    def leave(self) -> None:
+        """Go on with the mesh as it is, without counting."""
+        if self.level is not None:
+            self._drop_rival()
+            self.level, self.done, self.hinted = None, False, False
+            self._document.keep()
+            self.changed.emit()
+
+    def refusal(self, action: str) -> str:
+        """Why a step is not played here, as a sentence; empty if it is."""
+        if self.level is None or self._showing:
+            return ""
+        return f"{BARRED[action]}." if action in BARRED else ""
+
+    def ask_agent(self) -> None:
+        """Let the agent solve the level on a mesh of its own."""
+        level = self._need()
+        if level.most:
+            raise MeshError("The agent looks for a low score only: look at a solution instead.")
+        if self.rival is None or self.rival.standing is Standing.FAILED:
+            self._drop_rival()
+            self.rival = Rival(level, self._make_rival)
+            self.rival.changed.connect(self.changed.emit)
+            self.changed.emit()
+
+    def show_answer(self) -> str:
+        """Begin again, with the agent's way (or the best one known) ahead; says what to do."""
+        level = self._need()
+        rival = self.rival
+        answered = rival is not None and rival.standing is Standing.DONE
+        by = rival.name if rival is not None and answered else "the best known"
+        self._begin(level)
+        self._showing = True
+        try:
+            if rival is not None and answered:
+                for operation, halfedge in rival.operations:
+                    self._document.submit(operation, halfedge, by=by)
+            else:
+                for operation, (a, b) in level.solution:
+                    halfedge = levels.halfedge_of(_mesh_of(self._document), a, b)
+                    self._document.submit(operation, halfedge, by=by)
+            self._document.go_to(0)
+        finally:
+            self._showing = False
+        self._follow()
+        count = len(self._document.history)
+        return f"The way lies ahead: {_plural(count)}, one with every Redo."
+
+    # What is won
+
+    @property
+    def used(self) -> int:
+        """Operations on the way to here."""
+        return self.tally.used
+
+    @property
+    def stars(self) -> int:
+        """Stars for being at the goal now; 0 if not there, or not by oneself."""
+        if self.level is None or not self.done or self.tally.helped:
+            return 0
+        return stars(self.level, self.used, self.hinted)
+
+    @property
+    def best(self) -> int:
+        """The most stars ever won in this level."""
+        return self.progress.best(self.level.name).stars if self.level is not None else 0
+
+    @property
+    def headline(self) -> str:
+        """What the goal, once reached, is called; empty before."""
+        level = self.level
+        if level is None or not self.done:
+            return ""
+        if self.tally.helped:
+            return "At the goal, with the agent's operations"
+        if self.used < level.par:
+            return "Better than the best we know"
+        if self.used == level.par:
+            return "As few as can be" if level.proved else "As few as the best we know"
+        return "At the goal" if level.most else "At the optimum"
+
+    @property
+    def remark(self) -> str:
+        """What there is to know about the stars, as a sentence; empty if nothing."""
+        level = self.level
+        if level is None:
+            return ""
+        if self.tally.barred:
+            why = BARRED.get(self.tally.barred, "This step is not played in levels")
+            return f"{why}. Undo it, or begin again."
+        if self.tally.helped:
+            return "The agent's operations win no stars. Undo them, or begin again."
+        if self.done:
+            return self._verdict(level)
+        return "With a hint there are two stars at most." if self.hinted else ""
+
+    def _verdict(self, level: Level) -> str:
+        won = f"{_plural(self.used)}, par {level.par}: {NAMES[self.stars]}"
+        if self.stars == 3:
+            return f"{won}."
+        if self.used <= level.par:
+            return f"{won}, because of the hint."
+        spare = level.par + max(SLACK, level.par // 3)
+        more = f" Two for at most {spare}." if self.stars == 1 else f" Three for {level.par}."
+        return f"{won}.{more}"
+
+    # Inside
+
+    def _need(self) -> Level:
+        if self.level is None:
+            raise MeshError("No level is being played: choose one first.")
+        return self.level
+
+    def _begin(self, level: Level) -> None:
+        self.level = level
+        self.done = self.hinted = False
+        self.tally = Tally()
+        self._document.replace(level.mesh(), level.title, passing=True)
+
+    def _drop_rival(self) -> None:
+        rival, self.rival = self.rival, None
+        if rival is not None:
+            rival.changed.disconnect(self.changed.emit)
+            rival.close()
+
+    def _on_replaced(self) -> None:
+        if self.level is not None and not self._document.passing:
+            self.leave()  # another mesh has come
+        else:
+            self._follow()
+
+    def _on_hints_changed(self) -> None:
+        if self.level is not None and self._hinting.hints and not self.hinted:
+            self.hinted = True
+            self.changed.emit()
+
+    def _on_history_changed(self) -> None:
+        if not self._showing:
+            self._follow()
+
+    def _follow(self) -> None:
+        level, mesh = self.level, self._document.mesh
+        if level is None or mesh is None:
+            return
+        before, self.tally = self.done, tally(self._document.history)
+        self.done = level.reached(mesh) and not self.tally.barred
+        if self.done and self.stars:
+            self._note(level)
+        self.changed.emit()
+        if self.done and not before and self.stars:
+            self.won.emit(self.stars)
+
+    def _note(self, level: Level) -> None:
+        """Keep what is won; where that cannot be written the play goes on."""
+        try:
+            self.progress.note(level.name, self.stars, self.used)
+        except MeshError as error:
+            self.notice = str(error)
+
+
+def _mesh_of(document: Document) -> HalfEdgeMesh:
+    """The mesh of a document on which a level was begun."""
+    if document.mesh is None:
+        raise MeshError("No level is being played: choose one first.")
+    return document.mesh
+
+
+def _plural(count: int) -> str:
+    return f"{count} operation{'' if count == 1 else 's'}"

@@ -1,0 +1,129 @@
+"""What a person has won: the best stars and the fewest operations of every level, kept on disk.
+
+Window and notebook share one file. One that is broken is left aside, and it begins again.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+from meshcore import MeshError
+from meshcore.atomic import replacing
+
+VERSION = 1
+MOST_STARS = 3
+LARGEST_FILE = 1 << 20
+"""Bytes; a file beyond that is none of ours."""
+
+
+@dataclass(frozen=True)
+class Best:
+    """The best that a person has done in a level; nothing yet if ``stars`` is 0."""
+
+    stars: int = 0
+    used: int = 0
+    """The fewest operations."""
+
+
+def usual_path() -> Path:
+    """Where it is kept; `MESHWRIGHT_STATE_DIR` overrides the user's folder for such things."""
+    chosen = os.environ.get("MESHWRIGHT_STATE_DIR")
+    return Path(chosen or platformdirs.user_state_path("meshwright")) / "levels.json"
+
+
+class Progress:
+    """The file at ``path``, or the user's own; read when it is first asked."""
+
+    def __init__(self, path: Path | None = None) -> None:
+        self.path = path or usual_path()
+        self.notice = ""
+        """What went wrong with the file, as one sentence; empty if nothing did."""
+        self._found: dict[str, Best] | None = None
+
+    def best(self, name: str) -> Best:
+        """The best in the level of this name."""
+        if self._found is None:
+            self._found = self._read()
+        return self._found.get(name, Best())
+
+    @property
+    def stars(self) -> int:
+        """All stars together."""
+        self.best("")
+        return sum(best.stars for best in (self._found or {}).values())
+
+    def note(self, name: str, stars: int, used: int) -> bool:
+        """The level was done; True if that is better than before.
+
+        What another process has written meanwhile is kept. MeshError if the file cannot be written;
+        the level counts for this process all the same.
+        """
+        found = self._read()
+        for known, best in (self._found or {}).items():
+            found[known] = _better(found.get(known, Best()), best)
+        before = found.get(name, Best())
+        found[name] = _better(before, Best(stars, used))
+        self._found = found
+        if found[name] == before:
+            return False
+        self._write(found)
+        return True
+
+    def _read(self) -> dict[str, Best]:
+        try:
+            if self.path.stat().st_size > LARGEST_FILE:
+                raise ValueError("too large")
+            given = json.loads(self.path.read_text("utf-8"))
+            return _parsed(given)
+        except FileNotFoundError:
+            return {}
+        except OSError as error:
+            self.notice = f"The stars of the levels cannot be read ({error.strerror}): {self.path}."
+        except (ValueError, RecursionError):
+            self.notice = f"The file with the stars of the levels was broken: {self._put_aside()}"
+        return {}
+
+    def _put_aside(self) -> str:
+        aside = self.path.with_suffix(".broken")
+        try:
+            os.replace(self.path, aside)
+        except OSError:
+            return "they begin again."
+        return f"they begin again; it is kept as {aside.name}."
+
+    def _write(self, found: dict[str, Best]) -> None:
+        record = {name: {"stars": best.stars, "used": best.used} for name, best in found.items()}
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise MeshError(f"{self.path}: cannot be written ({error.strerror}).") from error
+        with replacing(self.path) as temporary:
+            text = json.dumps({"version": VERSION, "levels": record}, indent=1)
+            temporary.write_text(text, "utf-8")
+
+
+def _better(one: Best, other: Best) -> Best:
+    """More stars, and the fewer operations of those that were done at all."""
+    used = [best.used for best in (one, other) if best.stars]
+    return Best(max(one.stars, other.stars), min(used, default=0))
+
+
+def _parsed(given: Any) -> dict[str, Best]:
+    """ValueError for what this program has not written."""
+    if not isinstance(given, dict) or given.get("version") != VERSION:
+        raise ValueError("not ours")
+    found = {}
+    for name, best in dict(given.get("levels", {})).items():
+        stars, used = (best.get("stars"), best.get("used")) if isinstance(best, dict) else (0, 0)
+        if type(stars) is not int or type(used) is not int or used < 0:
+            raise ValueError("no stars")
+        if not 1 <= stars <= MOST_STARS:
+            raise ValueError("no such number of stars")
+        found[str(name)] = Best(stars, used)
+    return found

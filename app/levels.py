@@ -1,0 +1,255 @@
+"""Levels: a mesh with a goal and a par, to be played in the window and in the notebook.
+
+Each is a file ``assets/levels/NN-name.json`` that holds its mesh to the last digit, so that no
+change of a mesher changes a level, and a solution: operations with the ends of their half-edges.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import assets
+from meshcore import HalfEdgeMesh, MeshError, Operation
+from meshcore.operations import CODES
+
+FOLDER = Path(assets.__file__).parent / "levels"
+VERSION = 1
+LARGEST = 1000
+"""Elements that a level may have."""
+SIDES = {"tri": 3, "quad": 4}
+
+Way = tuple[tuple[Operation, tuple[int, int]], ...]
+"""Operations with the vertices where their half-edges start and end."""
+
+
+@dataclass(frozen=True)
+class Level:
+    """One level. Where arrays are concerned, vertex i of ``points`` is vertex id i of the mesh."""
+
+    name: str
+    number: int
+    """Place among the levels, from 1 on."""
+    title: str
+    kind: str
+    """``"tri"`` or ``"quad"``."""
+    text: str
+    """What one learns, in one or two sentences."""
+    goal: int
+    """The score to reach: s*, the lowest that is possible."""
+    most: int
+    """Elements that the mesh may have at the goal; 0 for any number."""
+    par: int
+    """The fewest operations known."""
+    proved: bool
+    """Whether an exhaustive search has shown that no fewer will do."""
+    solution: Way
+    """A way with ``par`` operations."""
+    points: np.ndarray = field(compare=False, repr=False)
+    """(n, 2)"""
+    elements: np.ndarray = field(compare=False, repr=False)
+    """(m, 3|4)"""
+    corners: np.ndarray = field(compare=False, repr=False)
+    """(n,) flags."""
+    desired: np.ndarray = field(compare=False, repr=False)
+    """(n,) desired degrees."""
+
+    def mesh(self) -> HalfEdgeMesh:
+        """A fresh mesh, as the level begins."""
+        return HalfEdgeMesh.from_elements(self.points, self.elements, self.corners, self.desired)
+
+    def reached(self, mesh: HalfEdgeMesh) -> bool:
+        """Whether ``mesh`` is at the goal."""
+        return mesh.score <= self.goal and not (self.most and mesh.n_elements > self.most)
+
+    @property
+    def aim(self) -> str:
+        """The goal in words."""
+        if self.most:
+            noun = "triangles" if self.kind == "tri" else "quads"
+            return f"s = {self.goal} with at most {self.most} {noun}"
+        return f"s = {self.goal}"
+
+
+def names() -> tuple[str, ...]:
+    """The names of all levels, the easiest first."""
+    return tuple(_name(path) for path in _files())
+
+
+def all() -> tuple[Level, ...]:
+    """All levels, the easiest first."""
+    return tuple(load(name) for name in names())
+
+
+@cache
+def load(name: str) -> Level:
+    """The level of this name; MeshError if there is none, or if its file is not sound."""
+    for number, path in enumerate(_files(), 1):
+        if _name(path) == name:
+            return read(path, number)
+    close = difflib.get_close_matches(str(name).lower().replace("_", "-"), names(), 3, 0.5)
+    hint = f"did you mean {' or '.join(close)}?" if close else f"there are {', '.join(names())}."
+    raise MeshError(f"There is no level named {name!r}; {hint}")
+
+
+def after(name: str) -> str | None:
+    """The name of the level after this one, None after the last."""
+    found = names()
+    return found[found.index(name) + 1] if name in found[:-1] else None
+
+
+def read(path: Path, number: int = 1) -> Level:
+    """The level in a file; MeshError, in one sentence that begins with the path, if there is none.
+
+    Its mesh is made once, to see that it is one, and its solution is done on it.
+    """
+    try:
+        level = _level(json.loads(path.read_text("utf-8")), _name(path), number)
+        _prove(level)
+    except OSError as error:
+        raise MeshError(f"{path}: cannot be read ({error.strerror}).") from error
+    except (ValueError, RecursionError) as error:
+        why = str(error).partition("\n")[0].rstrip(".") or type(error).__name__
+        raise MeshError(f"{path}: this is no sound level: {why}.") from error
+    return level
+
+
+def record(level: Level) -> dict[str, Any]:
+    """What :func:`read` reads, for JSON."""
+    return {
+        "version": VERSION,
+        "title": level.title,
+        "kind": level.kind,
+        "text": level.text,
+        "goal": level.goal,
+        "most": level.most,
+        "par": level.par,
+        "proved": level.proved,
+        "solution": [[operation.value, a, b] for operation, (a, b) in level.solution],
+        "points": level.points[:, :2].tolist(),
+        "elements": level.elements.tolist(),
+        "corners": np.flatnonzero(level.corners).tolist(),
+        "desired": level.desired.tolist(),
+    }
+
+
+def play(mesh: HalfEdgeMesh, way: Way) -> None:
+    """Do the operations on ``mesh``; MeshError at the first that is not possible."""
+    for operation, (a, b) in way:
+        mesh.apply(operation, halfedge_of(mesh, a, b))
+
+
+def halfedge_of(mesh: HalfEdgeMesh, a: int, b: int) -> int:
+    """The half-edge from a to b; MeshError if there is none."""
+    found = mesh.halfedge(a, b)
+    if found < 0:
+        raise MeshError(f"no half-edge runs from vertex {a} to vertex {b}")
+    return found
+
+
+def way_of(mesh: HalfEdgeMesh, operations: Iterable[tuple[Operation, int]]) -> Way:
+    """Operations on half-edges as a way on ``mesh``, which is not changed."""
+    work, way = mesh.copy(), []
+    for operation, halfedge in operations:
+        way.append((Operation(operation), (work.origin(halfedge), work.target(halfedge))))
+        work.apply(operation, halfedge)
+    return tuple(way)
+
+
+def _files() -> list[Path]:
+    return sorted(FOLDER.glob("[0-9][0-9]-*.json"))
+
+
+def _name(path: Path) -> str:
+    return path.stem.partition("-")[2] or path.stem
+
+
+def _level(given: Any, name: str, number: int) -> Level:
+    """The level that a file's contents describe; MeshError or ValueError if they do not."""
+    if not isinstance(given, dict):
+        raise MeshError("it is not an object")
+    if given.get("version") != VERSION:
+        raise MeshError(f"its version is not {VERSION}")
+    kind = _text(given, "kind")
+    if kind not in SIDES:
+        raise MeshError(f"its kind is {kind!r}, neither 'tri' nor 'quad'")
+    points = _table(given, "points", 2, float)
+    elements = _table(given, "elements", SIDES[kind], int)
+    if len(elements) > LARGEST:
+        raise MeshError(f"it has more than {LARGEST} elements")
+    flags = np.zeros(len(points), bool)
+    for corner in _whole_numbers(given.get("corners"), "corners"):
+        if not 0 <= corner < len(points):
+            raise MeshError(f"there is no vertex {corner} to be a corner")
+        flags[corner] = True
+    desired = np.array(_whole_numbers(given.get("desired"), "desired"), np.int64)
+    if desired.shape != (len(points),):
+        raise MeshError("'desired' has not one number for each point")
+    return Level(
+        name, number, _text(given, "title"), kind, _text(given, "text"), _count(given, "goal"),
+        _count(given, "most"), _count(given, "par"), given.get("proved") is True,
+        _way(given.get("solution"), kind), points, elements, flags, desired,
+    )  # fmt: skip
+
+
+def _prove(level: Level) -> None:
+    """MeshError unless the solution leads to the goal in ``par`` operations."""
+    mesh = level.mesh()
+    if level.goal < mesh.optimum:
+        raise MeshError(f"its goal is below the optimum, {mesh.optimum}")
+    play(mesh, level.solution)
+    if not level.reached(mesh):
+        raise MeshError("its solution does not reach the goal")
+    if len(level.solution) != level.par:
+        raise MeshError("its solution is not as long as its par")
+
+
+def _way(given: Any, kind: str) -> Way:
+    if not isinstance(given, list):
+        raise MeshError("'solution' is no list")
+    way = []
+    for one in given:
+        if not isinstance(one, list) or len(one) != 3 or one[0] not in CODES[SIDES[kind]]:
+            raise MeshError("'solution' holds what is no operation on a half-edge")
+        a, b = _whole_numbers(one[1:], "solution")
+        way.append((Operation(one[0]), (a, b)))
+    return tuple(way)
+
+
+def _text(given: dict[str, Any], key: str) -> str:
+    found = given.get(key)
+    if not isinstance(found, str) or not found:
+        raise MeshError(f"'{key}' is no text")
+    return found
+
+
+def _count(given: dict[str, Any], key: str) -> int:
+    found = given.get(key, 0)
+    if type(found) is not int or found < 0:
+        raise MeshError(f"'{key}' is no number of things")
+    return found
+
+
+def _whole_numbers(given: Any, key: str) -> list[int]:
+    if not isinstance(given, list) or any(type(one) is not int for one in given):
+        raise MeshError(f"'{key}' is no list of whole numbers")
+    return given
+
+
+def _table(given: dict[str, Any], key: str, width: int, of: type) -> np.ndarray:
+    """(n, width) numbers."""
+    rows = given.get(key)
+    kinds = (int,) if of is int else (int, float)
+    if not isinstance(rows, list) or not rows:
+        raise MeshError(f"'{key}' is no list")
+    for row in rows:
+        if not isinstance(row, list) or len(row) != width or any(type(x) not in kinds for x in row):
+            raise MeshError(f"'{key}' has not {width} numbers in each row")
+    return np.array(rows, of)

@@ -1,0 +1,88 @@
+"""The agent as one's rival: it solves the start of a level on a mesh of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import StrEnum
+
+from app.assistant import Assistant
+from app.document import Document
+from app.history import History
+from app.levels import Level
+from app.policy_files import label, shipped
+from app.searching import Effort
+from app.signals import Signal
+from meshcore import Operation
+
+SECONDS = 2.0
+"""How long it searches at most."""
+
+MakeAssistant = Callable[[Document], Assistant]
+
+_OPERATIONS = frozenset(operation.value for operation in Operation)
+
+
+class Standing(StrEnum):
+    """How far it is."""
+
+    ASKED = "asked"
+    DONE = "done"
+    FAILED = "failed"
+
+
+class Rival:
+    """Solves ``level`` once, with an assistant of its own. ``changed()`` comes at the end."""
+
+    def __init__(self, level: Level, make: MakeAssistant) -> None:
+        self.changed = Signal()
+        self.standing = Standing.ASKED
+        self.operations: list[tuple[Operation, int]] = []
+        self.score = 0
+        self.reason = ""
+        self._document = Document(level.mesh(), level.title)
+        self._document.auto_smooth = False
+        policies = shipped(level.kind)
+        self.name = label(policies[0]) if policies else "the agent"
+        self._assistant: Assistant | None = make(self._document)
+        if not self._assistant.policy:
+            self._assistant.policy = policies[0] if policies else ""
+        self._assistant.failed.connect(self._on_failed)
+        self._assistant.said.connect(self._on_said)
+        self._assistant.changed.connect(self._on_changed)
+        self._assistant.search(Effort(seconds=SECONDS, coarsen=False))
+
+    def close(self) -> None:
+        """End it, whether it has come to an end or not."""
+        assistant, self._assistant = self._assistant, None
+        if assistant is not None:
+            for signal, slot in (
+                (assistant.failed, self._on_failed),
+                (assistant.said, self._on_said),
+                (assistant.changed, self._on_changed),
+            ):
+                signal.disconnect(slot)
+            assistant.close()
+
+    def _on_said(self, sentence: str) -> None:
+        self.reason = sentence
+
+    def _on_failed(self, sentence: str) -> None:
+        self._end(Standing.FAILED, sentence)
+
+    def _on_changed(self) -> None:
+        if self._assistant is not None and not self._assistant.running:
+            self._end(Standing.DONE, self.reason)
+
+    def _end(self, standing: Standing, reason: str) -> None:
+        if self._assistant is None or self.standing is not Standing.ASKED:
+            return
+        self.standing, self.reason = standing, reason
+        self.operations = done_in(self._document.history)
+        self.score = self._document.score
+        self.changed.emit()
+
+
+def done_in(history: History) -> list[tuple[Operation, int]]:
+    """The operations on the way to the cursor; what moves vertices only is left out."""
+    rows = [history[i] for i in range(history.cursor)]
+    return [(Operation(row.action), row.halfedge) for row in rows if row.action in _OPERATIONS]
