@@ -19,6 +19,8 @@ class Card {
     this._helloed = false;
     this._make(options.height || 480);
     this._unwatch = watchHost(() => this.retheme());
+    this._arrival = new ResizeObserver(() => this._arrive());
+    this._arrival.observe(this.root);
     this._onLost = (event) => this._focusMoved(event);
     this.root.addEventListener("focusout", this._onLost);
     link.onmessage = (content, buffers) => this.receive(content, buffers);
@@ -63,6 +65,7 @@ class Card {
 
   release() {
     this._unwatch();
+    this._arrival.disconnect();
     this.menus.close(false);
     for (const part of [this.pointer, this.notice, this.stage, this.timeline, this.levels]) {
       if (part && part.release) part.release();
@@ -337,9 +340,13 @@ class Card {
 
   retheme() {
     const theme = this.wanted === "auto" ? hostTheme() : this.wanted;
-    if (this.root.dataset.theme === theme && this.palette.font) return;
     this.root.dataset.theme = theme;
-    if (this.root.isConnected) this.recolour();
+    this._arrive();
+  }
+
+  /** Some hosts put the card on the page only after it was made: then the colours are known. */
+  _arrive() {
+    if (this.root.isConnected && this.palette.theme !== this.root.dataset.theme) this.recolour();
   }
 
   /** Read the colours again; they are known once the card is on the page. */

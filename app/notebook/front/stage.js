@@ -149,7 +149,7 @@ class Stage {
     cancelAnimationFrame(this._frame);
     this._frame = 0;
     const { mirror, facts } = this.work;
-    if (mirror.revision < 0 || !this._lower.width) return;
+    if (mirror.revision < 0 || !this._lower.width || !this._palette.theme) return;
     if ((globalThis.devicePixelRatio || 1) !== this._ratio) {
       this.resize();
       return;
