@@ -104,6 +104,10 @@ class Card:
         """The operation's row in the panel."""
         return self.root.locator(".mw-part-operations button", has_text=self.title(operation))
 
+    def choice(self, operation: str) -> Locator:
+        """The operation's row in the menu at the pointer."""
+        return self.root.locator(".mw-popup .mw-row", has_text=self.title(operation))
+
     def title(self, operation: str) -> str:
         """What the operation is called."""
         found: str = self.look(

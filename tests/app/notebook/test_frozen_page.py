@@ -13,7 +13,7 @@ def turn(widget: MeshWidget, times: int) -> None:
         mesh = widget.mesh
         spots = [mesh.k * int(e) + side for e in mesh.element_ids() for side in range(mesh.k)]
         allowed = [h for h in spots if widget.check("flip_left", h)]
-        widget.apply("flip_left", allowed[7 * widget.history.length % len(allowed)])
+        widget.apply("flip_left", allowed[7 * len(widget.history) % len(allowed)])
 
 
 @pytest.fixture
