@@ -72,6 +72,7 @@ class Timeline {
     const state = (event) => this.frame.state(event.clientX - slider.getBoundingClientRect().left);
     slider.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || this.empty || !this.frame) return;
+      if (this.locked) return;
       slider.setPointerCapture(event.pointerId);
       this.stop();
       this.ask(state(event));
@@ -112,6 +113,11 @@ class Timeline {
     return this.last === 0;
   }
 
+  /** True in a view for looking only on a mesh that lives: its history is not ours to walk. */
+  get locked() {
+    return this.card.mirror.readOnly && !this.card.link.readOnly;
+  }
+
   /** The state that the mark stands at: where the hand is, else where the mesh is. */
   get shown() {
     return this._wanted === null ? this.cursor : this._wanted;
@@ -140,7 +146,7 @@ class Timeline {
 
   _ask(state) {
     const wanted = Math.min(Math.max(state, 0), this.last);
-    if (wanted === this.shown) return;
+    if (wanted === this.shown || this.locked) return;
     this._wanted = wanted;
     if (this._flight === null) this._launch();
     this._tell();
@@ -173,7 +179,7 @@ class Timeline {
       this.stop();
       return;
     }
-    if (this.empty) return;
+    if (this.empty || this.locked) return;
     this.playing = true;
     if (this.shown >= this.last) this._ask(0);
     this._tell();
@@ -213,19 +219,19 @@ class Timeline {
 
   /** Say in words and on the buttons where one is. */
   _tell() {
-    const { track, empty, last, shown } = this;
+    const { track, empty, last, shown, locked } = this;
     const looked = this._hovered >= 0 && this._hovered <= last ? this._hovered : shown;
     this.root.classList.toggle("mw-timeline-empty", empty);
-    this.slider.setAttribute("aria-disabled", String(empty));
+    this.slider.setAttribute("aria-disabled", String(empty || locked));
     this.slider.setAttribute("aria-valuemax", last);
     this.slider.setAttribute("aria-valuenow", shown);
     this.slider.setAttribute("aria-valuetext", empty ? "no steps yet" : this.sentence(shown));
     this.words.textContent = empty ? "No steps yet. Their scores will be drawn here." : this.sentence(looked);
     this.words.classList.toggle("mw-timeline-looked", looked !== shown);
-    for (const made of [this.first, this.back]) made.disabled = shown <= 0;
-    for (const made of [this.ahead, this.end]) made.disabled = shown >= last;
-    this.best.disabled = empty || shown === track.best;
-    this.play.disabled = empty;
+    for (const made of [this.first, this.back]) made.disabled = locked || shown <= 0;
+    for (const made of [this.ahead, this.end]) made.disabled = locked || shown >= last;
+    this.best.disabled = locked || empty || shown === track.best;
+    this.play.disabled = locked || empty;
     const label = this.playing ? "Pause" : "Play what was recorded";
     if (this.play.title !== label) {
       this.play.title = label;
