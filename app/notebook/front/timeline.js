@@ -54,7 +54,7 @@ class Timeline {
     this.end = button("end", "To the last state", () => this.ask(this.last));
     this.best = button("best", "To the best state", () => this.ask(this.track.best));
     this.speed = timelineElement("select", "mw-timeline-speed", {
-      "aria-label": "Speed of playing", title: "Speed of playing",
+      "aria-label": "Speed of the film", title: "Speed of the film",
     });
     for (const speed of TIMELINE_SPEEDS) this.speed.append(new Option(timelineSpeed(speed), speed, speed === 2, speed === 2));
     this.words = timelineElement("div", "mw-timeline-words");
