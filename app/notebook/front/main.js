@@ -18,8 +18,7 @@
 function mount(element, link, options = {}) {
   const card = new Card(link, options);
   element.append(card.root);
-  card.recolour();
-  card.stage.resize();
+  card.retheme();
   return card;
 }
 

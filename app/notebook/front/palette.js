@@ -1,9 +1,14 @@
 // The colours of the card as it is now, read from its CSS variables once after each change.
 
 class Palette {
+  constructor() {
+    this.theme = ""; // none: the card is not on the page yet
+  }
+
   /** Read again from `element`. */
   read(element) {
     const style = getComputedStyle(element);
+    this.theme = element.dataset.theme;
     for (const name of PALETTE_NAMES) {
       this[name] = style.getPropertyValue(`--mw-${name.replace(/_/g, "-")}`).trim();
     }
