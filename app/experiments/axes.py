@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.drawing import Drawing, Line, Polygon, Segments, Text
+from app.drawing import Drawing, Line, Polygon, Segments, Text, text_width
 from app.theme import Theme
 
 LETTERS = 11.5
@@ -100,12 +100,17 @@ class Axes:
     def level(
         self, drawing: Drawing, value: float, colour: str, text: str = "", dash: float = 4.0
     ) -> None:
-        """A dashed line across, with a word at its right end."""
+        """A dashed line across, with a word at its right end on a ground of its own."""
         y, right = float(self.y(value)), self.left + self.width
         drawing.add(Segments(np.array([[[self.left, y], [right, y]]]), colour, 1.0, dash))
         if text:
-            above = y - 9.0 if y > self.top + 16.0 else y + 10.0
-            drawing.add(Text(text, (right, above), LETTERS, colour, "right"))
+            above = y - 10.0 if y > self.top + 16.0 else y + 10.0
+            width = text_width(text, LETTERS) + 8.0
+            box = np.array([[-width, -8.0], [0.0, -8.0], [0.0, 8.0], [-width, 8.0]])
+            drawing.add(
+                Polygon(box + (right + 4.0, above), drawing.background),
+                Text(text, (right, above), LETTERS, colour, "right"),
+            )
 
 
 def ticks(low: float, high: float, most: int, whole: bool = False) -> list[float]:
@@ -149,8 +154,6 @@ def series_colours(theme: Theme) -> tuple[str, ...]:
 
 def legend(drawing: Drawing, theme: Theme, names: Sequence[str], left: float, y: float) -> None:
     """The names of the series in a row, each behind a piece of its line."""
-    from app.drawing import text_width
-
     colours = series_colours(theme)
     x = left
     for i, name in enumerate(names):

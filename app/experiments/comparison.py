@@ -10,6 +10,7 @@ import numpy as np
 from app.drawing import Drawing, Text
 from app.evaluation_table import grid
 from app.experiments.axes import LETTERS, Axes
+from app.experiments.best_of import BestOf
 from app.experiments.picture import Picture, shifted
 from app.experiments.runs import (
     Rollout,
@@ -72,6 +73,13 @@ def compare(
     return Comparison(start, runs, seconds)
 
 
+class Table(str):
+    """Text that a notebook shows as it is, line by line."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
 class Comparison(Picture):
     """What some policies made of one mesh."""
 
@@ -128,6 +136,10 @@ class Comparison(Picture):
         """
         return best_of(self.returns(policy), whole_number(k, 1, "k"))
 
+    def best_of_curve(self) -> BestOf:
+        """The best of k against k, for all policies: data, and a figure."""
+        return BestOf({name: self.returns(name) for name in self.policies})
+
     @property
     def rows(self) -> list[dict[str, Any]]:
         """A plain row for each policy; ``pandas.DataFrame(rows)`` makes a table of them."""
@@ -171,7 +183,7 @@ class Comparison(Picture):
             for run in runs
         ]
 
-    def table(self) -> str:
+    def table(self) -> Table:
         """The rows as text, as the paper's tables have them: mean and standard deviation."""
         count = len(next(iter(self.rollouts.values())))
         names = ["policy", "single", f"best of {count}", "best s", "runs at s*", "operations",
@@ -193,7 +205,7 @@ class Comparison(Picture):
             f"s = {self.start}, s* = {self.optimum}; {count} {noun} each; normalised return,"
             " mean ± standard deviation"
         )
-        return f"{head}\n\n{grid(names, cells)}"
+        return Table(f"{head}\n\n{grid(names, cells)}")
 
     # Meshes and films
 
@@ -302,8 +314,8 @@ class Comparison(Picture):
         best = self.best(name)
         for run in self.rollouts[name]:
             axes.steps(drawing, run.scores, theme.faint, 0.9)
-        axes.level(drawing, self.optimum, theme.text, f"s* = {self.optimum}")
         axes.steps(drawing, best.scores[: best.decisions + 1], theme.accent, 2.4)
+        axes.level(drawing, self.optimum, theme.text, f"s* = {self.optimum}")
         if len(self.rollouts[name]) > 1:
             at = (axes.left + axes.width, axes.top - 2.0)
             words = f"thick: the best of {len(self.rollouts[name])}"

@@ -7,14 +7,17 @@ from typing import Any
 import numpy as np
 
 from app import sources
-from app.drawing import Drawing
+from app.drawing import Drawing, Text
 from app.experiments.picture import ThemedLook
 from app.figure import figure
+from app.markers import READABLE, label, markers
 from app.theme import Theme
 from app.viewport import Viewport
 from meshcore import HalfEdgeMesh, MeshError
 
 MARGIN = 16.0
+FEW = 12
+"""Small discs that get their number beside them."""
 
 
 def given_mesh(source: Any) -> HalfEdgeMesh:
@@ -40,4 +43,19 @@ def still(
     look = ThemedLook(size=size, score=False, curve=False, unit=1.0, given=theme)
     shown = mesh.points[mesh.vertices()] if window is None else window
     view = Viewport(size=size).fitted(shown, MARGIN)
-    return figure(mesh, look, None, view)
+    drawing = figure(mesh, look, None, view)
+    _add_numbers(drawing, mesh, view, theme)
+    return drawing
+
+
+def _add_numbers(drawing: Drawing, mesh: HalfEdgeMesh, view: Viewport, theme: Theme) -> None:
+    """The numbers of discs too small to hold one, beside them, where they are few."""
+    marks = markers(mesh)
+    radii = marks.radii(view)
+    small = np.flatnonzero(radii < READABLE)
+    if len(small) > FEW:
+        return
+    places = view.to_screen(marks.places)
+    for i in small.tolist():
+        x, y = (places[i] + (radii[i] + 2.0, -radii[i] - 5.0)).tolist()
+        drawing.add(Text(label(int(marks.delta[i])), (x, y), 10.5, theme.text))

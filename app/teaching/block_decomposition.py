@@ -80,13 +80,14 @@ def notch(widget: object) -> str:
     mesh = edited(widget)
     expect(
         mesh.score == mesh.optimum,
-        f"s is {mesh.score} and the optimum {mesh.optimum}. Stuck? *Hint* shows what the agent "
-        "would do, *Complete* does it all.",
+        f"s is {mesh.score} and the optimum {mesh.optimum}. Stuck? `Hint` shows what the agent "
+        "would do, `Complete` does it all.",
     )
     count = block_count(mesh)
     expect(
         count <= NOTCH + 2,
-        f"At the optimum, with {count} blocks. Lines that are not needed can go: try *Clean all*.",
+        f"At the optimum, with {count} blocks. Lines that are not needed can go: try "
+        "`notch.clean_all()`.",
     )
     if count > NOTCH:
         return f"{count} blocks. {NOTCH} are enough, as the next picture shows."

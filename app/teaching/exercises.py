@@ -28,7 +28,7 @@ TOPICS = {
     "4": "quad_operations",
     "5": "block_decomposition",
     "6": "policy_sight",
-    "7": "policy_training",
+    "7": "research",
 }
 """The module of this package with the checks of each lesson."""
 

@@ -76,6 +76,10 @@ def test_the_best_of_k_is_the_mean_over_all_choices(both: Comparison) -> None:
         largest = [max(some) for some in combinations(values, k)]
         assert best_of(values, k) == pytest.approx((np.mean(largest), np.std(largest)))
     assert both.best_of("quad", 4)[0] == both.returns("quad").max()
+    curve = both.best_of_curve()
+    assert curve.k.tolist() == [1, 2, 3, 4] and len(curve.rows) == 8
+    assert curve.means["quad-paper"][1] == both.best_of("quad-paper", 2)[0]
+    assert "best of k" in curve.to_svg()
     for k in (0, 5, 1.5, True):
         with pytest.raises(MeshError):
             both.best_of("quad", k)  # type: ignore[arg-type]

@@ -1,0 +1,74 @@
+"""The best of k rollouts against k, for each policy of a comparison."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app.drawing import Drawing, Text
+from app.experiments.axes import DASHES, Axes, legend, series_colours
+from app.experiments.picture import Picture
+from app.experiments.runs import best_of
+from app.theme import LIGHT, Theme
+
+WIDTH, HEIGHT, LEFT, TOP = 560.0, 232.0, 64.0, 72.0
+
+
+class BestOf(Picture):
+    """Normalised returns of the best among k rollouts, for every k that there are."""
+
+    def __init__(self, returns: dict[str, np.ndarray]) -> None:
+        """returns: for each policy those of its single rollouts (n,)."""
+        count = min(len(values) for values in returns.values())
+        self.k: np.ndarray = np.arange(1, count + 1)
+        """(n,) 1, 2, ..., n."""
+        found = {
+            name: np.array([best_of(values, k) for k in self.k.tolist()])
+            for name, values in returns.items()
+        }
+        self.means = {name: table[:, 0] for name, table in found.items()}
+        """For each policy (n,): the mean over all ways to choose k of its rollouts."""
+        self.deviations = {name: table[:, 1] for name, table in found.items()}
+        """For each policy (n,): the standard deviation over them."""
+
+    def __repr__(self) -> str:
+        last = len(self.k)
+        return "\n".join(
+            f"{name}: one {means[0]:.3f}, best of {last} {means[-1]:.3f}"
+            for name, means in self.means.items()
+        )
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """A plain row for each policy and each k."""
+        return [
+            {
+                "policy": name,
+                "k": int(k),
+                "mean": float(self.means[name][i]),
+                "std": float(self.deviations[name][i]),
+            }
+            for name in self.means
+            for i, k in enumerate(self.k)
+        ]
+
+    def drawing(self, theme: Theme = LIGHT) -> Drawing:
+        """A line for each policy."""
+        size = (round(LEFT + WIDTH + 24.0), round(TOP + HEIGHT + 48.0))
+        drawing = Drawing(size, theme.background, repr(self))
+        lowest = min(float(means.min()) for means in self.means.values())
+        span = max(1.0 - lowest, 0.02)
+        axes = Axes(
+            LEFT, TOP, WIDTH, HEIGHT, (1.0, float(max(len(self.k), 2))),
+            (max(lowest - 0.15 * span, 0.0), 1.0 + 0.05 * span),
+        )  # fmt: skip
+        legend(drawing, theme, list(self.means), LEFT, 20.0)
+        title = "normalised return of the best of k rollouts"
+        drawing.add(Text(title, (LEFT, TOP - 16.0), 12.5, theme.text, "left", True))
+        axes.frame(drawing, theme, "k")
+        colours = series_colours(theme)
+        for i, means in enumerate(self.means.values()):
+            colour, dash = colours[i % len(colours)], DASHES[i % len(DASHES)]
+            axes.line(drawing, self.k.astype(float), means, colour, 2.2, dash)
+        return drawing
