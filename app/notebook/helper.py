@@ -24,7 +24,7 @@ class Helper:
     def __init__(self, document: Document, assistant: Assistant, loop: Loop) -> None:
         self._document, self.assistant, self._loop = document, assistant, loop
         self._shipped: dict[str, list[str]] = {}
-        self._files: list[str] = []
+        self._files: dict[str, str] = {}  # policies that were given, and their kinds
 
     # Policies
 
@@ -36,7 +36,7 @@ class Helper:
             return []
         if kind not in self._shipped:
             self._shipped[kind] = shipped(kind)
-        return self._shipped[kind] + [file for file in self._files if kind_of(file) == kind]
+        return self._shipped[kind] + [name for name, its in self._files.items() if its == kind]
 
     def choose(self, name: str) -> None:
         """Follow another policy; MeshError with one sentence where that cannot be."""
@@ -61,7 +61,7 @@ class Helper:
             raise MeshError(str(error)) from error
         if kind != self._document.kind:
             raise MeshError(_other_kind(Path(name).name, kind, self._document.kind))
-        self._files.append(name)
+        self._files[name] = kind
 
     def settle(self) -> None:
         """Follow the first policy on offer where none that fits this mesh is chosen."""
