@@ -86,7 +86,9 @@ def score(answer: object) -> str:
     return "1 + 1 + 2 + 1 + 0: too many and too few cost the same, and two too few cost double."
 
 
-@declare("1.6", "Click the half-edge in the middle of the four discs, or point at it and press R.")
+@declare(
+    "1.6", "Point at the edge between the two vertices with an edge too many, and read the panel."
+)
 def one_flip(widget: object) -> str:
     """A grid that one flip makes regular."""
     mesh = edited(widget)

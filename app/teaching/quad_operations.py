@@ -56,7 +56,10 @@ def local_is_enough(answer: object) -> str:
     return "Three edges below and one above stay three and one: no grid has that."
 
 
-@declare("4.5", "Point at a blue vertex, along the edge to the +1 that is next to it, and press G.")
+@declare(
+    "4.5",
+    "Which vertex should gain an edge, and which lose one? The arrow has a start and an end.",
+)
 def three_to_one(widget: object) -> str:
     """The rectangle with unequal sides made regular."""
     mesh = mesh_of(edited(widget))

@@ -29,7 +29,7 @@ def boundary_split(vertices: object, edges: object, triangles: object) -> str:
     return "One vertex, two edges, one triangle more: V - E + F stays what it was."
 
 
-@declare("3.3", "Point at an edge that ends at the blue vertex, and press C.")
+@declare("3.3", "One of the four edges at the blue vertex has to go. Undo costs nothing.")
 def undone_by_collapse(widget: object) -> str:
     """A split taken back by a collapse."""
     mesh = edited(widget)
@@ -75,5 +75,5 @@ def two_flips(widget: object) -> str:
     mesh = edited(widget)
     expect(mesh.score == 0, f"s is {mesh.score} now. Undo takes you back, as far as you like.")
     return (
-        "The first flip gained nothing, and without it there was no second: look two steps ahead."
+        "The first move gained nothing, and without it there was no second: look two steps ahead."
     )
