@@ -15,7 +15,7 @@ from app.benchmarks.notebook.chromium import browser
 from app.benchmarks.notebook.lab import LabNotebook
 from app.benchmarks.notebook.probe import NOTING, Probe
 from app.benchmarks.notebook.servers import jupyterlab
-from app.report import Update, table
+from app.report import Update
 
 SUMMARY = "the notebook's widget in JupyterLab: click to redrawn, panning, bytes sent"
 SIZES = (100, 1_000, 10_000)
@@ -65,18 +65,3 @@ def shares(rows: Sequence[Mapping[str, float]]) -> dict[str, float]:
     """The median of each column, and the slowest total."""
     found = {name: round(statistics.median(row[name] for row in rows), 1) for name in rows[0]}
     return {**found, "slowest": round(max(row["total"] for row in rows), 1)}
-
-
-def text(results: Mapping[str, Any]) -> str:
-    """The results as a table."""
-    head = "elements", "redrawn ms", "browser", "python", "transport", "paint", "slowest"
-    head += "patch bytes", "all bytes", "state bytes", "frames/s panning", "slowest frame ms"
-    rows = [head]
-    for size, row in results.items():
-        click, sent, panning = row["click_to_redrawn_ms"], row["bytes"], row["panning"]
-        times = [click["total"], *(click[name] for name in head[2:7])]
-        pan = [panning["frames_per_second"], panning["slowest_frame_ms"]]
-        cells = [f"{value:.1f}" for value in times]
-        cells += [f"{sent[name]:,}" for name in ("patch", "all", "state")]
-        rows.append((size.split()[0], *cells, *(f"{value:.1f}" for value in pan)))
-    return table(rows)
