@@ -190,8 +190,7 @@ class Card {
   }
 
   _onNotice({ tone, sentence, reply }) {
-    this.pointing.refused(reply);
-    this.say(tone, sentence);
+    if (!this.pointing.refused(reply)) this.say(tone, sentence);
   }
 
   /** Tell a person a sentence; tone "refused", "said", "failed" or "hint". */

@@ -1,6 +1,6 @@
-// What the page around the widget says: light or dark, and whether motion is wanted.
+// What the page around the widget says: light or dark.
 
-/** "light" or "dark", as JupyterLab, marimo or VS Code say, else as the system does. */
+/** "light" or "dark", as JupyterLab, marimo, Colab or VS Code say, else as the system does. */
 function hostTheme() {
   const body = document.body;
   if (body.dataset.jpThemeLight !== undefined) {
@@ -9,15 +9,15 @@ function hostTheme() {
   const kinds = [document.documentElement, body];
   if (kinds.some((part) => part.matches(".vscode-dark, .vscode-high-contrast"))) return "dark";
   if (kinds.some((part) => part.matches(".vscode-light"))) return "light";
-  if (kinds.some((part) => part.matches(".dark, .dark-theme, [data-theme='dark']"))) return "dark";
-  if (kinds.some((part) => part.matches(".light, .light-theme, [data-theme='light']"))) return "light";
+  if (kinds.some((part) => part.matches(".dark, .dark-theme, [data-theme='dark'], [theme='dark']"))) return "dark";
+  if (kinds.some((part) => part.matches(".light, .light-theme, [data-theme='light'], [theme='light']"))) return "light";
   return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 }
 
 /** Call back whenever the page's theme may be another; returns what ends that. */
 function watchHost(callback) {
   const observer = new MutationObserver(callback);
-  const wanted = { attributes: true, attributeFilter: ["class", "data-theme", "data-jp-theme-light"] };
+  const wanted = { attributes: true, attributeFilter: ["class", "theme", "data-theme", "data-jp-theme-light"] };
   observer.observe(document.body, wanted);
   observer.observe(document.documentElement, wanted);
   const system = matchMedia("(prefers-color-scheme: dark)");
@@ -26,9 +26,4 @@ function watchHost(callback) {
     observer.disconnect();
     system.removeEventListener("change", callback);
   };
-}
-
-/** Whether a person has asked for less motion. */
-function calm() {
-  return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }

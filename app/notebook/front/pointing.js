@@ -18,6 +18,8 @@ class Pointing {
     this._asked = null; // the question under way: {id, halfedge, operation, at}
     this._answered = ""; // what offers and ghost are of
     this._acting = false;
+    this._told = "";
+    this._place = null; // where in the plane the half-edge was
   }
 
   /** Point at a half-edge, -1 for none. */
@@ -25,6 +27,7 @@ class Pointing {
     this.pinned = pinned && halfedge >= 0;
     if (halfedge === this.halfedge) return;
     this.halfedge = halfedge;
+    this._place = halfedge < 0 ? null : middleOf(this._card.mirror.corners(this._card.mirror.element(halfedge)));
     this._picked = this._previewed = null;
     this._acting = false;
     this._forget();
@@ -78,7 +81,11 @@ class Pointing {
 
   /** The mesh has changed, or the agent has begun or ended: what was known is of the past. */
   renew() {
-    if (!this._card.mirror.live(this.halfedge)) this.halfedge = -1;
+    const { mirror } = this._card;
+    if (this.halfedge >= 0 && !mirror.live(this.halfedge)) {
+      // who walks by keyboard goes on from the same place
+      this.halfedge = this.pinned && this._place ? halfedgeNear(mirror, ...this._place) : -1;
+    }
     this._forget();
     this._card.pointed();
   }
@@ -90,7 +97,7 @@ class Pointing {
     this._asked = null;
     if (content.halfedge === this.halfedge && content.halfedge >= 0) {
       this._answered = this._question();
-      this.offers = new Map(content.offers.map((offer) => [offer.operation, offer]));
+      this._offer(content.offers);
       const of = asked.operation === this.wanted;
       this.ghost = of ? ghostOf(content, buffers) : null;
       if (!of) this._answered = "";
@@ -103,9 +110,13 @@ class Pointing {
     this.ask();
   }
 
-  /** The question with this id has been refused. */
+  /** What was asked with this id has been refused; returns whether that was a question of ours:
+   * then the mesh has gone on meanwhile, which is nothing to tell a person.
+   */
   refused(id) {
-    if (this._asked && this._asked.id === id) this._asked = null;
+    if (!this._asked || this._asked.id !== id) return false;
+    this._asked = null;
+    return true;
   }
 
   /** Ask Python what there is to know, unless it is known or asked already. */
@@ -117,6 +128,14 @@ class Pointing {
     if (this._asked && now - this._asked.at < HOVER_PATIENCE) return;
     const fields = { halfedge: this.halfedge, operation: this.wanted };
     this._asked = { id: card.link.send("hover", fields), at: now, ...fields };
+  }
+
+  /** Keep the offers; the same ones stay the same object, so that an open menu stays as it is. */
+  _offer(offers) {
+    const told = JSON.stringify(offers);
+    if (this.offers && told === this._told) return;
+    this._told = told;
+    this.offers = new Map(offers.map((offer) => [offer.operation, offer]));
   }
 
   _question() {

@@ -1,6 +1,7 @@
 // A small menu inside the card: rows that arrows walk, keys and clicks choose, and Esc leaves.
 
 const POPUP_GAP = 24;
+const NARROW_CARD = 640;
 
 class Popup {
   /** `closed(focus)` is called once when it goes; focus: whether the canvas shall have it again. */
@@ -47,10 +48,13 @@ class Popup {
     root.append(this.root);
     const [width, height] = [this.root.offsetWidth, this.root.offsetHeight];
     const [roomX, roomY] = [root.clientWidth - 8, root.clientHeight - 8];
-    const left = x + POPUP_GAP + width > roomX && x - POPUP_GAP - width > 8
-      ? x - POPUP_GAP - width : x + POPUP_GAP;
+    const narrow = root.clientWidth < NARROW_CARD; // then there is room below, and none beside
+    let left = x + POPUP_GAP;
+    let top = y - 16;
+    if (narrow) [left, top] = [x - width / 2, y + 2 * POPUP_GAP];
+    else if (left + width > roomX && x - POPUP_GAP - width > 8) left = x - POPUP_GAP - width;
     this.root.style.left = `${Math.max(Math.min(left, roomX - width), 8)}px`;
-    this.root.style.top = `${Math.max(Math.min(y - 16, roomY - height), 8)}px`;
+    this.root.style.top = `${Math.max(Math.min(top, roomY - height), 8)}px`;
     this.root.tabIndex = -1;
     this.root.focus({ preventScroll: true });
     document.addEventListener("pointerdown", this._outside, true);
