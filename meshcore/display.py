@@ -24,12 +24,12 @@ Bundle = tuple[dict[str, Any], dict[str, Any]]
 
 def bundle(mesh: HalfEdgeMesh) -> Bundle:
     """What a notebook may choose from: the mesh's line of text, and a picture if one is drawn."""
-    data, metadata = {"text/plain": repr(mesh)}, {}
+    text = {"text/plain": repr(mesh)}
     draw = drawer()
-    if draw is not None:
-        pictures, metadata = draw(mesh)
-        data |= pictures
-    return data, metadata
+    if draw is None:
+        return text, {}
+    pictures, metadata = draw(mesh)
+    return {**text, **pictures}, metadata
 
 
 @cache

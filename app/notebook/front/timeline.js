@@ -9,6 +9,8 @@ const TIMELINE_ROOM = { left: 48, right: 16, top: 10, bottom: 20 };
 /** States a second on offer, and how many pictures a second are asked for at most. */
 const TIMELINE_SPEEDS = [1, 2, 5, 10, 25, 100];
 const TIMELINE_PICTURES = 20;
+/** Pixels that a finger moves before it means something. */
+const TIMELINE_SLACK = 8;
 /** Milliseconds after which an answer is no longer waited for. */
 const TIMELINE_PATIENCE = 2000;
 
@@ -70,17 +72,31 @@ class Timeline {
   _listen() {
     const { slider } = this;
     const state = (event) => this.frame.state(event.clientX - slider.getBoundingClientRect().left);
+    let began = null; // where a finger came down that may mean to scroll the page
     slider.addEventListener("pointerdown", (event) => {
-      if (event.button !== 0 || this.empty || !this.frame) return;
-      if (this.locked) return;
+      if (event.button !== 0 || this.empty || this.locked || !this.frame) return;
       slider.setPointerCapture(event.pointerId);
       this.stop();
-      this.ask(state(event));
+      began = event.pointerType === "touch" ? [event.clientX, event.clientY] : null;
+      if (!began) this.ask(state(event));
     });
     slider.addEventListener("pointermove", (event) => {
       if (this.empty || !this.frame) return;
-      if (slider.hasPointerCapture(event.pointerId)) this.ask(state(event));
       this.hover(event.pointerType === "touch" ? -1 : state(event));
+      if (!slider.hasPointerCapture(event.pointerId)) return;
+      if (began) {
+        const [x, y] = [Math.abs(event.clientX - began[0]), Math.abs(event.clientY - began[1])];
+        if (x < TIMELINE_SLACK || x < y) return;
+        began = null;
+      }
+      this.ask(state(event));
+    });
+    slider.addEventListener("pointerup", (event) => {
+      if (began && Math.abs(event.clientY - began[1]) < TIMELINE_SLACK) this.ask(state(event));
+      began = null;
+    });
+    slider.addEventListener("pointercancel", () => {
+      began = null;
     });
     slider.addEventListener("pointerleave", () => this.hover(-1));
     slider.addEventListener("keydown", (event) => this._key(event));
