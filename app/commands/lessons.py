@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import shlex
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from app.report import Report, UserError, table
@@ -16,6 +17,8 @@ DESCRIPTION = (
     "List the lessons, or copy them into a folder to be opened in JupyterLab. They are notebooks "
     "with exercises that check themselves, and take ten to twenty minutes each."
 )
+
+INSTALL = 'pip install "meshwright[notebook]"'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +54,10 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         "files": [str(path) for path in written],
         "open": opened,
     }
-    report.result(values, f"{len(written)} lessons in {arguments.folder}\nopen them: {opened}")
+    text = f"{len(written)} lessons in {arguments.folder}\nopen them: {opened}"
+    if find_spec("jupyterlab") is None:
+        text += f"\nJupyterLab is not installed here: {INSTALL}"
+    report.result(values, text)
 
 
 def _row(lesson: Lesson) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app import cli, lessons
+from app.commands import lessons as command
 from app.lessons import ExerciseCell
 from app.teaching import Answer, exercise, patch
 from app.teaching.answer import MIME
@@ -214,6 +215,12 @@ def test_lessons_are_copied_and_not_overwritten(tmp_path, capsys):
     assert run(folder, "--force", capsys=capsys)[0] == 0
     assert mine.read_bytes() == lessons.shipped()[0].path.read_bytes()
     assert {path.name for path in folder.iterdir()} == names
+
+
+def test_a_missing_jupyterlab_is_said(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "find_spec", lambda name: None)
+    _, out, _ = run(tmp_path, capsys=capsys)
+    assert out.endswith(f"not installed here: {command.INSTALL}\n")
 
 
 @pytest.mark.parametrize(
