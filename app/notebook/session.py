@@ -123,8 +123,7 @@ class Session:
     def wait(self, timeout: float | None = None) -> bool:
         """Let the agent work until it is at rest; returns whether it is."""
         self._require_open()
-        if self._calling:
-            raise MeshError("A callback cannot wait for the agent: it would wait for itself.")
+        self._require_patience()
         return self.loop.pump(lambda: self.agent.idle, timeout)
 
     def finish(self, begin: Callable[[], None]) -> None:
@@ -132,6 +131,7 @@ class Session:
 
         Raises MeshError where it broke off. An interrupt ends it, too.
         """
+        self._require_patience()
         failures: list[str] = []
         self.do(lambda: self.assistant.failed.connect(failures.append))
         try:
@@ -158,6 +158,10 @@ class Session:
             self.telling.notice("failed", broken(error))
         finally:
             self._calling = outer
+
+    def _require_patience(self) -> None:
+        if self._calling and self.loop.here:
+            raise MeshError("A callback cannot wait for the agent: it would wait for itself.")
 
     def _require_open(self) -> None:
         if self._ended:

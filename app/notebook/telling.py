@@ -120,13 +120,13 @@ class Telling:
 
     def _soon(self) -> None:
         """Send at once, or a moment later if much happens."""
-        if not self._followed or self._asked or self._due:
+        if not self._followed or self._asked:
             return
-        if time.monotonic() - self._sent < SOONEST and self._loop.running:
+        if not self._loop.running or time.monotonic() - self._sent > SOONEST:
+            self.flush()
+        elif not self._due:
             self._due = True
             self._loop(self.flush)
-        else:
-            self.flush()
 
     def flush(self, request: Request | None = None) -> None:
         """Send what has changed since the last time. Never raises."""

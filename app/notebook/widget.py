@@ -180,6 +180,10 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         """Lock a vertex, so that it neither moves nor vanishes, or unlock it."""
         self._do(lambda: self.document.set_locked(vertex, flag))
 
+    def corner(self, vertex: int, flag: bool = True) -> None:
+        """Make a vertex a corner, which stays where it is, or free it."""
+        self._do(lambda: self.document.set_geometric(vertex, flag))
+
     # The agent
 
     def play(
@@ -294,6 +298,12 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     def post(self, packet: Packet) -> None:
         """For the session: send a message to all views."""
         self.send(packet.content, packet.buffers)
+
+    def __repr__(self) -> str:
+        """The mesh in one line."""
+        session = self.__dict__.get("session")
+        mesh = session.document.mesh if session is not None else None
+        return f"<{type(self).__name__} of {mesh!r}>" if mesh is not None else object.__repr__(self)
 
     def show_score(self) -> None:
         """For the session: the score, or the optimum, is another."""

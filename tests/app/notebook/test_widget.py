@@ -115,6 +115,10 @@ def test_height_and_theme_have_bounds(star, options):
         MeshWidget(star, **options)
 
 
+def test_a_widget_in_words(widget):
+    assert repr(widget) == f"<Shown of {widget.mesh!r}>" and "s = 12, s* = 4" in repr(widget)
+
+
 def test_scores_are_traits_that_only_the_document_sets(widget, star):
     seen = []
     widget.observe(lambda change: seen.append((change["name"], change["new"])), ["score"])
@@ -173,7 +177,10 @@ def test_everything_python_does_is_shown(widget, star):
     vertex = int(star.vertices()[-1])
     widget.set_desired(vertex, 7)
     widget.lock(vertex)
+    widget.corner(vertex)
+    widget.corner(vertex, False)
     assert star.locked()[vertex] and star.desired()[vertex] == 7
+    assert not star.geometric()[vertex]
     widget.go_to(0)
     assert widget.history.cursor == 0 and widget.in_step
     boundary = next(h for h in range(96) if star.twin(h) < 0)
@@ -237,15 +244,17 @@ def test_a_callback_may_edit_but_not_wait(widget):
     def undo() -> None:
         if widget.history.cursor:
             widget.undo()
-            try:
-                widget.wait()
-            except MeshError as error:
-                raised.append(str(error))
+            for wait in (widget.wait, widget.step):
+                try:
+                    wait()
+                except MeshError as error:
+                    raised.append(str(error))
 
     widget.on("history", undo)
     widget.apply(*allowed(widget.mesh))
     assert widget.history.cursor == 0 and widget.in_step
-    assert raised and "wait for itself" in raised[0]
+    assert ["wait for itself" in words for words in raised] == [True, True]
+    assert not widget.assistant.running
 
 
 def test_the_agent_with_and_without_waiting(widget):
