@@ -248,6 +248,17 @@ QStatusBar QLabel {{ color: {t.muted}; font-size: 12px; padding: 0 8px; }}
 #CardList {{ background: {t.panel}; }}
 #Card {{ background: {t.raised}; border: 1px solid {t.line}; border-radius: 8px; }}
 #CardTitle {{ font-weight: 600; }}
+#LevelBar {{ background: {t.panel}; border: 0; border-bottom: 1px solid {t.line}; }}
+#LevelBar[won="true"] {{ background: {t.accent_soft}; }}
+#LevelTitle {{ font-size: 15px; font-weight: 600; }}
+#LevelBar[won="true"] #LevelTitle {{ color: {t.accent}; }}
+#LevelText {{ color: {t.muted}; }}
+#LevelValue {{ font-size: 15px; font-weight: 600; }}
+#LevelText[tone="warns"] {{ color: {t.warning}; }}
+#LevelText[tone="won"] {{ color: {t.text}; }}
+QPushButton#LevelCard {{ background: {t.raised}; border-radius: 8px; padding: 0; }}
+QPushButton#LevelCard:hover {{ border-color: {t.faint}; }}
+QPushButton#LevelCard:focus {{ border: 2px solid {t.accent}; }}
 #EmptyTitle {{ font-size: 22px; font-weight: 600; }}
 #EmptyText {{ color: {t.muted}; font-size: 14px; }}
 

@@ -9,7 +9,19 @@ from __future__ import annotations
 import argparse
 from typing import Protocol
 
-from app.commands import bench, demo, evaluate, improve, lessons, mesh, shapes, train, view
+from app.commands import (
+    bench,
+    demo,
+    evaluate,
+    improve,
+    lessons,
+    levels,
+    mesh,
+    play,
+    shapes,
+    train,
+    view,
+)
 from app.report import Report
 
 
@@ -35,5 +47,7 @@ COMMANDS: dict[str, Command] = {
     "evaluate": evaluate,
     "train": train,
     "lessons": lessons,
+    "levels": levels,
+    "play": play,
     "bench": bench,
 }

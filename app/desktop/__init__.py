@@ -3,21 +3,28 @@
 from pathlib import Path
 
 from app.document import Document
+from app.levels import Level
 
 
-def run(source: Document | str | Path | None = None, kind: str = "quad", demo: bool = False) -> int:
+def run(
+    source: Document | str | Path | None = None,
+    kind: str = "quad",
+    demo: bool = False,
+    level: Level | None = None,
+) -> int:
     """Open the window and return its exit code when it is closed.
 
     ``source`` is a document, the name of a gallery shape, or a mesh file; shapes are meshed with
     elements of ``kind`` ("tri" or "quad"). ``demo`` takes the star if there is no source, and gets
-    the agent ready. Raises MeshError or OSError for a source that cannot be had, and
-    KeyboardInterrupt after the window was closed by Ctrl-C in the terminal.
+    the agent ready. ``level`` is played in place of a source. Raises MeshError or OSError for a
+    source that cannot be had, and KeyboardInterrupt after the window was closed by Ctrl-C in the
+    terminal.
     """
     from app.desktop.application import application, open_window
     from app.desktop.interrupt import on_interrupt
 
     app = application()
-    window = open_window(source, kind, demo, guided=True)
+    window = open_window(source, kind, demo, guided=True, level=level)
     with on_interrupt(window.files.leave):
         code = int(app.exec())
     window.warmup.stop()

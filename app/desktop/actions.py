@@ -10,7 +10,18 @@ from qtpy.QtGui import QAction, QKeySequence
 
 from app.desktop import icons
 from app.desktop.action import Action, tooltip
-from app.desktop.tables import agent, edit, files, help, history, mesh, select, view, walk
+from app.desktop.tables import (
+    agent,
+    edit,
+    files,
+    help,
+    history,
+    levels,
+    mesh,
+    select,
+    view,
+    walk,
+)
 from app.desktop.tables.mesh import operation_id
 from app.theme import Theme
 from meshcore.operations import CATALOGUE
@@ -27,10 +38,11 @@ ACTIONS: tuple[Action, ...] = (
     *walk.ACTIONS,
     *history.ACTIONS,
     *agent.ACTIONS,
+    *levels.ACTIONS,
     *help.ACTIONS,
 )
 
-MENUS = ("File", "Edit", "Select", "Mesh", "View", "Go", "History", "Agent", "Help")
+MENUS = ("File", "Edit", "Select", "Mesh", "View", "Go", "History", "Agent", "Levels", "Help")
 TOOLBAR = (
     ("new", "open", "save"),
     ("undo", "redo"),

@@ -10,6 +10,7 @@ from app.desktop import icons
 from app.desktop.widgets import tabular
 from app.desktop.window import MainWindow
 from app.document import Document
+from app.levels import Level
 from app.theme import FONTS
 
 DEMO_SHAPE = "star"
@@ -59,6 +60,7 @@ def open_window(
     kind: str = "quad",
     demo: bool = False,
     guided: bool = False,
+    level: Level | None = None,
 ) -> MainWindow:
     """Make and show the window on ``source``, as in :func:`app.desktop.run`.
 
@@ -71,6 +73,8 @@ def open_window(
     window = MainWindow(document)
     if source is not None and not isinstance(source, Document):
         load(document, source, kind)
+    if level is not None:
+        window.levels.play.open(level)
     if demo:
         window.warmup.ready.connect(window.assistant.prepare)
     if guided:

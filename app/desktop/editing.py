@@ -122,6 +122,8 @@ class Editing:
     def submit(self, operation: Operation, halfedge: int) -> None:
         """Do an operation, or say why it is refused."""
         document = self._window.document
+        if self._window.levels.refuses(operation):
+            return
         verdict = document.check(operation, halfedge)
         if not verdict:
             self._window.say(sentence(verdict.reason))
@@ -145,7 +147,7 @@ class Editing:
 
     def clean_all(self) -> None:
         """Remove all global lines that can be removed."""
-        if not self.is_ready():
+        if not self.is_ready() or self._window.levels.refuses("clean_all"):
             return
         count = self._window.document.clean_all()
         removed = f"Removed {plural(count, 'line')}."

@@ -100,6 +100,9 @@ def _fill(menu: QMenu, window: MainWindow, vertices: np.ndarray) -> None:
     smooth.triggered.connect(then(_smooth, document))
     for part in (degrees, corner, lock, smooth):
         part.setEnabled(window.ready)
+    for part in (degrees, corner, lock):
+        if window.levels.level is not None:  # they would change the task
+            part.setEnabled(False)
 
 
 def _smooth(vertices: np.ndarray, document: Document) -> None:

@@ -29,6 +29,7 @@ from app.desktop.glow import Lines
 from app.desktop.guide import Guide
 from app.desktop.inverted import Inverted
 from app.desktop.left_column import LeftColumn
+from app.desktop.levels import Levels
 from app.desktop.operations_panel import OperationsPanel
 from app.desktop.pointing import Pointing
 from app.desktop.preferences import Preferences
@@ -69,7 +70,7 @@ class MainWindow(QMainWindow):
         self.dashboard, self.preferences = Dashboard(self), Preferences(self)
         self.pointing, self.selecting = Pointing(self), Selecting(self)
         self.lines, self.walking = Lines(self), Walking(self)
-        self.inverted = Inverted(self)
+        self.inverted, self.levels = Inverted(self), Levels(self)
         self.controllers = (
             self.files,
             self.editing,
@@ -78,6 +79,7 @@ class MainWindow(QMainWindow):
             self.lines,
             self.walking,
             self.inverted,
+            self.levels,
             self.film,
             self.agent,
             self.guide,
@@ -117,8 +119,12 @@ class MainWindow(QMainWindow):
         self.column.setSpacing(0)
         self.column.addWidget(self.notice)
         self.column.addWidget(self.pages, 1)
-        whole = QWidget()
-        self.row = QHBoxLayout(whole)  # what stands left of the canvas, the canvas, the sidebar
+        whole, below = QWidget(), QWidget()
+        self.head = QVBoxLayout(whole)  # what stands over all of it
+        self.head.setContentsMargins(0, 0, 0, 0)
+        self.head.setSpacing(0)
+        self.head.addWidget(below, 1)
+        self.row = QHBoxLayout(below)  # what stands left of the canvas, the canvas, the sidebar
         self.row.setContentsMargins(0, 0, 0, 0)
         self.row.setSpacing(0)
         self.left = LeftColumn(
@@ -239,6 +245,7 @@ class MainWindow(QMainWindow):
             self.dashboard,
             self.film,
             self.guide,
+            self.levels,
             self.left,
             self.sidebar,
             self.agent_panel,

@@ -1,0 +1,54 @@
+"""``meshwright levels``: list the levels, with what has been won."""
+
+from __future__ import annotations
+
+import argparse
+
+from app.report import Report, UserError, table
+
+SUMMARY = "list the levels: meshes with a goal, a par and stars"
+DESCRIPTION = (
+    "List the levels, the easiest first, with their par and the stars that were won; "
+    "meshwright play NAME opens the window on one."
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Take none of its own."""
+
+
+def run(arguments: argparse.Namespace, report: Report) -> None:
+    """List each level with what it is and how well it was done."""
+    from app import levels
+    from app.level_progress import Progress
+    from meshcore import MeshError
+
+    progress, rows = Progress(), []
+    try:
+        found = levels.all()
+    except MeshError as error:
+        raise UserError(str(error)) from error
+    for level in found:
+        best = progress.best(level.name)
+        rows.append(
+            {
+                "name": level.name,
+                "title": level.title,
+                "kind": level.kind,
+                "elements": len(level.elements),
+                "goal": level.goal,
+                "most": level.most,
+                "par": level.par,
+                "proved": level.proved,
+                "stars": best.stars,
+                "used": best.used,
+            }
+        )
+    text = table([(str(row["name"]), _words(row)) for row in rows], indent="")
+    report.result({"command": "levels", "levels": rows}, text)
+
+
+def _words(row: dict[str, object]) -> str:
+    noun = "triangles" if row["kind"] == "tri" else "quads"
+    won = f", {'*' * int(str(row['stars']))} in {row['used']}" if row["stars"] else ""
+    return f"{row['title']}: {row['elements']} {noun}, par {row['par']}{won}"
