@@ -57,6 +57,10 @@ class Session:
         """
         self.greetings: list[Callable[[], Packet]] = []
         """What else a view is told when it comes."""
+        self.bars: list[Callable[[Request], str]] = []
+        """Asked before anything is done: a sentence refuses it."""
+        self.endings: list[Callable[[], None]] = []
+        """Called once no widget is left."""
         self.level: Any = None
         """The level that is being played; None where none is."""
         self._hovers: dict[str, tuple[Port, Request]] = {}
@@ -103,11 +107,13 @@ class Session:
         self._end_if_alone()
 
     def _end_if_alone(self) -> None:
-        if not self.telling.alone:
+        if self._ended or not self.telling.alone:
             return
         if self._all.get(id(self.document)) is self:
             del self._all[id(self.document)]
         self._ended = True
+        for end in self.endings:
+            end()
         self.assistant.close()
         self.document.replaced.disconnect(self._on_replaced)
         self.document.changed.disconnect(self.telling.follow)
@@ -210,6 +216,9 @@ class Session:
         elif request.do in NEEDS.get(preparing.PREPARATION.compiling, ()):
             raise MeshError(WAITS[preparing.PREPARATION.compiling])
         else:
+            why = next(filter(None, (bar(request) for bar in self.bars)), "")
+            if why:
+                raise MeshError(why)
             said = self.words[request.do](self, request)
             if said:
                 self.telling.answer(port, request, "said", said)

@@ -360,6 +360,20 @@ def test_words_and_greetings_of_others(port):
     assert port.ask("hello")[-1]["say"] == "level"
 
 
+def test_what_others_bar_is_refused_and_the_end_is_told_once(star):
+    session, ended = Session.of(Document(star)), []
+    port = Port(session)
+    session.bars.append(lambda request: "not in a level" if request.do == "clean_all" else "")
+    session.endings.append(lambda: ended.append(1))
+    port.ask("clean_all")
+    assert port.sentence == "Not in a level." and not session.document.history
+    port.operate(*allowed(star))
+    assert session.document.history.cursor == 1
+    port.close()
+    port.close()
+    assert ended == [1]
+
+
 def test_one_session_for_a_document_as_long_as_a_widget_shows_it(star):
     document = Document(star)
     session = Session.of(document)
