@@ -1,0 +1,115 @@
+"""Makes README's pictures of the notebook, in JupyterLab and a real browser, into docs/images/.
+
+    python docs/make_notebook_pictures.py            all of them
+    python docs/make_notebook_pictures.py lessons    only this one: notebook, lessons
+
+Chromium must be installed; no display is needed.
+"""
+
+import shutil
+import sys
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import Browser, Page
+
+from app.benchmarks.notebook.card import Card
+from app.benchmarks.notebook.chromium import browser
+from app.benchmarks.notebook.lab import LabNotebook
+from app.benchmarks.notebook.servers import Server, jupyterlab
+
+IMAGES = Path(__file__).parent / "images"
+SIZE = (1180, 860)
+COLOURS = 192
+SETTLE = 800
+"""Milliseconds after which nothing moves any more."""
+
+
+def notebook(page: Page, server: Server) -> None:
+    """A run on the star, half-way back in its history, with the ghost of an operation."""
+    book = LabNotebook(page, server)
+    _plain(page)
+    book.show(
+        "import meshwright as mw\n\n"
+        'widget = mw.MeshWidget("star")\n'
+        "widget.complete()\n"
+        "widget.go_to(2)\n"
+        "widget"
+    )
+    card = Card(page)
+    mesh = card.look("root => root.meshwright.mirror.halfedges")
+    card.hover(_inside(card, mesh))
+    page.wait_for_timeout(SETTLE)
+
+
+def lessons(page: Page, server: Server) -> None:
+    """The beginning of the second lesson."""
+    name = "02-the-bound.ipynb"
+    shutil.copy(str(files("assets") / "lessons" / name), server.folder / name)
+    book = LabNotebook(page, server, name)
+    _plain(page)
+    book.run(1)
+    Card(page)
+    page.wait_for_timeout(SETTLE)
+    page.locator("h1").first.scroll_into_view_if_needed()
+    page.wait_for_timeout(SETTLE)
+
+
+PICTURES: dict[str, Callable[[Page, Server], None]] = {"notebook": notebook, "lessons": lessons}
+
+
+def _plain(page: Page) -> None:
+    """Without the list of files."""
+    page.evaluate("() => jupyterapp.commands.execute('application:toggle-left-area')")
+    page.wait_for_timeout(SETTLE)
+
+
+def _inside(card: Card, halfedges: int) -> int:
+    """The half-edge nearest to the middle of the stage."""
+    found: int = card.look(
+        """(root, count) => {
+            const stage = root.querySelector('.mw-stage').getBoundingClientRect();
+            const x = stage.x + stage.width / 2, y = stage.y + stage.height / 2;
+            let nearest = -1, least = Infinity;
+            for (let h = 0; h < count; h++) {
+                const at = root.meshwright.screenOf(h);
+                if (!at) continue;
+                const far = Math.hypot(at.x - x, at.y - y);
+                if (far < least) { least = far; nearest = h; }
+            }
+            return nearest;
+        }""",
+        halfedges,
+    )
+    return found
+
+
+def _make(name: str, started: Browser, server: Server) -> None:
+    context = started.new_context(viewport={"width": SIZE[0], "height": SIZE[1]})
+    page = context.new_page()
+    PICTURES[name](page, server)
+    path = IMAGES / f"{name}.png"
+    page.screenshot(path=path, animations="disabled")
+    context.close()
+    with Image.open(path) as image:
+        image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    sys.stdout.write(f"{path}\n")
+
+
+def main(names: list[str]) -> int:
+    """Make the pictures that are named, or all."""
+    unknown = sorted(set(names) - set(PICTURES))
+    if unknown:
+        sys.stderr.write(f"There is no picture {unknown[0]!r}; there are {', '.join(PICTURES)}.\n")
+        return 2
+    with browser() as started:
+        for name in names or PICTURES:
+            with jupyterlab() as server:  # a server of its own: JupyterLab opens what was open
+                _make(name, started, server)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
