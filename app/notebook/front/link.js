@@ -12,6 +12,9 @@ function viewName() {
   return `v${viewsSoFar}-${Date.now().toString(36)}-${random}`;
 }
 
+const LOOKS = ["hello", "hover"];
+const AT_REST = ["idle", "paused"];
+
 class KernelLink {
   constructor(model) {
     this.readOnly = false;
@@ -19,10 +22,13 @@ class KernelLink {
     this.view = viewName();
     this._model = model;
     this._last = 0;
+    this._stirred = false; // this view has asked for something that may change the mesh
     this._receive = (content, buffers) => {
       // a patch is for all, and its "to" is a revision
       const mine = content && (content.say === "patch" || !content.to || content.to === this.view);
-      if (mine) this.onmessage(content, buffers || []);
+      if (!mine) return;
+      this.onmessage(content, buffers || []);
+      if (this._stirred) this._reckon(content);
     };
     model.on("msg:custom", this._receive);
   }
@@ -30,8 +36,21 @@ class KernelLink {
   /** Say something to Python; answers carry the id as `reply`. */
   send(word, fields = {}) {
     this._last += 1;
+    if (!LOOKS.includes(word)) this._stirred = true;
     this._model.send({ do: word, id: this._last, view: this.view, ...fields });
     return this._last;
+  }
+
+  /** In marimo: have the cells that use the widget run again, once what was asked for here is done.
+   *
+   * Not after what cells do themselves, or a cell that changes the mesh would run for ever.
+   */
+  _reckon({ say, asked, state }) {
+    const done = say === "agent" ? AT_REST.includes(state) : asked === this.view;
+    if (!done || !document.querySelector("marimo-anywidget")) return;
+    if (say === "agent") this._stirred = false;
+    this._model.set("seen", this._model.get("seen") + 1);
+    this._model.save_changes();
   }
 
   close() {

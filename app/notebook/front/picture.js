@@ -6,6 +6,7 @@ const TILE = 64;
 const CHUNK = 1500;
 const COSTLY = 9;
 const SETTLED = 90;
+const FEW_RECTANGLES = 3;
 const EDGE_WIDTH = 1.1;
 const BOUNDARY_WIDTH = 1.75;
 
@@ -162,8 +163,15 @@ class Picture {
     else if (count) this._paintRegion(tileRuns(dirty, columns, rows, tile));
   }
 
-  /** Paint rectangles [x, y, width, height] of device pixels. */
+  /** Paint rectangles [x, y, width, height] of device pixels. A few are painted one by one: to keep
+   * within one rectangle costs nothing.
+   */
   _paintRegion(rectangles) {
+    if (rectangles.length > FEW_RECTANGLES) this._paintClipped(rectangles);
+    else for (const rectangle of rectangles) this._paintClipped([rectangle]);
+  }
+
+  _paintClipped(rectangles) {
     const [pen, ratio, view] = [this._pen, this._ratio, this.view];
     pen.save();
     pen.setTransform(1, 0, 0, 1, 0, 0);
