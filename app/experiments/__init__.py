@@ -12,6 +12,7 @@ from app.experiments.pair import side_by_side
 from app.experiments.picture import Picture
 from app.experiments.policy_view import PolicyView, policy_view
 from app.experiments.runs import Rollout
+from app.experiments.table_row import TableRow, table_row
 
 __all__ = [
     "BlockView",
@@ -21,10 +22,12 @@ __all__ = [
     "Picture",
     "PolicyView",
     "Rollout",
+    "TableRow",
     "block_view",
     "compare",
     "learning_curves",
     "policy_view",
     "side_by_side",
     "small_multiples",
+    "table_row",
 ]

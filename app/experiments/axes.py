@@ -127,7 +127,7 @@ def ticks(low: float, high: float, most: int, whole: bool = False) -> list[float
 
 def written(value: float) -> str:
     """A number at an axis, as short as it can be."""
-    if abs(value) >= 1e4:
+    if abs(value) >= 1e3:
         return f"{value / 1e3:,g}k" if abs(value) < 1e6 else f"{value / 1e6:,g}M"
     return f"{value:g}".replace("-", "\N{MINUS SIGN}")
 

@@ -68,8 +68,8 @@ class BlockView(Picture):
         ]
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
-        """Each block in a tint that its neighbours do not have, its size in it; thick lines where
-        blocks meet.
+        """Each block in a tint that its neighbours do not have, with its size, or where all are
+        single quads with its number from 1 on; thick lines where blocks meet.
         """
         mesh = self.mesh
         extent = np.ptp(mesh.points[mesh.vertices(), :2], axis=0)
@@ -81,8 +81,10 @@ class BlockView(Picture):
         drawing = Drawing((SIZE, round(tall + FOOT)), theme.background, repr(self))
         drawing.add(*self._tints(theme, view), *picture.shapes[1:2], self._lines(theme, view))
         drawing.add(*picture.shapes[2:])
-        for grid in self.grids:
-            _add_size(drawing, theme, view.to_screen(self._middle(grid)), _size(grid))
+        single = all(grid.elements.size == 1 for grid in self.grids)
+        for i, grid in enumerate(self.grids, 1):
+            words = str(i) if single else _size(grid)
+            _add_words(drawing, theme, view.to_screen(self._middle(grid)), words)
         noun = "block" if len(self) == 1 else "blocks"
         quads = "quad" if mesh.n_elements == 1 else "quads"
         words = f"{len(self)} {noun}"
@@ -142,7 +144,7 @@ def _size(grid: Grid) -> str:
     return f"{rows} \N{MULTIPLICATION SIGN} {columns}" + (" ring" if grid.closed else "")
 
 
-def _add_size(drawing: Drawing, theme: Theme, at: np.ndarray, words: str) -> None:
+def _add_words(drawing: Drawing, theme: Theme, at: np.ndarray, words: str) -> None:
     x, y = at.tolist()
     width = text_width(words, 11.5) / 2.0 + 6.0
     box = np.array([[-width, -9], [width, -9], [width, 9], [-width, 9]]) + (x, y)

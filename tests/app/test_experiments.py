@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.document import Document
-from app.experiments import Comparison, compare
+from app.experiments import Comparison, compare, table_row
 from app.experiments.runs import best_of
 from meshcore import HalfEdgeMesh, MeshError, generate, shapes
 
@@ -149,3 +149,32 @@ def test_unknown_runs_are_refused(both: Comparison) -> None:
         both.film("tri")
     with pytest.raises(MeshError, match="rollouts 0 to 3"):
         both.film("quad", 4)
+
+
+def test_a_row_of_the_table_is_what_the_command_line_measures() -> None:
+    from agent.evaluate import evaluate
+    from agent.policies import load
+
+    row = table_row("quad-paper", (10, 20), meshes=4, rollouts=2, seed=3)
+    told = evaluate("quad", (10, 20), 4, 2, 3, load("quad-paper"))
+    assert row.single == (told["single_mean"], told["single_std"])
+    assert row.best == (told["best_mean"], told["best_std"])
+    assert row.at_optimum == told["at_optimum"] and row.paper == (0.98, 0.03)
+    assert len(row.rows) == 8 and "best of 2" in repr(row) and "0.98" in repr(row)
+    assert table_row("tri", (5, 5), meshes=3, rollouts=1).paper is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"policy": "none-such"}, "no such policy"),
+        ({"sides": (2, 5)}, "Each of the sides is a whole number"),
+        ({"sides": (9, 5)}, "the fewest and then the most"),
+        ({"sides": 9}, "sides are two numbers"),
+        ({"meshes": 0}, "meshes is a whole number"),
+        ({"rollouts": 1.5}, "rollouts is a whole number"),
+    ],
+)
+def test_wrong_rows_are_refused(arguments: dict[str, object], words: str) -> None:
+    with pytest.raises(MeshError, match=words):
+        table_row(**({"policy": "quad"} | arguments))  # type: ignore[arg-type]

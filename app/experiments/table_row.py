@@ -1,0 +1,125 @@
+"""One row of the paper's tables, as large or as small as there is time for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from app.experiments.runs import known_policy, one_thread, whole_number
+from meshcore import MeshError
+
+if TYPE_CHECKING:
+    from agent.policies import Policy
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TableRow:
+    """What a policy brought on random polygons that it has not seen."""
+
+    policy: str
+    kind: str
+    sides: tuple[int, int]
+    returns: np.ndarray
+    """(M, K) normalised return of each rollout on each polygon, by its best state."""
+    gaps: np.ndarray
+    """(M, K) s - s* at the best state."""
+    operations: np.ndarray
+    """(M, K) decisions to it."""
+    left_out: int
+    """Polygons that were at their optimum from the start."""
+    paper: tuple[float, float] | None
+    """Mean and deviation that the paper gives for the best of ten, if it has this row."""
+
+    @property
+    def single(self) -> tuple[float, float]:
+        """Mean and standard deviation of the first rollout, over the polygons."""
+        return float(self.returns[:, 0].mean()), float(self.returns[:, 0].std())
+
+    @property
+    def best(self) -> tuple[float, float]:
+        """Mean and standard deviation of the best rollout, over the polygons."""
+        best = self.returns.max(axis=1)
+        return float(best.mean()), float(best.std())
+
+    @property
+    def at_optimum(self) -> float:
+        """The share of polygons whose best rollout is at s*."""
+        return float((self.gaps.min(axis=1) == 0).mean())
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """A plain row for each rollout on each polygon."""
+        return [
+            {
+                "policy": self.policy,
+                "polygon": i,
+                "rollout": k,
+                "return": float(self.returns[i, k]),
+                "gap": int(self.gaps[i, k]),
+                "operations": int(self.operations[i, k]),
+            }
+            for i in range(self.returns.shape[0])
+            for k in range(self.returns.shape[1])
+        ]
+
+    def __repr__(self) -> str:
+        meshes, rollouts = self.returns.shape
+        noun = {"tri": "triangles", "quad": "quads"}[self.kind]
+        low, high = self.sides
+        lines = [
+            f"{self.policy} on {meshes} polygons of {low} to {high} sides, {noun}",
+            f"  single rollout  {_spread(self.single)}",
+            f"  best of {rollouts:<7}  {_spread(self.best)}, {self.at_optimum:.0%} at s*",
+        ]
+        if self.paper is not None:
+            lines.append(f"  paper, best of 10  {self.paper[0]:.2f} ± {self.paper[1]:.2f}")
+        return "\n".join(lines)
+
+
+def table_row(
+    policy: str | Policy,
+    sides: tuple[int, int] = (10, 20),
+    meshes: int = 100,
+    rollouts: int = 10,
+    seed: int = 0,
+) -> TableRow:
+    """Measure a policy on so many random polygons, with so many rollouts on each.
+
+    Args:
+        policy: the name of a shipped one, a file, or a policy that is there.
+        sides: fewest and most sides of a polygon; the paper's rows are (10, 20), (20, 30), ...
+        meshes: polygons; those that start at their optimum are left out.
+        rollouts: of which the best counts.
+        seed: the same seed draws the same polygons, and throws the same dice.
+
+    Raises MeshError with one sentence.
+    """
+    from agent import paper
+    from agent.evaluate import NothingToDo, roll_out, unseen
+
+    known = known_policy(policy)
+    count, tries = whole_number(meshes, 1, "meshes"), whole_number(rollouts, 1, "rollouts")
+    given_seed = whole_number(seed, 0, "seed")
+    if not isinstance(sides, tuple | list) or len(sides) != 2:
+        raise MeshError(f"sides are two numbers, as in (10, 20), not {sides!r}.")
+    low, high = (whole_number(one, 3, "Each of the sides") for one in sides)
+    if low > high:
+        raise MeshError(f"sides are the fewest and then the most, not {low} and {high}.")
+    try:
+        starts = unseen(known.kind, (low, high), count, given_seed)
+    except NothingToDo as error:
+        sentence = str(error)
+        raise MeshError(f"{sentence[0].upper()}{sentence[1:]}.") from None
+    with one_thread():
+        rolled = roll_out(known, starts, tries, given_seed)
+    reported = paper.row(known.kind, (low, high))
+    return TableRow(
+        known.name, known.kind, (low, high), rolled.returns, rolled.gaps, rolled.operations,
+        count - len(starts), None if reported is None else tuple(reported.best),
+    )  # fmt: skip
+
+
+def _spread(values: tuple[float, float]) -> str:
+    return f"{values[0]:.3f} ± {values[1]:.3f}"
