@@ -39,8 +39,6 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     """
 
     # anywidget passes on only what the class has; the texts are made for each widget
-    _esm = traitlets.Unicode("").tag(sync=True)
-    _css = traitlets.Unicode("").tag(sync=True)
     _esm = traitlets.Unicode().tag(sync=True)
     _css = traitlets.Unicode().tag(sync=True)
     height = traitlets.Int(480, min=LOWEST, max=HIGHEST).tag(sync=True)
@@ -53,6 +51,9 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     """s of the mesh now."""
     optimum = traitlets.Int(0, read_only=True).tag(sync=True)
     """s*, the lowest score that any connectivity can have."""
+    seen = traitlets.Int(0).tag(sync=True)
+    """Counts, in marimo, what a browser has brought about: marimo runs the cells that use a widget
+    again when its page changes something, and a message alone does not count as that."""
 
     def __init__(
         self,

@@ -12,8 +12,7 @@ function viewName() {
   return `v${viewsSoFar}-${Date.now().toString(36)}-${random}`;
 }
 
-const LOOKS = ["hello", "hover"];
-const AT_REST = ["idle", "paused"];
+const LONGER_WORDS = ["agent", "level"]; // what they bring about goes on after the answer
 
 class KernelLink {
   constructor(model) {
@@ -22,13 +21,14 @@ class KernelLink {
     this.view = viewName();
     this._model = model;
     this._last = 0;
-    this._stirred = false; // this view has asked for something that may change the mesh
+    this._stirred = false; // something longer was asked for here, and is not over
+    this._revision = this._reckoned = -1;
     this._receive = (content, buffers) => {
       // a patch is for all, and its "to" is a revision
       const mine = content && (content.say === "patch" || !content.to || content.to === this.view);
       if (!mine) return;
       this.onmessage(content, buffers || []);
-      if (this._stirred) this._reckon(content);
+      this._reckon(content);
     };
     model.on("msg:custom", this._receive);
   }
@@ -36,7 +36,10 @@ class KernelLink {
   /** Say something to Python; answers carry the id as `reply`. */
   send(word, fields = {}) {
     this._last += 1;
-    if (!LOOKS.includes(word)) this._stirred = true;
+    if (LONGER_WORDS.includes(word) && !this._stirred) {
+      this._stirred = true;
+      this._reckoned = this._revision;
+    }
     this._model.send({ do: word, id: this._last, view: this.view, ...fields });
     return this._last;
   }
@@ -45,10 +48,14 @@ class KernelLink {
    *
    * Not after what cells do themselves, or a cell that changes the mesh would run for ever.
    */
-  _reckon({ say, asked, state }) {
-    const done = say === "agent" ? AT_REST.includes(state) : asked === this.view;
-    if (!done || !document.querySelector("marimo-anywidget")) return;
-    if (say === "agent") this._stirred = false;
+  _reckon({ say, asked, state, to, revision }) {
+    if (say === "patch" || say === "state") this._revision = say === "patch" ? to : revision;
+    const rests = say === "agent" && ["idle", "paused"].includes(state);
+    const done = asked === this.view || (rests && this._stirred);
+    if (!done || this._revision === this._reckoned) return;
+    if (rests) this._stirred = false;
+    this._reckoned = this._revision;
+    if (!document.querySelector("marimo-anywidget")) return;
     this._model.set("seen", this._model.get("seen") + 1);
     this._model.save_changes();
   }

@@ -51,6 +51,7 @@ def test_click_changes_the_kernel_and_undo_brings_it_back(marimo, tmp_path):
     assert later["cursor"] == 1 and later["elements"] != before["elements"]
     assert later["score"] == card.head["score"]
     assert differing(picture, changed) > 200
+    assert marimo.follows == f"s is {later['score']}"
     card.button("Undo").click()
     card.await_head(cursor=0)
     aside(card)
