@@ -56,7 +56,7 @@ def start(began: float, *numbers: int) -> dict[str, Any]:
 
 def answer(began: float, size: int, seed: int) -> dict[str, Any]:
     """Move the mouse over a mesh of ``size`` quads, and do operations by key."""
-    mesh = _scrambled(size, seed)
+    mesh = scrambled(size, seed)
     at = time.perf_counter()
     app, window = _open(mesh)
     result: dict[str, Any] = {"open_s": time.perf_counter() - at, "irregular": _irregular(mesh)}
@@ -75,7 +75,7 @@ def play(began: float, size: int, seed: int) -> dict[str, Any]:
     from app.assistant import State
     from app.policy_files import shipped
 
-    mesh = _scrambled(size, seed, every=5)
+    mesh = scrambled(size, seed, every=5)
     app, window = _open(mesh)
     assistant, document = window.assistant, window.document
     assistant.policy = shipped("quad")[0]
@@ -122,7 +122,7 @@ def _open(mesh: Any) -> tuple[Any, Any]:
     return app, window
 
 
-def _scrambled(size: int, seed: int, every: int = SCRAMBLES) -> Any:
+def scrambled(size: int, seed: int, every: int = SCRAMBLES) -> Any:
     """A square grid of ``size`` quads after random flips, smoothed."""
     from meshcore import compiled, generate, smoothing
 

@@ -41,7 +41,8 @@ NOTING = """(() => {
     const plain = window.requestAnimationFrame.bind(window);
     window.requestAnimationFrame = callback => plain(time => {
         noted.inFrame = true;
-        try { callback(time); } finally { noted.inFrame = false; }
+        // observers of what the callback changed are called before this
+        try { callback(time); } finally { queueMicrotask(() => { noted.inFrame = false; }); }
     });
     // calls back once the frame that is being made, or the next one, is on its way to the screen
     const after = callback => {
@@ -80,9 +81,9 @@ COUNT = """root => {
 CODE = """
 import time
 import numpy as np
-from app.benchmarks.agent import disturbed
+from app.benchmarks.desktop.probe import scrambled
 from app.notebook import MeshWidget
-mesh = disturbed("quad", {size}, {seed})
+mesh = scrambled({size}, {seed})
 widget = MeshWidget(mesh)
 rng, spent = np.random.default_rng({seed}), []
 
@@ -130,15 +131,8 @@ class Probe:
         self.page.evaluate("() => { noted.traffic.length = 0; }")
         notebook.show(CODE.format(size=size, seed=seed))
         self.card = Card(self.page)
-        self.state_bytes = self._sizes("state")[-1]
-
-    def _sizes(self, *words: str) -> list[int]:
         traffic = self.page.evaluate(READ)["traffic"]
-        return [
-            row["bytes"]
-            for row in traffic
-            if row["way"] == "down" and (not words or row["word"] in words)
-        ]
+        self.state_bytes = [row["bytes"] for row in traffic if row["word"] == "state"][-1]
 
     def click(self) -> Click:
         """Flip an edge somewhere by a real click; returns when the widget is at rest again."""
@@ -156,6 +150,8 @@ class Probe:
         sent = next(row["at"] for row in found["traffic"] if row["word"] == "operate")
         patch = next(row for row in found["traffic"] if row["word"] in ("patch", "state"))
         python = 1e3 * self.notebook.ask("spent[0][1] - spent[0][0]")
+        self.notebook.ask("None", "widget.undo()")  # the next one meets the same mesh
+        card.await_head(cursor=0)
         total = found["painted"] - found["released"]
         milliseconds = {
             "total": total,
@@ -164,7 +160,8 @@ class Probe:
             "transport": patch["at"] - sent - python,
             "paint": found["painted"] - patch["at"],
         }
-        return Click(milliseconds, patch["bytes"], sum(self._sizes()))
+        everything = sum(row["bytes"] for row in found["traffic"] if row["way"] == "down")
+        return Click(milliseconds, patch["bytes"], everything)
 
     def pan(self, seconds: float) -> dict[str, Any]:
         """Drag the picture round and round; painted frames per second, and the slowest of them."""
