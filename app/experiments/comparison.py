@@ -70,7 +70,13 @@ def compare(
     runs, seconds = {}, {}
     for policy in known:
         runs[policy.name], seconds[policy.name] = play(start, policy, count, limit, start_seed)
-    return Comparison(start, runs, seconds)
+    found = Comparison(start, runs, seconds)
+    found.sources = {
+        policy.name: str(name)
+        for policy, name in zip(known, given, strict=True)
+        if name is not policy
+    }
+    return found
 
 
 class Table(str):
@@ -95,6 +101,8 @@ class Comparison(Picture):
         """The runs of each policy, by its name."""
         self.seconds = seconds
         """What all runs of a policy took."""
+        self.sources: dict[str, str] = {}
+        """By which name, or from which file, each policy was had, unless it was there already."""
         self._films: dict[tuple[str, int], Film] = {}
 
     def __repr__(self) -> str:
@@ -244,10 +252,14 @@ class Comparison(Picture):
         return found
 
     def widget(self, policy: str, rollout: int | None = None, **options: Any) -> Any:
-        """A :class:`app.notebook.MeshWidget` on such a document, to scrub and to go on editing."""
+        """A :class:`app.notebook.MeshWidget` on such a document, to scrub and to go on editing; its
+        agent follows the same policy where that has a name or a file.
+        """
         from app.notebook import MeshWidget
 
-        return MeshWidget(self.document(policy, rollout), **options)
+        document = self.document(policy, rollout)
+        follow = {"policy": self.sources[policy]} if policy in self.sources else {}
+        return MeshWidget(document, **(follow | options))
 
     def _runs(self, policy: str) -> tuple[Rollout, ...]:
         if policy not in self.rollouts:

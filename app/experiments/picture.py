@@ -26,6 +26,8 @@ from app.theme import DARK, LIGHT, THEMES, Theme
 from meshcore import MeshError, atomic
 
 CLASS = "meshwright-picture"
+SMALLEST = 0.62
+"""Of its size: in a narrow cell a picture gets no smaller, to be read, but is scrolled."""
 _DARK_HOSTS = ('body[data-jp-theme-light="false"]', ".dark", ".dark-theme", ".vscode-dark")
 _LIGHT_HOSTS = ('body[data-jp-theme-light="true"]', ".light", ".light-theme", ".vscode-light")
 
@@ -68,8 +70,13 @@ class Picture:
         """For notebooks: it takes the light or dark of its host, and follows it when it changes."""
         drawn = self.drawing(LIVE)
         inner = svg(drawn).partition("?>\n")[2]
-        inner = inner.replace("<svg ", '<svg role="img" style="max-width:100%;height:auto" ', 1)
-        return f'{_style()}<div class="{CLASS}" aria-label="{escape(drawn.title)}">{inner}</div>'
+        least = round(SMALLEST * drawn.size[0])
+        style = f"display:block;max-width:100%;min-width:{least}px;height:auto"
+        inner = inner.replace("<svg ", f'<svg role="img" style="{style}" ', 1)
+        return (
+            f'{_style()}<div class="{CLASS}" style="overflow-x:auto"'
+            f' aria-label="{escape(drawn.title)}">{inner}</div>'
+        )
 
 
 def _named(theme: str) -> Theme:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.document import Document
-from app.experiments import Comparison, compare, table_row
+from app.experiments import Comparison, compare, side_by_side, table_row
 from app.experiments.runs import best_of
 from meshcore import HalfEdgeMesh, MeshError, generate, shapes
 
@@ -178,3 +178,16 @@ def test_a_row_of_the_table_is_what_the_command_line_measures() -> None:
 def test_wrong_rows_are_refused(arguments: dict[str, object], words: str) -> None:
     with pytest.raises(MeshError, match=words):
         table_row(**({"policy": "quad"} | arguments))  # type: ignore[arg-type]
+
+
+def test_side_by_side_are_two_widgets_on_the_best_runs(both: Comparison) -> None:
+    box = side_by_side(both, height=240)
+    for name, widget in zip(both.policies, box.children, strict=True):
+        assert widget.score == both.best(name).best
+        assert len(widget.history) >= len(both.best(name).operations())
+        assert widget.height == 240 and widget.assistant.policy == name
+        widget.close()
+    with pytest.raises(MeshError, match="make one by compare"):
+        side_by_side([both])  # type: ignore[arg-type]
+    with pytest.raises(MeshError, match="no rollouts of 'tri'"):
+        side_by_side(both, ["tri"])
