@@ -116,10 +116,11 @@ def _better(one: Best, other: Best) -> Best:
 
 def _parsed(given: Any) -> dict[str, Best]:
     """ValueError for what this program has not written."""
-    if not isinstance(given, dict) or given.get("version") != VERSION:
+    rows = given.get("levels") if isinstance(given, dict) else None
+    if not isinstance(rows, dict) or given.get("version") != VERSION:
         raise ValueError("not ours")
     found = {}
-    for name, best in dict(given.get("levels", {})).items():
+    for name, best in rows.items():
         stars, used = (best.get("stars"), best.get("used")) if isinstance(best, dict) else (0, 0)
         if type(stars) is not int or type(used) is not int or used < 0:
             raise ValueError("no stars")

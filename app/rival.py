@@ -47,31 +47,23 @@ class Rival:
         if not self._assistant.policy:
             self._assistant.policy = policies[0] if policies else ""
         self._assistant.failed.connect(self._on_failed)
-        self._assistant.said.connect(self._on_said)
-        self._assistant.changed.connect(self._on_changed)
+        self._assistant.said.connect(self._on_said)  # the last that a run says, however it ends
         self._assistant.search(Effort(seconds=SECONDS, coarsen=False))
 
     def close(self) -> None:
         """End it, whether it has come to an end or not."""
         assistant, self._assistant = self._assistant, None
         if assistant is not None:
-            for signal, slot in (
-                (assistant.failed, self._on_failed),
-                (assistant.said, self._on_said),
-                (assistant.changed, self._on_changed),
-            ):
-                signal.disconnect(slot)
+            assistant.failed.disconnect(self._on_failed)
+            assistant.said.disconnect(self._on_said)
             assistant.close()
 
     def _on_said(self, sentence: str) -> None:
-        self.reason = sentence
+        if self._assistant is not None and not self._assistant.running:
+            self._end(Standing.DONE, sentence)
 
     def _on_failed(self, sentence: str) -> None:
         self._end(Standing.FAILED, sentence)
-
-    def _on_changed(self) -> None:
-        if self._assistant is not None and not self._assistant.running:
-            self._end(Standing.DONE, self.reason)
 
     def _end(self, standing: Standing, reason: str) -> None:
         if self._assistant is None or self.standing is not Standing.ASKED:

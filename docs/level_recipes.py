@@ -264,6 +264,7 @@ RECIPES = (
         " edges in each. At the end no irregular vertex remains.",
         shaped("l-shape", "quad"),
         (1, 99),
+        nodes=100_000,
     ),
     Recipe(
         "tee",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from app import levels
@@ -38,12 +39,10 @@ class Levels:
         window.head.insertWidget(0, self.bar)
         self.bar.asked.connect(self._on_asked)
         self.play.changed.connect(self._on_changed)
-        self.play.won.connect(self._on_won)
 
     def release(self) -> None:
         """Let go of the document, end the agent's answer."""
         self.play.changed.disconnect(self._on_changed)
-        self.play.won.disconnect(self._on_won)
         self.play.release()
 
     def set_theme(self, theme: Theme) -> None:
@@ -119,18 +118,22 @@ class Levels:
             self._window.canvas.refuse(why)
         return bool(why)
 
-    def _try(self, call: object) -> None:
+    def _try(self, call: Callable[[], object]) -> None:
         try:
-            call()  # type: ignore[operator]
+            call()
         except MeshError as error:
             self._window.notice.tell(str(error))
 
     # What the play says
 
     def _on_asked(self, action: str) -> None:
-        {"again": self.again, "answer": self.answer, "next": self.next, "leave": self.leave}[
-            action
-        ]()
+        asked = {
+            "again": self.again,
+            "answer": self.answer,
+            "next": self.next,
+            "leave": self.leave,
+        }
+        asked[action]()
         if self._window.canvas.plotter is not None:
             self._window.canvas.plotter.setFocus()
 
@@ -140,9 +143,6 @@ class Levels:
         if self.play.notice:
             self._window.notice.tell(self.play.notice)
             self.play.notice = ""
-
-    def _on_won(self, stars: int) -> None:
-        self._window.say(f"{self.play.headline}: {self.play.remark}")
 
 
 def _assistant(document: Document) -> Assistant:

@@ -1,0 +1,339 @@
+"""What counts in a level, what is won, and what is kept of it."""
+
+import json
+
+import numpy as np
+import pytest
+
+from app import levels
+from app.assistant import Assistant
+from app.document import Document
+from app.level_play import LevelPlay, stars, tally
+from app.level_progress import Best, Progress, usual_path
+from app.rival import Standing
+from meshcore import MeshError
+
+
+class Playing:
+    """A play on a document, with a fake agent, and what it has said."""
+
+    def __init__(self, desk, greedy, path):
+        self.desk, self.greedy = desk, greedy
+        self.document = Document()
+        self.assistant = self.assistant_on(self.document)
+        self.play = LevelPlay(
+            self.document, self.assistant.hinting, self.assistant_on, Progress(path)
+        )
+        self.won = []
+        self.play.won.connect(self.won.append)
+
+    def assistant_on(self, document):
+        made = Assistant(
+            document,
+            self.desk.dispatch,
+            load=lambda name: name,
+            make_runner=lambda mesh, policy, seed: self.greedy(mesh),
+            make_search=lambda mesh, *_: self.greedy(mesh),
+            ask=lambda mesh, policy, near: self.greedy(mesh).look().choices[:3],
+        )
+        made.policy = "greedy"
+        return made
+
+    def solve(self, by="you", first=0, last=None):
+        for operation, (a, b) in self.play.level.solution[first:last]:
+            self.document.submit(operation, self.document.mesh.halfedge(a, b), by=by)
+
+    def waste(self):
+        """Two operations that come to nothing."""
+        mesh = self.document.mesh
+        names = ("flip_left", "flip_right") if mesh.kind == "quad" else ("flip", "flip")
+        for halfedge in (mesh.element_ids()[:, None] * mesh.k + range(mesh.k)).flat:
+            if mesh.check(names[0], int(halfedge)):
+                self.document.submit(names[0], int(halfedge))
+                self.document.submit(names[1], int(halfedge))
+                return
+
+
+@pytest.fixture
+def playing(desk, greedy, tmp_path):
+    made = Playing(desk, greedy, tmp_path / "levels.json")
+    yield made
+    made.play.release()
+    made.assistant.close()
+
+
+def test_stars_are_three_at_par_two_a_little_above_one_beyond():
+    level = levels.load("ell")  # par 6: two more, a third of par
+    assert [stars(level, level.par + more) for more in (-1, 0, 1, 2, 3)] == [3, 3, 2, 2, 1]
+    assert [stars(level, used, hinted=True) for used in (6, 8, 9)] == [2, 2, 1]
+    assert [stars(levels.load("one-flip"), used) for used in (1, 2, 3, 4)] == [3, 2, 2, 1]
+
+
+@pytest.mark.parametrize("name", levels.names())
+def test_every_level_can_be_won(playing, name):
+    play = playing.play
+    play.open(name)
+    assert (play.used, play.stars, play.done, play.remark) == (0, 0, False, "")
+    playing.solve()
+    assert play.done
+    assert (play.used, play.stars, playing.won) == (play.level.par, 3, [3])
+    assert play.headline.startswith("As few as")
+    assert play.progress.best(name) == Best(3, play.level.par)
+
+
+def test_undo_takes_operations_back_and_smoothing_is_free(playing):
+    play, document = playing.play, playing.document
+    play.open("two-turns")
+    playing.waste()
+    assert play.used == 2
+    document.smooth()
+    assert play.used == 2
+    document.go_to(0)
+    assert play.used == 0
+    playing.solve()
+    assert (play.used, play.stars) == (2, 3)
+    document.undo()
+    assert (play.used, play.done, play.stars) == (1, False, 0)
+    document.redo()
+    assert playing.won == [3, 3]
+
+
+def test_more_operations_win_fewer_stars_and_the_best_is_kept(playing):
+    play = playing.play
+    play.open("quarter-turn")
+    playing.waste()
+    playing.solve()
+    assert (play.used, play.stars, play.best) == (3, 2, 2)
+    assert "par 1: two stars" in play.remark
+    play.again()
+    playing.waste()
+    playing.waste()
+    playing.solve()
+    assert (play.used, play.stars, play.best) == (5, 1, 2)
+    play.again()
+    playing.solve()
+    assert (play.stars, play.best) == (3, 3)
+
+
+def test_the_agents_operations_win_nothing(playing):
+    play, document = playing.play, playing.document
+    play.open("two-turns")
+    playing.solve(by="quad", last=1)
+    playing.solve(first=1)
+    assert play.done
+    assert (play.stars, playing.won) == (0, [])
+    assert play.progress.best("two-turns") == Best()
+    assert play.remark.startswith("The agent's operations win no stars")
+    document.go_to(0)
+    assert play.remark == ""
+
+
+def test_a_hint_costs_a_star(playing, desk):
+    play = playing.play
+    play.open("two-turns")
+    playing.assistant.hint()
+    desk.until(lambda: bool(playing.assistant.hinting.hints))
+    assert play.hinted
+    assert play.remark == "With a hint there are two stars at most."
+    playing.solve()
+    assert play.stars == 2
+    play.again()
+    playing.solve()
+    assert play.stars == 3
+
+
+@pytest.mark.parametrize("action", ["desired", "locked", "geometric", "clean_all", "strip"])
+def test_what_changes_the_task_does_not_count(playing, action):
+    play, document = playing.play, playing.document
+    play.open("three-blocks")
+    mesh = document.mesh
+    inside = int(np.flatnonzero(~mesh.boundary())[0])
+    if action == "desired":
+        document.set_desired(inside, 5)
+    elif action == "locked":
+        document.set_locked(inside, True)
+    elif action == "geometric":
+        document.set_geometric(inside, True)
+    elif action == "clean_all":
+        document.clean_all()
+    else:
+        document.submit("chord_collapse", mesh.halfedge(0, 1))
+    assert tally(document.history).barred
+    assert "Undo it, or begin again." in play.remark
+    assert not play.done
+    document.undo()
+    assert play.remark == ""
+    playing.solve()
+    assert play.stars == 3
+
+
+def test_the_play_says_what_it_refuses(playing):
+    assert playing.play.refusal("clean_all") == ""
+    playing.play.open("three-blocks")
+    assert "one by one" in playing.play.refusal("clean_all")
+    assert "beyond the paper" in playing.play.refusal("chord_collapse")
+    assert playing.play.refusal("cleanup") == ""
+
+
+def test_better_than_par_is_praised(playing, monkeypatch):
+    import dataclasses
+
+    play = playing.play
+    play.open(dataclasses.replace(levels.load("quarter-turn"), par=2))
+    playing.solve()
+    assert (play.stars, play.headline) == (3, "Better than the best we know")
+
+
+def test_the_agent_plays_on_a_mesh_of_its_own(playing, desk):
+    play = playing.play
+    play.open("two-flips")
+    changes = []
+    play.changed.connect(lambda: changes.append(play.rival))
+    play.ask_agent()
+    assert play.rival.standing is Standing.ASKED
+    desk.until(lambda: play.rival.standing is not Standing.ASKED)
+    assert play.rival.standing is Standing.DONE
+    assert changes
+    assert len(playing.document.history) == 0
+    assert play.rival.operations
+    said = play.show_answer()
+    assert "operation" in said
+    assert playing.document.history.cursor == 0
+    assert len(playing.document.history) == len(play.rival.operations)
+    assert play.remark == ""
+    playing.document.redo()
+    assert play.tally.helped
+    play.next()
+    assert play.rival is None
+
+
+def test_the_way_shown_is_the_best_known_before_the_agent_is_asked(playing):
+    play = playing.play
+    play.open("two-turns")
+    play.show_answer()
+    assert len(playing.document.history) == 2
+    playing.document.go_to(2)
+    assert play.done
+    assert (play.stars, playing.won) == (0, [])
+
+
+def test_the_agent_that_breaks_off_can_be_asked_again(playing, desk, monkeypatch):
+    play = playing.play
+    play.open("two-turns")
+
+    def failing(document):
+        def breaks(mesh, *_):
+            raise ValueError("no such policy")
+
+        made = Assistant(document, desk.dispatch, load=lambda name: name, make_search=breaks)
+        made.policy = "greedy"
+        return made
+
+    monkeypatch.setattr(play, "_make_rival", failing)
+    play.ask_agent()
+    desk.until(lambda: play.rival.standing is not Standing.ASKED)
+    assert (play.rival.standing, play.rival.reason) == (Standing.FAILED, "no such policy")
+    monkeypatch.setattr(play, "_make_rival", playing.assistant_on)
+    play.ask_agent()
+    desk.until(lambda: play.rival.standing is not Standing.ASKED)
+    assert play.rival.standing is Standing.DONE
+
+
+def test_levels_follow_each_other_to_the_last(playing):
+    play = playing.play
+    with pytest.raises(MeshError, match="choose one first"):
+        play.again()
+    play.open(levels.names()[-2])
+    play.next()
+    assert play.level.name == levels.names()[-1]
+    with pytest.raises(MeshError, match="last level"):
+        play.next()
+
+
+def test_another_mesh_ends_the_level(playing, strip):
+    play, document = playing.play, playing.document
+    play.open("two-turns")
+    assert (document.passing, document.modified) == (True, False)
+    playing.solve(last=1)
+    assert not document.modified
+    document.replace(strip, "strip")
+    assert play.level is None
+    assert not document.passing
+
+
+def test_a_level_that_is_left_is_a_mesh_like_others(playing):
+    play, document = playing.play, playing.document
+    play.open("two-turns")
+    playing.solve(last=1)
+    play.leave()
+    assert play.level is None
+    assert not document.modified
+    document.undo()
+    assert document.modified
+
+
+def test_no_step_of_a_level_is_autosaved(playing, tmp_path):
+    from app.autosave import Autosave
+
+    autosave = Autosave(playing.document, tmp_path / "autosave")
+    playing.play.open("two-turns")
+    playing.solve()
+    assert autosave.path is None
+    playing.play.leave()
+    playing.document.undo()
+    assert autosave.path is not None
+    autosave.close()
+
+
+def test_progress_is_shared_by_all_who_play(tmp_path):
+    path = tmp_path / "deep" / "levels.json"
+    one, other = Progress(path), Progress(path)
+    assert other.best("ell") == Best()
+    assert one.note("ell", 2, 8)
+    assert other.note("star", 3, 4)
+    assert one.note("ell", 1, 12) is False
+    assert Progress(path).best("ell") == Best(2, 8)
+    assert Progress(path).best("star") == Best(3, 4)
+    assert Progress(path).stars == 5
+    assert [file.name for file in path.parent.iterdir()] == ["levels.json"]
+
+
+@pytest.mark.parametrize(
+    "contents",
+    [
+        "",
+        "[]",
+        "{",
+        '{"version": 2}',
+        '{"version": 1, "levels": 3}',
+        '{"version": 1, "levels": {"ell": {"stars": 9, "used": 1}}}',
+        '{"version": 1, "levels": {"ell": {"stars": "3", "used": 1}}}',
+        "\ufeff\x00",
+        "[" * 50_000,
+    ],
+)
+def test_a_broken_file_is_left_aside(tmp_path, contents):
+    path = tmp_path / "levels.json"
+    path.write_text(contents)
+    progress = Progress(path)
+    assert progress.best("ell") == Best()
+    assert "begin again" in progress.notice
+    assert (tmp_path / "levels.broken").read_text() == contents
+    progress.note("ell", 3, 6)
+    assert json.loads(path.read_text())["levels"] == {"ell": {"stars": 3, "used": 6}}
+
+
+def test_where_nothing_can_be_written_the_play_goes_on(playing, tmp_path):
+    (tmp_path / "file").write_text("")
+    play = playing.play
+    play.progress = Progress(tmp_path / "file" / "levels.json")
+    play.open("one-flip")
+    playing.solve()
+    assert play.stars == 3
+    assert "cannot be" in play.notice or "cannot be" in play.progress.notice
+    assert play.best == 3
+
+
+def test_tests_keep_off_a_persons_own_stars(monkeypatch, tmp_path):
+    monkeypatch.setenv("MESHWRIGHT_STATE_DIR", str(tmp_path))
+    assert usual_path() == tmp_path / "levels.json"

@@ -1,0 +1,227 @@
+"""Levels in the window, by its mouse, keys and buttons."""
+
+import pytest
+from driving import WAIT, point_at, press
+from qtpy.QtCore import Qt, QTimer
+from qtpy.QtWidgets import QApplication
+
+from app import levels
+from app.assistant import Assistant
+from app.desktop.dispatch import Dispatcher
+from app.level_progress import Progress
+from app.rival import Standing
+
+
+@pytest.fixture
+def window(open_window, tmp_path, greedy):
+    made = open_window()
+    made.levels.play.progress = Progress(tmp_path / "levels.json")
+
+    def rival(document):
+        assistant = Assistant(
+            document,
+            Dispatcher(),
+            load=lambda name: name,
+            make_search=lambda mesh, *_: greedy(mesh),
+        )
+        assistant.policy = "greedy"
+        return assistant
+
+    made.levels.make_rival = rival
+    return made
+
+
+def click(qtbot, button):
+    qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+
+
+def in_dialog(act):
+    """Do ``act(dialog)`` once a dialog is open."""
+
+    def look():
+        dialog = QApplication.activeModalWidget()
+        if dialog is None:
+            QTimer.singleShot(20, look)
+        else:
+            act(dialog)
+
+    QTimer.singleShot(20, look)
+
+
+def solve(window):
+    for operation, (a, b) in window.levels.level.solution:
+        window.document.submit(operation, window.document.mesh.halfedge(a, b))
+
+
+def test_a_level_is_chosen_played_by_mouse_and_key_and_won(qtbot, window):
+    bar = window.levels.bar
+    assert not bar.isVisible()
+    in_dialog(lambda dialog: click(qtbot, dialog.cards[0]))
+    press_to_choose(qtbot, window)
+    assert window.levels.level.name == "one-flip"
+    assert bar.isVisible()
+    assert (bar.goal.text, bar.par.text, bar.used.text, bar.stars.count) == ("s = 0", "1", "0", 0)
+    assert bar.text.text() == window.levels.level.text
+    _, (a, b) = window.levels.level.solution[0]
+    point_at(qtbot, window, window.document.mesh.halfedge(a, b))
+    press(qtbot, window, Qt.Key.Key_F)
+    assert bar.used.text == "1"
+    assert bar.stars.count == 3
+    assert bar.title.text() == "As few as can be"
+    assert "three stars" in bar.text.text()
+    click(qtbot, bar.next)
+    assert window.levels.level.name == "quarter-turn"
+    assert (bar.used.text, bar.stars.count) == ("0", 0)
+
+
+def press_to_choose(qtbot, window):
+    qtbot.keyClick(
+        window,
+        Qt.Key.Key_L,
+        Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier,
+    )
+
+
+def test_undo_and_again_take_operations_back(qtbot, window):
+    window.levels.open("two-turns")
+    bar = window.levels.bar
+    solve(window)
+    assert bar.stars.count == 3
+    window.actions_by_id["undo"].trigger()
+    assert bar.used.text == "1"
+    assert bar.title.text() == "Two turns"
+    click(qtbot, bar.again)
+    assert bar.used.text == "0"
+    assert len(window.document.history) == 0
+    assert bar.stars.count == 3  # won before
+
+
+def test_the_dialog_shows_what_is_won_and_goes_by_keys(qtbot, window):
+    window.levels.play.progress.note("one-flip", 2, 3)
+    seen = {}
+
+    def look(dialog):
+        first, second = dialog.cards[:2]
+        seen["stars"] = [card.stars.count for card in dialog.cards]
+        seen["names"] = [card.accessibleName() for card in dialog.cards]
+        seen["focus"] = dialog.focusWidget() is second
+        assert not first.picture.pixmap().isNull()
+        qtbot.keyClick(second, Qt.Key.Key_Space)
+
+    in_dialog(look)
+    window.levels.choose()
+    assert seen["stars"][:2] == [2, 0]
+    assert len(seen["stars"]) == len(levels.names())
+    assert "done in 3, 2 of 3 stars" in seen["names"][0]
+    assert seen["focus"]
+    assert window.levels.level.name == "quarter-turn"
+
+
+def test_escape_leaves_the_dialog_without_a_level(qtbot, window):
+    in_dialog(lambda dialog: qtbot.keyClick(dialog, Qt.Key.Key_Escape))
+    window.levels.choose()
+    assert window.levels.level is None
+    assert window.document.empty
+
+
+def test_what_is_not_played_in_a_level_is_refused_with_a_reason(qtbot, window):
+    from app.desktop.vertex_menu import vertex_menu
+
+    window.levels.open("three-blocks")
+    window.actions_by_id["clean_all"].trigger()
+    assert "one by one" in window.said.text()
+    window.editing.submit("chord_collapse", window.document.mesh.halfedge(0, 1))
+    assert "beyond the paper" in window.said.text()
+    assert len(window.document.history) == 0
+    menu = vertex_menu(window, 0)
+    titles = {action.text(): action.isEnabled() for action in menu.actions()}
+    assert titles["Locked (nothing changes it)"] is False
+    menu.deleteLater()
+    window.levels.leave()
+    window.actions_by_id["clean_all"].trigger()
+    assert "Removed 4 lines" in window.said.text()
+
+
+def test_the_agent_answers_beside_and_shows_its_way(qtbot, window):
+    window.levels.open("two-turns")
+    bar = window.levels.bar
+    assert not bar.agent.isVisible()
+    assert bar.answer.text() == "Ask the agent"
+    click(qtbot, bar.answer)
+    assert bar.agent.isVisible()
+    rival = window.levels.play.rival
+    qtbot.waitUntil(lambda: rival.standing is not Standing.ASKED, timeout=WAIT)
+    assert bar.agent.text.startswith(str(len(rival.operations)))
+    assert bar.answer.text() == "Show a way"
+    assert len(window.document.history) == 0
+    click(qtbot, bar.answer)
+    assert len(window.document.history) == len(rival.operations)
+    window.film.hold()
+    window.film.go_to(len(rival.operations))
+    assert "win no stars" in bar.text.text()
+
+
+def test_levels_are_dropped_without_a_question(qtbot, window, tmp_path, monkeypatch):
+    window.files.watch(tmp_path / "autosave")
+    monkeypatch.setattr("app.desktop.guard.Question", None)  # who asks fails
+    window.levels.open("two-turns")
+    solve(window)
+    assert not window.isWindowModified()
+    window.levels.next()
+    assert window.levels.level.name == levels.after("two-turns")
+    window.files.make("star", "quad")
+    assert window.levels.level is None
+    assert not window.levels.bar.isVisible()
+    assert window.document.name == "star"
+
+
+def test_unsaved_work_is_asked_for_before_a_level(window, star, monkeypatch):
+    window.document.replace(star, "star")
+    with monkeypatch.context() as patch:
+        patch.setattr(window.files, "may_drop", lambda: False)
+        window.levels.open("two-turns")
+    assert window.levels.level is None
+    assert window.document.mesh is star
+
+
+def test_a_level_that_is_none_is_told_of(window):
+    window.levels.open("no-such-level")
+    assert "no level named" in window.notice.text
+    assert window.document.empty
+
+
+def test_the_actions_make_sense_only_in_a_level(window):
+    action = window.actions_by_id
+    assert action["levels"].isEnabled()
+    assert not action["level.again"].isEnabled()
+    window.levels.open(levels.names()[-1])
+    assert action["level.again"].isEnabled()
+    assert not action["level.next"].isEnabled()
+    action["level.leave"].trigger()
+    assert not action["level.leave"].isEnabled()
+    assert not window.levels.bar.isVisible()
+    assert not window.document.empty
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_bar_keeps_its_height(qtbot, window, theme):
+    window.set_theme(theme)
+    heights = set()
+    for name in ("two-turns", "three-blocks", "plate"):
+        window.levels.open(name)
+        heights.add(window.levels.bar.sizeHint().height())
+        solve(window)
+        heights.add(window.levels.bar.sizeHint().height())
+    assert len(heights) == 1
+
+
+@pytest.mark.usefixtures("_own_settings")
+def test_the_window_opens_on_a_level(qtbot):
+    from app.desktop.application import open_window as open_on
+
+    window = open_on(level=levels.load("two-turns"))
+    qtbot.addWidget(window)
+    qtbot.waitUntil(lambda: window.canvas.plotter is not None, timeout=WAIT)
+    assert window.levels.bar.isVisible()
+    assert window.document.mesh.score == 6
+    window.close()
