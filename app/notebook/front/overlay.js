@@ -3,6 +3,8 @@
 
 const ARROW_DEPTH = 9;
 const ARROW_TRIM = 0.12;
+const SMALL_ARROW = 10;
+const RING_RADIUS = 10;
 const CROWD_OF_MARKS = 300;
 
 class Overlay {
@@ -61,7 +63,21 @@ class Overlay {
     pen.globalAlpha = 1;
     if (ghost) this._ghosts.paintEdges(pen, view, ghost);
     this._marks.paint(pen, this._ratio, view, mirror, facts, [ghostBounds(view, ghost, corners)]);
-    paintArrow(pen, ...arrowOf(mirror, view, halfedge), palette.arrow, palette.background);
+    const [tail, head] = arrowOf(mirror, view, halfedge);
+    paintArrow(pen, tail, head, palette.arrow, palette.background);
+    const length = Math.hypot(head[0] - tail[0], head[1] - tail[1]);
+    if (length < SMALL_ARROW) this._paintRing(pen, middleOf([tail, head]));
+  }
+
+  /** A ring that is found where the arrow itself is too small to be seen. */
+  _paintRing(pen, [x, y]) {
+    for (const [colour, width] of [[this._palette.background, 4.5], [this._palette.arrow, 2]]) {
+      pen.strokeStyle = colour;
+      pen.lineWidth = width;
+      pen.beginPath();
+      pen.arc(x, y, RING_RADIUS, 0, 2 * Math.PI);
+      pen.stroke();
+    }
   }
 
   /** Places of irregular vertices on the screen, unless they are everywhere. */
