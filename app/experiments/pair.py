@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from html import escape
 from typing import Any
 
 from app.experiments.comparison import Comparison
@@ -20,8 +21,8 @@ def side_by_side(
         policies: two or more of its names; None: the first two.
         height: of the meshes, in pixels.
 
-    Returns a box of widgets for Jupyter, in marimo a row; its ``children`` in Jupyter are the
-    :class:`app.notebook.MeshWidget` themselves.
+    Returns a box for Jupyter, whose ``children`` are boxes of a name and a
+    :class:`app.notebook.MeshWidget`, or in marimo a row of them.
     """
     if not isinstance(comparison, Comparison):
         raise MeshError("Side by side go the runs of a comparison: make one by compare().")
@@ -29,11 +30,16 @@ def side_by_side(
     widgets = [comparison.widget(name, height=height, name=name) for name in names]
     marimo = sys.modules.get("marimo")
     if marimo is not None and marimo.running_in_notebook():
-        views = [marimo.ui.anywidget(widget) for widget in widgets]
+        views = [
+            marimo.vstack([marimo.md(f"**{name}**"), marimo.ui.anywidget(widget)])
+            for name, widget in zip(names, widgets, strict=True)
+        ]
         return marimo.hstack(views, widths="equal")
-    from ipywidgets import HBox, Layout
+    from ipywidgets import HTML, HBox, Layout, VBox
 
-    for widget in widgets:
-        widget.layout.flex = "1 1 0%"
-        widget.layout.min_width = "0"
-    return HBox(widgets, layout=Layout(width="100%"))
+    titles = [HTML(f"<b>{escape(name)}</b>") for name in names]
+    columns = [
+        VBox(list(pair), layout=Layout(flex="1 1 0%", min_width="0"))
+        for pair in zip(titles, widgets, strict=True)
+    ]
+    return HBox(columns, layout=Layout(width="100%"))

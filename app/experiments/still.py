@@ -16,7 +16,7 @@ from app.viewport import Viewport
 from meshcore import HalfEdgeMesh, MeshError
 
 MARGIN = 16.0
-FEW = 12
+FEW = 6
 """Small discs that get their number beside them."""
 
 

@@ -68,14 +68,14 @@ class TableRow:
         meshes, rollouts = self.returns.shape
         noun = {"tri": "triangles", "quad": "quads"}[self.kind]
         low, high = self.sides
-        lines = [
-            f"{self.policy} on {meshes} polygons of {low} to {high} sides, {noun}",
-            f"  single rollout  {_spread(self.single)}",
-            f"  best of {rollouts:<7}  {_spread(self.best)}, {self.at_optimum:.0%} at s*",
+        found = [
+            ("single rollout", _spread(self.single)),
+            (f"best of {rollouts}", f"{_spread(self.best)}, {self.at_optimum:.0%} at s*"),
         ]
         if self.paper is not None:
-            lines.append(f"  paper, best of 10  {self.paper[0]:.2f} ± {self.paper[1]:.2f}")
-        return "\n".join(lines)
+            found.append(("paper, best of 10", f"{self.paper[0]:.2f} \u00b1 {self.paper[1]:.2f}"))
+        head = f"{self.policy} on {meshes} polygons of {low} to {high} sides, {noun}"
+        return "\n".join([head, *(f"  {name:<19}{words}" for name, words in found)])
 
 
 def table_row(

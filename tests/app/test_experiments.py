@@ -182,7 +182,9 @@ def test_wrong_rows_are_refused(arguments: dict[str, object], words: str) -> Non
 
 def test_side_by_side_are_two_widgets_on_the_best_runs(both: Comparison) -> None:
     box = side_by_side(both, height=240)
-    for name, widget in zip(both.policies, box.children, strict=True):
+    for name, column in zip(both.policies, box.children, strict=True):
+        title, widget = column.children
+        assert name in title.value
         assert widget.score == both.best(name).best
         assert len(widget.history) >= len(both.best(name).operations())
         assert widget.height == 240 and widget.assistant.policy == name
