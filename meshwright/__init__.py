@@ -33,12 +33,14 @@ _HOMES = {
     "shape": "meshcore.shapes",
     "side_by_side": "app.experiments",
     "small_multiples": "app.experiments",
+    "table_row": "app.experiments",
     "write": "meshcore",
 }
 """The module that each name comes from."""
 
 _OTHER_NAMES = {
     "block_grids": ("meshcore.block_grids", "grids"),
+    "levels": ("app.levels", "all"),
     "shapes": ("meshcore.shapes", "names"),
 }
 """Names that are called otherwise at home."""
