@@ -48,9 +48,10 @@ class Card {
     this.walking = new Walking(this);
     this.panel = node("div", "mw-panel", {}, this.score.root, this.operations.root, this.agent.root);
     this.root.append(
+      above,
       node("div", "mw-body", {},
         node("div", "mw-main", {}, place, under),
-        node("div", "mw-side", {}, node("div", "mw-side-scroll", {}, above, this.panel))),
+        node("div", "mw-side", {}, node("div", "mw-side-scroll", {}, this.panel))),
     );
     this.pointer = new Pointer(this, this.stage.surface);
     this._keys = new Keys(this);

@@ -4,7 +4,7 @@
 //
 // Places for other parts of the card, which are made where their classes exist:
 //   new Timeline(element, card)   under the canvas; .update(head) with every state and patch
-//   new Levels(element, card)     above the panel; .update(message) with every "level" message
+//   new Levels(element, card)     above it all;    .update(message) with every "level" message
 // Both may have .release(). What they may use of the card: card.link.send(word, fields), card.mirror,
 // card.colour("accent_soft"), card.say(tone, sentence), card.root, and card.follow(callback), which
 // calls back after every change of theme.

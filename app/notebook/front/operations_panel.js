@@ -13,7 +13,8 @@ class OperationsPanel {
 
   /** Tell what is known of the half-edge that is pointed at. */
   update() {
-    const { mirror, pointing, palette } = this._card;
+    const { mirror, pointing, palette, readOnly } = this._card;
+    this.root.hidden = readOnly;
     if (this._catalogue !== mirror.catalogue) this._fill(mirror.catalogue);
     for (const { info, row, change } of this._rows) {
       const offer = pointing.offers ? pointing.offers.get(info.operation) : null;
@@ -35,8 +36,7 @@ class OperationsPanel {
   }
 
   _words() {
-    const { mirror, pointing, readOnly } = this._card;
-    if (readOnly) return "This view is for looking only.";
+    const { mirror, pointing } = this._card;
     const armed = mirror.catalogue.find((info) => info.operation === pointing.armed);
     return armed ? "A click does it. Esc puts it down." : "Point at a half-edge of the mesh.";
   }

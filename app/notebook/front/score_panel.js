@@ -80,11 +80,11 @@ class ScorePanel {
   _tellSteps(head) {
     const locked = this._card.readOnly;
     this._steps.hidden = locked;
-    this._undo.disabled = locked || !head.can_undo;
-    this._redo.disabled = locked || !head.can_redo;
-    for (const tool of [this._smooth, this._auto, this._clean, this._mend]) tool.hidden = locked;
-    this._clean.hidden = locked || head.kind !== "quad";
-    this._mend.hidden = locked || !head.inverted;
+    this._undo.disabled = !head.can_undo;
+    this._redo.disabled = !head.can_redo;
+    this._steps.hidden = locked;
+    this._clean.hidden = head.kind !== "quad";
+    this._mend.hidden = !head.inverted;
     this._auto.setAttribute("aria-pressed", String(head.auto_smooth));
   }
 }
