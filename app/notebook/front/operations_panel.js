@@ -31,7 +31,6 @@ class OperationsPanel {
         : `${summary}\n${armed ? "A click on the mesh does it." : "Click to arm it: then each click on the mesh does it."}`;
       if (row.title !== told) row.title = told;
     }
-    this.root.hidden = this._card.link.readOnly; // a film says in its page what it is
     tell(this._hint, this._words());
   }
 

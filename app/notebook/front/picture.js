@@ -254,16 +254,23 @@ class Picture {
   }
 }
 
-/** Neighbouring dirty tiles of a row as one rectangle. */
+/** Dirty tiles as rectangles: neighbours in a row are one, and so are equal runs of rows. */
 function tileRuns(dirty, columns, rows, tile) {
   const runs = [];
+  let above = new Map();
   for (let j = 0; j < rows; j += 1) {
+    const here = new Map();
     for (let i = 0; i < columns; i += 1) {
       if (!dirty[j * columns + i]) continue;
       const start = i;
       while (i + 1 < columns && dirty[j * columns + i + 1]) i += 1;
-      runs.push([start * tile, j * tile, (i + 1 - start) * tile, tile]);
+      const key = `${start} ${i}`;
+      const run = above.get(key) || [start * tile, j * tile, (i + 1 - start) * tile, 0];
+      if (!run[3]) runs.push(run);
+      run[3] += tile;
+      here.set(key, run);
     }
+    above = here;
   }
   return runs;
 }
