@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -84,6 +85,10 @@ class Table(str):
 
     def __repr__(self) -> str:
         return str(self)
+
+    def _repr_html_(self) -> str:
+        """The same; in a narrow cell it is scrolled, not broken."""
+        return f'<pre style="white-space:pre;overflow-x:auto">{escape(self)}</pre>'
 
 
 class Comparison(Picture):
