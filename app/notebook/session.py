@@ -148,7 +148,7 @@ class Session:
             raise
         finally:
             self.assistant.failed.disconnect(failures.append)
-        self.telling.flush()
+        self.loop.do(self.telling.catch_up)
         if failures:
             raise MeshError(failures[-1])
 

@@ -15,8 +15,12 @@ from app.notebook.messages import Request
 from app.notebook.wire import Mirror, Packet
 from meshcore.operations import of_kind
 
-SOONEST = 0.02
-"""Seconds between two patches while Python works; what comes sooner travels with the next one."""
+PACE = 0.02
+"""Seconds between two patches, on average, while a cell works; what comes sooner travels with the
+next one.
+"""
+BURST = 16
+"""Changes that are sent at once all the same: a cell may sleep after the last of a few."""
 
 _log = logging.getLogger(__name__)
 
@@ -57,8 +61,8 @@ class Telling:
         self._followed = False
         self._fresh = self._dirty = self._agent_dirty = self._due = False
         self._asked: list[Request] = []
-        self._sent = 0.0
-        self._told = document.revision
+        self._credit, self._credited = float(BURST), time.monotonic()
+        self._told, self._shown = document.revision, document.mesh
 
     # To whom
 
@@ -122,11 +126,20 @@ class Telling:
         """Send at once, or a moment later if much happens."""
         if not self._followed or self._asked:
             return
-        if not self._loop.running or time.monotonic() - self._sent > SOONEST:
+        now = time.monotonic()
+        self._credit = min(BURST, self._credit + (now - self._credited) / PACE)
+        self._credited = now
+        if not self._loop.running or self._credit >= 1:
+            self._credit -= 1
             self.flush()
         elif not self._due:
             self._due = True
-            self._loop(self.flush)
+            self._loop(self.catch_up)
+
+    def catch_up(self) -> None:
+        """Send what has changed; whoever works now may have a few changes sent at once again."""
+        self.flush()
+        self._credit = float(BURST)
 
     def flush(self, request: Request | None = None) -> None:
         """Send what has changed since the last time. Never raises."""
@@ -137,13 +150,12 @@ class Telling:
             self._send_news(request)
         except Exception as error:  # whoever changed the mesh is not to blame
             _log.error("browsers could not be told of a change", exc_info=error)
-        self._sent = time.monotonic()
 
     def _send_news(self, request: Request | None) -> None:
         agent, self._agent_dirty = self._agent_dirty, False
-        dirty, self._dirty = self._dirty, False
+        dirty, self._dirty = self._dirty or self._told != self._document.revision, False
         self._told = self._document.revision
-        if self._fresh:
+        if self._fresh or self._shown is not self._document.mesh:
             self._take_all()
             self._send_states(request)
         elif dirty:
@@ -169,8 +181,8 @@ class Telling:
 
     def _take_all(self) -> None:
         self._fresh = self._dirty = False
-        self._told = self._document.revision
-        self.mirror.reset(self._document.mesh)
+        self._told, self._shown = self._document.revision, self._document.mesh
+        self.mirror.reset(self._shown)
         self.head.reset()
 
     # Messages
