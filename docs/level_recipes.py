@@ -269,16 +269,16 @@ RECIPES = (
     Recipe(
         "tee",
         "The T, in triangles",
-        "Two reflex corners want five edges each, the other corners three. s* is not zero: what the"
-        " corners lack, by rounding their angles, no connectivity can give.",
+        "A right angle is one and a half triangles wide, so the wish of every corner is rounded up."
+        " What that adds up to, no connectivity can give: s* is not zero here.",
         shaped("t-shape", "tri"),
         (1, 99),
     ),
     Recipe(
         "notch",
         "The notch",
-        "A sharp reflex corner asks for four quads around it, its neighbours for one each. Where"
-        " should the lines go that leave the notch?",
+        "The reflex corner of the notch asks for four quads around it, all other corners for one"
+        " each. Where should the three lines go that leave the notch?",
         shaped("single-notch", "quad"),
         (1, 99),
     ),

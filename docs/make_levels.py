@@ -24,6 +24,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 from level_recipes import RECIPES, Recipe
 
+from agent.coarsening import replayed
 from agent.policies import load, shipped
 from agent.shortening import shorten
 from agent.solver import solve
@@ -86,24 +87,24 @@ def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
     """
     beam: list[Found] = [[]]
     for _ in range(DEPTH):
-        found: dict[tuple[int, ...], tuple[tuple[int, int], Found]] = {}
+        found: list[tuple[int, int, Found]] = []
         for way in beam:
-            work = mesh.copy()
-            for operation, halfedge in way:
-                work.apply(operation, halfedge)
+            work = replayed(mesh, way)
             for operation, halfedge in allowed(work):
                 work.apply(operation, halfedge)
-                rank = (work.score, work.irregular_count)
-                key = (*rank, *fingerprint(work))
-                if key not in found:
-                    found[key] = rank, [*way, (operation, halfedge)]
+                found.append((work.score, work.irregular_count, [*way, (operation, halfedge)]))
                 work.undo()
-        best = sorted(found.values(), key=lambda one: one[0])
-        ends = [way for rank, way in best if rank[0] <= goal]
+        found.sort(key=lambda one: one[:2])
+        ends = [way for score, _, way in found if score <= goal]
         ends = [way for way in ends[:40] if drawn(mesh, way)]
         if ends:
             return ends
-        beam = [way for _, way in best[:WIDTH]]
+        kept: dict[tuple[int, ...], Found] = {}
+        for score, irregular, way in found[: 20 * WIDTH]:
+            kept.setdefault((score, irregular, *fingerprint(replayed(mesh, way))), way)
+            if len(kept) == WIDTH:
+                break
+        beam = list(kept.values())
     return []
 
 

@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING, Any
 import anywidget
 import traitlets
 
+from app import levels
 from app.assistant import Assistant
 from app.document import Document
 from app.history import History, Row
+from app.levels import Level
 from app.notebook import front
 from app.notebook.exports import Exports
 from app.notebook.opening import document_of
+from app.notebook.playing import Playing
 from app.notebook.session import Session
 from app.notebook.wire import Packet
 from app.searching import COMPLETE_SECONDS, Effort
@@ -57,11 +60,11 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
     def __init__(
         self,
-        source: HalfEdgeMesh | Document | MeshWidget | Domain | str | Path,
+        source: HalfEdgeMesh | Document | MeshWidget | Domain | str | Path | None = None,
         *,
         kind: str | None = None,
         policy: str | None = None,
-        level: Any = None,
+        level: str | Level | None = None,
         height: int = 480,
         theme: str = "auto",
         name: str = "",
@@ -74,7 +77,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
             kind: what a shape is meshed with, "tri" or "quad"; quads by default.
             policy: what the agent follows: a shipped policy, or a file; by default the first that
                 is shipped for this kind of mesh.
-            level: a level to be played.
+            level: the name of a level to be played, in the place of a source.
             height: of the canvas, in pixels.
             theme: "auto" as the notebook, "light" or "dark".
             name: what the mesh is called.
@@ -84,9 +87,14 @@ class MeshWidget(Exports, anywidget.AnyWidget):
             MeshError: one sentence on what is wrong with the source or the policy.
             traitlets.TraitError: the height or the theme cannot be.
         """
+        if source is not None and level is not None:
+            raise MeshError("A level brings its own mesh: leave the source out.")
+        wanted = levels.load(level) if isinstance(level, str) else level
         shown = source.document if isinstance(source, MeshWidget) else source
-        document = document_of(shown, kind, name)
+        document = Document() if wanted is not None else document_of(shown, kind, name)
         self.session = Session.of(document)
+        if wanted is not None:
+            Playing.of(self.session).begin(wanted)
         self.read_only = bool(read_only)
         self._connected: list[tuple[Signal, Callable[..., None]]] = []
         if policy is not None:
@@ -135,9 +143,14 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         return self.document.at_optimum
 
     @property
-    def level(self) -> Any:
+    def level(self) -> Level | None:
         """The level that is being played, None where none is."""
         return self.session.level
+
+    @property
+    def stars(self) -> int:
+        """Stars for what is done in the level: 0 before the goal, and where none is played."""
+        return Playing.of(self.session).play.stars if self.session.level is not None else 0
 
     # Changing the mesh
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from app.desktop.window import MainWindow
 
 
-@needing("No level is being played: choose one with Levels\u2026")
+@needing("No level is being played.")
 def in_level(window: MainWindow) -> bool:
     """A level is being played."""
     return window.levels.level is not None

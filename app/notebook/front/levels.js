@@ -1,0 +1,169 @@
+// The strip over canvas and panel while a level is played: what is to be done, with how many
+// operations, what is won, and the agent's answer.
+
+const STARS = 3;
+const STAR_PATH = starPath(10, 10, 8.5, 3.9);
+
+class Levels {
+  constructor(place, card) {
+    this._card = card;
+    this._all = [];
+    this._done = false;
+    this._waits = false;
+    this._choice = node("select", "mw-select mw-level-choice", { "aria-label": "Choose a level" });
+    this._choice.addEventListener("change", () => this._ask("open", this._choice.value));
+    this._stars = starRow("mw-level-stars");
+    this._facts = node("div", "mw-level-facts");
+    this._text = node("p", "mw-level-text");
+    this._again = this._button("Again", "again", "Begin this level again");
+    this._solve = this._button("Ask the agent", "solve", "");
+    this._next = this._button("Next", "next", "Go on to the next level");
+    this._live = node("div", "mw-unseen", { role: "status", "aria-live": "polite" });
+    place.append(
+      node("div", "mw-level-line", {}, this._choice, this._stars, this._facts),
+      node("div", "mw-level-line", {}, this._text,
+        node("div", "mw-level-buttons", {}, this._again, this._solve, this._next)),
+      this._live,
+    );
+    this._place = place;
+    place.setAttribute("role", "region");
+    place.setAttribute("aria-label", "Level");
+    place.hidden = true;
+  }
+
+  /** Tell what a message `level` says. */
+  update({ level, all }) {
+    this._place.hidden = level === null;
+    if (all) this._all = all;
+    if (level === null) return;
+    this._waits = false;
+    this._fill(level);
+    showStars(this._stars, level.done ? level.stars : level.best_stars);
+    this._stars.title = level.done ? "Won just now" : "Your best so far";
+    this._tellFacts(level);
+    this._tellText(level);
+    this._tellButtons(level);
+    this._celebrate(level);
+  }
+
+  _button(title, action, label) {
+    const made = node("button", "mw-button", { type: "button", title: label }, node("span", "", {}, title));
+    made.addEventListener("click", () => this._ask(action));
+    return made;
+  }
+
+  _ask(action, name = null) {
+    if (this._waits || this._card.readOnly) return;
+    this._waits = true; // a second click before the answer means the first one
+    setTimeout(() => { this._waits = false; }, 400);
+    this._card.ask("level", name === null ? { action } : { action, name });
+  }
+
+  /** The list to choose from. */
+  _fill(level) {
+    const rows = this._all.map((one, index) => {
+      const won = one.stars ? `  ${"\u2605".repeat(one.stars)}` : "";
+      return [one.name, `${index + 1}  ${one.title}${won}`];
+    });
+    const key = JSON.stringify(rows);
+    if (key !== this._listed) {
+      this._listed = key;
+      this._choice.replaceChildren(...rows.map(([name, words]) => node("option", "", { value: name }, words)));
+    }
+    this._choice.value = level.name;
+    this._choice.disabled = this._card.readOnly;
+  }
+
+  _tellFacts(level) {
+    const { rival } = level;
+    const facts = [
+      ["Goal", level.aim, "The score to reach: the lowest that is possible"],
+      ["Par", level.par, level.proved
+        ? "No fewer operations will do: all ways were tried"
+        : "The fewest operations known; perhaps you find fewer"],
+      ["You", level.used, "Your operations from the start to here; undo takes them back"],
+    ];
+    if (rival) facts.push(["Agent", answerOf(rival), "What the agent took, on a mesh of its own"]);
+    const key = JSON.stringify(facts);
+    if (key === this._told) return;
+    this._told = key;
+    this._facts.replaceChildren(...facts.map(([name, value, label]) =>
+      node("span", "mw-level-fact", { title: label }, `${name} `, node("b", "", {}, String(value)))));
+  }
+
+  _tellText(level) {
+    const { headline, remark, rival } = level;
+    const failed = rival && rival.standing === "failed" ? rival.reason : "";
+    this._text.dataset.tone = level.done && !level.helped ? "won" : remark || failed ? "warns" : "";
+    const words = remark || failed || level.text;
+    this._text.replaceChildren(...(headline ? [node("b", "", {}, `${headline}. `)] : []), words);
+    tell(this._live, headline || remark ? `${headline} ${remark}` : "");
+  }
+
+  _tellButtons(level) {
+    const thinks = level.rival !== null && level.rival.standing === "asked";
+    tell(this._solve.firstChild, level.answered ? "Show a way" : thinks ? "Thinking\u2026" : "Ask the agent");
+    this._solve.title = level.answered
+      ? "Begin again with this way ahead: redo goes along it"
+      : "Let the agent solve this level on a mesh of its own, and compare";
+    const reads = this._card.readOnly;
+    this._solve.disabled = thinks || reads;
+    this._again.disabled = reads;
+    this._next.disabled = level.next === null || reads;
+    this._next.classList.toggle("mw-primary", level.done && level.stars > 0 && level.next !== null);
+  }
+
+  /** The stars light up one after the other; at once for who wants no motion. */
+  _celebrate(level) {
+    const won = level.done && level.stars > 0;
+    this._place.toggleAttribute("data-won", won);
+    if (won && !this._done) {
+      this._stars.classList.remove("mw-fresh");
+      void this._stars.offsetWidth; // so that the motion begins again
+      this._stars.classList.add("mw-fresh");
+    }
+    if (!won) this._stars.classList.remove("mw-fresh");
+    this._done = won;
+  }
+}
+
+/** What the agent has come to, in few letters. */
+function answerOf(rival) {
+  if (rival.standing === "asked") return "\u2026";
+  if (rival.standing === "failed") return "\u2013";
+  return rival.reached ? rival.used : `${rival.used} (s ${rival.score})`;
+}
+
+/** Three stars. */
+function starRow(name) {
+  const space = "http://www.w3.org/2000/svg";
+  const row = node("span", name, { role: "img" });
+  for (let i = 0; i < STARS; i += 1) {
+    const svg = document.createElementNS(space, "svg");
+    const path = document.createElementNS(space, "path");
+    for (const [key, value] of Object.entries({ viewBox: "0 0 20 20", "aria-hidden": "true", class: "mw-star" })) {
+      svg.setAttribute(key, value);
+    }
+    path.setAttribute("d", STAR_PATH);
+    svg.append(path);
+    row.append(svg);
+  }
+  return row;
+}
+
+/** Fill the first `count` stars of a row. */
+function showStars(row, count) {
+  row.setAttribute("aria-label", `${count} of ${STARS} stars`);
+  [...row.children].forEach((star, index) => star.toggleAttribute("data-won", index < count));
+}
+
+/** A star with five tips around (x, y), as a path. */
+function starPath(x, y, outer, inner) {
+  const corners = [];
+  for (let i = 0; i < 10; i += 1) {
+    const angle = Math.PI * (i / 5 - 0.5);
+    const reach = i % 2 ? inner : outer;
+    corners.push(`${(x + reach * Math.cos(angle)).toFixed(2)} ${(y + reach * Math.sin(angle)).toFixed(2)}`);
+  }
+  return `M${corners.join("L")}Z`;
+}

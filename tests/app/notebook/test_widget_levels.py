@@ -1,0 +1,219 @@
+"""Levels in a notebook: what browsers hear of the play, and what they may ask of it."""
+
+import json
+
+import pytest
+from porting import Port, script_agent
+
+from app import levels
+from app.notebook import MeshWidget
+from app.notebook.playing import Playing
+from app.rival import Standing
+from meshcore import MeshError
+
+
+@pytest.fixture(autouse=True)
+def _own_stars(monkeypatch, tmp_path):
+    monkeypatch.setenv("MESHWRIGHT_STATE_DIR", str(tmp_path))
+
+
+@pytest.fixture
+def widget(monkeypatch, greedy):
+    script_agent(monkeypatch, greedy)
+    made = MeshWidget(level="two-turns")
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def port(widget):
+    made = Port(widget.session)
+    made.ask("hello")
+    yield made
+    made.close()
+
+
+def told(port):
+    """The last that was said of the level."""
+    return port.of("level")[-1]["level"]
+
+
+def solve(port):
+    for operation, (a, b) in port.session.level.solution:
+        port.operate(operation.value, port.session.mesh.halfedge(a, b))
+
+
+def test_a_view_is_told_of_the_level_when_it_comes(port):
+    message = port.of("level")[-1]
+    assert [one["name"] for one in message["all"]] == list(levels.names())
+    level = message["level"]
+    assert (level["name"], level["goal"], level["par"], level["used"]) == ("two-turns", 0, 2, 0)
+    assert (level["stars"], level["best_stars"], level["done"]) == (0, 0, False)
+    assert level["next"] == levels.after("two-turns")
+    assert message["to"] == port.view
+    json.dumps(message)
+
+
+def test_without_a_level_nothing_is_told(monkeypatch, greedy, strip):
+    script_agent(monkeypatch, greedy)
+    widget = MeshWidget(strip)
+    port = Port(widget.session)
+    port.ask("hello")
+    assert port.of("level") == []
+    port.ask("level", action="open", name="two-turns")
+    assert "There is nothing to 'level' here" in port.sentence
+    assert (widget.level, widget.stars) == (None, 0)
+    port.close()
+    widget.close()
+
+
+def test_a_level_is_played_to_three_stars(widget, port):
+    heard = []
+    widget.on("level", heard.append)
+    solve(port)
+    level = told(port)
+    assert (level["used"], level["stars"], level["best_stars"], level["done"]) == (2, 3, 3, True)
+    assert level["headline"] == "As few as can be"
+    assert "three stars" in level["remark"]
+    assert widget.stars == 3
+    assert heard == [widget.level]
+    stars = {one["name"]: one["stars"] for one in port.of("level")[-1]["all"]}
+    assert stars["two-turns"] == 3
+    port.ask("undo")
+    assert (told(port)["used"], told(port)["done"], told(port)["stars"]) == (1, False, 0)
+    assert "all" not in port.of("level")[-1]
+
+
+def test_again_next_and_open(port):
+    solve(port)
+    port.ask("level", action="again")
+    assert (told(port)["used"], told(port)["best_stars"]) == (0, 3)
+    port.ask("level", action="next")
+    assert told(port)["name"] == levels.after("two-turns")
+    port.ask("level", action="open", name="star")
+    assert told(port)["goal"] == 4
+    assert port.replica.shows(port.session.mesh, port.session.telling.mirror.frame)
+    port.ask("level", action="next")
+    assert "last level" in port.sentence
+    assert told(port)["name"] == "star"
+
+
+@pytest.mark.parametrize(
+    ("fields", "why"),
+    [
+        ({"action": "open", "name": "no-such"}, "no level named"),
+        ({"action": "open", "name": 7}, "must be a string"),
+        ({"action": "open", "name": "x" * 500}, "at most"),
+        ({"action": "win"}, "must be one of"),
+        ({}, "needs the field"),
+        ({"action": "again", "stars": 3}, "no field"),
+    ],
+)
+def test_nonsense_is_refused(port, fields, why):
+    before = port.session.document.revision
+    port.ask("level", **fields)
+    assert why in port.sentence
+    assert port.session.document.revision == before
+    assert port.session.level.name == "two-turns"
+
+
+def test_what_is_not_played_in_a_level_is_refused(port):
+    port.ask("level", action="open", name="three-blocks")
+    for word, fields in (
+        ("clean_all", {}),
+        ("desired", {"vertex": 0, "degree": 4}),
+        ("lock", {"vertex": 0, "on": True}),
+        ("corner", {"vertex": 6, "on": True}),
+    ):
+        port.ask(word, **fields)
+        assert "level" in port.sentence
+    port.operate("chord_collapse", port.session.mesh.halfedge(0, 1))
+    assert "not played in levels" in port.sentence
+    assert len(port.session.document.history) == 0
+    port.ask("smooth")
+    assert told(port)["used"] == 0
+
+
+def test_a_hint_costs_a_star(widget, port):
+    widget.hint()
+    assert told(port)["hinted"]
+    solve(port)
+    assert told(port)["stars"] == 2
+
+
+def test_the_agents_steps_win_nothing(widget, port):
+    widget.complete()
+    level = told(port)
+    assert (level["helped"], level["stars"]) == (True, 0)
+    assert "win no stars" in level["remark"]
+
+
+def test_the_agent_answers_on_a_mesh_of_its_own(widget, port):
+    play = Playing.of(widget.session).play
+    port.ask("level", action="solve")
+    assert told(port)["rival"]["standing"] == "asked"
+    assert widget.session.loop.pump(lambda: play.rival.standing is not Standing.ASKED, 20)
+    level = told(port)
+    assert level["rival"]["standing"] == "done"
+    assert level["rival"]["used"] == len(play.rival.operations) > 0
+    assert level["answered"]
+    assert len(widget.history) == 0
+    port.ask("level", action="solve")
+    assert len(widget.history) == level["rival"]["used"]
+    assert widget.history.cursor == 0
+    assert "Redo" in port.sentence
+
+
+def test_a_way_is_shown_where_the_agent_cannot_play(widget, port):
+    port.ask("level", action="open", name="three-blocks")
+    assert told(port)["answered"]
+    port.ask("level", action="solve")
+    assert len(widget.history) == 4
+
+
+def test_who_may_look_only_cannot_play(widget):
+    port = Port(widget.session, read_only=True)
+    port.ask("hello")
+    port.ask("level", action="next")
+    assert "looking only" in port.sentence
+    assert widget.level.name == "two-turns"
+    port.close()
+
+
+def test_two_widgets_play_the_same_level(widget, port):
+    other = MeshWidget(widget)
+    second = Port(other.session)
+    second.ask("hello")
+    solve(second)
+    assert told(port)["stars"] == told(second)["stars"] == other.stars == 3
+    second.close()
+    other.close()
+
+
+def test_a_message_is_small_and_is_sent_only_when_it_is_news(port):
+    port.operate("flip_left", next(
+        h for h in range(48) if port.session.document.check("flip_left", h)
+    ))  # fmt: skip
+    count = len(port.of("level"))
+    assert len(json.dumps(port.of("level")[-1])) < 1500
+    port.ask("smooth")
+    port.ask("hover", halfedge=3, operation=None)
+    assert len(port.of("level")) == count
+
+
+def test_a_widget_wants_a_mesh_or_a_level(strip):
+    with pytest.raises(MeshError, match="A level brings its own mesh"):
+        MeshWidget(strip, level="star")
+    with pytest.raises(MeshError, match="no level named"):
+        MeshWidget(level="stra")
+
+
+def test_nothing_is_left_of_a_widget_that_is_closed(monkeypatch, greedy):
+    script_agent(monkeypatch, greedy)
+    widget = MeshWidget(level="two-turns")
+    document, play = widget.document, Playing.of(widget.session).play
+    play.ask_agent()
+    widget.close()
+    assert play.rival is None
+    document.submit("flip_left", next(h for h in range(48) if document.check("flip_left", h)))
+    assert play.used == 0
