@@ -41,7 +41,7 @@ def run(
     """
     sizes = SIZES[:2] if quick else SIZES
     results: dict[str, Any] = {}
-    with browser() as chromium, jupyterlab() as server:
+    with jupyterlab() as server, browser() as chromium:
         page = chromium.new_page(viewport=WINDOW)
         page.add_init_script(NOTING)
         notebook = LabNotebook(page, server)

@@ -5,7 +5,6 @@ Nothing of the person's own settings is read or written, and nothing outside thi
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import secrets
 import signal
@@ -18,6 +17,7 @@ import urllib.request
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 from app.report import UserError
@@ -106,7 +106,7 @@ def marimo(path: Path, run: bool = False) -> Iterator[Server]:
 
 def need(module: str, title: str) -> None:
     """Raise UserError with what to install if ``module`` is missing."""
-    if importlib.util.find_spec(module) is None:
+    if find_spec(module) is None:
         raise UserError(f"{title} is not installed: pip install {module}")
 
 

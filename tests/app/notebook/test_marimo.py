@@ -107,6 +107,7 @@ def test_touch_on_a_narrow_screen(browser, warm, tmp_path):
             spot = before["allowed"][0]
             marimo.page.touchscreen.tap(*card.place(spot))
             card.until("(root, h) => Number(root.dataset.halfedge) === h", spot)
+            card.until("root => Boolean(root.meshwright.pointing.offers)")
             marimo.page.screenshot(path=tmp_path / "touch.png")
             card.choice(TURNED).tap()
             card.await_head(cursor=1)
