@@ -19,6 +19,7 @@ from app.policy_files import label
 from app.progress import Progress
 from app.runs import Decided, Question, Run, Runner, State
 from app.searching import Effort, SearchRunner
+from app.sight import Sight
 from app.signals import Signal
 from app.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, Worker
 from meshcore import MeshError
@@ -56,7 +57,6 @@ class Assistant:
         ask: Ask | None = None,
     ) -> None:
         self.changed = Signal()
-        self.looked = Signal()
         self.said = Signal()
         self.failed = Signal()
         self._document = document
@@ -73,8 +73,8 @@ class Assistant:
         self._runner: Runner | None = None
         self._runner_at = -1
         self._applying = False
-        self._insight: Insight | None = None
-        self._insight_at = -1
+        self._sight = Sight(document)
+        self.looked = self._sight.changed
         self.progress = Progress()
         self.hinting = Hinting(document, self._worker)
         document.changed.connect(self._on_document_changed)
@@ -107,7 +107,7 @@ class Assistant:
             self.cancel()
             self.hinting.forget()
             self._policy, self._chosen, self._runner = name, "", None
-            self._see(None)
+            self._sight.see(None)
             self.changed.emit()
             self._look_soon()
 
@@ -139,13 +139,13 @@ class Assistant:
         if watch:
             self._look_soon()
         else:
-            self._see(None)
+            self._sight.see(None)
         self.changed.emit()
 
     @property
     def insight(self) -> Insight | None:
         """What the policy sees in the present state, and will do next; None if not known."""
-        return self._insight if self._insight_at == self._document.revision else None
+        return self._sight.insight
 
     # What a person asks for
 
@@ -308,11 +308,6 @@ class Assistant:
         self._state = state
         self.changed.emit()
 
-    def _see(self, insight: Insight | None) -> None:
-        if insight is not None or self._insight is not None:
-            self._insight, self._insight_at = insight, self._document.revision
-            self.looked.emit()
-
     def _look_soon(self) -> None:
         """Look again once the event loop has had its turn; many edits are one look."""
         if self._watch and not self._look_due:
@@ -322,12 +317,12 @@ class Assistant:
     def _look(self) -> None:
         self._look_due = False
         ready = self._policy and not self._document.empty and not self._document.at_optimum
-        if self._watch and ready and self._run is None and self._insight is None:
+        if self._watch and ready and self._run is None and self._sight.last is None:
             self._begin(State.LOOKING)
 
     def _on_document_changed(self) -> None:
         self.hinting.forget()
-        self._see(None)
+        self._sight.see(None)
         if not self._applying:
             self.cancel()  # a person took over; the next run starts from what is there then
             self._runner_at = -1  # no runner knows of this edit, whenever its run has ended
@@ -367,7 +362,7 @@ class Assistant:
         if run.state is State.LOOKING:
             self._end(run.after)
         if self._watch:
-            self._see(insight)
+            self._sight.see(insight)
 
     def progressed(self, run: Run, done: int, best: int) -> None:
         """So many rollouts are done, and this is the lowest s so far."""
@@ -416,7 +411,7 @@ class Assistant:
         elif run.state is State.STEPPING:
             self._end(State.PAUSED)
         if self._watch and not decided.finished:
-            self._see(decided.insight)
+            self._sight.see(decided.insight)
         if run is self._run:
             run.applied.set()
             self.changed.emit()
@@ -440,11 +435,11 @@ class Assistant:
 
         if not run.decisions:
             return
-        seen = self._insight
+        seen = self._sight.last
         self._applying = True
         try:
             after_run(self._document, label(run.policy), run.held, run.effort is not None)
         finally:
             self._applying = False
         self._runner_at = self._document.revision  # vertices have moved, no edge has
-        self._see(seen)
+        self._sight.see(seen)
