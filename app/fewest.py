@@ -53,7 +53,7 @@ PER_OPERATION = 4
 """Irregular vertices that one operation mends at most: a flip changes four degrees, a collapse
 makes three vertices of four, all others change fewer.
 """
-_ROOM = 8
+_ROOM = 64
 """Times the room of the mesh: no sequence that is looked at makes more."""
 _EXHAUSTED, _FULL, _SPENT, _CRAMPED = 0, 1, 2, 3
 

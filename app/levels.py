@@ -11,6 +11,7 @@ import json
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +71,12 @@ class Level:
         return mesh.score <= self.goal and not (self.most and mesh.n_elements > self.most)
 
     @property
+    def story(self) -> str:
+        """How large it is, and its par."""
+        noun = "triangles" if self.kind == "tri" else "quads"
+        return f"{len(self.elements)} {noun}, par {self.par}"
+
+    @property
     def aim(self) -> str:
         """The goal in words."""
         if self.most:
@@ -83,9 +90,27 @@ def names() -> tuple[str, ...]:
     return tuple(_name(path) for path in _files())
 
 
-def all() -> tuple[Level, ...]:
+class Shelf(tuple[Level, ...]):
+    """Levels side by side, which show themselves as a table."""
+
+    def __repr__(self) -> str:
+        """One line for each level: its name, its title, what it is, its par."""
+        width = max((len(level.name) for level in self), default=0)
+        return "\n".join(f"{level.name:<{width}}  {level.title}: {level.story}" for level in self)
+
+    def _repr_html_(self) -> str:
+        """The same as a table, for notebooks."""
+        cells = "".join(
+            f"<tr><td>{level.number}</td><td><code>{escape(level.name)}</code></td>"
+            f"<td>{escape(level.title)}</td><td>{level.story}</td></tr>"
+            for level in self
+        )
+        return f"<table><tbody>{cells}</tbody></table>"
+
+
+def all() -> Shelf:
     """All levels, the easiest first."""
-    return tuple(load(name) for name in names())
+    return Shelf(load(name) for name in names())
 
 
 @cache

@@ -134,6 +134,10 @@ def _ell(column: int, row: int) -> bool:
     return column < 2 or row < 2
 
 
+def _ring(column: int, row: int) -> bool:
+    return (column, row) != (2, 2)
+
+
 RECIPES = (
     Recipe(
         "one-flip",
@@ -293,10 +297,18 @@ RECIPES = (
     Recipe(
         "plate",
         "The plate with a hole",
-        "Around a hole the defects of the corners add up to nothing: four of the hole against four"
-        " of the plate. So s* is 0, and a ring of quads is possible.",
-        shaped("square-with-hole", "quad"),
-        (1, 99),
+        "Around a hole the wishes of the corners add up to nothing: four reflex corners against"
+        " four others. So s* is 0, and rings of quads can run around the hole.",
+        spoilt(
+            lambda: squares(5, 5, _ring),
+            "collapse",
+            "split",
+            "flip_left",
+            "flip_right",
+            "global_split",
+        ),
+        (5, 5),
+        nodes=60_000,
     ),
     Recipe(
         "large-polygon",

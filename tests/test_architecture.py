@@ -35,6 +35,7 @@ def brought_along(statement: str) -> set[str]:
         ("import agent", (*DRAWING, "app")),
         ("import app.document", (*HEAVY, *DRAWING, "agent")),
         ("import app.assistant", ("torch", *DRAWING)),
+        ("import app.levels, app.level_play", (*HEAVY, *DRAWING, "agent")),
         ("import app.scene", ("torch", "qtpy", "PySide6", "pyvistaqt")),
         ("import app.desktop.window", ("torch", "agent")),
         ("import app.cli", (*HEAVY, *DRAWING, *READERS, *NUMERIC, "agent", "meshcore")),

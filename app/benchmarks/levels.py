@@ -24,13 +24,13 @@ SECONDS = 2.0
 
 NODES = 300_000
 """States that the proof looks at."""
-QUICK_NODES, QUICK_SECONDS = 3_000, 0.3
+QUICK, QUICK_NODES, QUICK_SECONDS = 4, 3_000, 0.3
 
 
 def run(seed: int, quick: bool, update: Update, seconds: float = SECONDS) -> dict[str, Any]:
-    """Check all levels; quick: a glance at the ways, and little time for the agent."""
+    """Check all levels; quick: the first few, with a glance at their ways."""
     found = {}
-    for number, level in enumerate(levels.all()):
+    for number, level in enumerate(levels.all()[:QUICK] if quick else levels.all()):
         update(number, level.name)
         nodes = QUICK_NODES if quick else NODES
         found[level.name] = checked(level, nodes, QUICK_SECONDS if quick else seconds, seed)

@@ -24,6 +24,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     from meshcore import MeshError
 
     progress, rows = Progress(), []
+    lines: list[tuple[str, object]] = []
     try:
         found = levels.all()
     except MeshError as error:
@@ -44,11 +45,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
                 "used": best.used,
             }
         )
-    text = table([(str(row["name"]), _words(row)) for row in rows], indent="")
+        won = f", {'*' * best.stars} in {best.used}" if best.stars else ""
+        lines.append((level.name, f"{level.title}: {level.story}{won}"))
+    text = table(lines, indent="")
     report.result({"command": "levels", "levels": rows}, text)
-
-
-def _words(row: dict[str, object]) -> str:
-    noun = "triangles" if row["kind"] == "tri" else "quads"
-    won = f", {'*' * int(str(row['stars']))} in {row['used']}" if row["stars"] else ""
-    return f"{row['title']}: {row['elements']} {noun}, par {row['par']}{won}"

@@ -31,7 +31,6 @@ STORY = (
     "Each level is a mesh with a goal and a par: reach the lowest score, with as few operations as"
     " you can. Stars count operations only; Undo takes them back, and smoothing is free."
 )
-NOUNS = {"tri": "triangles", "quad": "quads"}
 
 
 class LevelDialog(QDialog):
@@ -131,9 +130,8 @@ class Card(QPushButton):
         self.setObjectName("LevelCard")
         self.setFixedSize(CARD)
         self.setAutoDefault(False)
-        mesh = level.mesh()
         done = f", done in {best.used}" if best.stars else ""
-        story = f"{mesh.n_elements} {NOUNS[level.kind]}, par {level.par}{done}"
+        story = f"{level.story}{done}"
         self.setToolTip(level.text)
         self.setAccessibleName(
             f"Level {level.number}, {level.title}: {story}, {best.stars} of {MOST_STARS} stars"

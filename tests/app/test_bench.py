@@ -18,7 +18,7 @@ def test_unknown_suite_is_refused(capsys):
     assert "choose from" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", ["core", "fuzz", "large"])
+@pytest.mark.parametrize("name", ["core", "fuzz", "large", "levels"])
 def test_suite_runs(name, capsys):
     assert cli.main(["bench", "--suite", name, "--quick", "--json"]) == 0
     said = capsys.readouterr()

@@ -29,6 +29,16 @@ def test_there_are_levels_of_both_kinds_from_one_operation_on():
     assert [levels.after(level.name) for level in found] == [*levels.names()[1:], None]
 
 
+def test_levels_show_themselves_as_a_table():
+    shelf = levels.all()
+    assert repr(shelf).splitlines()[0].split() == [
+        "one-flip", "One", "flip:", "24", "triangles,", "par", "1"
+    ]  # fmt: skip
+    table = shelf._repr_html_()
+    assert table.count("<tr>") == len(shelf)
+    assert "<code>star</code>" in table
+
+
 def test_a_level_is_a_valid_mesh_that_is_not_at_its_goal(level):
     mesh = level.mesh()
     mesh.validate()
@@ -80,8 +90,8 @@ def test_the_shortest_way_is_found_whatever_the_score_does_on_it():
 
 
 def test_a_search_that_is_cut_short_says_how_far_it_came():
-    level = levels.load("plate")
-    answer = fewest(level.mesh(), level.goal, nodes=200, slots=1 << 12)
+    level = levels.load("notch")
+    answer = fewest(level.mesh(), level.goal, nodes=100, slots=1 << 12)
     assert answer.sequences == ()
     assert 1 <= answer.proved < level.par
 
