@@ -30,6 +30,18 @@ SETTINGS = """{
     "@jupyterlab/notebook-extension:tracker": {"windowingMode": "none"},
     "@jupyterlab/docmanager-extension:plugin": {"autosave": false}
 }"""
+KEEPER = """
+import os, subprocess, sys, threading
+server = subprocess.Popen(sys.argv[1:], stdin=subprocess.DEVNULL)
+threading.Thread(target=lambda: os._exit(server.wait()), daemon=True).start()
+sys.stdin.read()  # ends when whoever has started us closes it, or dies
+server.terminate()
+try:
+    server.wait(10)
+except subprocess.TimeoutExpired:
+    server.kill()
+"""
+"""Ends a server when the process that wanted it is gone, even if that was killed."""
 MARIMO = """[runtime]
 auto_instantiate = true
 auto_reload = "off"
@@ -130,10 +142,10 @@ def running(command: Sequence[str], environment: dict[str, str], log: Path, url:
     """Run a server until the block ends; the block begins when ``url`` answers."""
     with log.open("w") as said:
         process = subprocess.Popen(
-            command,
+            [sys.executable, "-c", KEEPER, *command],
             cwd=log.parent,  # python -m looks into the present folder first
             env=environment,
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE,
             stdout=said,
             stderr=subprocess.STDOUT,
             start_new_session=True,
@@ -162,11 +174,10 @@ def _await(process: subprocess.Popen[bytes], url: str, log: Path) -> None:
 
 def _end(process: subprocess.Popen[bytes]) -> None:
     """Ask the server to leave, with its kernels; then see to it."""
-    for means, seconds in ((signal.SIGTERM, 10.0), (signal.SIGKILL, 10.0)):
-        if process.poll() is None:
-            os.killpg(process.pid, means)
-            try:
-                process.wait(seconds)
-            except subprocess.TimeoutExpired:
-                continue
-        return
+    if process.stdin is not None:
+        process.stdin.close()
+    try:
+        process.wait(15.0)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()

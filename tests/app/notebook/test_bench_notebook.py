@@ -1,6 +1,10 @@
 """The suite that measures the widget in a browser, and what it says where something is missing."""
 
 import json
+import socket
+import subprocess
+import sys
+import time
 
 import pytest
 
@@ -50,3 +54,27 @@ def test_server_that_does_not_come_up_says_why(tmp_path):
         servers.running(command, servers.apart(tmp_path, {}), tmp_path / "log", "http://127.0.0.1"),
     ):
         pytest.fail("it did")
+
+
+def test_server_ends_with_the_process_that_wanted_it(tmp_path):
+    path = tmp_path / "book.py"
+    path.write_text("import marimo\napp = marimo.App()\n")
+    code = (
+        "import os, pathlib, sys; from app.benchmarks.notebook import servers\n"
+        "with servers.marimo(pathlib.Path(sys.argv[1])) as server:\n"
+        "    print(server.url, flush=True)\n"
+        "    os.kill(os.getpid(), 9)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, path], capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == -9
+    address = ("127.0.0.1", int(done.stdout.strip().rpartition(":")[2]))
+    last = time.monotonic() + 20
+    while time.monotonic() < last:
+        try:
+            socket.create_connection(address, timeout=1).close()
+        except OSError:
+            return
+        time.sleep(0.1)
+    pytest.fail("the server goes on")
