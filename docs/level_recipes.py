@@ -316,6 +316,7 @@ RECIPES = (
         "A random polygon like those that the agent has learnt on. Play it against the agent.",
         polygon("tri", 10, 0.5),
         (6, 99),
+        nodes=300_000,
     ),
     Recipe(
         "star",
