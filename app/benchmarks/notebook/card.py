@@ -86,6 +86,11 @@ class Card:
         self.hover(halfedge)
         self.page.mouse.click(*self.place(halfedge))
 
+    def aside(self) -> None:
+        """Move the mouse off the card, so that pictures show the mesh alone."""
+        self.page.mouse.move(2, 2)
+        self.until("root => Number(root.dataset.halfedge) === -1")
+
     def press(self, *keys: str) -> None:
         """Press keys one after the other, wherever the focus is."""
         for key in keys:

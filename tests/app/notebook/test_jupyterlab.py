@@ -10,12 +10,6 @@ STAR = SETUP + "widget = MeshWidget('star')\nwidget"
 TURNED = "flip_left"
 
 
-def aside(card: Card) -> None:
-    """Move the mouse off the card, so that pictures show the mesh alone."""
-    card.page.mouse.move(2, 2)
-    card.until("root => Number(root.dataset.halfedge) === -1")
-
-
 @pytest.fixture
 def star(lab: Lab) -> Card:
     """A star in quads, s 12 over an optimum of 4, in a cell of its own."""
@@ -23,7 +17,7 @@ def star(lab: Lab) -> Card:
 
 
 def test_widget_shows_the_mesh(lab, star, tmp_path):
-    aside(star)
+    star.aside()
     picture = star.picture()
     star.page.screenshot(path=tmp_path / "star.png")
     assert star.head["score"] == lab.ask("widget.score") == 12
@@ -35,7 +29,7 @@ def test_widget_shows_the_mesh(lab, star, tmp_path):
 
 
 def test_hover_shows_the_ghost_and_says_what_is_allowed(lab, star, tmp_path):
-    aside(star)
+    star.aside()
     empty = star.layer("upper")
     spot = lab.spot(TURNED)
     star.hover(spot)
@@ -48,20 +42,20 @@ def test_hover_shows_the_ghost_and_says_what_is_allowed(lab, star, tmp_path):
     for name, row in offers.items():
         assert row["allowed"] == lab.ask(f"bool(widget.check('{name}', {spot}))")
         assert row["allowed"] or row["reason"]
-    aside(star)
+    star.aside()
     star.until("root => root.dataset.meant === ''")
     assert differing(empty, star.layer("upper")) == 0
     assert lab.ask("widget.history.cursor") == 0
 
 
 def test_click_changes_the_mesh_in_the_kernel_and_undo_brings_it_back(lab, star, tmp_path):
-    aside(star)
+    star.aside()
     before, picture = lab.elements(), star.layer("lower")
     spot = lab.spot(TURNED)
     star.arm(TURNED)
     star.click(spot)
     star.await_head(cursor=1)
-    aside(star)
+    star.aside()
     changed = star.layer("lower")
     star.page.screenshot(path=tmp_path / "edited.png")
     assert lab.elements() != before
@@ -71,12 +65,12 @@ def test_click_changes_the_mesh_in_the_kernel_and_undo_brings_it_back(lab, star,
 
     star.button("Undo").click()
     star.await_head(cursor=0)
-    aside(star)
+    star.aside()
     assert lab.elements() == before
     assert differing(picture, star.layer("lower")) == 0
     star.button("Redo").click()
     star.await_head(cursor=1)
-    aside(star)
+    star.aside()
     assert lab.elements() != before
     assert differing(changed, star.layer("lower")) == 0
 
@@ -100,13 +94,13 @@ def test_two_widgets_on_one_document_stay_in_step(lab, tmp_path):
         "other = MeshWidget(widget)\nother",
     )
     first, second = Card(lab.page), Card(lab.page, 1)
-    aside(first)
+    first.aside()
     before = second.picture()
     first.arm(TURNED)
     first.click(lab.spot(TURNED))
     for card in (first, second):
         card.await_head(cursor=1)
-    aside(first)
+    first.aside()
     assert first.revision == second.revision
     assert first.head["score"] == second.head["score"] == lab.ask("other.score")
     assert differing(before, second.picture()) > 200
@@ -116,7 +110,7 @@ def test_two_widgets_on_one_document_stay_in_step(lab, tmp_path):
 
 
 def test_what_python_does_is_painted(lab, star):
-    aside(star)
+    star.aside()
     before = star.picture()
     lab.ask("None", f"widget.apply('{TURNED}', {lab.spot(TURNED)})")
     star.await_head(cursor=1)
@@ -144,7 +138,7 @@ def test_agent_plays_until_it_is_paused(lab, tmp_path):
 
 def test_everything_goes_by_keys_alone(lab, star, tmp_path):
     before = lab.elements()
-    aside(star)
+    star.aside()
     star.root.locator("[tabindex='0']").first.focus()
     star.press("ArrowDown")
     star.until("root => Number(root.dataset.halfedge) >= 0")
@@ -173,6 +167,25 @@ def test_everything_goes_by_keys_alone(lab, star, tmp_path):
     assert lab.elements() == before
     star.press("Shift+U")
     star.await_head(cursor=1)
+
+
+def test_level_is_won_by_a_click_and_the_next_one_opens(lab, tmp_path):
+    card = lab.card(SETUP + "widget = MeshWidget(level='quarter-turn')\nwidget")
+    strip = card.root.locator(".mw-levels")
+    strip.wait_for()
+    a, b = lab.ask("widget.level.solution[0][1]")
+    operation = lab.ask("widget.level.solution[0][0].value")
+    card.click(lab.ask(f"widget.mesh.halfedge({a}, {b})"))
+    card.choice(operation).click()
+    card.await_head(cursor=1, at_optimum=True)
+    strip.get_by_role("button", name="Next").wait_for()
+    lab.page.wait_for_timeout(400)
+    lab.page.screenshot(path=tmp_path / "won.png")
+    assert lab.ask("widget.stars") == 3
+    strip.get_by_role("button", name="Next").click()
+    card.await_head(cursor=0, at_optimum=False)
+    lab.page.screenshot(path=tmp_path / "next.png")
+    assert lab.ask("widget.level.name") == "two-flips"
 
 
 WRONG = (
@@ -223,18 +236,18 @@ def test_page_loaded_again_shows_the_mesh_as_it_is_now(lab, star, tmp_path):
     star.arm(TURNED)
     star.click(lab.spot(TURNED))
     star.await_head(cursor=1)
-    aside(star)
+    star.aside()
     shown = star.layer("lower")
     lab.save()
     lab.ask("None", f"widget.apply('{TURNED}', {lab.spot(TURNED)})")
     star.await_head(cursor=2)
-    aside(star)
+    star.aside()
     later = star.layer("lower")
     assert differing(shown, later) > 200
     lab.open()
     again = Card(lab.page)
     again.await_head(cursor=2)
-    aside(again)
+    again.aside()
     lab.page.screenshot(path=tmp_path / "again.png")
     assert again.head["score"] == lab.ask("widget.score")
     assert differing(later, again.layer("lower")) < 50
@@ -244,7 +257,7 @@ def test_page_loaded_again_shows_the_mesh_as_it_is_now(lab, star, tmp_path):
 
 
 def test_light_and_dark_follow_the_notebook(lab, star, tmp_path):
-    aside(star)
+    star.aside()
     light = star.picture()
     try:
         lab.theme("Dark")

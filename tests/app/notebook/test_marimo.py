@@ -6,15 +6,9 @@ import pytest
 from browser import Marimo, Watched
 
 from app.benchmarks.notebook import servers
-from app.benchmarks.notebook.card import Card, differing
+from app.benchmarks.notebook.card import differing
 
 TURNED = "flip_left"
-
-
-def aside(card: Card) -> None:
-    """Move the mouse off the card, so that pictures show the mesh alone."""
-    card.page.mouse.move(2, 2)
-    card.until("root => Number(root.dataset.halfedge) === -1")
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +29,7 @@ def marimo(_marimo: Marimo) -> Iterator[Marimo]:
 
 def test_click_changes_the_kernel_and_undo_brings_it_back(marimo, tmp_path):
     card = marimo.card
-    aside(card)
+    card.aside()
     before, picture = marimo.kernel(), card.layer("lower")
     assert before["score"] == card.head["score"] == 12
     empty = card.layer("upper")
@@ -45,7 +39,7 @@ def test_click_changes_the_kernel_and_undo_brings_it_back(marimo, tmp_path):
     card.arm(TURNED)
     card.click(before["allowed"][0])
     card.await_head(cursor=1)
-    aside(card)
+    card.aside()
     card.page.screenshot(path=tmp_path / "marimo.png")
     changed, later = card.layer("lower"), marimo.kernel()
     assert later["cursor"] == 1 and later["elements"] != before["elements"]
@@ -54,7 +48,7 @@ def test_click_changes_the_kernel_and_undo_brings_it_back(marimo, tmp_path):
     assert marimo.follows == f"s is {later['score']}"
     card.button("Undo").click()
     card.await_head(cursor=0)
-    aside(card)
+    card.aside()
     assert marimo.kernel()["elements"] == before["elements"]
     assert differing(picture, card.layer("lower")) == 0
 
@@ -81,7 +75,7 @@ def test_page_loaded_again_shows_the_mesh_as_it_is_now(marimo):
 
 def test_dark_follows_the_notebook(marimo, tmp_path):
     card = marimo.card
-    aside(card)
+    card.aside()
     light = card.picture()
     marimo.page.emulate_media(color_scheme="dark")
     card.until("root => root.dataset.theme === 'dark'")
