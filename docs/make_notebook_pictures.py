@@ -1,15 +1,13 @@
 """Makes README's pictures of the notebook, in JupyterLab and a real browser, into docs/images/.
 
     python docs/make_notebook_pictures.py            all of them
-    python docs/make_notebook_pictures.py lessons    only this one: notebook, lessons
+    python docs/make_notebook_pictures.py levels     only this one: notebook, levels
 
 Chromium must be installed; no display is needed.
 """
 
-import shutil
 import sys
 from collections.abc import Callable
-from importlib.resources import files
 from pathlib import Path
 
 from PIL import Image
@@ -44,20 +42,23 @@ def notebook(page: Page, server: Server) -> None:
     page.wait_for_timeout(SETTLE)
 
 
-def lessons(page: Page, server: Server) -> None:
-    """The beginning of the second lesson."""
-    name = "02-the-bound.ipynb"
-    shutil.copy(str(files("assets") / "lessons" / name), server.folder / name)
-    book = LabNotebook(page, server, name)
+def levels(page: Page, server: Server) -> None:
+    """A level that was won, beside the agent's answer."""
+    book = LabNotebook(page, server)
     _plain(page)
-    book.run(1)
-    Card(page)
-    page.wait_for_timeout(SETTLE)
-    page.locator("h1").first.scroll_into_view_if_needed()
+    book.show('import meshwright as mw\n\nwidget = mw.MeshWidget(level="two-turns")\nwidget')
+    card = Card(page)
+    card.button("Ask the agent").click()
+    card.button("Show a way").wait_for(timeout=120_000)
+    book.ask(
+        "[widget.apply(name, widget.mesh.halfedge(a, b)).score_change"
+        " for name, (a, b) in widget.level.solution]"
+    )
+    card.await_head(at_optimum=True)
     page.wait_for_timeout(SETTLE)
 
 
-PICTURES: dict[str, Callable[[Page, Server], None]] = {"notebook": notebook, "lessons": lessons}
+PICTURES: dict[str, Callable[[Page, Server], None]] = {"notebook": notebook, "levels": levels}
 
 
 def _plain(page: Page) -> None:
