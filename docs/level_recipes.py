@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.fewest import Found
+from agent.fewest import Found
 from meshcore import HalfEdgeMesh, shapes
 from meshcore.generate import benchmark_mesh, mesh_domain
 

@@ -4,7 +4,7 @@
     python docs/make_levels.py star two-*   only these
 
 What to make is in level_recipes.py. The start is drawn without a fold, and so is the end of the way
-that is kept. How few operations will do is looked for exhaustively (``app.fewest``) and, where that
+that is kept. How few operations will do is looked for exhaustively (``agent.fewest``) and, where that
 does not come to an end, by a beam of the best states and by the solver, whose ways are shortened
 from their ends. ``meshwright bench --suite levels`` checks what is kept.
 """
@@ -25,12 +25,12 @@ sys.path.insert(0, str(Path(__file__).parent))
 from level_recipes import RECIPES, Recipe
 
 from agent.coarsening import replayed
+from agent.fewest import Answer, Found, fewest
 from agent.policies import load, shipped
 from agent.shortening import shorten
 from agent.solver import solve
 from app import levels
 from app.document import Document
-from app.fewest import Answer, Found, fewest
 from app.levels import Level
 from meshcore import HalfEdgeMesh, quality
 from meshcore.operations import CODES, Operation

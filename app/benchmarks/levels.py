@@ -11,9 +11,9 @@ import time
 from typing import Any
 
 from agent import policies, solver
+from agent.fewest import Answer, fewest
 from app import levels
 from app.document import Document
-from app.fewest import Answer, fewest
 from app.levels import Level
 from app.report import Update
 from meshcore import MeshError, quality

@@ -6,9 +6,9 @@ import json
 import numpy as np
 import pytest
 
+from agent.fewest import fewest
 from app import levels
 from app.benchmarks.levels import played
-from app.fewest import fewest
 from meshcore import HalfEdgeMesh, MeshError, Operation
 
 LARGEST = 60
