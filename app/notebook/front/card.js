@@ -205,6 +205,8 @@ class Card {
     if (!mirror.live(halfedge)) return;
     const ends = [mirror.origin[halfedge], mirror.target(halfedge)];
     this.ask("operate", { operation, halfedge, ends });
+    const id = this._pending[this._pending.length - 1];
+    this.pointing.anticipate(() => this._pending.includes(id));
   }
 
   operateByKey(operation) {

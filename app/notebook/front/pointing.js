@@ -4,6 +4,7 @@
 // at a time, and the latest wins: what was passed over meanwhile is never asked.
 
 const HOVER_PATIENCE = 3000;
+const ANTICIPATE = { after: 14, times: 3 };
 
 class Pointing {
   constructor(card) {
@@ -128,6 +129,22 @@ class Pointing {
     if (this._asked && now - this._asked.at < HOVER_PATIENCE) return;
     const fields = { halfedge: this.halfedge, operation: this.wanted };
     this._asked = { id: card.link.send("hover", fields), at: now, ...fields };
+  }
+
+  /** Ask now for what will be here once the operation under way is done, while `waiting()`.
+   *
+   * This saves a way to Python and back. And Jupyter's server holds a small message back until the
+   * browser has acknowledged the one before, which takes 40 ms if it sends nothing meanwhile.
+   */
+  anticipate(waiting, times = ANTICIPATE.times) {
+    if (times === 0) return;
+    setTimeout(() => {
+      if (!waiting()) return;
+      this._asked = null;
+      this._answered = "";
+      this.ask();
+      this.anticipate(waiting, times - 1);
+    }, ANTICIPATE.after);
   }
 
   /** Keep the offers; the same ones stay the same object, so that an open menu stays as it is. */
