@@ -4,6 +4,7 @@ import json
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import Any
 
 ENDING = ".safetensors"
 _LONGEST_HEADER = 16 * 1024 * 1024
@@ -32,9 +33,12 @@ def kind_of(path: str | Path) -> str:
         raise ValueError(f"{path}: this is a folder, not a policy file.")
     if not path.is_file():
         raise ValueError(f"{path}: there is no such file.")
-    kind = _kind_of(path)
+    length, header = _header(path)
+    kind = _kind_in(header)
     if kind not in ("tri", "quad"):
         raise ValueError(f"{path.name}: this is no policy file of Meshwright.")
+    if path.stat().st_size < 8 + length + _body(header):
+        raise ValueError(f"{path.name}: this policy file is cut off.")
     return kind
 
 
@@ -45,15 +49,32 @@ def label(name: str) -> str:
 
 def _kind_of(entry: Traversable | Path) -> str:
     """The kind that the file's header names; empty if it is no policy."""
+    return _kind_in(_header(entry)[1])
+
+
+def _header(entry: Traversable | Path) -> tuple[int, dict[str, Any]]:
+    """Bytes of the file's header, and what it says of each entry; nothing if it has none."""
     with entry.open("rb") as stream:
         length = int.from_bytes(stream.read(8), "little")
         if length > _LONGEST_HEADER:
-            return ""
+            return 0, {}
         try:
             header = json.loads(stream.read(length))
         except (ValueError, RecursionError):
-            return ""
-    values = header.get("__metadata__", {}) if isinstance(header, dict) else {}
+            return 0, {}
+    entries = header.values() if isinstance(header, dict) else [None]
+    return (length, header) if all(isinstance(one, dict) for one in entries) else (0, {})
+
+
+def _body(header: dict[str, Any]) -> int:
+    """Bytes that follow the header, as it says; whoever reads the file checks it in full."""
+    spans = [one.get("data_offsets") for one in header.values()]
+    ends = [span[1] for span in spans if isinstance(span, list) and len(span) == 2]
+    return max((end for end in ends if type(end) is int), default=0)
+
+
+def _kind_in(header: dict[str, Any]) -> str:
+    values = header.get("__metadata__", {})
     if "kind" in values:
         return str(values["kind"])
     for value in values.values():

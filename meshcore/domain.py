@@ -198,6 +198,8 @@ def _place(point: ArrayLike) -> str:
 def _ring(ring: ArrayLike, what: str) -> Points:
     """Return one ring as an (n, 2) array of its own without a closing point; raise if it is bad."""
     try:
+        if np.iscomplexobj(ring):
+            raise TypeError("complex numbers would lose their imaginary part")
         points = np.array(ring, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
         raise MeshError(f"{_capital(what)} is not a list of [x, y] pairs of numbers.") from error

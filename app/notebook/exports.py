@@ -25,7 +25,7 @@ class Exports:
 
     def to_html(self, path: File = None, *, title: str = "") -> str:
         """One HTML file that goes through the film of the history, without Python or a network."""
-        return self._do(lambda: page.page(self.document, title, path))
+        return self._do(lambda: page.page(self.document, str(title), path))
 
     def to_png(self, path: File = None, size: tuple[int, int] = SIZE) -> bytes:
         """A picture of the mesh as it is now, ``size`` in pixels."""

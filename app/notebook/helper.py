@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.assistant import FASTEST, Assistant
-from app.document import Document, title_of
+from app.document import NO_MESH, Document, title_of
 from app.inputs import KIND_NOUN, looks_like_path
 from app.notebook.loop import Loop
 from app.notebook.wire import Packet
@@ -44,6 +44,8 @@ class Helper:
             self.assistant.policy = name
             return
         kind = self._document.kind
+        if not kind:
+            raise MeshError(NO_MESH)
         if looks_like_path(name):
             self._add(name)
             self.assistant.policy = name

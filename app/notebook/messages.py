@@ -15,6 +15,8 @@ LONGEST = 200
 """Characters of a string, at most."""
 LARGEST = 2**53 - 1
 """The largest whole number that a browser can count to."""
+DEGREES = 1, 100
+"""Bounds of a degree that may be asked for at a vertex."""
 
 
 class RefusedError(Exception):
@@ -120,7 +122,7 @@ WORDS: dict[str, dict[str, Check]] = {
     "clean_all": {},
     "go_to": {"cursor": whole(0)},
     "auto_smooth": {"on": boolean},
-    "desired": {"vertex": _vertex, "degree": whole(1, 100)},
+    "desired": {"vertex": _vertex, "degree": whole(*DEGREES)},
     "lock": {"vertex": _vertex, "on": boolean},
     "corner": {"vertex": _vertex, "on": boolean},
     "agent": {"action": one_of("step", "play", "pause", "complete", "stop", "hint")},

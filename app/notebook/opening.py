@@ -32,6 +32,8 @@ def document_of(source: Any, kind: str | None = None, name: str = "") -> Documen
     elif isinstance(source, str | Path) and is_project(source) and Path(source).is_file():
         document = Document()
         document.open(source)
+    elif source is None or (isinstance(source, str) and not source.strip()):
+        raise MeshError("There is nothing to show: name a shape of the gallery or a file.")
     else:
         return Document(sources.mesh(source, kind), name or _called(source))
     if kind is not None and document.kind not in ("", kind):

@@ -98,15 +98,16 @@ class Session:
     def join(self, port: Port) -> None:
         """A widget begins to show the document."""
         self.telling.add(port)
-        finalize(port, self._end_if_alone).atexit = False
+        finalize(port, self.end_if_alone).atexit = False
 
     def leave(self, port: Port) -> None:
         """A widget is closed; after the last one the agent's thread ends."""
         self.telling.remove(port)
         self._hovers = {view: held for view, held in self._hovers.items() if held[0] is not port}
-        self._end_if_alone()
+        self.end_if_alone()
 
-    def _end_if_alone(self) -> None:
+    def end_if_alone(self) -> None:
+        """End, if no widget shows the document."""
         if self._ended or not self.telling.alone:
             return
         if self._all.get(id(self.document)) is self:
@@ -144,7 +145,10 @@ class Session:
             self.do(begin)
             self.wait()
         except KeyboardInterrupt:
-            self.loop(self.assistant.cancel)
+            if self.loop.here:
+                self.assistant.cancel()  # where no loop runs, a queued one would end the next run
+            else:
+                self.loop(self.assistant.cancel)
             raise
         finally:
             self.assistant.failed.disconnect(failures.append)

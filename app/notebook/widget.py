@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from operator import index
 from pathlib import Path
+from reprlib import repr as shortened
 from typing import TYPE_CHECKING, Any
 
 import anywidget
@@ -16,6 +16,7 @@ from app.document import Document
 from app.history import History, Row
 from app.levels import Level
 from app.notebook import front
+from app.notebook.asking import degree_of, operation_of, policy_of, positive, vertex_of, whole
 from app.notebook.exports import Exports
 from app.notebook.opening import document_of
 from app.notebook.playing import Playing
@@ -63,7 +64,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         source: HalfEdgeMesh | Document | MeshWidget | Domain | str | Path | None = None,
         *,
         kind: str | None = None,
-        policy: str | None = None,
+        policy: str | Path | None = None,
         level: str | Level | None = None,
         height: int = 480,
         theme: str = "auto",
@@ -87,24 +88,26 @@ class MeshWidget(Exports, anywidget.AnyWidget):
             MeshError: one sentence on what is wrong with the source or the policy.
             traitlets.TraitError: the height or the theme cannot be.
         """
-        if source is not None and level is not None:
-            raise MeshError("A level brings its own mesh: leave the source out.")
+        self._connected: list[tuple[Signal, Callable[..., None]]] = []
+        self.read_only = bool(read_only)
+        if level is not None and not (source is None and kind is None):
+            raise MeshError("A level brings its own mesh: leave source and kind out.")
         wanted = levels.load(level) if isinstance(level, str) else level
+        if not isinstance(wanted, Level | None):
+            raise MeshError(f"A level must be the name of one, not {shortened(level)}.")
         shown = source.document if isinstance(source, MeshWidget) else source
         document = Document() if wanted is not None else document_of(shown, kind, name)
-        self.session = Session.of(document)
-        if wanted is not None:
-            Playing.of(self.session).begin(wanted)
-        self.read_only = bool(read_only)
-        self._connected: list[tuple[Signal, Callable[..., None]]] = []
-        if policy is not None:
-            self.session.agent.choose(policy)
-        super().__init__(
-            height=height,
-            theme=theme,
-            label=name or document.name,
-        )
-        self.session.join(self)
+        session = self.session = Session.of(document)
+        try:
+            if wanted is not None:
+                Playing.of(session).begin(wanted)
+            if policy is not None:
+                session.agent.choose(policy_of(policy))
+            super().__init__(height=height, theme=theme, label=name or document.name)
+        except BaseException:
+            session.end_if_alone()  # nobody shows the document: nothing may stay on it
+            raise
+        session.join(self)
         self.show_score()
 
     @traitlets.default("_esm")
@@ -156,11 +159,13 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
     def check(self, operation: Operation | str, halfedge: int) -> Verdict:
         """Whether an operation may be done at a half-edge: true, or false with a ``reason``."""
-        return self._do(lambda: self.document.check(operation, index(halfedge)))
+        action, at = operation_of(self.mesh, operation), whole(halfedge, "half-edge")
+        return self._do(lambda: self.document.check(action, at))
 
     def apply(self, operation: Operation | str, halfedge: int) -> Edit:
         """Do an operation and smooth around it, as one step; OperationRefused if it is refused."""
-        return self._do(lambda: self.document.submit(operation, index(halfedge)))
+        action, at = operation_of(self.mesh, operation), whole(halfedge, "half-edge")
+        return self._do(lambda: self.document.submit(action, at))
 
     def undo(self) -> Row | None:
         """Take back the last step; returns its row, None if there is none."""
@@ -172,7 +177,8 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
     def go_to(self, cursor: int) -> None:
         """Undo or redo until ``cursor`` steps are done; beyond either end it stops there."""
-        self._do(lambda: self.document.go_to(index(cursor)))
+        step = whole(cursor, "step")
+        self._do(lambda: self.document.go_to(step))
 
     def smooth(self) -> None:
         """Smooth and untangle the whole mesh, as one step."""
@@ -188,20 +194,20 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
     def set_desired(self, vertex: int, degree: int) -> None:
         """Ask for another degree at a vertex; s and s* follow."""
-        self._do(lambda: self.document.set_desired(vertex, degree))
+        self._do(lambda: self.document.set_desired(vertex_of(self.mesh, vertex), degree_of(degree)))
 
     def lock(self, vertex: int, flag: bool = True) -> None:
         """Lock a vertex, so that it neither moves nor vanishes, or unlock it."""
-        self._do(lambda: self.document.set_locked(vertex, flag))
+        self._do(lambda: self.document.set_locked(vertex_of(self.mesh, vertex), bool(flag)))
 
     def corner(self, vertex: int, flag: bool = True) -> None:
         """Make a vertex a corner, which stays where it is, or free it."""
-        self._do(lambda: self.document.set_geometric(vertex, flag))
+        self._do(lambda: self.document.set_geometric(vertex_of(self.mesh, vertex), bool(flag)))
 
     # The agent
 
     def play(
-        self, policy: str | None = None, *, speed: float | None = None, wait: bool = False
+        self, policy: str | Path | None = None, *, speed: float | None = None, wait: bool = False
     ) -> None:
         """Let the agent play, visibly, while the notebook goes on.
 
@@ -214,10 +220,11 @@ class MeshWidget(Exports, anywidget.AnyWidget):
             MeshError: the policy does not fit, or (where the call waits) the run broke off.
         """
         agent = self.session.agent
+        rate = positive(speed, "speed") if speed is not None else None
         self._choose(policy)
-        self._ask(lambda: agent.play(speed, hurry=wait), wait)
+        self._ask(lambda: agent.play(rate, hurry=wait), wait)
 
-    def step(self, policy: str | None = None, wait: bool = True) -> None:
+    def step(self, policy: str | Path | None = None, wait: bool = True) -> None:
         """One decision of the agent: an operation, and the clean-ups that follow it."""
         self._choose(policy)
         self._ask(self.assistant.step, wait)
@@ -228,9 +235,8 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
     def complete(self, seconds: float = COMPLETE_SECONDS, wait: bool = True) -> None:
         """Search for the best state within so many seconds, and go there."""
-        if not 0 < seconds < float("inf"):
-            raise MeshError(f"seconds must be a number above 0, not {seconds}.")
-        self._ask(lambda: self.assistant.search(Effort(seconds=seconds)), wait)
+        effort = Effort(seconds=positive(seconds, "seconds"))
+        self._ask(lambda: self.assistant.search(effort), wait)
 
     def hint(self, wait: bool = True) -> tuple[Choice, ...]:
         """The policy's best few operations in the present state.
@@ -247,9 +253,9 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         """
         return self.session.wait(timeout)
 
-    def _choose(self, policy: str | None) -> None:
+    def _choose(self, policy: str | Path | None) -> None:
         if policy is not None:
-            self._do(lambda: self.session.agent.choose(policy))
+            self._do(lambda: self.session.agent.choose(policy_of(policy)))
 
     def _ask(self, begin: Callable[[], None], wait: bool) -> None:
         if wait:
@@ -266,6 +272,8 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         "agent" (what it is doing, a word) and "level" (the level or None). What a callback raises
         goes to the log and, as a sentence, to the browser.
         """
+        if not callable(callback):
+            raise MeshError(f"A callback must be something to call, not {shortened(callback)}.")
         session, document = self.session, self.document
         events: dict[str, tuple[Signal, Callable[..., tuple[Any, ...]]]] = {
             "changed": (document.changed, lambda: ()),

@@ -92,7 +92,7 @@ def test_what_can_be_shown(show, star, tmp_path):
         ("starr", {}, "starr"),
         ("no.obj", {}, "no.obj"),
         (3, {}, "int"),
-        (None, {}, "mesh"),
+        (None, {}, "nothing to show"),
         ("star", {"kind": "hex"}, "hex"),
         ("star", {"policy": "tri"}, "tri is a policy for triangles; this is a mesh of quads."),
         ("star", {"policy": "nobody"}, "There is no policy 'nobody'"),
