@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from app.experiments.runs import (
     whole_number,
 )
 from app.experiments.still import given_mesh, still
+from app.policy_files import shipped
 from app.theme import LIGHT, Theme
 from meshcore import HalfEdgeMesh, MeshError
 
@@ -36,7 +38,7 @@ LEFT = 40.0
 
 def compare(
     mesh: Any,
-    policies: Sequence[str | Policy] = ("quad", "quad-paper"),
+    policies: Sequence[str | Path | Policy] | str | Path | Policy | None = None,
     rollouts: int = 10,
     steps: int | None = None,
     seed: int = 0,
@@ -46,7 +48,8 @@ def compare(
     Args:
         mesh: a mesh, a document, a widget, or what :func:`meshwright.mesh` makes a mesh of; it is
             not changed.
-        policies: names of shipped policies, files, or policies that are there.
+        policies: names of shipped policies, files, or policies that are there, or one of these;
+            None: the best that is shipped for this kind of mesh, and that of the paper.
         rollouts: of each policy, side by side.
         steps: decisions that a run may take; None: as many as its policy was trained with.
         seed: the same seed brings the same runs.
@@ -54,13 +57,16 @@ def compare(
     Raises MeshError with one sentence where a policy is unknown or for the other kind of mesh, or
     the mesh has no elements.
     """
-    given = [policies] if isinstance(policies, str) else list(policies)
-    if not given:
-        raise MeshError("There is no policy to compare: name one or more.")
     count = whole_number(rollouts, 1, "rollouts")
     limit = None if steps is None else whole_number(steps, 1, "steps")
     start_seed = whole_number(seed, 0, "seed")
     start = given_mesh(mesh)
+    if policies is None:
+        policies = shipped(start.kind)[:2]
+    several = isinstance(policies, Iterable) and not isinstance(policies, str)
+    given = list(policies) if several else [policies]
+    if not given:
+        raise MeshError("There is no policy to compare: name one or more.")
     known = [known_policy(name) for name in given]
     for policy in known:
         require_kind(policy, start)

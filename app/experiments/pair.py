@@ -12,13 +12,13 @@ from meshcore import MeshError
 
 
 def side_by_side(
-    comparison: Comparison, policies: Sequence[str] | None = None, height: int = 400
+    comparison: Comparison, policies: Sequence[str] | str | None = None, height: int = 400
 ) -> Any:
     """The best run of each policy in a widget of its own, in a row.
 
     Args:
         comparison: what :func:`app.experiments.compare` brought.
-        policies: two or more of its names; None: the first two.
+        policies: its names, or one of them; None: the first two.
         height: of the meshes, in pixels.
 
     Returns a box for Jupyter, whose ``children`` are boxes of a name and a
@@ -26,7 +26,7 @@ def side_by_side(
     """
     if not isinstance(comparison, Comparison):
         raise MeshError("Side by side go the runs of a comparison: make one by compare().")
-    names = list(comparison.policies[:2] if policies is None else policies)
+    names = [policies] if isinstance(policies, str) else list(policies or comparison.policies[:2])
     widgets = [comparison.widget(name, height=height, name=name) for name in names]
     marimo = sys.modules.get("marimo")
     if marimo is not None and marimo.running_in_notebook():

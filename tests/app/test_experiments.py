@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from app import sources
 from app.document import Document
 from app.experiments import Comparison, compare, side_by_side, table_row
 from app.experiments.runs import best_of
@@ -193,3 +194,21 @@ def test_side_by_side_are_two_widgets_on_the_best_runs(both: Comparison) -> None
         side_by_side([both])  # type: ignore[arg-type]
     with pytest.raises(MeshError, match="no rollouts of 'tri'"):
         side_by_side(both, ["tri"])
+
+
+def test_a_comparison_follows_the_kind_and_takes_one_policy_too(mesh: HalfEdgeMesh) -> None:
+    from importlib.resources import files
+    from pathlib import Path
+
+    from agent import policies
+
+    triangles = sources.mesh("square", "tri")
+    assert compare(triangles, rollouts=1).policies == ("tri", "tri-paper")
+    assert compare(mesh, rollouts=1).policies == ("quad", "quad-paper")
+    path = Path(str(files("assets") / "policies" / "quad-paper.safetensors"))
+    for one in (path, policies.load("quad-paper")):
+        assert compare(mesh, one, rollouts=1).policies == ("quad-paper",)
+    one = compare(mesh, "quad", rollouts=1)
+    assert len(side_by_side(one, "quad").children) == 1
+    with pytest.raises(MeshError, match="named by text, not by int"):
+        compare(mesh, 3, rollouts=1)
