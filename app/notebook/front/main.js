@@ -22,10 +22,15 @@ function mount(element, link, options = {}) {
   return card;
 }
 
+/** A height that a canvas can have: marimo keeps what a page has set, though Python refused it. */
+function canvasHeight(height) {
+  return Number.isFinite(height) ? Math.min(Math.max(height, 160), 4000) : 480;
+}
+
 /** What anywidget calls for every view; returns what ends it. */
 function render({ model, el }) {
   const link = new KernelLink(model);
-  const wanted = () => ({ height: model.get("height"), theme: model.get("theme") });
+  const wanted = () => ({ height: canvasHeight(model.get("height")), theme: model.get("theme") });
   const card = mount(el, link, wanted());
   const follow = () => card.configure(wanted());
   for (const name of ["height", "theme"]) model.on(`change:${name}`, follow);
