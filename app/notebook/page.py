@@ -128,7 +128,12 @@ body {{ margin: 0; font: 14px/1.5 system-ui, sans-serif; }}
 main {{ max-width: 1120px; margin: 0 auto; padding: 16px; }}
 h1 {{ margin: 0; font-size: 20px; line-height: 1.3; overflow-wrap: anywhere; }}
 p {{ margin: 4px 0 16px; color: var(--quiet); }}
-p.end {{ margin: 8px 0 0; font-size: 12px; text-align: right; }}"""
+p.end {{ margin: 8px 0 0; font-size: 12px; text-align: right; }}
+@media print {{
+main .meshwright {{ break-inside: avoid; print-color-adjust: exact; }}
+main .mw-stage .mw-stage-tools {{ display: none; }}
+main .mw-timeline-row > :not(.mw-timeline-legend) {{ display: none; }}
+}}"""
 
 
 def _colours(theme: Theme) -> str:

@@ -64,6 +64,11 @@ def test_page_scrubs_both_ways_without_a_kernel(browser, widget, tmp_path):
         card.await_head(cursor=0)
         assert differing(pictures[0], card.layer("lower")) == 0
         assert card.root.get_by_role("button", name="Undo").count() == 0
+        assert page.get_by_role("button", name="To the start").is_visible()
+        page.emulate_media(media="print")  # on paper nothing can be pressed
+        page.screenshot(path=tmp_path / "paper.png")
+        assert not [one for one in page.locator("button, select").all() if one.is_visible()]
+        assert card.root.is_visible()
         assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
         assert not watched.complaints
     finally:
