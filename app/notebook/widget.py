@@ -45,7 +45,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     # anywidget passes on only what the class has; the texts are made for each widget
     _esm = traitlets.Unicode().tag(sync=True)
     _css = traitlets.Unicode().tag(sync=True)
-    height = traitlets.Int(480, min=LOWEST, max=HIGHEST).tag(sync=True)
+    height = traitlets.Int(464, min=LOWEST, max=HIGHEST).tag(sync=True)
     """Pixels of the canvas."""
     theme = traitlets.Enum(("auto", "light", "dark"), "auto").tag(sync=True)
     """The colours: those of the notebook, or always light, or always dark."""
@@ -66,7 +66,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         kind: str | None = None,
         policy: str | Path | None = None,
         level: str | Level | None = None,
-        height: int = 480,
+        height: int = 464,
         theme: str = "auto",
         name: str = "",
         read_only: bool = False,

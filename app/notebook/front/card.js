@@ -17,7 +17,7 @@ class Card {
     this._paints = 0;
     this._touchHints = 0;
     this._helloed = false;
-    this._make(options.height || 480);
+    this._make(options.height || 464);
     this._unwatch = watchHost(() => this.retheme());
     this._arrival = new ResizeObserver(() => this._arrive());
     this._arrival.observe(this.root);
@@ -60,8 +60,8 @@ class Card {
       event.preventDefault();
       event.stopPropagation();
     });
-    this.timeline = typeof Timeline === "function" ? new Timeline(under, this) : null;
-    this.levels = typeof Levels === "function" ? new Levels(above, this) : null;
+    this.timeline = new Timeline(under, this);
+    this.levels = new Levels(above, this);
   }
 
   release() {
@@ -145,7 +145,7 @@ class Card {
       ghost: () => this.pointing.receive(content, buffers),
       agent: () => this._onAgent(content),
       notice: () => this._onNotice(content),
-      level: () => this.levels && this.levels.update(content),
+      level: () => this.levels.update(content),
     };
     if (receivers[content.say]) receivers[content.say]();
   }
@@ -173,7 +173,7 @@ class Card {
   _onChanged() {
     const { head } = this.mirror;
     this.score.update(head);
-    if (this.timeline) this.timeline.update(head);
+    this.timeline.update(head);
     this.root.setAttribute("aria-label", meshName(head));
     this.stage.surface.setAttribute("aria-label", canvasLabel(head));
     if (this.pointer.place && !this.pointing.pinned && !this.menus.open) {

@@ -24,7 +24,7 @@ function mount(element, link, options = {}) {
 
 /** A height that a canvas can have: marimo keeps what a page has set, though Python refused it. */
 function canvasHeight(height) {
-  return Number.isFinite(height) ? Math.min(Math.max(height, 160), 4000) : 480;
+  return Number.isFinite(height) ? Math.min(Math.max(height, 160), 4000) : 464;
 }
 
 /** What anywidget calls for every view; returns what ends it. */

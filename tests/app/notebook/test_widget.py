@@ -136,7 +136,7 @@ def test_scores_are_traits_that_only_the_document_sets(widget, star):
 def test_a_browser_sets_no_trait(widget):
     state = {"score": 0, "optimum": 0, "height": 9, "theme": "x", "_esm": "alert(1)", "label": 3}
     widget._handle_msg({"content": {"data": {"method": "update", "state": state}}, "buffers": []})
-    assert (widget.score, widget.height, widget.theme) == (12, 480, "auto")
+    assert (widget.score, widget.height, widget.theme) == (12, 464, "auto")
     assert widget._esm != "alert(1)"
 
 
