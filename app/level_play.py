@@ -199,7 +199,7 @@ class LevelPlay:
         if level is None or not self.done:
             return ""
         if self.tally.helped:
-            return "At the goal, with the agent's operations"
+            return "At the goal, with help"
         if self.used < level.par:
             return "Better than the best we know"
         if self.used == level.par:

@@ -42,6 +42,7 @@ class Figure(QWidget):
         """Show another number."""
         self._value.setText(text)
         self._value.ensurePolished()
+        self._value.setMinimumWidth(0)  # else the hint is as wide as the widest text so far
         self._value.setMinimumWidth(self._value.sizeHint().width())
         self.setAccessibleName(f"{self._title}: {text}")
 

@@ -36,6 +36,7 @@ class EmptyPage(QWidget):
         picture.setPixmap(icons.app_icon().pixmap(56, 56))
         title = named("No mesh yet", "EmptyTitle")
         text = named("Make one from a shape, or open a triangle or quad mesh.", "EmptyText")
+        text.setWordWrap(True)
         self.new = QPushButton("New mesh\u2026")
         self.new.setObjectName("Primary")
         self.new.setToolTip("Make a mesh of a shape  (Ctrl+N)")

@@ -225,3 +225,20 @@ def test_the_window_opens_on_a_level(qtbot):
     assert window.levels.bar.isVisible()
     assert window.document.mesh.score == 6
     window.close()
+
+
+def test_the_bar_fits_the_smallest_window_after_the_longest_texts(qtbot, window):
+    window.resize(window.minimumSize())
+    play, bar = window.levels.play, window.levels.bar
+    play.open("three-blocks")
+    widest = bar.goal.minimumSizeHint().width()
+    solve(window)
+    play.show_answer()
+    window.document.go_to(len(window.document.history))
+    assert play.tally.helped and play.headline
+    QApplication.processEvents()
+    assert bar.title.width() >= bar.title.sizeHint().width()
+    play.open("star")
+    QApplication.processEvents()
+    assert bar.goal.minimumSizeHint().width() < widest
+    assert bar.minimumSizeHint().width() <= window.minimumSize().width()
