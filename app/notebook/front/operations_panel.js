@@ -37,7 +37,8 @@ class OperationsPanel {
   _words() {
     const { mirror, pointing } = this._card;
     const armed = mirror.catalogue.find((info) => info.operation === pointing.armed);
-    return armed ? "A click does it. Esc puts it down." : "Point at a half-edge of the mesh.";
+    if (armed) return "A click does it. Esc puts it down.";
+    return pointing.offers ? "How each would change s here." : "Point at a half-edge of the mesh.";
   }
 
   _fill(catalogue) {
