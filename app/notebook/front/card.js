@@ -191,7 +191,8 @@ class Card {
   }
 
   _onNotice({ tone, sentence, reply }) {
-    if (!this.pointing.refused(reply)) this.say(tone, sentence);
+    const stale = this.pointing.refused(reply);
+    if (!stale || tone === "failed") this.say(tone, sentence);
   }
 
   /** Tell a person a sentence; tone "refused", "said", "failed" or "hint". */

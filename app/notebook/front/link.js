@@ -13,6 +13,7 @@ function viewName() {
 }
 
 const LONGER_WORDS = ["agent", "level"]; // what they bring about goes on after the answer
+const LOST = "The kernel that had this mesh is gone: run this cell again to go on.";
 
 class KernelLink {
   constructor(model) {
@@ -40,7 +41,13 @@ class KernelLink {
       this._stirred = true;
       this._reckoned = this._revision;
     }
-    this._model.send({ do: word, id: this._last, view: this.view, ...fields });
+    try {
+      this._model.send({ do: word, id: this._last, view: this.view, ...fields });
+    } catch (error) { // JupyterLab, once the kernel was restarted or shut down: "Cannot send"
+      const reply = this._last;
+      // later, as any answer: who asked must first know the number of its question
+      setTimeout(() => this.onmessage({ say: "notice", tone: "failed", sentence: LOST, reply }, []));
+    }
     return this._last;
   }
 

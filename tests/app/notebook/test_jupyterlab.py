@@ -3,11 +3,13 @@
 import pytest
 from browser import Lab
 
-from app.benchmarks.notebook.card import Card, differing
+from app.benchmarks.notebook.card import MOMENT, Card, differing
+from app.benchmarks.notebook.lab import PANEL
 
 SETUP = "import time\nfrom app.notebook import MeshWidget\n"
 STAR = SETUP + "widget = MeshWidget('star')\nwidget"
 TURNED = "flip_left"
+RESTART = f"async () => {{ {PANEL} await panel.sessionContext.session.kernel.restart(); }}"
 
 
 @pytest.fixture
@@ -271,3 +273,18 @@ def test_light_and_dark_follow_the_notebook(lab, star, tmp_path):
     lab.page.wait_for_timeout(200)
     assert dark.mean() < 90 < 180 < light.mean()
     assert differing(light, star.picture()) < 50
+
+
+def test_card_says_so_when_its_kernel_was_restarted(lab, star):
+    lab.page.evaluate(RESTART)
+    lab.wait()
+    spot = star.look("root => root.meshwright.mirror.catalogue.length")  # any half-edge will do
+    star.page.mouse.move(*star.place(spot), steps=2)
+    notice = star.root.locator(".mw-notice")
+    notice.get_by_text("run this cell again").wait_for(timeout=MOMENT)
+    star.press("s")
+    star.page.wait_for_timeout(1000)  # longer than the card is patient before it speaks of waiting
+    assert not star.root.locator(".mw-waiting").is_visible()
+    star = lab.card(STAR)
+    star.click(spot)
+    assert not notice.is_visible()
