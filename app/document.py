@@ -54,6 +54,8 @@ class Document(Timeline):
     ) -> None:
         super().__init__()
         self.auto_smooth = True
+        self.bar: Callable[[str], str] | None = None
+        """Why a step is not offered here now, a sentence, or empty: of who plays on the mesh."""
         self.settings: dict[str, Any] = {}
         """What the views want to find again in a project: plain values that JSON can hold."""
         self._adopt(mesh, name, path)

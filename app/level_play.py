@@ -93,12 +93,14 @@ class LevelPlay:
         self.progress = progress or Progress()
         self._document, self._hinting, self._make_rival = document, hinting, make_rival
         self._showing = False
+        document.bar = self.refusal
         document.replaced.connect(self._on_replaced)
         document.history_changed.connect(self._on_history_changed)
         hinting.changed.connect(self._on_hints_changed)
 
     def release(self) -> None:
         """Let go of the document, and end the agent's answer."""
+        self._document.bar = None
         self._document.replaced.disconnect(self._on_replaced)
         self._document.history_changed.disconnect(self._on_history_changed)
         self._hinting.changed.disconnect(self._on_hints_changed)

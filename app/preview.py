@@ -5,6 +5,7 @@ Knows neither Qt nor torch; the window and the notebook show the same.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ from meshcore.trial import trial
 
 GLOBAL = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
 """Operations that go from boundary to boundary."""
+BARRED = -1
+"""The code of a verdict that is not the mesh's own: what is being played does without it."""
 
 
 @dataclass(frozen=True)
@@ -88,13 +91,21 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
     )
 
 
-def choices(mesh: HalfEdgeMesh, halfedge: int) -> tuple[Choice, ...]:
-    """Verdict and change of s of every operation at a live half-edge, in the catalogue's order."""
-    return tuple(_choice(mesh, info, halfedge) for info in of_kind(mesh.kind))
+def choices(
+    mesh: HalfEdgeMesh, halfedge: int, bar: Callable[[str], str] | None = None
+) -> tuple[Choice, ...]:
+    """Verdict and change of s of every operation at a live half-edge, in the catalogue's order.
+
+    ``bar`` is that of the document: why an operation is not done there, whatever the mesh says.
+    """
+    return tuple(_choice(mesh, info, halfedge, bar) for info in of_kind(mesh.kind))
 
 
-def _choice(mesh: HalfEdgeMesh, info: OperationInfo, halfedge: int) -> Choice:
-    verdict = mesh.check(info.operation, halfedge)
+def _choice(
+    mesh: HalfEdgeMesh, info: OperationInfo, halfedge: int, bar: Callable[[str], str] | None
+) -> Choice:
+    why = bar(info.operation.value) if bar is not None else ""
+    verdict = Verdict(BARRED, why.rstrip(".")) if why else mesh.check(info.operation, halfedge)
     if not verdict:
         return Choice(info, verdict, None)
     if info.operation == Operation.CHORD_COLLAPSE:  # no formula tells what a whole strip changes

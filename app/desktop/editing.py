@@ -100,7 +100,7 @@ class Editing:
             return
         ends = f"{mesh.origin(halfedge)} \u2192 {mesh.target(halfedge)}"
         revision = document.revision
-        offers = choices(mesh, halfedge)
+        offers = choices(mesh, halfedge, document.bar)
         self.menu = OperationMenu(f"Half-edge {ends}", offers, self._window.theme, self._window)
         self.menu.chosen.connect(lambda operation: self._take(operation, halfedge, revision))
         self.menu.pointed.connect(self._window.pointing.preview)

@@ -133,7 +133,7 @@ class Pointing:
         if at != self._at:
             if halfedge != self._at[1]:
                 self._picked = None
-            self._at, self.choices = at, choices(mesh, halfedge)
+            self._at, self.choices = at, choices(mesh, halfedge, window.document.bar)
         meant = self.current
         operation = meant.operation if meant is not None else None
         if (*at, operation) != self._shown:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,19 @@ from app.preview import Choice, best, choices, ghost
 from meshcore import HalfEdgeMesh
 
 
-def ghost_packet(mesh: HalfEdgeMesh, frame: Frame, halfedge: int, operation: str | None) -> Packet:
+def ghost_packet(
+    mesh: HalfEdgeMesh,
+    frame: Frame,
+    halfedge: int,
+    operation: str | None,
+    bar: Callable[[str], str] | None = None,
+) -> Packet:
     """Offers of every operation at a live half-edge, and the ghost of one of them.
 
     Of ``operation``, or where that is None of the best that is allowed; no ghost where it is
-    refused.
+    refused, by the mesh or by the document's ``bar``.
     """
-    offered = choices(mesh, halfedge)
+    offered = choices(mesh, halfedge, bar)
     if operation is None:
         meant = best(offered)
     else:

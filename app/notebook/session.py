@@ -241,7 +241,8 @@ class Session:
         if operation is not None:
             require_operation(self.mesh.kind, operation)
         self.document.hover = halfedge
-        packet = ghost_packet(self.mesh, self.telling.mirror.frame, halfedge, operation)
+        frame, bar = self.telling.mirror.frame, self.document.bar
+        packet = ghost_packet(self.mesh, frame, halfedge, operation, bar)
         self.telling.post(port, packet, request)
 
     def _prepare(self, port: Port, request: Request) -> None:

@@ -10,6 +10,7 @@ from app.assistant import Assistant
 from app.document import Document
 from app.level_play import LevelPlay, stars, tally
 from app.level_progress import Best, Progress, usual_path
+from app.preview import choices
 from app.rival import Standing
 from meshcore import MeshError
 
@@ -173,6 +174,18 @@ def test_the_play_says_what_it_refuses(playing):
     assert "one by one" in playing.play.refusal("clean_all")
     assert "beyond the paper" in playing.play.refusal("chord_collapse")
     assert playing.play.refusal("cleanup") == ""
+
+
+def test_what_is_not_played_is_not_offered(playing):
+    playing.play.open("notch")
+    document = playing.play._document
+    offers = {str(c.operation): c for c in choices(document.mesh, 0, document.bar)}
+    assert not offers["chord_collapse"].allowed
+    assert offers["chord_collapse"].verdict.reason.endswith("not played in levels")
+    playing.play.leave()
+    assert document.bar("chord_collapse") == ""
+    playing.play.release()
+    assert document.bar is None
 
 
 def test_better_than_par_is_praised(playing, monkeypatch):
