@@ -4,9 +4,9 @@
     python docs/make_levels.py star two-*   only these
 
 What to make is in level_recipes.py. The start is drawn without a fold, and so is the end of the way
-that is kept. How few operations will do is looked for exhaustively (``agent.fewest``) and, where that
-does not come to an end, by a beam of the best states and by the solver, whose ways are shortened
-from their ends. ``meshwright bench --suite levels`` checks what is kept.
+that is kept. How few operations will do is looked for exhaustively (``agent.fewest``) and, where
+that does not come to an end, by a beam of the best states and by the solver, whose ways are
+shortened from their ends. ``meshwright bench --suite levels`` checks what is kept.
 """
 
 from __future__ import annotations
