@@ -136,18 +136,8 @@ function answerOf(rival) {
 
 /** Three stars. */
 function starRow(name) {
-  const space = "http://www.w3.org/2000/svg";
   const row = node("span", name, { role: "img" });
-  for (let i = 0; i < STARS; i += 1) {
-    const svg = document.createElementNS(space, "svg");
-    const path = document.createElementNS(space, "path");
-    for (const [key, value] of Object.entries({ viewBox: "0 0 20 20", "aria-hidden": "true", class: "mw-star" })) {
-      svg.setAttribute(key, value);
-    }
-    path.setAttribute("d", STAR_PATH);
-    svg.append(path);
-    row.append(svg);
-  }
+  for (let i = 0; i < STARS; i += 1) row.append(drawn(STAR_PATH, { class: "mw-star" }));
   return row;
 }
 

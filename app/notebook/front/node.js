@@ -14,14 +14,19 @@ function node(tag, name = "", attributes = {}, ...children) {
 
 /** One of the icons of app/strokes.py, in the colour of the text around it. */
 function icon(name, size = 18) {
+  return drawn(ICON_STROKES[name], { class: "mw-icon", width: size, height: size });
+}
+
+/** A picture of one path in a square of 20, or of another `viewBox`. */
+function drawn(path, attributes = {}) {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");
-  const path = document.createElementNS(space, "path");
-  for (const [key, value] of Object.entries({
-    viewBox: "0 0 20 20", width: size, height: size, "aria-hidden": "true", class: "mw-icon",
-  })) svg.setAttribute(key, value);
-  path.setAttribute("d", ICON_STROKES[name]);
-  svg.append(path);
+  const line = document.createElementNS(space, "path");
+  for (const [key, value] of Object.entries({ viewBox: "0 0 20 20", "aria-hidden": "true", ...attributes })) {
+    svg.setAttribute(key, value);
+  }
+  line.setAttribute("d", path);
+  svg.append(line);
   return svg;
 }
 

@@ -34,14 +34,14 @@ class Timeline {
   _make(element) {
     element.replaceChildren();
     this.root = element;
-    this.slider = timelineElement("div", "mw-timeline-curve", {
+    this.slider = node("div", "mw-timeline-curve", {
       role: "slider", tabindex: "0", "aria-label": "History of the mesh", "aria-valuemin": "0",
     });
-    this.canvas = timelineElement("canvas", "", { "aria-hidden": "true" });
+    this.canvas = node("canvas", "", { "aria-hidden": "true" });
     this.slider.append(this.canvas);
-    const row = timelineElement("div", "mw-timeline-row");
+    const row = node("div", "mw-timeline-row");
     const button = (name, label, act) => {
-      const made = timelineElement("button", "mw-timeline-button", {
+      const made = node("button", "mw-timeline-button", {
         type: "button", "aria-label": label, title: label,
       });
       made.append(timelineIcon(name));
@@ -55,14 +55,14 @@ class Timeline {
     this.ahead = button("ahead", "One step forward", () => this.ask(this.shown + 1));
     this.end = button("end", "To the last state", () => this.ask(this.last));
     this.best = button("best", "To the best state", () => this.ask(this.track.best));
-    this.speed = timelineElement("select", "mw-timeline-speed", {
+    this.speed = node("select", "mw-timeline-speed", {
       "aria-label": "Speed of the film", title: "Speed of the film",
     });
     for (const speed of TIMELINE_SPEEDS) this.speed.append(new Option(timelineSpeed(speed), speed, speed === 2, speed === 2));
-    this.words = timelineElement("div", "mw-timeline-words");
-    this.legend = timelineElement("div", "mw-timeline-legend", { "aria-hidden": "true" });
+    this.words = node("div", "mw-timeline-words");
+    this.legend = node("div", "mw-timeline-legend", { "aria-hidden": "true" });
     this.legend.append("● you  ◇ agent");
-    const line = timelineElement("div", "mw-timeline-line");
+    const line = node("div", "mw-timeline-line");
     line.append(this.words);
     row.append(this.speed, this.legend);
     element.append(line, this.slider, row);
@@ -311,21 +311,8 @@ function timelineSpeed(speed) {
   return `${speed} step${speed === 1 ? "" : "s"}/s`;
 }
 
-function timelineElement(tag, name, attributes = {}) {
-  const made = document.createElement(tag);
-  if (name) made.className = name;
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  return made;
-}
-
 function timelineIcon(name) {
-  const space = "http://www.w3.org/2000/svg";
-  const icon = document.createElementNS(space, "svg");
-  icon.setAttribute("viewBox", "0 0 16 16");
-  icon.setAttribute("aria-hidden", "true");
-  const path = document.createElementNS(space, "path");
-  path.setAttribute("d", TIMELINE_ICONS[name]);
-  if (name === "play") path.setAttribute("fill", "currentColor");
-  icon.append(path);
+  const icon = drawn(TIMELINE_ICONS[name], { viewBox: "0 0 16 16" });
+  if (name === "play") icon.firstChild.setAttribute("fill", "currentColor");
   return icon;
 }
