@@ -35,9 +35,12 @@ class Warmup(QObject):
         self._process: QProcess | None = None
         self._then: Callable[[], None] = self._load
         self._thread: threading.Thread | None = None
+        self._stopped = False
 
     def start(self) -> None:
         """Begin; returns at once."""
+        if self._stopped:
+            return
         if compiled.is_warm_on_disk():
             self._load()
             return
@@ -54,7 +57,11 @@ class Warmup(QObject):
         self._process.start(sys.executable, ["-m", module])
 
     def stop(self) -> None:
-        """End what is under way; loading that has begun is waited for."""
+        """End what is under way; loading that has begun is waited for.
+
+        What a thread has reported by then is not told any more: the window may be gone.
+        """
+        self._stopped = True
         if self._process is not None:
             self._process.finished.disconnect(self._on_compiled)
             self._process.errorOccurred.disconnect(self._on_error)
@@ -87,6 +94,8 @@ class Warmup(QObject):
             self._dispatch(self._finish)
 
     def _finish(self) -> None:
+        if self._stopped:
+            return
         self.done = True
         self.ready.emit()
         if agent_is_warm():
@@ -96,7 +105,8 @@ class Warmup(QObject):
             self._run("agent.warm_up", self.agent_ready.emit)
 
     def _fail(self, sentence: str) -> None:
-        self.failed.emit(sentence)
+        if not self._stopped:
+            self.failed.emit(sentence)
 
 
 def agent_is_warm() -> bool:

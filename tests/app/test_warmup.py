@@ -1,0 +1,41 @@
+"""Getting the kernels ready behind the window, and a window that is closed before they are."""
+
+import shiboken6
+
+from app.desktop.warmup import Warmup
+
+
+def test_what_was_loaded_when_the_window_closed_is_told_to_nobody(qtbot, monkeypatch):
+    monkeypatch.setattr("app.desktop.warmup.compiled.is_warm_on_disk", lambda: True)
+    monkeypatch.setattr("app.desktop.warmup.compiled.warm", lambda: None)
+    warmup, told = Warmup(), []
+    warmup.ready.connect(lambda: told.append("ready"))
+    warmup.start()
+    warmup.stop()  # the thread has ended, and its report waits in the queue
+    dispatch = warmup._dispatch
+    shiboken6.delete(warmup)
+    with qtbot.captureExceptions() as raised:
+        qtbot.wait(20)
+    assert dispatch is not None
+    assert told == raised == []
+
+
+def test_a_window_that_has_closed_starts_nothing(qtbot, monkeypatch):
+    monkeypatch.setattr("app.desktop.warmup.compiled.is_warm_on_disk", lambda: True)
+    warmup = Warmup()
+    warmup.stop()
+    warmup.start()
+    assert warmup._thread is None
+
+
+def test_failure_is_told_in_a_sentence(qtbot, monkeypatch):
+    def break_off() -> None:
+        raise OSError("no room")
+
+    monkeypatch.setattr("app.desktop.warmup.compiled.is_warm_on_disk", lambda: True)
+    monkeypatch.setattr("app.desktop.warmup.compiled.warm", break_off)
+    warmup = Warmup()
+    with qtbot.waitSignal(warmup.failed) as failed:
+        warmup.start()
+    warmup.stop()
+    assert failed.args == ["The compiled kernels cannot be used: no room"]
