@@ -58,9 +58,14 @@ def tally(history: History) -> Tally:
     return Tally(used, helped, barred)
 
 
+def spare(level: Level) -> int:
+    """The most operations that still win two stars."""
+    return level.par + max(SLACK, level.par // 3)
+
+
 def stars(level: Level, used: int, hinted: bool = False) -> int:
     """Stars for reaching the goal with so many operations of one's own."""
-    if used > level.par + max(SLACK, level.par // 3):
+    if used > spare(level):
         return 1
     return 2 if used > level.par or hinted else 3
 
@@ -229,9 +234,9 @@ class LevelPlay:
             return f"{won}."
         if self.used <= level.par:
             return f"{won}, because of the hint."
-        spare = level.par + max(SLACK, level.par // 3)
-        more = f" Two for at most {spare}." if self.stars == 1 else f" Three for {level.par}."
-        return f"{won}.{more}"
+        if self.stars == 1:
+            return f"{won}. Two for at most {spare(level)}."
+        return f"{won}. Three for {level.par}."
 
     # Inside
 

@@ -11,7 +11,7 @@ from app.level_play import LevelPlay
 from app.levels import Level
 from app.notebook.wire import Packet
 from app.rival import Standing
-from meshcore import MeshError, Operation
+from meshcore import MeshError
 
 if TYPE_CHECKING:
     from app.notebook.messages import Request
@@ -59,9 +59,8 @@ class Playing:
 
     def _bar(self, request: Request) -> str:
         """Why something is not played in a level; empty if it is."""
-        if request.do == "operate" and request["operation"] == Operation.CHORD_COLLAPSE.value:
-            return self.play.refusal(Operation.CHORD_COLLAPSE.value)
-        return self.play.refusal(BARRED[request.do]) if request.do in BARRED else ""
+        action = request["operation"] if request.do == "operate" else BARRED.get(request.do, "")
+        return self.play.refusal(action)
 
     def _do(self, session: Session, request: Request) -> str:
         play, action = self.play, request["action"]
