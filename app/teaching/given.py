@@ -97,3 +97,12 @@ def quoted(given: Any) -> str:
 
 def _begun(words: str) -> str:
     return words[:1].upper() + words[1:]
+
+
+def letters(answer: object, known: str) -> set[str]:
+    """Several of the letters of ``known``: a list of them, or a string with commas or spaces."""
+    if isinstance(answer, str):
+        answer = answer.replace(",", " ").split()
+    if not isinstance(answer, list | tuple | set):
+        raise Wrong(f"Write a list of letters, such as ['a', 'b'], not {quoted(answer)}.")
+    return {choice(one, known) for one in answer}

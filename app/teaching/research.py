@@ -6,7 +6,7 @@ from typing import Any
 
 from app.experiments.comparison import Comparison
 from app.teaching.exercises import Wrong, declare
-from app.teaching.given import called, choice, expect, quoted, whole
+from app.teaching.given import called, expect, letters, quoted, whole
 
 POLICY = "quad-paper"
 PAIRS = (0.9 + 1.0 + 1.0) / 3.0
@@ -78,11 +78,7 @@ def how_many_meshes(answer: object) -> str:
 @declare("7.5", "In each of them ask: is there another reason than the policy?")
 def fair(answer: object) -> str:
     """Which of four comparisons are fair."""
-    if isinstance(answer, str):
-        answer = answer.replace(",", " ").split()
-    if not isinstance(answer, list | tuple | set):
-        raise Wrong(f"Write a list of letters, such as ['a', 'b'], not {quoted(answer)}.")
-    found = {choice(one, "abcd") for one in answer}
+    found = letters(answer, "abcd")
     expect("b" not in found, "In b one may have been given the easier polygons.")
     expect("c" not in found, "In c one may try ten times: chance alone makes it look better.")
     expect(found == {"a", "d"}, "One more of them is fair: look what is the same for both.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.teaching.exercises import Wrong, declare
-from app.teaching.given import called, choice, edited, expect, quoted, whole
+from app.teaching.given import called, edited, expect, letters, whole
 
 ANGLES = {90: 2, 180: 3, 270: 4, 60: 2, 120: 2, 150: 3, 240: 4, 350: 5, 45.17: 2, 242.83: 4, 20: 2}
 """Desired degree in quads by the angle in degrees; none is half-way between two."""
@@ -70,11 +70,7 @@ def two_round_holes(answer: object) -> str:
 @declare("2.5", "Compare the sum of the sizes, s, with the size of the sum, s*.")
 def at_the_optimum(answer: object) -> str:
     """Which of four meshes are at their optimum."""
-    if isinstance(answer, str):
-        answer = answer.replace(",", " ").split()
-    if not isinstance(answer, list | tuple | set):
-        raise Wrong(f"Write a list of letters, such as ['a', 'b'], not {quoted(answer)}.")
-    found = {choice(one, "abcd") for one in answer}
+    found = letters(answer, "abcd")
     expect("b" not in found, "Look at b again: a +1 and a -1 could still meet and cancel.")
     expect("c" in found, "What of c? Without irregular vertices s is 0, and nothing is below 0.")
     expect(len(found) == 3, "There is one more: where all signs agree, nothing can cancel.")
