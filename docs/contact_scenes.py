@@ -11,9 +11,9 @@ from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
 from stage import HOME, LARGE, SHIFT, SMALL, Stage, allowed, shape
 
-from app.policy_files import shipped
-from app.preview import GLOBAL, best, choices
-from meshcore import HalfEdgeMesh
+from meshwright.assistant.policy_catalogue import shipped
+from meshwright.document.operation_preview import GLOBAL, best, choices
+from meshwright_core import HalfEdgeMesh
 
 Play = Callable[[], Image.Image]
 
@@ -145,10 +145,11 @@ def lines() -> Image.Image:
 
 def fewest(name: str) -> HalfEdgeMesh:
     """A quad mesh of the gallery at the optimum, coarse."""
-    from agent import policies, solver
+    from meshwright_agent.policy import policy_files
+    from meshwright_agent.search import solver
 
     mesh = shape(name)
-    policy = policies.load(shipped("quad")[0])
+    policy = policy_files.load(shipped("quad")[0])
     for operation, halfedge in solver.solve(mesh, policy, seconds=2.0).operations:
         mesh.apply(operation, halfedge)
     return mesh
@@ -156,13 +157,14 @@ def fewest(name: str) -> HalfEdgeMesh:
 
 def cut(mesh: HalfEdgeMesh, levels: int) -> HalfEdgeMesh:
     """Every quad cut into four, so many times."""
-    from meshcore import quadrangulate, smoothing
+    from meshwright_core.domains import quadrangulation
+    from meshwright_core.geometry import smoothing
 
     smoothing.relax(mesh)
     mesh.compact()
     points, quads, corners = mesh.points[mesh.vertices()], mesh.elements(), mesh.geometric()
     for _ in range(levels):
-        points, quads, corners = quadrangulate.catmull_clark(points, [quads], corners)
+        points, quads, corners = quadrangulation.catmull_clark(points, [quads], corners)
     return HalfEdgeMesh.from_elements(points, quads, corners)
 
 
@@ -304,7 +306,7 @@ def palette() -> Image.Image:
 
 def scrambled(mesh: HalfEdgeMesh, seed: int, count: int = 10) -> HalfEdgeMesh:
     """The mesh after a few random flips, smoothed."""
-    from meshcore import smoothing
+    from meshwright_core.geometry import smoothing
 
     rng = np.random.default_rng(seed)
     for h in rng.integers(0, mesh.k * mesh.n_elements, count).tolist():
@@ -324,7 +326,7 @@ def use_policy(stage: Stage) -> None:
 
 def search(stage: Stage, seconds: float) -> None:
     """Let the agent search so long, and go where it has found."""
-    from app.searching import Effort
+    from meshwright.assistant.search_runner import Effort
 
     use_policy(stage)
     stage.window.assistant.search(Effort(seconds=seconds))

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agent.fewest import Found
-from meshcore import HalfEdgeMesh, shapes
-from meshcore.generate import benchmark_mesh, mesh_domain
+from meshwright_agent.search.exhaustive import Found
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.domains import gallery
+from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
 
 Make = Callable[[np.random.Generator], HalfEdgeMesh]
 Suits = Callable[[HalfEdgeMesh, Sequence[Found]], bool]
@@ -97,7 +98,7 @@ def inside(mesh: HalfEdgeMesh) -> bool:
 
 def shaped(name: str, kind: str, max_edge: float | None = None) -> Make:
     """A shape of the gallery as the meshers leave it."""
-    return lambda rng: mesh_domain(shapes.shape(name), kind, max_edge=max_edge)
+    return lambda rng: mesh_domain(gallery.shape(name), kind, max_edge=max_edge)
 
 
 def polygon(kind: str, sides: int, max_edge: float | None = None) -> Make:
@@ -105,7 +106,7 @@ def polygon(kind: str, sides: int, max_edge: float | None = None) -> Make:
     if max_edge is None:
         return lambda rng: benchmark_mesh(kind, sides, rng)
     return lambda rng: mesh_domain(
-        shapes.random_polygon(sides, rng), kind, max_edge=max_edge, min_angle=20.0
+        gallery.random_polygon(sides, rng), kind, max_edge=max_edge, min_angle=20.0
     )
 
 

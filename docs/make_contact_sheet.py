@@ -15,8 +15,8 @@ from contact_scenes import SCENES
 from PIL import Image, ImageDraw
 from qtpy.QtWidgets import QApplication
 
-from app.desktop.application import application
-from meshcore import compiled
+from meshwright.desktop.main_window.startup import application
+from meshwright_core.core import compilation
 
 IMAGES = Path(__file__).parent / "images"
 IN_README = {
@@ -32,7 +32,7 @@ def main(folder: Path, names: list[str]) -> None:
     """Make every picture, or those named, then the sheet."""
     folder.mkdir(parents=True, exist_ok=True)
     application()
-    compiled.warm()
+    compilation.warm()
     QApplication.setQuitOnLastWindowClosed(False)
     sheet = []
     for name, (caption, play) in SCENES.items():

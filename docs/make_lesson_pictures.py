@@ -21,14 +21,25 @@ import numpy as np
 from make_pictures import gap, most_central, quads
 from PIL import Image, ImageDraw
 
-from app.drawing import Disc, Drawing, Line, Polygon, Segments, Text, raster, text_width
-from app.figure import Look, edges, figure
-from app.filmstrip import side_by_side
-from app.lessons import FOLDER
-from app.teaching import patch
-from app.theme import LIGHT
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh, shapes, smoothing
+from meshwright.graphics.drawing import (
+    Disc,
+    Drawing,
+    Line,
+    Polygon,
+    Segments,
+    Text,
+    raster,
+    text_width,
+)
+from meshwright.graphics.export.filmstrip import side_by_side
+from meshwright.graphics.mesh_figure import Look, edges, figure
+from meshwright.graphics.theme import LIGHT
+from meshwright.graphics.viewport import Viewport
+from meshwright.teaching import patch
+from meshwright.teaching.lessons import FOLDER
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.domains import gallery
+from meshwright_core.geometry import smoothing
 
 ARROW, NUMBER, UNIT = 5.0, 24.0, 1.6
 """Pixels: width of arrows, height of letters; and what lines are scaled by."""
@@ -116,7 +127,7 @@ def turn() -> Any:
 
 def corners_of_star() -> Any:
     """The outline of the star; at each corner the edges it wants, and the edges it is given."""
-    domain, size = shapes.shape("star"), (960, 800)
+    domain, size = gallery.shape("star"), (960, 800)
     outline = np.asarray(domain.outline, dtype=float)
     view = Viewport(size=size).fitted(outline, 112.0)
     drawing = Drawing(size, LIGHT.background, "the corners of a star")

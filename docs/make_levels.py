@@ -4,7 +4,8 @@
     python docs/make_levels.py star two-*   only these
 
 What to make is in level_recipes.py. The start is drawn without a fold, and so is the end of the way
-that is kept. How few operations will do is looked for exhaustively (``agent.fewest``) and, where
+that is kept. How few operations will do is looked for exhaustively
+(``meshwright_agent.search.exhaustive``) and, where
 that does not come to an end, by a beam of the best states and by the solver, whose ways are
 shortened from their ends. ``meshwright bench --suite levels`` checks what is kept.
 """
@@ -24,17 +25,18 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 from level_recipes import RECIPES, Recipe
 
-from agent.coarsening import replayed
-from agent.fewest import Answer, Found, fewest
-from agent.policies import load, shipped
-from agent.shortening import shorten
-from agent.solver import solve
-from app import levels
-from app.document import Document
-from app.levels import Level
-from meshcore import HalfEdgeMesh, quality
-from meshcore.operations import CODES, Operation
-from meshcore.smoothing import relax
+from meshwright.document.document import Document
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.level import Level
+from meshwright_agent.policy.policy_files import load, shipped
+from meshwright_agent.search.coarsening import replayed
+from meshwright_agent.search.exhaustive import Answer, Found, fewest
+from meshwright_agent.search.shortening import shorten
+from meshwright_agent.search.solver import solve
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry import quality
+from meshwright_core.geometry.smoothing import relax
+from meshwright_core.operations.catalogue import CODES, Operation
 
 TRIES = 400
 """Meshes that are drawn for one recipe."""

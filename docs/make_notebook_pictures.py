@@ -13,10 +13,10 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Browser, Page
 
-from app.benchmarks.notebook.card import Card
-from app.benchmarks.notebook.chromium import browser
-from app.benchmarks.notebook.lab import LabNotebook
-from app.benchmarks.notebook.servers import Server, jupyterlab
+from meshwright.benchmarks.notebook.chromium import browser
+from meshwright.benchmarks.notebook.jupyterlab import LabNotebook
+from meshwright.benchmarks.notebook.servers import Server, jupyterlab
+from meshwright.benchmarks.notebook.widget_driver import Card
 
 IMAGES = Path(__file__).parent / "images"
 SIZE = (1180, 860)

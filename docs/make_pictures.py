@@ -18,14 +18,17 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw
 
-from app.drawing import raster
-from app.figure import Look, figure, fitted
-from app.filmstrip import side_by_side
-from app.theme import LIGHT
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh, Operation, blocks, parts, shapes, smoothing
-from meshcore.generate import mesh_domain
-from meshcore.operations import CATALOGUE, OperationInfo
+from meshwright.graphics.drawing import raster
+from meshwright.graphics.export.filmstrip import side_by_side
+from meshwright.graphics.mesh_figure import Look, figure, fitted
+from meshwright.graphics.theme import LIGHT
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh, Operation
+from meshwright_core.analysis import blocks
+from meshwright_core.domains import gallery, random_parts
+from meshwright_core.domains.meshing import mesh_domain
+from meshwright_core.geometry import smoothing
+from meshwright_core.operations.catalogue import CATALOGUE, OperationInfo
 
 IMAGES = Path(__file__).parent / "images"
 RENDER = 1500
@@ -160,7 +163,9 @@ def make_operations() -> None:
 
 def make_gallery() -> None:
     """Every shape of the gallery as a quad mesh, as generated, in rows of five."""
-    tiles = [plain(mesh_domain(domain, "quad"), (360, 300)) for domain in shapes.gallery().values()]
+    tiles = [
+        plain(mesh_domain(domain, "quad"), (360, 300)) for domain in gallery.gallery().values()
+    ]
     columns = 5
     rows = math.ceil(len(tiles) / columns)
     whole = Image.new("RGB", (columns * 360, rows * 300), LIGHT.background)
@@ -171,14 +176,14 @@ def make_gallery() -> None:
 
 def make_parts() -> None:
     """Random parts as generated and, below, at the optimum, cut into their blocks."""
-    from agent import policies
-    from agent.solver import solve
-    from app.commands.improve import replay
+    from meshwright.cli.commands.improve import replay
+    from meshwright_agent.policy import policy_files
+    from meshwright_agent.search.solver import solve
 
-    policy = policies.load(policies.shipped("quad")[0])
+    policy = policy_files.load(policy_files.shipped("quad")[0])
     size, columns = (300, 260), 4
     tiles: list[list[Any]] = []
-    for number, domain in enumerate(parts.parts(2 * columns, (10, 26), seed=PARTS_SEED)):
+    for number, domain in enumerate(random_parts.parts(2 * columns, (10, 26), seed=PARTS_SEED)):
         mesh = mesh_domain(domain, "quad")
         if number % columns == 0:
             tiles += [[], []]
@@ -209,7 +214,7 @@ def with_blocks(mesh: HalfEdgeMesh, size: tuple[int, int]) -> Any:
 
 def make_demo() -> None:
     """The run of ``meshwright demo -o``."""
-    from app.cli import main
+    from meshwright.cli import main
 
     code = main(["demo", "-o", str(IMAGES / "demo.png")])
     if code != 0:
@@ -222,7 +227,7 @@ def make_window() -> None:
     """The window on the star, with the mouse over a half-edge."""
     from qtpy.QtCore import QEventLoop, QTimer
 
-    from app.desktop.application import application, open_window
+    from meshwright.desktop.main_window.startup import application, open_window
 
     app = application()
     window = open_window("star", "quad")

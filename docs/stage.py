@@ -19,9 +19,10 @@ from qtpy.QtGui import QImage  # noqa: E402
 from qtpy.QtTest import QTest  # noqa: E402
 from qtpy.QtWidgets import QApplication  # noqa: E402
 
-from app.desktop.window import MainWindow  # noqa: E402
-from app.document import Document  # noqa: E402
-from meshcore import HalfEdgeMesh, Operation, generate, shapes  # noqa: E402
+from meshwright.desktop.main_window.window import MainWindow  # noqa: E402
+from meshwright.document.document import Document  # noqa: E402
+from meshwright_core import HalfEdgeMesh, Operation  # noqa: E402
+from meshwright_core.domains import gallery, meshing  # noqa: E402
 
 SMALL, LARGE = (1280, 800), (1920, 1080)
 NONE = Qt.KeyboardModifier.NoModifier
@@ -140,7 +141,7 @@ class Stage:
 
 def shape(name: str, kind: str = "quad") -> HalfEdgeMesh:
     """A mesh of the gallery."""
-    return generate.mesh_domain(shapes.shape(name), kind)
+    return meshing.mesh_domain(gallery.shape(name), kind)
 
 
 def allowed(mesh: HalfEdgeMesh, operation: str) -> list[int]:

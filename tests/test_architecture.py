@@ -16,6 +16,7 @@ HEAVY = ("torch", "gymnasium", "safetensors", "matplotlib", "rich", "PIL")
 DRAWING = ("qtpy", "PySide6", "pyvista", "pyvistaqt", "vtkmodules", "vtk")
 READERS = ("meshio", "trimesh", "shapely", "triangle", "networkx")
 NUMERIC = ("numpy", "numba", "scipy")
+PACKAGES = ("meshwright_agent", "meshwright_core")
 
 
 def brought_along(statement: str) -> set[str]:
@@ -30,15 +31,21 @@ def brought_along(statement: str) -> set[str]:
 @pytest.mark.parametrize(
     ("statement", "forbidden"),
     [
-        ("import meshcore", (*HEAVY, *DRAWING, *READERS, "agent", "app")),
-        ("import meshcore.io, meshcore.shapes, meshcore.generate", (*HEAVY, *DRAWING)),
-        ("import agent", (*DRAWING, "app")),
-        ("import app.document", (*HEAVY, *DRAWING, "agent")),
-        ("import app.assistant", ("torch", *DRAWING)),
-        ("import app.levels, app.level_play", (*HEAVY, *DRAWING, "agent")),
-        ("import app.scene", ("torch", "qtpy", "PySide6", "pyvistaqt")),
-        ("import app.desktop.window", ("torch", "agent")),
-        ("import app.cli", (*HEAVY, *DRAWING, *READERS, *NUMERIC, "agent", "meshcore")),
+        ("import meshwright_core", (*HEAVY, *DRAWING, *READERS, "meshwright_agent", "meshwright")),
+        ("from meshwright_core.domains import gallery, meshing", (*HEAVY, *DRAWING)),
+        ("import meshwright_agent", (*DRAWING, "meshwright")),
+        ("import meshwright.document.document", (*HEAVY, *DRAWING, "meshwright_agent")),
+        ("import meshwright.assistant.assistant", ("torch", *DRAWING)),
+        (
+            "import meshwright.puzzles.level, meshwright.puzzles.play",
+            (*HEAVY, *DRAWING, "meshwright_agent"),
+        ),
+        ("import meshwright.graphics.vtk_scene", ("torch", "qtpy", "PySide6", "pyvistaqt")),
+        ("import meshwright.desktop.main_window.window", ("torch", "meshwright_agent")),
+        (
+            "import meshwright.cli",
+            (*HEAVY, *DRAWING, *READERS, *NUMERIC, "meshwright_agent", "meshwright_core"),
+        ),
     ],
 )
 def test_import_brings_along_only_what_it_needs(statement: str, forbidden: tuple[str, ...]) -> None:
@@ -47,8 +54,8 @@ def test_import_brings_along_only_what_it_needs(statement: str, forbidden: tuple
 
 @pytest.mark.parametrize("words", [["--help"], ["--version"], ["improve", "--help"], ["mesh"]])
 def test_command_line_answers_without_heavy_imports(words: list[str]) -> None:
-    heavy = {*HEAVY, *DRAWING, *READERS, *NUMERIC, "agent", "meshcore"}
-    assert not brought_along(f"from app.cli import main; main({words!r})") & heavy
+    heavy = {*HEAVY, *DRAWING, *READERS, *NUMERIC, *PACKAGES}
+    assert not brought_along(f"from meshwright.cli import main; main({words!r})") & heavy
 
 
 def test_import_contracts() -> None:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from app.notebook import front
+from meshwright.notebook import bundle
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("meshcore", "agent", "app", "assets", "meshwright")
+ROOTS = ("meshcore", "agent", "app", "assets")
 
 
 @pytest.fixture(scope="module")
@@ -30,15 +30,15 @@ def wheel(tmp_path_factory) -> zipfile.ZipFile:
 
 
 def source_files() -> set[str]:
-    """Everything in the packages that git would keep, by path in the repository."""
+    """Everything in the packages that git would keep, by its path in the wheel."""
     names = subprocess.run(
-        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *PACKAGES],
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *ROOTS],
         capture_output=True,
         text=True,
         check=True,
         cwd=ROOT,
     ).stdout.split("\n")
-    return {name for name in names if name and (ROOT / name).is_file()}
+    return {name.partition("/")[2] for name in names if name and (ROOT / name).is_file()}
 
 
 def test_wheel_carries_every_file_of_the_packages(wheel):
@@ -54,15 +54,17 @@ def test_wheel_carries_a_policy_of_each_kind(wheel):
 
 def test_wheel_carries_the_widget_and_the_lessons(wheel):
     carried = set(wheel.namelist())
-    for name in (*front.SCRIPTS, *front.STYLES):
-        assert f"app/notebook/front/{name}" in carried
-    lessons = [name for name in carried if re.fullmatch(r"assets/lessons/[^/]+\.ipynb", name)]
+    for name in (*bundle.SCRIPTS, *bundle.STYLES):
+        assert f"meshwright/notebook/front/{name}" in carried
+    lessons = [
+        name for name in carried if re.fullmatch(r"meshwright_assets/lessons/[^/]+\.ipynb", name)
+    ]
     assert len(lessons) >= 6
 
 
 def test_wheel_carries_command_and_licence(wheel):
     (info,) = {name.split("/")[0] for name in wheel.namelist() if ".dist-info/" in name}
-    assert "meshwright = app.cli:main" in wheel.read(f"{info}/entry_points.txt").decode()
+    assert "meshwright = meshwright.cli:main" in wheel.read(f"{info}/entry_points.txt").decode()
     assert f"{info}/licenses/LICENSE" in wheel.namelist()
 
 

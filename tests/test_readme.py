@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from app.commands import COMMANDS
-from meshcore.operations import CATALOGUE
+from meshwright.cli.commands import COMMANDS
+from meshwright_core.operations.catalogue import CATALOGUE
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -1,10 +1,10 @@
 """The half-edge mesh and all that changes it. Knows neither torch nor Qt."""
 
-from meshcore.errors import MeshError, OperationRefused
-from meshcore.io import read, write
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import Operation
-from meshcore.verdicts import Edit, Verdict
+from meshwright_core.errors import MeshError, OperationRefused
+from meshwright_core.io.mesh_files import read, write
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import Operation
+from meshwright_core.operations.verdicts import Edit, Verdict
 
 __all__ = [
     "Edit",

@@ -7,10 +7,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from meshcore import construct, display, journal, navigation, operations, refusals
-from meshcore.archive import Archive, cut_undone
-from meshcore.errors import MeshError, OperationRefused
-from meshcore.halfedge import (
+from meshwright_core.core import circulators, construction, notebook_display
+from meshwright_core.core.arrays import (
     DESIRED,
     ELEMENT_SLOTS,
     FLAGS,
@@ -29,10 +27,14 @@ from meshcore.halfedge import (
     MeshArrays,
     enlarge,
 )
-from meshcore.meshview import MeshView, Outline
-from meshcore.operations import Operation
-from meshcore.steps import Steps, last_done
-from meshcore.verdicts import YES, Edit, Verdict
+from meshwright_core.core.mesh_view import MeshView, Outline
+from meshwright_core.errors import MeshError, OperationRefused
+from meshwright_core.history import journal
+from meshwright_core.history.packed_steps import Steps, last_done
+from meshwright_core.history.step_archive import Archive, cut_undone
+from meshwright_core.operations import catalogue, refusals
+from meshwright_core.operations.catalogue import Operation
+from meshwright_core.operations.verdicts import YES, Edit, Verdict
 
 _GROUP = -1  # the operation code of a transaction's step
 
@@ -41,7 +43,7 @@ class HalfEdgeMesh(MeshView):
     """A triangle or quad mesh, with exact undo, that lets one operation after another change it.
 
     Ids of vertices, elements and half-edges are plain ints, stable until :meth:`compact`; -1 is
-    none. See :mod:`meshcore.halfedge` for the arrays behind it.
+    none. See :mod:`meshwright_core.core.arrays` for the arrays behind it.
     """
 
     def __init__(self, arrays: MeshArrays, outline: Outline, degree_cap: int = 0) -> None:
@@ -49,7 +51,7 @@ class HalfEdgeMesh(MeshView):
         super().__init__(arrays, outline)
         self.degree_cap = degree_cap
         """The highest degree that an operation may bring about; 0 for no limit."""
-        self._codes = operations.CODES[self.k]
+        self._codes = catalogue.CODES[self.k]
         self._archive = Archive()
 
     @classmethod
@@ -59,7 +61,7 @@ class HalfEdgeMesh(MeshView):
         elements: np.ndarray | Sequence[Sequence[int]],
         geometric: np.ndarray | Sequence[bool] | None = None,
         desired_degree: np.ndarray | Sequence[int] | None = None,
-        corner_angle: float = construct.CORNER_ANGLE,
+        corner_angle: float = construction.CORNER_ANGLE,
     ) -> HalfEdgeMesh:
         """A mesh from (n, 2|3) points and (m, 3|4) counter-clockwise elements.
 
@@ -68,7 +70,7 @@ class HalfEdgeMesh(MeshView):
         by more than `corner_angle` degrees. desired_degree: (n,); by default equation 2 of the
         paper. Raises MeshError, saying where, for anything that is no oriented manifold mesh.
         """
-        arrays = construct.build(
+        arrays = construction.build(
             np.asarray(points),
             np.asarray(elements),
             None if geometric is None else np.asarray(geometric),
@@ -86,7 +88,7 @@ class HalfEdgeMesh(MeshView):
         code = self._codes.get(operation, -1)
         if code < 0:
             return Verdict.refused(refusals.OTHER_KIND, self, Operation(operation), h)
-        found = operations.check_once(*self._arrays, code, h, self.degree_cap)
+        found = catalogue.check_once(*self._arrays, code, h, self.degree_cap)
         if found == refusals.ALLOWED or found == refusals.NEED_ROOM:
             return YES
         return Verdict.refused(found, self, Operation(operation), h)
@@ -103,10 +105,10 @@ class HalfEdgeMesh(MeshView):
         code = self._codes.get(operation, -1)
         if code < 0:
             raise OperationRefused(self.check(operation, h).reason)
-        done = operations.apply_once(*self._arrays, code, h, self.degree_cap)
+        done = catalogue.apply_once(*self._arrays, code, h, self.degree_cap)
         while done[0] == refusals.NEED_ROOM:
             self._enlarge()
-            done = operations.apply_once(*self._arrays, code, h, self.degree_cap)
+            done = catalogue.apply_once(*self._arrays, code, h, self.degree_cap)
         if done[0] != refusals.ALLOWED:
             raise OperationRefused(
                 f"{operation} at half-edge {h} is not allowed: {self.check(operation, h).reason}"
@@ -126,12 +128,12 @@ class HalfEdgeMesh(MeshView):
         with self.transaction():
             first, found_since = 0, 0
             while True:
-                h = navigation.cleanable(self._arrays, first, self.degree_cap)
+                h = circulators.cleanable(self._arrays, first, self.degree_cap)
                 if h < 0 and found_since < len(edits):
                     first, found_since = 0, len(edits)  # a deleted line may have freed another
                     continue
                 if h < 0:
-                    h = navigation.cleanable_ring(self._arrays, self.degree_cap)
+                    h = circulators.cleanable_ring(self._arrays, self.degree_cap)
                 if h < 0:
                     break
                 first = self.origin(h)
@@ -185,7 +187,7 @@ class HalfEdgeMesh(MeshView):
         for vertex in ids.tolist():
             self._require_live(vertex)
         self._make_room(3 * len(ids))
-        navigation.move(self._arrays, ids, places)
+        circulators.move(self._arrays, ids, places)
 
     def set_desired(self, vertex: int, degree: int) -> None:
         """Set the desired degree of a vertex: one undoable step; s and s* follow."""
@@ -209,7 +211,7 @@ class HalfEdgeMesh(MeshView):
 
     def _set_vertex(self, vertex: int, column: int, value: int) -> None:
         self._make_room(16)
-        navigation.set_vertex(self._arrays, vertex, column, value)
+        circulators.set_vertex(self._arrays, vertex, column, value)
 
     def _require_live(self, vertex: int) -> None:
         if not (0 <= vertex < self.slots and self._arrays.vertex[vertex, HALF] >= 0):
@@ -358,7 +360,7 @@ class HalfEdgeMesh(MeshView):
         element_map = np.full(int(self._arrays.counters[ELEMENT_SLOTS]), -1, np.int64)
         element_map[ids] = np.arange(len(ids))
         rows = self._arrays.vertex[live]
-        arrays = construct.build(
+        arrays = construction.build(
             self.points[live],
             vertex_map[self.elements()],
             (rows[:, FLAGS] & GEOMETRIC) > 0,
@@ -377,6 +379,8 @@ class HalfEdgeMesh(MeshView):
         ]
         return vertex_map, element_map
 
-    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> display.Bundle:
+    def _repr_mimebundle_(
+        self, include: object = None, exclude: object = None
+    ) -> notebook_display.Bundle:
         """A still picture at the end of a notebook's cell, where one can be drawn."""
-        return display.bundle(self)
+        return notebook_display.bundle(self)

@@ -1,17 +1,17 @@
 """Runs every kernel of the editor once, so that they are compiled, or loaded from the cache.
 
-`python -m meshcore.warm_up` does so in a process of its own, whose cache others then load.
+`python -m meshwright_core.warm_up` does so in a process of its own, whose cache others then load.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from meshcore.compiled import warm
-from meshcore.lines import cleanable_lines
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.sides import Sides
-from meshcore.smoothing import relax
+from meshwright_core.analysis.cleanable_lines import cleanable_lines
+from meshwright_core.core.compilation import warm
+from meshwright_core.geometry.sides import Sides
+from meshwright_core.geometry.smoothing import relax
+from meshwright_core.mesh import HalfEdgeMesh
 
 
 def exercise() -> None:

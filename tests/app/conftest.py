@@ -8,15 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from agent.choices import Choice, Insight
-from meshcore import HalfEdgeMesh, Operation, generate, shapes
-from meshcore.operations import of_kind
+from meshwright_agent.policy.explanation_types import Choice, Insight
+from meshwright_core import HalfEdgeMesh, Operation
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.operations.catalogue import of_kind
 
 LOCAL = ("flip", "flip_left", "flip_right", "split", "collapse")
 
 
 class Greedy:
-    """Stands in for ``agent.rollout.Runner``: the best single operation; sometimes a bad one."""
+    """Stands in for ``meshwright_agent.policy.rollout.Runner``: the best single operation;
+    sometimes a bad one.
+    """
 
     def __init__(self, mesh: HalfEdgeMesh, bad_steps: int = 0, longest: int = 60) -> None:
         self.mesh = mesh.copy()
@@ -86,7 +89,9 @@ class Greedy:
 
 
 def ask_greedy(mesh: HalfEdgeMesh, policy: str, near: np.ndarray | None) -> tuple[Choice, ...]:
-    """Stands in for ``agent.insight.hints``: the first five of the best operations."""
+    """Stands in for ``meshwright_agent.policy.explanation.hints``: the first five of the best
+    operations.
+    """
     insight = Greedy(mesh).look()
     return () if insight is None else insight.choices[:5]
 
@@ -118,7 +123,7 @@ class Desk:
 @pytest.fixture(scope="session")
 def prepared_agent() -> None:
     """The agent's kernels are compiled, so that no command has to say that it compiles them."""
-    from agent import warm_up
+    from meshwright_agent import warm_up
 
     if not warm_up.is_warm_on_disk():
         warm_up.warm()
@@ -136,7 +141,7 @@ def greedy() -> type[Greedy]:
 
 @pytest.fixture(scope="session")
 def _star() -> dict[str, HalfEdgeMesh]:
-    return {kind: generate.mesh_domain(shapes.shape("star"), kind) for kind in ("quad", "tri")}
+    return {kind: meshing.mesh_domain(gallery.shape("star"), kind) for kind in ("quad", "tri")}
 
 
 @pytest.fixture
@@ -187,15 +192,15 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
     from driving import WAIT
     from qtpy.QtCore import QTimer
 
-    from app.assistant import Assistant
-    from app.desktop.application import application
-    from app.desktop.dispatch import Dispatcher
-    from app.desktop.settings import Settings
-    from app.desktop.window import MainWindow
-    from app.document import Document
-    from meshcore import compiled
+    from meshwright.assistant.assistant import Assistant
+    from meshwright.desktop.application.main_thread import Dispatcher
+    from meshwright.desktop.application.settings import Settings
+    from meshwright.desktop.main_window.startup import application
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright.document.document import Document
+    from meshwright_core.core import compilation
 
-    compiled.warm()
+    compilation.warm()
     application()
     Settings().clear()
     windows = []

@@ -4,9 +4,18 @@ import numpy as np
 import pytest
 from tiny_meshes import faces, fan, grid, ring, square_of_triangles
 
-from meshcore import HalfEdgeMesh, MeshError
-from meshcore.fuzz import agree, snapshot
-from meshcore.halfedge import DEGREE, HALF, JOURNAL_TOP, MARK, ORIGIN, SCORE, STEP_COLUMNS, TWIN
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.core.arrays import (
+    DEGREE,
+    HALF,
+    JOURNAL_TOP,
+    MARK,
+    ORIGIN,
+    SCORE,
+    STEP_COLUMNS,
+    TWIN,
+)
+from meshwright_core.testing.fuzzing import agree, snapshot
 
 _ANYWHERE = np.random.default_rng(0).random((7, 3))
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh
+from meshwright_core import HalfEdgeMesh
 
 
 def square_of_triangles():

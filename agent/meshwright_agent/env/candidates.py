@@ -13,10 +13,8 @@ from functools import cache
 
 import numpy as np
 
-from agent.patch import seen_vertex
-from meshcore.compiled import bare_kernel, kernel
-from meshcore.global_split import crossings
-from meshcore.halfedge import (
+from meshwright_agent.env.local_patch import seen_vertex
+from meshwright_core.core.arrays import (
     DEGREE,
     DESIRED,
     ELEMENTS,
@@ -26,14 +24,16 @@ from meshcore.halfedge import (
     following,
     preceding,
 )
-from meshcore.operations import (
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.operations.catalogue import (
     GLOBAL_SPLIT,
     QUAD_COLLAPSE,
     TRI_COLLAPSE,
     check,
     score_change,
 )
-from meshcore.refusals import ALLOWED
+from meshwright_core.operations.global_split import crossings
+from meshwright_core.operations.refusals import ALLOWED
 
 LOOKED_AT = 64
 """Irregular vertices up to which a decision looks at all of them."""
@@ -83,7 +83,8 @@ def template_plan(k: int, levels: int) -> tuple[np.ndarray, np.ndarray]:
 
 @bare_kernel
 def permitted(m, operation, h, cap, floor, ceiling, extended):
-    """Whether the agent may apply `operation` to h: :func:`meshcore.operations.check`, the action
+    """Whether the agent may apply `operation` to h:
+    :func:`meshwright_core.operations.catalogue.check`, the action
     set, and a number of elements that stays within floor and ceiling.
     """
     elements = m.counters[ELEMENTS]

@@ -8,14 +8,14 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from agent.patch import POTENTIALS, describe
-from agent.potential import forget, solve_potential
-from agent.selection import gather, masks
-from agent.task import Scratch, Task, choose_candidates, transition
-from meshcore.compiled import bare_kernel
-from meshcore.generate import benchmark_mesh
-from meshcore.halfedge import JOURNALLING
-from meshcore.mesh import HalfEdgeMesh
+from meshwright_agent.env.candidates import gather, masks
+from meshwright_agent.env.local_patch import POTENTIALS, describe
+from meshwright_agent.env.potential import forget, solve_potential
+from meshwright_agent.env.task import Scratch, Task, choose_candidates, transition
+from meshwright_core.core.arrays import JOURNALLING
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.domains.meshing import benchmark_mesh
+from meshwright_core.mesh import HalfEdgeMesh
 
 
 @bare_kernel
@@ -40,10 +40,11 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
     """Bring the vertices of a random polygon's mesh to their desired degrees.
 
     Actions: ``Discrete(K * A)``: operation a of candidate half-edge i is i * A + a. The K
-    candidates are chosen anew in each step (:mod:`agent.selection`). An action that the mask
-    forbids changes nothing and costs a step.
+    candidates are chosen anew in each step (:mod:`meshwright_agent.env.candidates`). An action that
+    the mask forbids changes nothing and costs a step.
 
-    Observation: ``template`` (K, T, C) int8, the channels (:data:`agent.patch.CHANNELS`) of the T
+    Observation: ``template`` (K, T, C) int8, the channels
+    (:data:`meshwright_agent.env.local_patch.CHANNELS`) of the T
     half-edges of each candidate's template; ``mask`` (K, A), which operations are permitted;
     ``changes`` (K, A) int8, the exact change of s that each would make; ``state`` (3,) float32, a
     tenth of s - s*, the share of steps left, and elements relative to the start.
@@ -67,7 +68,7 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
     ) -> None:
         """For polygons with so many sides (a closed range); `task` overrides `kind`."""
         if render_mode is not None:
-            raise ValueError(f"there is no render mode {render_mode}; see app.scene for pictures")
+            raise ValueError(f"render mode {render_mode!r} is not supported")
         self.render_mode = None
         self.task = task or Task(kind)
         self.sides = sides

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agent.potential import as_feature
-from meshcore.compiled import bare_kernel, kernel
-from meshcore.halfedge import (
+from meshwright_agent.env.potential import as_feature
+from meshwright_core.core.arrays import (
     DEGREE,
     DESIRED,
     FLAGS,
@@ -26,10 +25,11 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
+from meshwright_core.core.compilation import bare_kernel, kernel
 
 CHANNELS = ("degree", "irregularity", "boundary", "geometric", "potential", "absolute potential")
 """What is known of the vertex of a half-edge; the paper uses the first two. The last two are those
-of :mod:`agent.potential`."""
+of :mod:`meshwright_agent.env.potential`."""
 POTENTIALS = 4
 """Channels that need no potential."""
 

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import DEGREE, DESIRED, ELEMENT_SLOTS, ORIGIN, TWIN, following
+from meshwright_core.core.arrays import DEGREE, DESIRED, ELEMENT_SLOTS, ORIGIN, TWIN, following
+from meshwright_core.core.compilation import bare_kernel
 
 SWEEPS = 16
 """Jacobi sweeps: a charge is felt over as many edges."""

@@ -6,19 +6,13 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from agent.patch import LARGEST, POTENTIALS, Patches, describe, list_patch
-from agent.potential import field, forget, solve_potential
-from agent.selection import best_template, masks, shortlist, template_plan
-from meshcore.compiled import bare_kernel, kernel
-from meshcore.halfedge import (
-    HALF,
-    NEW_COUNT,
-    TOUCHED_COUNT,
-    TRACE_IDS,
-    MeshArrays,
-)
-from meshcore.navigation import cleanable_at
-from meshcore.operations import CLEANUP, FLIP_LEFT, GLOBAL_SPLIT, TRI_FLIP, rewrite
+from meshwright_agent.env.candidates import best_template, masks, shortlist, template_plan
+from meshwright_agent.env.local_patch import LARGEST, POTENTIALS, Patches, describe, list_patch
+from meshwright_agent.env.potential import field, forget, solve_potential
+from meshwright_core.core.arrays import HALF, NEW_COUNT, TOUCHED_COUNT, TRACE_IDS, MeshArrays
+from meshwright_core.core.circulators import cleanable_at
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.operations.catalogue import CLEANUP, FLIP_LEFT, GLOBAL_SPLIT, TRI_FLIP, rewrite
 
 FIRST_OPERATION = {"tri": TRI_FLIP, "quad": FLIP_LEFT}
 OPERATION_COUNT = {"tri": 3, "quad": 5}
@@ -34,7 +28,7 @@ class Task:
     kind: str
     """"tri" or "quad"."""
     selection: str = "shortlist"
-    """"shortlist" or "template", see :mod:`agent.selection`."""
+    """"shortlist" or "template", see :mod:`meshwright_agent.env.candidates`."""
     candidates: int = 32
     """Half-edges in the shortlist."""
     levels: int = 1
@@ -44,7 +38,7 @@ class Task:
     blocks: int = 4
     """Blocks of convolution, and with them the reach of the patch."""
     channels: int = 4
-    """How many of agent.patch.CHANNELS the policy sees; the paper: 2."""
+    """How many of meshwright_agent.env.local_patch.CHANNELS the policy sees; the paper: 2."""
     degree_cap: int = 0
     """Highest degree that an operation may bring about; 0: 9 for triangles, 7 for quads."""
     extended: bool = False

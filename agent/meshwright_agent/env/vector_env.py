@@ -10,12 +10,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agent.patch import LARGEST, Patches
-from agent.selection import masks, permitted
-from agent.task import Observation, Scratch, Task, choose_candidates, look, transition
-from meshcore.compiled import kernel
-from meshcore.generate import benchmark_mesh
-from meshcore.halfedge import (
+from meshwright_agent.env.candidates import masks, permitted
+from meshwright_agent.env.local_patch import LARGEST, Patches
+from meshwright_agent.env.task import (
+    Observation,
+    Scratch,
+    Task,
+    choose_candidates,
+    look,
+    transition,
+)
+from meshwright_core.core.arrays import (
     DELTA_SUM,
     ELEMENT_SLOTS,
     ELEMENTS,
@@ -27,8 +32,10 @@ from meshcore.halfedge import (
     allocate,
     enlarge,
 )
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.parts import part_mesh
+from meshwright_core.core.compilation import kernel
+from meshwright_core.domains.meshing import benchmark_mesh
+from meshwright_core.domains.random_parts import part_mesh
+from meshwright_core.mesh import HalfEdgeMesh
 
 _ROOM = 2.5  # slots of a run, relative to the largest start mesh; a run that needs more is masked
 PART_CORNERS = (8, 30)

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agent.annealing import anneal, greedy, random_walk
-from agent.policies import Policy
-from agent.solver import solve
-from agent.task import Task
-from meshcore.mesh import HalfEdgeMesh
+from meshwright_agent.env.task import Task
+from meshwright_agent.policy.policy_files import Policy
+from meshwright_agent.search.annealing import anneal, greedy, random_walk
+from meshwright_agent.search.solver import solve
+from meshwright_core.mesh import HalfEdgeMesh
 
 BASELINES = ("greedy", "plateaus", "annealing", "random walk")
 """Strict descent, which takes no time to speak of; descent that may go sideways as many times in a

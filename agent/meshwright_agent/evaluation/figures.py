@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agent.paper import single as paper_single
-from meshcore.atomic import replacing
+from meshwright_agent.evaluation.paper_results import single as paper_single
+from meshwright_core.io.atomic_write import replacing
 
 if TYPE_CHECKING:
-    from agent.evaluate import Rollouts
+    from meshwright_agent.evaluation.rollouts import Rollouts
 
 BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#0F766E"
 INK, MUTED, LINE = "#1E2329", "#5D656E", "#DEDED7"
@@ -31,7 +31,7 @@ def learning_curve(
 ) -> None:
     """Draw mean and standard deviation of single rollouts against decisions into a PNG or SVG file.
 
-    curve: points of :class:`agent.training.Progress`.
+    curve: points of :class:`meshwright_agent.training.trainer.Progress`.
     """
     decisions = [point["decisions"] / 1000.0 for point in curve]
     mean = [point["mean"] for point in curve]

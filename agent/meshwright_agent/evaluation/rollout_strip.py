@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from agent.figures import BLUE, DOTS, GREEN, INK, MUTED, VERMILION
-from agent.rollout import Step
-from meshcore import smoothing
-from meshcore.atomic import replacing
-from meshcore.mesh import HalfEdgeMesh
+from meshwright_agent.evaluation.figures import BLUE, DOTS, GREEN, INK, MUTED, VERMILION
+from meshwright_agent.policy.rollout import Step
+from meshwright_core.geometry import smoothing
+from meshwright_core.io.atomic_write import replacing
+from meshwright_core.mesh import HalfEdgeMesh
 
 PICTURES = 5
 _FILL, _EDGE, _OUTLINE = "#F1F2ED", "#8D99A6", "#2F3B48"
@@ -25,7 +25,8 @@ def rollout_strip(
 ) -> None:
     """Draw the mesh at the start, at the end, and at even distances between, as a PNG or SVG file.
 
-    steps: operations that belong together, as :meth:`agent.evaluate.Rollouts.steps` gives them;
+    steps: operations that belong together, as
+    :meth:`meshwright_agent.evaluation.rollouts.Rollouts.steps` gives them;
     `mesh` is not changed. Vertices move between the pictures, so that elements can be seen.
     """
     from matplotlib.figure import Figure

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 import torch
 
-from agent import paper
-from agent.batch import Batch, start_meshes
-from agent.policies import Policy, load, shipped
-from agent.ppo import decide
-from agent.rollout import Step
-from agent.task import MOST_CLEANUPS, Task, transition
-from meshcore.halfedge import ELEMENTS, JOURNALLING
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import NAMES, Operation
+from meshwright_agent.env.task import MOST_CLEANUPS, Task, transition
+from meshwright_agent.env.vector_env import Batch, start_meshes
+from meshwright_agent.evaluation import paper_results
+from meshwright_agent.policy.policy_files import Policy, load, shipped
+from meshwright_agent.policy.rollout import Step
+from meshwright_agent.training.ppo import decide
+from meshwright_core.core.arrays import ELEMENTS, JOURNALLING
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import NAMES, Operation
 
 
 class NothingToDo(ValueError):
@@ -206,5 +206,5 @@ def paper_table(
     """All rows that the paper gives for this kind, each as :func:`evaluate` measures it."""
     return [
         {"sides": list(row.sides), **evaluate(kind, row.sides, meshes, rollouts, seed, policy)}
-        for row in paper.ROWS[kind]
+        for row in paper_results.ROWS[kind]
     ]

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from agent import paper
-from agent.coarsening import coarsen, replayed
-from agent.contest import MOMENTS, baselines, race, share_within
-from agent.evaluate import Rollouts, roll_out, summary, unseen
-from agent.policies import Policy
-from agent.shortening import shorten
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import Operation
+from meshwright_agent.evaluation import paper_results
+from meshwright_agent.evaluation.baselines import MOMENTS, baselines, race, share_within
+from meshwright_agent.evaluation.rollouts import Rollouts, roll_out, summary, unseen
+from meshwright_agent.policy.policy_files import Policy
+from meshwright_agent.search.coarsening import coarsen, replayed
+from meshwright_agent.search.shortening import shorten
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import Operation
 
 Progress = Callable[[str, int], None]
 """Called as ``progress(what, meshes done)``."""
@@ -54,8 +54,8 @@ class Assessment:
 def assess(
     policy: Policy, sides: tuple[int, int], wanted: Wanted, progress: Progress | None = None
 ) -> Assessment:
-    """Measure one row. numbers: those of :func:`agent.evaluate.evaluate`, the paper's, and what
-    else is wanted.
+    """Measure one row. numbers: those of :func:`meshwright_agent.evaluation.rollouts.evaluate`, the
+    paper's, and what else is wanted.
     """
     tell = progress or (lambda what, done: None)
     meshes = unseen(policy.kind, sides, wanted.meshes, wanted.seed)
@@ -97,7 +97,7 @@ def assess(
 
 def _paper(kind: str, sides: tuple[int, int]) -> dict[str, float] | None:
     """The paper's numbers for this row, if it has it."""
-    row = paper.row(kind, sides)
+    row = paper_results.row(kind, sides)
     if row is None:
         return None
     found = {"best_mean": row.best.mean, "best_std": row.best.deviation}

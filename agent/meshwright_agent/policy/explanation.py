@@ -11,15 +11,15 @@ from dataclasses import replace
 import numpy as np
 import torch
 
-from agent.choices import Choice, Insight
-from agent.network import PolicyNetwork
-from agent.policies import Policy, PolicyError
-from agent.ppo import tensors
-from agent.selection import LOOKED_AT
-from agent.task import Observation, Scratch, Task, observe
-from meshcore.halfedge import IRREGULAR, ORIGIN, TWIN, MeshArrays, preceding
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import NAMES, Operation
+from meshwright_agent.env.candidates import LOOKED_AT
+from meshwright_agent.env.task import Observation, Scratch, Task, observe
+from meshwright_agent.policy.explanation_types import Choice, Insight
+from meshwright_agent.policy.network import PolicyNetwork
+from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.training.ppo import tensors
+from meshwright_core.core.arrays import IRREGULAR, ORIGIN, TWIN, MeshArrays, preceding
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import NAMES, Operation
 
 HINTS = 5
 """Hints that are given at once."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshcore.operations import Operation
+from meshwright_core.operations.catalogue import Operation
 
 
 @dataclass(frozen=True)

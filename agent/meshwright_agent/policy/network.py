@@ -12,7 +12,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor, nn
 
-from agent.task import Task
+from meshwright_agent.env.task import Task
 
 SCALES = (6.0, 1.0, 1.0, 1.0, 32.0, 32.0)
 """Divisors that bring the channels of a patch to order one."""
@@ -119,7 +119,8 @@ class PolicyNetwork(nn.Module):
     ) -> tuple[Tensor, Tensor]:
         """Logits (B, K A), NEVER where not permitted, and values (B,).
 
-        features, tables: from :func:`agent.patch.assemble`; real (B, K): which candidates there
+        features, tables: from :func:`meshwright_agent.env.local_patch.assemble`; real (B, K): which
+        candidates there
         are; mask, changes (B, K, A) and state (B, 3) from an Observation. All come from the
         processor's memory and the results go there, wherever the network is.
         """

@@ -17,9 +17,9 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 
-from agent.network import Architecture, PolicyNetwork
-from agent.task import Task
-from meshcore.atomic import replacing
+from meshwright_agent.env.task import Task
+from meshwright_agent.policy.network import Architecture, PolicyNetwork
+from meshwright_core.io.atomic_write import replacing
 
 FORMAT = 1
 _ENDING = ".safetensors"
@@ -50,7 +50,7 @@ class Policy:
 
 
 def _shipped_folder() -> Path:
-    return Path(str(files("assets") / "policies"))
+    return Path(str(files("meshwright_assets") / "policies"))
 
 
 def shipped(kind: str | None = None) -> list[str]:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import torch
 
-from agent.choices import Insight
-from agent.insight import insight
-from agent.policies import Policy, PolicyError
-from agent.ppo import decide
-from agent.selection import LONGEST_CUT
-from agent.task import Observation, Scratch, observe, transition
-from meshcore.halfedge import JOURNALLING
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import NAMES, Operation
+from meshwright_agent.env.candidates import LONGEST_CUT
+from meshwright_agent.env.task import Observation, Scratch, observe, transition
+from meshwright_agent.policy.explanation import insight
+from meshwright_agent.policy.explanation_types import Insight
+from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.training.ppo import decide
+from meshwright_core.core.arrays import JOURNALLING
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import NAMES, Operation
 
 Step = list[tuple[Operation, int]]
 

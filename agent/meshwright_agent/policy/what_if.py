@@ -1,7 +1,7 @@
 """What a policy would make of given half-edges, whether or not it would look at them now.
 
-For people who study a policy: :mod:`agent.insight` shows what it looks at in a run. Nothing here
-decides anything or changes a mesh.
+For people who study a policy: :mod:`meshwright_agent.policy.explanation` shows what it looks at in
+a run. Nothing here decides anything or changes a mesh.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agent.insight import weigh
-from agent.patch import LARGEST, Patches
-from agent.policies import Policy, PolicyError
-from agent.selection import gather, masks
-from agent.task import Observation, Scratch, Task, choose_candidates, look
-from meshcore.halfedge import ORIGIN, MeshArrays
-from meshcore.mesh import HalfEdgeMesh
+from meshwright_agent.env.candidates import gather, masks
+from meshwright_agent.env.local_patch import LARGEST, Patches
+from meshwright_agent.env.task import Observation, Scratch, Task, choose_candidates, look
+from meshwright_agent.policy.explanation import weigh
+from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_core.core.arrays import ORIGIN, MeshArrays
+from meshwright_core.mesh import HalfEdgeMesh
 
 
 @dataclass(frozen=True, eq=False)

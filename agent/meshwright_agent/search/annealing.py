@@ -15,11 +15,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from agent.selection import permitted
-from agent.task import FIRST_OPERATION, MOST_CLEANUPS, Task, transition
-from meshcore.chords import check_chord_collapse
-from meshcore.compiled import bare_kernel, kernel
-from meshcore.halfedge import (
+from meshwright_agent.env.candidates import permitted
+from meshwright_agent.env.task import FIRST_OPERATION, MOST_CLEANUPS, Task, transition
+from meshwright_core.core.arrays import (
     DEGREE,
     ELEMENT_SLOTS,
     ELEMENTS,
@@ -34,8 +32,9 @@ from meshcore.halfedge import (
     MeshArrays,
     preceding,
 )
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import (
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
     CLEANUP,
     FLIP_LEFT,
@@ -51,7 +50,8 @@ from meshcore.operations import (
     rewrite,
     score_change,
 )
-from meshcore.refusals import ALLOWED
+from meshwright_core.operations.chord_collapse import check_chord_collapse
+from meshwright_core.operations.refusals import ALLOWED
 
 Operations = list[tuple[Operation, int]]
 

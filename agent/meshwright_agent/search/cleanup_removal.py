@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from agent.annealing import Operations, with_room
-from agent.shortening import first_names, name_all, replay
-from meshcore.halfedge import MeshArrays
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import CLEANUP, CODES, NAMES
+from meshwright_agent.search.annealing import Operations, with_room
+from meshwright_agent.search.shortening import first_names, name_all, replay
+from meshwright_core.core.arrays import MeshArrays
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import CLEANUP, CODES, NAMES
 
 _UNLIMITED = 1 << 40
 

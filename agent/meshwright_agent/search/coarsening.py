@@ -12,7 +12,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from agent.annealing import (
+from meshwright_agent.search.annealing import (
     BEST_ELEMENTS,
     BEST_LENGTH,
     BEST_SCORE,
@@ -22,15 +22,15 @@ from agent.annealing import (
     Operations,
     copy_mesh,
 )
-from meshcore import smoothing
-from meshcore.halfedge import ELEMENT_SLOTS, ELEMENTS, MeshArrays
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.obstacles import Obstacles
+from meshwright_core.analysis.drawability import Obstacles
+from meshwright_core.core.arrays import ELEMENT_SLOTS, ELEMENTS, MeshArrays
+from meshwright_core.geometry import smoothing
+from meshwright_core.mesh import HalfEdgeMesh
 
 DRAWN = 20_000
 """Elements above which no mesh is drawn between two operations: it would take seconds."""
 TEMPERATURES = (0.5, 0.25)
-"""Of a sweep, see :mod:`agent.annealing`."""
+"""Of a sweep, see :mod:`meshwright_agent.search.annealing`."""
 PRICE = 0.4
 """Of an element, in units of s."""
 WEIGHTS = (0.27, 0.27, 0.12, 0.24, 0.04, 0.06)

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ELEMENTS,
     IRREGULAR,
@@ -26,9 +25,10 @@ from meshcore.halfedge import (
     TWIN,
     following,
 )
-from meshcore.journal import undo
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import (
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.history.journal import undo
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import (
     CLEANUP,
     FLIP_LEFT,
     FLIP_RIGHT,
@@ -42,7 +42,7 @@ from meshcore.operations import (
     rewrite,
     score_change,
 )
-from meshcore.refusals import ALLOWED
+from meshwright_core.operations.refusals import ALLOWED
 
 Found = list[tuple[Operation, int]]
 

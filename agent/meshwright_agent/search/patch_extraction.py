@@ -9,10 +9,9 @@ was cut out, and stays so when operations take and free elements in step.
 
 from __future__ import annotations
 
-from agent.agenda import FILL, dequeue, enqueue, irregular
-from agent.batch import member
-from meshcore.compiled import bare_kernel, kernel
-from meshcore.halfedge import (
+from meshwright_agent.env.vector_env import member
+from meshwright_agent.search.repair_queue import FILL, dequeue, enqueue, irregular
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DELTA_SUM,
@@ -37,9 +36,10 @@ from meshcore.halfedge import (
     following,
     preceding,
 )
-from meshcore.journal import undo
-from meshcore.operations import check, rewrite, score_change
-from meshcore.refusals import ALLOWED
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.history.journal import undo
+from meshwright_core.operations.catalogue import check, rewrite, score_change
+from meshwright_core.operations.refusals import ALLOWED
 
 MOST_TAKEN = 2
 """Element slots that one local operation takes, at most."""
@@ -53,8 +53,8 @@ def next_patch(m, a, k, smallest, largest, patience, number, tries, found):
     none after `patience` visits; one whose surroundings belong to another patch goes to the end of
     the queue. At most `tries` vertices are looked at. number: of the new patch, from 1; found (N,):
     receives the elements. Returns how many, the tries left, and the vertex; 0 where there is none.
-    Until :func:`agent.agenda.settle` frees them the vertices belong to the patch; so does
-    `place`, which :func:`cut_out` clears.
+    Until :func:`meshwright_agent.search.repair_queue.settle` frees them the vertices belong to the
+    patch; so does `place`, which :func:`cut_out` clears.
     """
     while tries > 0 and a.state[FILL] > 0:
         tries -= 1

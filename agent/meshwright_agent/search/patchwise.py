@@ -21,16 +21,30 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import torch
 
-from agent.agenda import FILL, Agenda, agenda, descend, enlarged, enlist, settle
-from agent.batch import Batch
-from agent.cutout import MOST_TAKEN, cut_out, mask_rim, next_patch, put_back
-from agent.policies import Policy, PolicyError
-from agent.ppo import decide
-from agent.selection import LOOKED_AT
-from agent.task import Task
-from meshcore.halfedge import JOURNALLING, ORIGIN, STEP_COLUMNS, allocate
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import NAMES, Operation
+from meshwright_agent.env.candidates import LOOKED_AT
+from meshwright_agent.env.task import Task
+from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.search.patch_extraction import (
+    MOST_TAKEN,
+    cut_out,
+    mask_rim,
+    next_patch,
+    put_back,
+)
+from meshwright_agent.search.repair_queue import (
+    FILL,
+    Agenda,
+    agenda,
+    descend,
+    enlarged,
+    enlist,
+    settle,
+)
+from meshwright_agent.training.ppo import decide
+from meshwright_core.core.arrays import JOURNALLING, ORIGIN, STEP_COLUMNS, allocate
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import NAMES, Operation
 
 LARGE, MANY = 5_000, 500
 """Elements of a large mesh; irregular vertices that make a mesh large, whatever its elements."""
@@ -59,7 +73,9 @@ class LargeRun:
     mesh: HalfEdgeMesh
     """The result; without history."""
     operations: np.ndarray
-    """(N,) codes of :mod:`meshcore.operations`, which replay in this order on the mesh given."""
+    """(N,) codes of :mod:`meshwright_core.operations.catalogue`, which replay in this order on the
+    mesh given.
+    """
     halfedges: np.ndarray
     """(N,) the half-edge of each."""
     score: int

@@ -14,18 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from agent.agenda import agenda
-from agent.annealing import WEIGHTS, Annealer, Operations, with_room
-from agent.batch import Batch
-from agent.cutout import MOST_TAKEN, cut_out, mask_rim
-from agent.large import improve_large
-from agent.policies import Policy, PolicyError
-from agent.ppo import decide
-from agent.shortening import shorten
-from agent.solver import prepare
-from agent.task import MOST_CLEANUPS, transition
-from meshcore.enclosure import enclose
-from meshcore.halfedge import (
+from meshwright_agent.env.task import MOST_CLEANUPS, transition
+from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.search.annealing import WEIGHTS, Annealer, Operations, with_room
+from meshwright_agent.search.patch_extraction import MOST_TAKEN, cut_out, mask_rim
+from meshwright_agent.search.patchwise import improve_large
+from meshwright_agent.search.repair_queue import agenda
+from meshwright_agent.search.shortening import shorten
+from meshwright_agent.search.solver import prepare
+from meshwright_agent.training.ppo import decide
+from meshwright_core.analysis.submesh import enclose
+from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     FLAGS,
     FREE_ELEMENT,
@@ -35,9 +35,9 @@ from meshcore.halfedge import (
     MeshArrays,
     allocate,
 )
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import CODES, NAMES, Operation
-from meshcore.smoothing import relax
+from meshwright_core.geometry.smoothing import relax
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import CODES, NAMES, Operation
 
 MANY = 128
 """Irregular vertices above which a part is repaired patch by patch first."""
@@ -62,7 +62,7 @@ class Confined:
 
     operations: Operations
     """Operations and half-edges of the whole mesh, to be applied in this order, while the vertices
-    that the part does not own are held (:func:`meshcore.enclosure.holding`)."""
+    that the part does not own are held (:func:`meshwright_core.analysis.submesh.holding`)."""
     score: int
     """s of the whole mesh after them."""
     optimum: int

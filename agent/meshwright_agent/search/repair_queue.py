@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agent.selection import permitted
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_agent.env.candidates import permitted
+from meshwright_core.core.arrays import (
     DEGREE,
     HALF,
     ORIGIN,
@@ -23,7 +22,14 @@ from meshcore.halfedge import (
     TWIN,
     preceding,
 )
-from meshcore.operations import QUAD_COLLAPSE, TRI_COLLAPSE, TRI_SPLIT, rewrite, score_change
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.operations.catalogue import (
+    QUAD_COLLAPSE,
+    TRI_COLLAPSE,
+    TRI_SPLIT,
+    rewrite,
+    score_change,
+)
 
 # places in Agenda.state
 HEAD, FILL = 0, 1

@@ -12,15 +12,15 @@ from typing import Protocol
 import numpy as np
 import torch
 
-from agent.annealing import SLICE, Annealer, Operations, with_room
-from agent.batch import Batch
-from agent.coarsening import replayed
-from agent.policies import Policy
-from agent.ppo import decide
-from agent.rollout import Runner
-from agent.task import Scratch, transition
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import NAMES, Operation
+from meshwright_agent.env.task import Scratch, transition
+from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.policy_files import Policy
+from meshwright_agent.policy.rollout import Runner
+from meshwright_agent.search.annealing import SLICE, Annealer, Operations, with_room
+from meshwright_agent.search.coarsening import replayed
+from meshwright_agent.training.ppo import decide
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import NAMES, Operation
 
 SIDE_BY_SIDE = 20_000
 """Elements up to which several rollouts are made at a time; all of them together have as many."""

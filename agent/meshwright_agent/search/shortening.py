@@ -14,10 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agent.annealing import Operations, copy_mesh, with_room
-from agent.task import Task
-from meshcore.compiled import bare_kernel, kernel
-from meshcore.halfedge import (
+from meshwright_agent.env.task import Task
+from meshwright_agent.search.annealing import Operations, copy_mesh, with_room
+from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ELEMENTS,
     HALF,
@@ -30,9 +29,10 @@ from meshcore.halfedge import (
     find,
     following,
 )
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import CODES, NAMES, check, rewrite
-from meshcore.refusals import ALLOWED
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import CODES, NAMES, check, rewrite
+from meshwright_core.operations.refusals import ALLOWED
 
 SLICE = 20_000
 """Operations replayed between two looks at the clock."""

@@ -16,19 +16,19 @@ from functools import cache, partial
 
 import numpy as np
 
-from agent.annealing import Operations, anneal
-from agent.batch import Batch
-from agent.coarsening import coarsen as coarser
-from agent.coarsening import replayed, undrawable
-from agent.large import LARGE, improve_large, is_large
-from agent.policies import Policy, PolicyError
-from agent.refining import without_cleanups
-from agent.shortening import shorten as shorter
-from agent.task import Task
-from agent.worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
-from meshcore.bends import anchors
-from meshcore.generate import benchmark_mesh
-from meshcore.mesh import HalfEdgeMesh
+from meshwright_agent.env.task import Task
+from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.search.annealing import Operations, anneal
+from meshwright_agent.search.cleanup_removal import without_cleanups
+from meshwright_agent.search.coarsening import coarsen as coarser
+from meshwright_agent.search.coarsening import replayed, undrawable
+from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
+from meshwright_agent.search.search_worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
+from meshwright_agent.search.shortening import shorten as shorter
+from meshwright_core.domains.meshing import benchmark_mesh
+from meshwright_core.geometry.boundary_spacing import anchors
+from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
 """Share of the time that is left for shortening where the optimum is not found."""
@@ -96,8 +96,8 @@ def solve(
     far. `progress(rollouts done, best s)` is called, from the worker threads, after rollouts and
     whenever s falls.
 
-    A mesh with many irregular vertices is repaired patch by patch first (:mod:`agent.large`); what
-    time is left goes into the few that remain.
+    A mesh with many irregular vertices is repaired patch by patch first
+    (:mod:`meshwright_agent.search.patchwise`); what time is left goes into the few that remain.
 
     Raises PolicyError if the policy is for the other kind of mesh.
     """

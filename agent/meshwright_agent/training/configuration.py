@@ -9,9 +9,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from agent.network import Architecture
-from agent.ppo import Settings
-from agent.task import Task
+from meshwright_agent.env.task import Task
+from meshwright_agent.policy.network import Architecture
+from meshwright_agent.training.ppo import Settings
 
 DEVICES = ("auto", "cpu", "cuda")
 

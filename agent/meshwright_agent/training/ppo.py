@@ -15,11 +15,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from agent.batch import Batch
-from agent.network import PolicyNetwork
-from agent.patch import Patches, assemble
-from agent.processes import Processes
-from agent.task import Observation
+from meshwright_agent.env.local_patch import Patches, assemble
+from meshwright_agent.env.task import Observation
+from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.network import PolicyNetwork
+from meshwright_agent.training.distributed import Processes
 
 
 @dataclass(frozen=True)

@@ -14,23 +14,23 @@ from typing import Any
 import numpy as np
 import torch
 
-from agent import checkpoint
-from agent.batch import Batch, start_meshes
-from agent.configuration import (
+from meshwright_agent.env.vector_env import Batch, start_meshes
+from meshwright_agent.evaluation.figures import learning_curve
+from meshwright_agent.evaluation.rollouts import evaluate, paper_table, roll_out
+from meshwright_agent.policy.network import PolicyNetwork
+from meshwright_agent.policy.policy_files import Policy, save_policy
+from meshwright_agent.training import checkpoint
+from meshwright_agent.training.configuration import (
     ConfigurationError,
     Training,
     configuration_of,
     read_configuration,
     shipped_configuration,
 )
-from agent.evaluate import evaluate, paper_table, roll_out
-from agent.events import Events
-from agent.figures import learning_curve
-from agent.network import PolicyNetwork
-from agent.policies import Policy, save_policy
-from agent.ppo import collect, update
-from agent.processes import DeviceError, Processes, joined
-from meshcore.atomic import replacing
+from meshwright_agent.training.distributed import DeviceError, Processes, joined
+from meshwright_agent.training.ppo import collect, update
+from meshwright_agent.training.tensorboard import Events
+from meshwright_core.io.atomic_write import replacing
 
 __all__ = [
     "ConfigurationError",

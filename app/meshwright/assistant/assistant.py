@@ -1,8 +1,8 @@
 """The assistant: a policy's runs on the document, and its hints.
 
 Neither Qt nor torch is imported here; the first run brings torch in, on the worker's thread. The
-worker (:mod:`app.worker`) plays on a copy of the mesh; what it decides is applied here, in the
-thread that owns the document.
+worker (:mod:`meshwright.assistant.worker`) plays on a copy of the mesh; what it decides is applied
+here, in the thread that owns the document.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.document import Document
-from app.hinting import Hinting
-from app.policy_files import label
-from app.progress import Progress
-from app.runs import Decided, Question, Run, Runner, State
-from app.searching import Effort, SearchRunner
-from app.sight import Sight
-from app.signals import Signal
-from app.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, Worker
-from meshcore import MeshError
-from meshcore.enclosure import enclose
+from meshwright.assistant.hints import Hinting
+from meshwright.assistant.insight import Sight
+from meshwright.assistant.policy_catalogue import label
+from meshwright.assistant.progress import Progress
+from meshwright.assistant.run import Decided, Question, Run, Runner, State
+from meshwright.assistant.search_runner import Effort, SearchRunner
+from meshwright.assistant.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, Worker
+from meshwright.document.document import Document
+from meshwright.signals import Signal
+from meshwright_core import MeshError
+from meshwright_core.analysis.submesh import enclose
 
 if TYPE_CHECKING:
-    from agent.choices import Choice, Insight
+    from meshwright_agent.policy.explanation_types import Choice, Insight
 
 APPLY_BUDGET = 0.02
 """Seconds of applying operations after which the window gets its turn."""
@@ -40,7 +40,7 @@ class Assistant:
     """Runs a policy on ``document``, and asks it for hints.
 
     ``dispatch(call)`` must call ``call()`` in the document's thread, soon and in order; the other
-    parameters are those of :class:`app.worker.Worker`.
+    parameters are those of :class:`meshwright.assistant.worker.Worker`.
 
     Events, emitted in the document's thread: ``changed()`` state, policy or progress differ;
     ``looked()`` :attr:`insight` is another; ``said(sentence)`` something a person wants to know;
@@ -328,7 +328,7 @@ class Assistant:
             self._runner_at = -1  # no runner knows of this edit, whenever its run has ended
             self._look_soon()
 
-    # What the worker says (:class:`app.worker.Listener`)
+    # What the worker says (:class:`meshwright.assistant.worker.Listener`)
 
     def loaded(self, name: str) -> None:
         """A policy is there."""
@@ -431,7 +431,7 @@ class Assistant:
 
     def _tidy(self, run: Run) -> None:
         """What smoothing around each operation has folded on the way, the whole unfolds."""
-        from app.tidying import after_run
+        from meshwright.document.position_repair import after_run
 
         if not run.decisions:
             return

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.document import Document
-from app.runs import Question
-from app.signals import Signal
-from app.worker import Worker
+from meshwright.assistant.run import Question
+from meshwright.assistant.worker import Worker
+from meshwright.document.document import Document
+from meshwright.signals import Signal
 
 if TYPE_CHECKING:
-    from agent.choices import Choice
+    from meshwright_agent.policy.explanation_types import Choice
 
 
 class Hinting:

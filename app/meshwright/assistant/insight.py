@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.document import Document
-from app.signals import Signal
+from meshwright.document.document import Document
+from meshwright.signals import Signal
 
 if TYPE_CHECKING:
-    from agent.choices import Insight
+    from meshwright_agent.policy.explanation_types import Insight
 
 
 class Sight:

@@ -12,7 +12,7 @@ _LONGEST_HEADER = 16 * 1024 * 1024
 
 def shipped(kind: str) -> list[str]:
     """Names of the policies for meshes of ``kind`` ("tri" or "quad"), in alphabetical order."""
-    folder = files("assets") / "policies"
+    folder = files("meshwright_assets") / "policies"
     if not folder.is_dir():
         return []
     names = [

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 
-from app.runs import Run
-from app.searching import Effort
+from meshwright.assistant.run import Run
+from meshwright.assistant.search_runner import Effort
 
 
 class Progress:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from app.searching import Effort
-from meshcore import HalfEdgeMesh, Operation
+from meshwright.assistant.search_runner import Effort
+from meshwright_core import HalfEdgeMesh, Operation
 
 if TYPE_CHECKING:
-    from agent.choices import Insight
+    from meshwright_agent.policy.explanation_types import Insight
 
 Step = list[tuple[Operation, int]]
 
@@ -31,7 +31,7 @@ class State(StrEnum):
 
 
 class Runner(Protocol):
-    """What the assistant needs of ``agent.rollout.Runner``."""
+    """What the assistant needs of ``meshwright_agent.policy.rollout.Runner``."""
 
     @property
     def finished(self) -> bool:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh, Operation
+from meshwright_core import HalfEdgeMesh, Operation
 
 if TYPE_CHECKING:
-    from agent.choices import Insight
+    from meshwright_agent.policy.explanation_types import Insight
 
 COMPLETE_SECONDS = 3.0
 """How long *Complete* searches when the optimum does not come sooner."""
@@ -33,8 +33,8 @@ class Effort:
 
 
 class SearchRunner:
-    """What ``app.assistant.Runner`` asks for, with the answer of ``agent.solver.solve`` as its
-    steps.
+    """What ``meshwright.assistant.assistant.Runner`` asks for, with the answer of
+    ``meshwright_agent.search.solver.solve`` as its steps.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class SearchRunner:
     def _search(self) -> list[tuple[Operation, int]]:
         if self._effort.elements is not None:
             return self._search_within(self._effort.elements)
-        from agent.solver import solve
+        from meshwright_agent.search.solver import solve
 
         solution = solve(
             self._mesh,
@@ -90,7 +90,7 @@ class SearchRunner:
         return list(solution.operations)
 
     def _search_within(self, elements: np.ndarray) -> list[tuple[Operation, int]]:
-        from agent.confined import solve_within
+        from meshwright_agent.search.region_search import solve_within
 
         found = solve_within(
             self._mesh,

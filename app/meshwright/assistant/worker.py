@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from app.runs import Decided, Question, Run, Runner, State, Step
-from app.searching import Effort, SearchRunner
-from meshcore import HalfEdgeMesh
+from meshwright.assistant.run import Decided, Question, Run, Runner, State, Step
+from meshwright.assistant.search_runner import Effort, SearchRunner
+from meshwright_core import HalfEdgeMesh
 
 if TYPE_CHECKING:
-    from agent.choices import Choice, Insight
+    from meshwright_agent.policy.explanation_types import Choice, Insight
 
 LEAVE_SECONDS = 10.0
 """Seconds that the end of the program waits for the thread, at most."""
@@ -75,8 +75,8 @@ class Worker:
     """One thread, begun when it is first needed.
 
     ``load(name)`` returns a policy, ``make_runner(mesh, policy, seed)`` a runner that works on its
-    own copy, ``make_search`` one as :class:`app.searching.SearchRunner` is, ``ask(mesh, policy,
-    near)`` the policy's best few operations; all are called on the thread.
+    own copy, ``make_search`` one as :class:`meshwright.assistant.search_runner.SearchRunner` is,
+    ``ask(mesh, policy, near)`` the policy's best few operations; all are called on the thread.
     """
 
     def __init__(
@@ -237,19 +237,19 @@ def _sentence(error: Exception) -> str:
 
 
 def _load_policy(name: str) -> Any:
-    from agent import policies
+    from meshwright_agent.policy import policy_files
 
-    policies.decide_on_one_thread()
-    return policies.load(name)
+    policy_files.decide_on_one_thread()
+    return policy_files.load(name)
 
 
 def _make_runner(mesh: HalfEdgeMesh, policy: Any, seed: int) -> Runner:
-    from agent.rollout import Runner as PolicyRunner
+    from meshwright_agent.policy.rollout import Runner as PolicyRunner
 
     return PolicyRunner(mesh, policy, seed)
 
 
 def _ask_policy(mesh: HalfEdgeMesh, policy: Any, near: np.ndarray | None) -> tuple[Choice, ...]:
-    from agent.insight import hints
+    from meshwright_agent.policy.explanation import hints
 
     return hints(mesh, policy, near=near)

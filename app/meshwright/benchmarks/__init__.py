@@ -14,7 +14,7 @@ import importlib
 import pkgutil
 from typing import Any, Protocol
 
-from app.report import Update
+from meshwright.console import Update
 
 
 class Suite(Protocol):

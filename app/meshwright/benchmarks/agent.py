@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from app.benchmarks.core import apply_all
-from app.report import Update
-from meshcore import HalfEdgeMesh, operations
-from meshcore.generate import grid
-from meshcore.halfedge import JOURNALLING
+from meshwright.benchmarks.engine import apply_all
+from meshwright.console import Update
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import JOURNALLING
+from meshwright_core.domains.meshing import grid
+from meshwright_core.operations import catalogue
 
 SUMMARY = "environment steps per second, and the time of one decision by mesh size"
 
@@ -45,8 +46,8 @@ def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
 
 def environment(kind: str, seed: int, quick: bool) -> dict[str, float]:
     """Return steps per second of 256 runs on polygons of 10 to 30 sides."""
-    from agent.batch import Batch, start_meshes
-    from agent.task import Task
+    from meshwright_agent.env.task import Task
+    from meshwright_agent.env.vector_env import Batch, start_meshes
 
     rng = np.random.default_rng(seed)
     task = Task(kind, extended=True)
@@ -71,8 +72,8 @@ def environment(kind: str, seed: int, quick: bool) -> dict[str, float]:
 
 def decision(kind: str, size: int, seed: int, count: int) -> float:
     """Return the median seconds of one decision, operation and clean-ups included."""
-    from agent.policies import decide_on_one_thread, load, shipped
-    from agent.rollout import Runner
+    from meshwright_agent.policy.policy_files import decide_on_one_thread, load, shipped
+    from meshwright_agent.policy.rollout import Runner
 
     decide_on_one_thread()
     runner = Runner(disturbed(kind, size, seed), load(shipped(kind)[0]), seed, max_steps=10**9)
@@ -88,9 +89,7 @@ def disturbed(kind: str, size: int, seed: int) -> HalfEdgeMesh:
     """Return a grid of about so many elements, as irregular everywhere whatever its size."""
     mesh = grid(kind, size)
     rng = np.random.default_rng(seed)
-    flips = (
-        [operations.TRI_FLIP] if kind == "tri" else [operations.FLIP_LEFT, operations.FLIP_RIGHT]
-    )
+    flips = [catalogue.TRI_FLIP] if kind == "tri" else [catalogue.FLIP_LEFT, catalogue.FLIP_RIGHT]
     count = mesh.n_elements // 4
     mesh.arrays.counters[JOURNALLING] = 0
     halfedges = rng.integers(0, mesh.k * mesh.n_elements, count)

@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from app.report import Update
-from meshcore import HalfEdgeMesh, Operation, operations
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import JOURNALLING
-from meshcore.refusals import ALLOWED, NEED_ROOM
+from meshwright.console import Update
+from meshwright_core import HalfEdgeMesh, Operation
+from meshwright_core.core.arrays import JOURNALLING
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.operations import catalogue
+from meshwright_core.operations.refusals import ALLOWED, NEED_ROOM
 
 SUMMARY = "operations per second of the engine, in compiled code and from Python"
 
@@ -32,8 +33,8 @@ def flip_all(m, halfedges):
     """Flip every half-edge of the list that may be flipped; return how many were."""
     done = 0
     for h in halfedges:
-        if operations.check(m, operations.TRI_FLIP, h, 0) == ALLOWED:
-            operations.rewrite(m, operations.TRI_FLIP, h)
+        if catalogue.check(m, catalogue.TRI_FLIP, h, 0) == ALLOWED:
+            catalogue.rewrite(m, catalogue.TRI_FLIP, h)
             done += 1
     return done
 
@@ -43,11 +44,11 @@ def apply_all(m, codes, halfedges, start):
     """Try one operation after another; return where it stopped for want of room, how many done."""
     done = 0
     for i in range(start, len(codes)):
-        code = operations.check(m, codes[i], halfedges[i], 0)
+        code = catalogue.check(m, codes[i], halfedges[i], 0)
         if code == NEED_ROOM:
             return i, done
         if code == ALLOWED:
-            operations.rewrite(m, codes[i], halfedges[i])
+            catalogue.rewrite(m, codes[i], halfedges[i])
             done += 1
     return len(codes), done
 
@@ -143,7 +144,7 @@ def compiled_mixed(
     meshes grow without end.
     """
     work = without_journal(mesh)
-    known = operations.CODES[work.k]
+    known = catalogue.CODES[work.k]
     codes = np.array([known[Operation(n)] for n in names if n in known])
     chosen = codes[rng.integers(len(codes), size=count)]
     halfedges = somewhere(work, count, span, rng)
@@ -156,7 +157,7 @@ def compiled_mixed(
             seconds += time.perf_counter() - start
             done += more
             if at < stop:  # the mesh enlarges its arrays, off the clock
-                work.apply(operations.NAMES[int(chosen[at])], int(halfedges[at]))
+                work.apply(catalogue.NAMES[int(chosen[at])], int(halfedges[at]))
                 at += 1
         if fresh_every:
             work = without_journal(mesh)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.report import Update
-from meshcore.fuzz import fuzz
+from meshwright.console import Update
+from meshwright_core.testing.fuzzing import fuzz
 
 SUMMARY = "a million random operations of each kind, each checked against a naive face list"
 

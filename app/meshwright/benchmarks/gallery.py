@@ -9,12 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from agent import policies, solver
-from agent.policies import Policy
-from app import meshfile
-from app.commands.improve import ROLLOUTS, replay
-from app.report import Update
-from meshcore import HalfEdgeMesh, generate, quality, read, shapes
+from meshwright.cli import mesh_output
+from meshwright.cli.commands.improve import ROLLOUTS, replay
+from meshwright.console import Update
+from meshwright_agent.policy import policy_files
+from meshwright_agent.policy.policy_files import Policy
+from meshwright_agent.search import solver
+from meshwright_core import HalfEdgeMesh, read
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry import quality
 
 SUMMARY = "every shape of the gallery, meshed and improved file to file: s, corners, folds"
 
@@ -23,10 +26,10 @@ QUICK = ("star", "annulus")
 
 def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
     """Improve each shape as triangles and as quads with ten rollouts (quick: two shapes, one)."""
-    names = QUICK if quick else shapes.names()
+    names = QUICK if quick else gallery.names()
     found: dict[str, Any] = {}
     for kind in ("tri", "quad"):
-        policy = policies.load(policies.shipped(kind)[0])
+        policy = policy_files.load(policy_files.shipped(kind)[0])
         rows = {}
         for number, name in enumerate(names):
             update(number, f"{kind} {name}")
@@ -46,15 +49,15 @@ def improved(name: str, kind: str, policy: Policy, rollouts: int, seed: int) -> 
     began = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         first, last = Path(folder) / "in.vtk", Path(folder) / "out.vtk"
-        made = generate.mesh_domain(shapes.shape(name), kind)
-        meshfile.settle(made)
-        meshfile.write_mesh(first, made)
+        made = meshing.mesh_domain(gallery.shape(name), kind)
+        mesh_output.settle(made)
+        mesh_output.write_mesh(first, made)
         mesh = read(first)
         before = mesh.copy()
         solution = solver.solve(mesh, policy, rollouts=rollouts, seed=seed)
         replay(mesh, solution)
-        meshfile.settle(mesh)
-        meshfile.write_mesh(last, mesh)
+        mesh_output.settle(mesh)
+        mesh_output.write_mesh(last, mesh)
         after = read(last)
         after.validate()
     return {

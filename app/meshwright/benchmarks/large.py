@@ -4,7 +4,8 @@ Quads: a random polygon, cut into quads and refined by Catmull-Clark splits; tri
 is scrambled by one random valid operation for every five elements: flips, splits and collapses in
 equal parts, anywhere on the mesh. Global splits are not among them, since each would cut a whole
 row of quads: 200,000 of them would multiply a million elements by hundreds. Then the shipped policy
-repairs it (:func:`agent.large.improve_large`). *Growth* compares the time per element with that of
+repairs it (:func:`meshwright_agent.search.patchwise.improve_large`). *Growth* compares the time per
+element with that of
 the smallest mesh; processor time is used, because other programs may be running.
 
 Polygons of 200 and 400 sides, in quads as in the benchmark, are played as a whole, in single
@@ -19,10 +20,12 @@ from typing import Any
 
 import numpy as np
 
-from app.benchmarks.core import apply_all
-from app.report import Update
-from meshcore import HalfEdgeMesh, generate, operations, quadrangulate
-from meshcore.halfedge import ELEMENT_SLOTS, JOURNALLING
+from meshwright.benchmarks.engine import apply_all
+from meshwright.console import Update
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import ELEMENT_SLOTS, JOURNALLING
+from meshwright_core.domains import meshing, quadrangulation
+from meshwright_core.operations import catalogue
 
 SUMMARY = "repair of scrambled meshes of up to a million elements, and polygons of many sides"
 
@@ -32,12 +35,12 @@ TRIANGLES = (10_000, 100_000)
 SMALL = ((9, 2), (9, 3))
 """The same for a quick run: 336 and 1,344 quads."""
 POLYGONS = (200, 400)
-LOCAL = {"tri": operations.CODES[3].values(), "quad": tuple(operations.CODES[4].values())[:4]}
+LOCAL = {"tri": catalogue.CODES[3].values(), "quad": tuple(catalogue.CODES[4].values())[:4]}
 
 
 def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
     """Measure everything; ``quick`` keeps to small meshes."""
-    from agent.policies import decide_on_one_thread
+    from meshwright_agent.policy.policy_files import decide_on_one_thread
 
     decide_on_one_thread()
     found: dict[str, Any] = {}
@@ -46,7 +49,7 @@ def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
     found["quads"] = by_size(quads, seed, update)
     if not quick:
         found["triangles"] = by_size(
-            [generate.grid("tri", size) for size in TRIANGLES], seed, update
+            [meshing.grid("tri", size) for size in TRIANGLES], seed, update
         )
     for sides in (SMALL[0][0],) if quick else POLYGONS:
         update(0, f"polygons of {sides} sides")
@@ -57,9 +60,9 @@ def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
 def refined(sides: int, levels: int, seed: int) -> HalfEdgeMesh:
     """Return a random polygon in 3 (sides - 2) 4^levels quads."""
     rng = np.random.default_rng(seed)
-    points, quads, geometric = generate.benchmark_arrays("quad", sides, rng)
+    points, quads, geometric = meshing.benchmark_arrays("quad", sides, rng)
     for _ in range(levels):
-        points, quads, geometric = quadrangulate.catmull_clark(points, [quads], geometric)
+        points, quads, geometric = quadrangulation.catmull_clark(points, [quads], geometric)
     return HalfEdgeMesh.from_elements(points, quads, geometric)
 
 
@@ -92,8 +95,8 @@ def by_size(meshes: list[HalfEdgeMesh], seed: int, update: Update) -> dict[str, 
 
 def repaired(mesh: HalfEdgeMesh, seed: int, update: Update) -> dict[str, float]:
     """Repair the mesh with the policy that is shipped for it; returns the numbers."""
-    from agent.large import improve_large
-    from agent.policies import load, shipped
+    from meshwright_agent.policy.policy_files import load, shipped
+    from meshwright_agent.search.patchwise import improve_large
 
     policy = load(shipped(mesh.kind)[0])
     began, processor = time.perf_counter(), time.process_time()
@@ -122,14 +125,14 @@ def repaired(mesh: HalfEdgeMesh, seed: int, update: Update) -> dict[str, float]:
 
 def polygons(sides: int, seed: int, count: int) -> dict[str, float]:
     """Play single rollouts of the shipped policy on so many polygons, to their best states."""
-    from agent.policies import load, shipped
-    from agent.rollout import Runner
+    from meshwright_agent.policy.policy_files import load, shipped
+    from meshwright_agent.policy.rollout import Runner
 
     policy = load(shipped("quad")[0])
     returns: list[float] = []
     steps, processor = 0, time.process_time()
     for i in range(count):
-        mesh = generate.benchmark_mesh("quad", sides, np.random.default_rng([seed, sides, i]))
+        mesh = meshing.benchmark_mesh("quad", sides, np.random.default_rng([seed, sides, i]))
         runner = Runner(mesh, policy, seed + i)
         while runner.step():
             steps += 1

@@ -10,13 +10,15 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from agent import policies, solver
-from agent.fewest import Answer, fewest
-from app import levels
-from app.document import Document
-from app.levels import Level
-from app.report import Update
-from meshcore import MeshError, quality
+from meshwright.console import Update
+from meshwright.document.document import Document
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.level import Level
+from meshwright_agent.policy import policy_files
+from meshwright_agent.search import solver
+from meshwright_agent.search.exhaustive import Answer, fewest
+from meshwright_core import MeshError
+from meshwright_core.geometry import quality
 
 SUMMARY = "every level: par, proof that no fewer operations will do, the agent's operations"
 SECONDS = 2.0
@@ -61,7 +63,7 @@ def checked(level: Level, nodes: int, seconds: float, seed: int) -> dict[str, An
         "inverted": reached,
     }
     if not level.most:
-        policy = policies.load(policies.shipped(level.kind)[0])
+        policy = policy_files.load(policy_files.shipped(level.kind)[0])
         solution = solver.solve(mesh, policy, seconds=seconds, seed=seed, coarsen=False)
         row |= {"agent": len(solution.operations), "agent_s": solution.score}
     return {**row, "seconds": round(time.perf_counter() - began, 2)}

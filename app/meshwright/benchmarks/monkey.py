@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from app.benchmarks.desktop.display import display
-from app.report import Update
+from meshwright.benchmarks.desktop.display import display
+from meshwright.console import Update
 
 SUMMARY = "random mouse and key events at the window: exceptions, threads, timers, the mesh"
 EVENTS, QUICK_EVENTS = 20_000, 400
@@ -69,7 +69,7 @@ class Monkey:
     """
 
     def __init__(self, window: Any, seed: int, events: int) -> None:
-        from app.desktop.actions import ACTIONS
+        from meshwright.desktop.actions.registry import ACTIONS
 
         self.window, self.left, self.sent = window, events, 0
         self.rng = np.random.default_rng(seed)
@@ -217,7 +217,7 @@ class Monkey:
         from qtpy.QtCore import QPoint
         from qtpy.QtTest import QTest
 
-        from meshcore.operations import of_kind
+        from meshwright_core.operations.catalogue import of_kind
 
         canvas, mesh = self.window.canvas, self.window.document.mesh
         if canvas.plotter is None or not canvas.isVisible():
@@ -245,9 +245,9 @@ class Monkey:
 
 
 def _star(kind: str) -> Any:
-    from meshcore import generate, shapes
+    from meshwright_core.domains import gallery, meshing
 
-    return generate.mesh_domain(shapes.shape("star"), kind)
+    return meshing.mesh_domain(gallery.shape("star"), kind)
 
 
 def _play(seed: int, events: int) -> dict[str, Any]:
@@ -255,12 +255,12 @@ def _play(seed: int, events: int) -> dict[str, Any]:
     from qtpy.QtCore import QTimer
     from qtpy.QtWidgets import QApplication
 
-    from app.desktop.application import application
-    from app.desktop.window import MainWindow
-    from app.document import Document
-    from meshcore import compiled
+    from meshwright.desktop.main_window.startup import application
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright.document.document import Document
+    from meshwright_core.core import compilation
 
-    compiled.warm()
+    compilation.warm()
     exceptions: list[str] = []
 
     def note(kind: Any, value: Any, trace: Any) -> None:

@@ -10,16 +10,19 @@ import time
 from statistics import median
 from typing import Any
 
-from agent import policies, solver
-from agent.policies import Policy
-from app import meshfile
-from app.benchmarks.gallery import corners
-from app.commands.improve import replay
-from app.report import Update
-from meshcore import HalfEdgeMesh, generate, quality, shapes
-from meshcore.blocks import block_count
-from meshcore.domain import Domain
-from meshcore.parts import parts
+from meshwright.benchmarks.gallery import corners
+from meshwright.cli import mesh_output
+from meshwright.cli.commands.improve import replay
+from meshwright.console import Update
+from meshwright_agent.policy import policy_files
+from meshwright_agent.policy.policy_files import Policy
+from meshwright_agent.search import solver
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.analysis.blocks import block_count
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.domains.domain import Domain
+from meshwright_core.domains.random_parts import parts
+from meshwright_core.geometry import quality
 
 SUMMARY = "gallery and random parts as quads: s, s*, elements, blocks, shapes after so many seconds"
 SECONDS = 10.0
@@ -33,9 +36,9 @@ QUICK = 2
 
 def run(seed: int, quick: bool, update: Update, seconds: float = SECONDS) -> dict[str, Any]:
     """Improve the gallery and 40 parts of each row; quick: two of each, a tenth of the time."""
-    policy = policies.load(policies.shipped("quad")[0])
+    policy = policy_files.load(policy_files.shipped("quad")[0])
     time_each = 0.1 * seconds if quick else seconds
-    groups = {"gallery": list(shapes.gallery().values())}
+    groups = {"gallery": list(gallery.gallery().values())}
     for low, high in ROWS:
         groups[f"{low}-{high} corners"] = parts(QUICK if quick else PARTS, (low, high), seed)
     found: dict[str, Any] = {}
@@ -51,13 +54,13 @@ def run(seed: int, quick: bool, update: Update, seconds: float = SECONDS) -> dic
 
 def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[str, Any]:
     """Return one row of the table."""
-    mesh = generate.mesh_domain(domain, "quad")
+    mesh = meshing.mesh_domain(domain, "quad")
     before, places = mesh.copy(), corners(mesh)
     began = time.perf_counter()
     solution = solver.solve(mesh, policy, seconds=seconds, seed=seed)
     took = time.perf_counter() - began
     replay(mesh, solution)
-    meshfile.settle(mesh)
+    mesh_output.settle(mesh)
     mesh.validate()
     return {
         "corners": sum(int(flags.sum()) for flags in domain.loop_corners),

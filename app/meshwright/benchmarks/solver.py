@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from agent.annealing import SLICE, Annealer
-from agent.batch import start_meshes
-from agent.policies import Policy, decide_on_one_thread, load, shipped
-from agent.solver import prepare, solve
-from app.report import Update
-from meshcore import HalfEdgeMesh
+from meshwright.console import Update
+from meshwright_agent.env.vector_env import start_meshes
+from meshwright_agent.policy.policy_files import Policy, decide_on_one_thread, load, shipped
+from meshwright_agent.search.annealing import SLICE, Annealer
+from meshwright_agent.search.solver import prepare, solve
+from meshwright_core import HalfEdgeMesh
 
 SUMMARY = "share of meshes at s* after 0.3 to 10 s of one core: the solver, and annealing alone"
 

@@ -16,10 +16,12 @@ from typing import Any
 import numpy as np
 import shapely
 
-from app.report import Update
-from meshcore import HalfEdgeMesh, generate, quality, shapes, smoothing, untangle
-from meshcore.hopeless import hopeless
-from meshcore.sides import Sides
+from meshwright.console import Update
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry import quality, smoothing, untangling
+from meshwright_core.geometry.sides import Sides
+from meshwright_core.geometry.unfixable import hopeless
 
 SUMMARY = "share of randomly edited meshes without inverted elements: as is, averaged, untangled"
 
@@ -54,9 +56,9 @@ def compare(
 def _start(kind: str, polygon: bool, rng: np.random.Generator) -> HalfEdgeMesh:
     """A mesh of a random polygon or of a shape from the gallery."""
     if polygon:
-        return generate.benchmark_mesh(kind, int(rng.integers(6, 31)), rng)
-    names = list(shapes.gallery())
-    return generate.mesh_domain(shapes.shape(names[int(rng.integers(len(names)))]), kind)
+        return meshing.benchmark_mesh(kind, int(rng.integers(6, 31)), rng)
+    names = list(gallery.gallery())
+    return meshing.mesh_domain(gallery.shape(names[int(rng.integers(len(names)))]), kind)
 
 
 def edited(start: HalfEdgeMesh, rng: np.random.Generator, careful: bool) -> HalfEdgeMesh:
@@ -127,7 +129,7 @@ Method = Callable[[HalfEdgeMesh], tuple[np.ndarray, np.ndarray]]
 
 
 def _untangled(mesh: HalfEdgeMesh) -> tuple[np.ndarray, np.ndarray]:
-    found = untangle.untangle(mesh)
+    found = untangling.untangle(mesh)
     return found.vertices, found.positions
 
 

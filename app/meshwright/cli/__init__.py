@@ -20,8 +20,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any, NoReturn
 
-from app.commands import COMMANDS, Command
-from app.report import Report, UserError
+from meshwright.cli.commands import COMMANDS, Command
+from meshwright.console import Report, UserError
 
 DONE, BUG, REFUSED, READER_GONE = 0, 1, 2, 141
 

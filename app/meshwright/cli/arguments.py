@@ -14,14 +14,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.report import Report, UserError
+from meshwright.console import Report, UserError
 
 if TYPE_CHECKING:
-    from agent.policies import Policy
-    from agent.training import Training
-    from app.document import Document
-    from meshcore import HalfEdgeMesh
-    from meshcore.domain import Domain
+    from meshwright.document.document import Document
+    from meshwright_agent.policy.policy_files import Policy
+    from meshwright_agent.training.trainer import Training
+    from meshwright_core import HalfEdgeMesh
+    from meshwright_core.domains.domain import Domain
 
 KIND_NOUN = {"tri": "triangles", "quad": "quads"}
 
@@ -33,21 +33,21 @@ def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
     project knows its corners.
     """
     _require_file(path)
-    import meshcore
-    from app import project
+    import meshwright_core
+    from meshwright.document.storage import project_file
 
     with _bad_input(path):
-        if project.is_project(path):
-            return project.read(path).mesh.copy()
+        if project_file.is_project(path):
+            return project_file.read(path).mesh.copy()
         if corner_angle is None:
-            return meshcore.read(path)
-        return meshcore.read(path, corner_angle=corner_angle)
+            return meshwright_core.read(path)
+        return meshwright_core.read(path, corner_angle=corner_angle)
 
 
 def read_project(path: str) -> Document:
     """Return the document in a project file, its history with it, or raise UserError."""
     _require_file(path)
-    from app.document import Document
+    from meshwright.document.document import Document
 
     document = Document()
     with _bad_input(path):
@@ -60,31 +60,32 @@ def read_domain(shape: str, corner_angle: float | None = None) -> Domain:
 
     ``corner_angle`` in degrees: a point where the boundary turns by more is a corner.
     """
-    from meshcore import geometry_files, shapes
+    from meshwright_core.domains import gallery
+    from meshwright_core.io import drawings
 
     if looks_like_path(shape) or Path(shape).exists():
         _require_file(shape)
         with _bad_input(shape):
             if corner_angle is None:
-                return geometry_files.read_domain(shape)
-            return geometry_files.read_domain(shape, corner_angle)
+                return drawings.read_domain(shape)
+            return drawings.read_domain(shape, corner_angle)
     with _bad_input(shape):
-        return shapes.shape(shape)
+        return gallery.shape(shape)
 
 
 def make_mesh(
     domain: Domain, kind: str, max_edge: float | None = None, seed: int = 0
 ) -> HalfEdgeMesh:
     """Return a mesh of the domain, or raise UserError if it cannot be meshed as asked."""
-    from meshcore import generate
+    from meshwright_core.domains import meshing
 
     with _bad_input(domain.name or "the domain"):
-        return generate.mesh_domain(domain, kind, max_edge=max_edge, seed=seed)
+        return meshing.mesh_domain(domain, kind, max_edge=max_edge, seed=seed)
 
 
 def prepare_agent(report: Report) -> None:
     """Compile what an agent needs where that was never done, and say so: it takes a while."""
-    from agent import warm_up
+    from meshwright_agent import warm_up
 
     if not warm_up.is_warm_on_disk():
         report.note("Preparing the agent. This takes a minute or two, once on this machine.")
@@ -93,18 +94,18 @@ def prepare_agent(report: Report) -> None:
 
 def read_policy(name: str | None, kind: str) -> Policy:
     """Return a policy for meshes of this kind: by name, from a file, or the one we ship."""
-    from agent import policies
+    from meshwright_agent.policy import policy_files
 
-    policies.decide_on_one_thread()
+    policy_files.decide_on_one_thread()
     if name is None:
-        shipped = policies.shipped(kind)
+        shipped = policy_files.shipped(kind)
         if not shipped:
             raise UserError(f"no policy for {KIND_NOUN[kind]} is installed; give one by --policy")
         name = shipped[0]
     elif looks_like_path(name):
         _require_file(name)
-    with _bad_input(name, policies.PolicyError):
-        policy = policies.load(name)
+    with _bad_input(name, policy_files.PolicyError):
+        policy = policy_files.load(name)
     if policy.kind != kind:
         raise UserError(
             f"{name}: this policy is for {KIND_NOUN[policy.kind]}, the mesh is of {KIND_NOUN[kind]}"
@@ -114,13 +115,13 @@ def read_policy(name: str | None, kind: str) -> Policy:
 
 def read_configuration(path: str | None, kind: str) -> Training:
     """Return a training configuration, the shipped one if no path is given."""
-    from agent import training
+    from meshwright_agent.training import trainer
 
     if path is not None:
         _require_file(path)
-    source = path or str(training.shipped_configuration(kind))
-    with _bad_input(source, training.ConfigurationError):
-        configuration = training.read_configuration(source)
+    source = path or str(trainer.shipped_configuration(kind))
+    with _bad_input(source, trainer.ConfigurationError):
+        configuration = trainer.read_configuration(source)
     found = configuration.task.kind
     if found != kind:
         raise UserError(f"{source}: this configuration is for --kind {found}, not {kind}")
@@ -207,7 +208,7 @@ def _require_file(path: str) -> None:
 @contextmanager
 def _bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
     """Turn a MeshError, or one of ``more``, into a UserError whose sentence names the input."""
-    from meshcore.errors import MeshError
+    from meshwright_core.errors import MeshError
 
     try:
         yield

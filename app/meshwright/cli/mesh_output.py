@@ -6,18 +6,18 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.outputs import checked_output
-from app.report import UserError
+from meshwright.cli.output_files import checked_output
+from meshwright.console import UserError
 
 if TYPE_CHECKING:
-    from meshcore import HalfEdgeMesh
+    from meshwright_core import HalfEdgeMesh
 
 SHOWN_IDS = 20
 
 
 def checked_mesh_output(path: str, kind: str | None = None) -> Path:
     """Return the path if a mesh of this kind, or of any, can be written there; else UserError."""
-    from meshcore import formats
+    from meshwright_core.io import formats
 
     noun = {"tri": "triangle", "quad": "quad"}.get(kind or "")
     fit = [ending for ending, form in formats.FORMATS.items() if not noun or noun in form.kinds]
@@ -32,7 +32,7 @@ def settle(mesh: HalfEdgeMesh) -> list[int]:
     """
     import numpy as np
 
-    from meshcore import smoothing
+    from meshwright_core.geometry import smoothing
 
     inverted = smoothing.relax(mesh)
     return [int(row) for row in np.flatnonzero(np.isin(mesh.element_ids(), inverted))]
@@ -40,11 +40,11 @@ def settle(mesh: HalfEdgeMesh) -> list[int]:
 
 def write_mesh(path: Path, mesh: HalfEdgeMesh) -> None:
     """Write the mesh whole or not at all; what the system refuses becomes a UserError."""
-    import meshcore
-    from meshcore.errors import MeshError
+    import meshwright_core
+    from meshwright_core.errors import MeshError
 
     try:
-        meshcore.write(path, mesh)
+        meshwright_core.write(path, mesh)
     except MeshError as error:
         raise UserError(str(error)) from error
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from app.report import UserError
+from meshwright.console import UserError
 
 
 def checked_output(path: str, endings: tuple[str, ...] = (), option: str = "-o") -> Path:
@@ -51,11 +51,11 @@ def replacing(target: Path) -> Iterator[Path]:
     If the block fails, whatever stood at ``target`` is untouched and nothing is left beside it.
     An operating system error becomes a UserError that names the target.
     """
-    from meshcore import atomic
-    from meshcore.errors import MeshError
+    from meshwright_core.errors import MeshError
+    from meshwright_core.io import atomic_write
 
     try:
-        with atomic.replacing(target) as temporary:
+        with atomic_write.replacing(target) as temporary:
             yield temporary
     except MeshError as error:
         raise UserError(str(error)) from error

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from app.document import Document
-from app.levels import Level
+from meshwright.document.document import Document
+from meshwright.puzzles.level import Level
 
 
 def run(
@@ -20,8 +20,8 @@ def run(
     source that cannot be had, and KeyboardInterrupt after the window was closed by Ctrl-C in the
     terminal.
     """
-    from app.desktop.application import application, open_window
-    from app.desktop.interrupt import on_interrupt
+    from meshwright.desktop.application.sigint import on_interrupt
+    from meshwright.desktop.main_window.startup import application, open_window
 
     app = application()
     window = open_window(source, kind, demo, guided=True, level=level)

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from app.history import Row
-    from meshcore.steps import Steps
+    from meshwright.document.history import Row
+    from meshwright_core.history.packed_steps import Steps
 
 MOST_BRANCHES = 50
 """Branches that a history keeps, branches of branches included; the oldest go."""

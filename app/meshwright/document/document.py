@@ -11,17 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from app import project
-from app.history import YOU, History
-from app.keeping import Kept
-from app.selection import Selection
-from app.timeline import NO_MESH as NO_MESH
-from app.timeline import Timeline
-from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict, io
-from meshcore.display import Bundle
-from meshcore.enclosure import holding
-from meshcore.formats import SHAPES
-from meshcore.operations import CATALOGUE
+from meshwright.document.history import YOU, History
+from meshwright.document.selection import Selection
+from meshwright.document.storage import project_file
+from meshwright.document.storage.document_state import Kept
+from meshwright.document.timeline import NO_MESH as NO_MESH
+from meshwright.document.timeline import Timeline
+from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
+from meshwright_core.analysis.submesh import holding
+from meshwright_core.core.notebook_display import Bundle
+from meshwright_core.io import mesh_files
+from meshwright_core.io.formats import SHAPES
+from meshwright_core.operations.catalogue import CATALOGUE
 
 
 def title_of(operation: Operation | str, kind: str) -> str:
@@ -88,7 +89,7 @@ class Document(Timeline):
         if self._passing:
             return False
         mark, given = self.saved_state
-        keeps_all = self._path is not None and project.is_project(self._path)
+        keeps_all = self._path is not None and project_file.is_project(self._path)
         return mark != self._saved[0] or (keeps_all and given != self._saved[1])
 
     @property
@@ -128,12 +129,12 @@ class Document(Timeline):
         that is here now, quads if there is none; its file is not where the mesh is saved.
         """
         path = Path(path)
-        if project.is_project(path):
-            self.adopt(project.read(path))
+        if project_file.is_project(path):
+            self.adopt(project_file.read(path))
         elif path.suffix.lower() in SHAPES:
             self.replace(_meshed(path, self.kind or "quad"), path.stem)
         else:
-            self.replace(io.read(path), path.stem, path)
+            self.replace(mesh_files.read(path), path.stem, path)
 
     def adopt(self, kept: Kept) -> None:
         """Go on with what was kept: a mesh with its history, where it had come to."""
@@ -158,10 +159,10 @@ class Document(Timeline):
         target = Path(path) if path is not None else self._path
         if target is None:
             raise MeshError("This mesh has no file yet: choose a name with 'Save as'.")
-        if project.is_project(target):
-            project.write(target, self.kept())
+        if project_file.is_project(target):
+            project_file.write(target, self.kept())
         else:
-            io.write(target, self._need())
+            mesh_files.write(target, self._need())
         self._path, self._name, self._passing = target, target.stem, False
         self._saved = self.saved_state
         self.noted.emit("saved", 0)
@@ -172,7 +173,9 @@ class Document(Timeline):
         """A still picture at the end of a notebook's cell."""
         if self._mesh is None:
             return {"text/plain": NO_MESH}, {}
-        from app.mimebundle import mimebundle  # imported late: who shows no document needs none
+        from meshwright.graphics.export.mimebundle import (
+            mimebundle,  # imported late: who shows no document needs none
+        )
 
         data, metadata = mimebundle(self._mesh, self._name)
         return {"text/plain": repr(self._mesh), **data}, metadata
@@ -283,28 +286,29 @@ class Document(Timeline):
 
 def _meshed(path: Path, kind: str) -> HalfEdgeMesh:
     """Mesh the shape in a file; imported late, for few documents begin so."""
-    from meshcore import generate, geometry_files
+    from meshwright_core.domains import meshing
+    from meshwright_core.io import drawings
 
-    return generate.mesh_domain(geometry_files.read_domain(path), kind)
+    return meshing.mesh_domain(drawings.read_domain(path), kind)
 
 
 def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None, thorough: bool = True) -> None:
     """Smooth near ``around`` (vertex ids) or everywhere; imported late, for it pulls in scipy."""
-    from meshcore.smoothing import relax
+    from meshwright_core.geometry.smoothing import relax
 
     relax(mesh, around, thorough)
 
 
 def _tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
     """As :func:`_relax` for exactly these vertices; imported late, too."""
-    from app.tidying import tidy
+    from meshwright.document.position_repair import tidy
 
     tidy(mesh, vertices)
 
 
 def _mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
     """Untangle what is inverted; imported late, too."""
-    from app.tidying import mend
+    from meshwright.document.position_repair import mend
 
     return mend(mesh)
 

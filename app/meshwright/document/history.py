@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from app.branches import Branch, Branches, pruned
-from meshcore.steps import Steps
+from meshwright.document.branches import Branch, Branches, pruned
+from meshwright_core.history.packed_steps import Steps
 
 YOU = "you"
 """Author of the steps that a person takes; a policy's steps carry the policy's name."""

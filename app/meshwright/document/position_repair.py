@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh
-from meshcore.quality import inverted
-from meshcore.region import chosen, elements_at
-from meshcore.smoothing import relax, smooth
-from meshcore.untangle import untangle
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry.quality import inverted
+from meshwright_core.geometry.region import chosen, elements_at
+from meshwright_core.geometry.smoothing import relax, smooth
+from meshwright_core.geometry.untangling import untangle
 
 if TYPE_CHECKING:
-    from app.document import Document
+    from meshwright.document.document import Document
 
 
 def tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:

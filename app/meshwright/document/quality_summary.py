@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh
-from meshcore.outline import Outline
-from meshcore.quality import TOLERANCE, reference_normals
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry.outline import Outline
+from meshwright_core.geometry.quality import TOLERANCE, reference_normals
 
 CHUNK = 1 << 12
 """Elements that are measured in one go; between two of them the work can be called off."""
@@ -73,7 +73,7 @@ def summarise(
     sound = jacobian > TOLERANCE
     blocks = None
     if mesh.k == 4 and not cancelled():
-        from meshcore.blocks import block_count  # brings in parts of scipy
+        from meshwright_core.analysis.blocks import block_count  # brings in parts of scipy
 
         blocks = block_count(mesh)
     if cancelled():

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.history import History, Row
+from meshwright.document.history import History, Row
 
 FIRST_ROOM = 256
 FAR = 4.0

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.signals import Signal
-from meshcore.halfedge import HALF, ORIGIN
-from meshcore.region import elements_at, rings
+from meshwright.signals import Signal
+from meshwright_core.core.arrays import HALF, ORIGIN
+from meshwright_core.geometry.region import elements_at, rings
 
 if TYPE_CHECKING:
-    from app.document import Document
-    from meshcore import HalfEdgeMesh
+    from meshwright.document.document import Document
+    from meshwright_core import HalfEdgeMesh
 
 _NONE = np.zeros(0, np.int64)
 

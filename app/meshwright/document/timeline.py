@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from typing import TypeVar
 
-from app.history import History, Row, normalised_return
-from app.signals import Signal
-from meshcore import HalfEdgeMesh, MeshError
-from meshcore.steps import Steps
+from meshwright.document.history import History, Row, normalised_return
+from meshwright.signals import Signal
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.history.packed_steps import Steps
 
 Result = TypeVar("Result")
 
@@ -14,8 +14,8 @@ NO_MESH = "There is no mesh yet: open a file or take a shape from the gallery."
 
 
 class Timeline:
-    """The half of :class:`app.document.Document` that knows when, not what: every change of the
-    mesh is one step of the mesh's journal and one row of the history.
+    """The half of :class:`meshwright.document.document.Document` that knows when, not what: every
+    change of the mesh is one step of the mesh's journal and one row of the history.
     """
 
     history: History

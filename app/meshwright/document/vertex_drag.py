@@ -11,12 +11,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh
-from meshcore.halfedge import FLAGS, GEOMETRIC, LOCKED, ORIGIN
-from meshcore.outline import place_all
-from meshcore.quality import TOLERANCE, corner_sines, reference_normals
-from meshcore.region import elements_at
-from meshcore.sides import Sides
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import FLAGS, GEOMETRIC, LOCKED, ORIGIN
+from meshwright_core.geometry.outline import place_all
+from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
+from meshwright_core.geometry.region import elements_at
+from meshwright_core.geometry.sides import Sides
 
 KEPT = 0.02
 """Share of the room between its neighbours on the side that a sliding vertex keeps to either."""

@@ -4,15 +4,15 @@ sees, the blocks of a mesh. Everything returns data, and shows itself as a pictu
 PyTorch is imported when a policy is asked for, and no earlier.
 """
 
-from app.experiments.block_view import BlockView, block_view
-from app.experiments.comparison import Comparison, compare
-from app.experiments.learning import Curves, learning_curves
-from app.experiments.multiples import Multiples, small_multiples
-from app.experiments.pair import side_by_side
-from app.experiments.picture import Picture
-from app.experiments.policy_view import PolicyView, policy_view
-from app.experiments.runs import Rollout
-from app.experiments.table_row import TableRow, table_row
+from meshwright.experiments.block_view import BlockView, block_view
+from meshwright.experiments.comparison import Comparison, compare
+from meshwright.experiments.learning import Curves, learning_curves
+from meshwright.experiments.picture import Picture
+from meshwright.experiments.policy_view import PolicyView, policy_view
+from meshwright.experiments.rollouts import Rollout
+from meshwright.experiments.side_by_side import side_by_side
+from meshwright.experiments.small_multiples import Multiples, small_multiples
+from meshwright.experiments.table_row import TableRow, table_row
 
 __all__ = [
     "BlockView",

@@ -1,4 +1,4 @@
-"""Axes: numbers against numbers, drawn with the shapes of :mod:`app.drawing`."""
+"""Axes: numbers against numbers, drawn with the shapes of :mod:`meshwright.graphics.drawing`."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.drawing import Drawing, Line, Polygon, Segments, Text, text_width
-from app.theme import Theme
+from meshwright.graphics.drawing import Drawing, Line, Polygon, Segments, Text, text_width
+from meshwright.graphics.theme import Theme
 
 LETTERS = 11.5
 """Pixels of the letters at the axes."""

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from app.drawing import Drawing, Text
-from app.experiments.axes import DASHES, Axes, legend, series_colours
-from app.experiments.picture import Picture
-from app.experiments.runs import best_of
-from app.theme import LIGHT, Theme
+from meshwright.experiments.axes import DASHES, Axes, legend, series_colours
+from meshwright.experiments.picture import Picture
+from meshwright.experiments.rollouts import best_of
+from meshwright.graphics.drawing import Drawing, Text
+from meshwright.graphics.theme import LIGHT, Theme
 
 WIDTH, HEIGHT, LEFT, TOP = 560.0, 232.0, 64.0, 72.0
 

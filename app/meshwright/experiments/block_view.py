@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from app.drawing import Disc, Drawing, Polygon, Segments, Text, text_width
-from app.experiments.picture import Picture, ThemedLook
-from app.experiments.still import MARGIN, given_mesh
-from app.figure import figure
-from app.theme import LIGHT, Theme
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh
-from meshcore.block_grids import Grid, grids
-from meshcore.blocks import separatrices
-from meshcore.halfedge import ORIGIN, TWIN
+from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh
+from meshwright.experiments.picture import Picture, ThemedLook
+from meshwright.graphics.drawing import Disc, Drawing, Polygon, Segments, Text, text_width
+from meshwright.graphics.mesh_figure import figure
+from meshwright.graphics.theme import LIGHT, Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.analysis.block_grids import Grid, grids
+from meshwright_core.analysis.blocks import separatrices
+from meshwright_core.core.arrays import ORIGIN, TWIN
 
 SIZE = 480
 FOOT = 40.0
@@ -26,7 +26,7 @@ def block_view(mesh: Any, corners: bool = False) -> BlockView:
     """Cut a quad mesh into its blocks.
 
     Args:
-        mesh: as :func:`app.experiments.compare` takes it; it is copied.
+        mesh: as :func:`meshwright.experiments.compare` takes it; it is copied.
         corners: cut also from corners of the outline that lie in the middle of a block's side.
 
     Raises MeshError with one sentence for triangles.

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.drawing import Drawing, Text
-from app.evaluation_table import grid
-from app.experiments.axes import LETTERS, Axes
-from app.experiments.best_of import BestOf
-from app.experiments.picture import Picture, shifted
-from app.experiments.runs import (
+from meshwright.assistant.policy_catalogue import shipped
+from meshwright.experiments.axes import LETTERS, Axes
+from meshwright.experiments.best_of import BestOf
+from meshwright.experiments.evaluation_table import grid
+from meshwright.experiments.mesh_thumbnail import given_mesh, still
+from meshwright.experiments.picture import Picture, shifted
+from meshwright.experiments.rollouts import (
     Rollout,
     best_of,
     known_policy,
@@ -22,15 +23,14 @@ from app.experiments.runs import (
     require_kind,
     whole_number,
 )
-from app.experiments.still import given_mesh, still
-from app.policy_files import shipped
-from app.theme import LIGHT, Theme
-from meshcore import HalfEdgeMesh, MeshError
+from meshwright.graphics.drawing import Drawing, Text
+from meshwright.graphics.theme import LIGHT, Theme
+from meshwright_core import HalfEdgeMesh, MeshError
 
 if TYPE_CHECKING:
-    from agent.policies import Policy
-    from app.document import Document
-    from app.film import Film
+    from meshwright.document.document import Document
+    from meshwright.graphics.export.film import Film
+    from meshwright_agent.policy.policy_files import Policy
 
 COLUMN, GAP, HEAD, CURVE = 352.0, 24.0, 56.0, 152.0
 LEFT = 40.0
@@ -233,7 +233,7 @@ class Comparison(Picture):
 
         rollout: its number; None: the best one.
         """
-        from app.document import Document
+        from meshwright.document.document import Document
 
         run = self._run(policy, rollout)
         document = Document(self.mesh.copy(), policy)
@@ -244,7 +244,7 @@ class Comparison(Picture):
 
     def film(self, policy: str, rollout: int | None = None) -> Film:
         """The film of a run, up to its best state; rollout: its number; None: the best one."""
-        from app.film import Film
+        from meshwright.graphics.export.film import Film
 
         run = self._run(policy, rollout)
         key = policy, run.number
@@ -263,10 +263,10 @@ class Comparison(Picture):
         return found
 
     def widget(self, policy: str, rollout: int | None = None, **options: Any) -> Any:
-        """A :class:`app.notebook.MeshWidget` on such a document, to scrub and to go on editing; its
-        agent follows the same policy where that has a name or a file.
+        """A :class:`meshwright.notebook.MeshWidget` on such a document, to scrub and to go on
+        editing; its agent follows the same policy where that has a name or a file.
         """
-        from app.notebook import MeshWidget
+        from meshwright.notebook import MeshWidget
 
         document = self.document(policy, rollout)
         follow = {"policy": self.sources[policy]} if policy in self.sources else {}

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from app.drawing import Drawing, Text
-from app.experiments import training_log
-from app.experiments.axes import DASHES, Axes, legend, series_colours
-from app.experiments.picture import Picture
-from app.theme import LIGHT, Theme
-from meshcore import MeshError
+from meshwright.experiments import training_log
+from meshwright.experiments.axes import DASHES, Axes, legend, series_colours
+from meshwright.experiments.picture import Picture
+from meshwright.graphics.drawing import Drawing, Text
+from meshwright.graphics.theme import LIGHT, Theme
+from meshwright_core import MeshError
 
 TITLES = {
     "mean": "normalised return of single rollouts, unseen polygons",
@@ -81,7 +81,7 @@ def _located(path: str | os.PathLike[str]) -> Path:
     from importlib.resources import files
 
     place = Path(path)
-    shipped = Path(str(files("assets") / "policies" / f"{place}.safetensors"))
+    shipped = Path(str(files("meshwright_assets") / "policies" / f"{place}.safetensors"))
     return (
         shipped if not place.exists() and place.name == str(place) and shipped.exists() else place
     )
@@ -134,8 +134,8 @@ class Curves(Picture):
 
     def plot(self, *quantities: str) -> Curves:
         """The same trainings with other quantities in the figure, a panel for each: any of
-        :data:`app.experiments.training_log.POINT`, and of the updates where there are events:
-        "played", "entropy", "policy", "value", "learning_rate", ...
+        :data:`meshwright.experiments.training_log.POINT`, and of the updates where there are
+        events: "played", "entropy", "policy", "value", "learning_rate", ...
         """
         for name in quantities:
             for training in self.trainings:

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from app import sources
-from app.drawing import Drawing, Text
-from app.experiments.picture import ThemedLook
-from app.figure import figure
-from app.markers import READABLE, label, markers
-from app.theme import Theme
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh, MeshError
+from meshwright.experiments.picture import ThemedLook
+from meshwright.graphics.drawing import Drawing, Text
+from meshwright.graphics.markers import READABLE, label, markers
+from meshwright.graphics.mesh_figure import figure
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright.sources import resolve
+from meshwright_core import HalfEdgeMesh, MeshError
 
 MARGIN = 16.0
 FEW = 6
@@ -22,12 +22,13 @@ FEW = 6
 
 def given_mesh(source: Any) -> HalfEdgeMesh:
     """A copy of the mesh that is meant: one, that of a document or widget or film, or what
-    :func:`app.sources.mesh` makes a mesh of. MeshError where there is none or it is empty.
+    :func:`meshwright.sources.resolve.mesh` makes a mesh of. MeshError where there is none or it is
+    empty.
     """
     inner = source if isinstance(source, HalfEdgeMesh) else getattr(source, "mesh", source)
     if inner is None:
         raise MeshError("There is no mesh here yet.")
-    mesh = sources.mesh(inner)
+    mesh = resolve.mesh(inner)
     if mesh.n_elements == 0:
         raise MeshError("This mesh has no elements.")
     return mesh

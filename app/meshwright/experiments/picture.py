@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from app.drawing import (
+from meshwright.graphics.drawing import (
     Area,
     Disc,
     Drawing,
@@ -21,9 +21,10 @@ from app.drawing import (
     raster,
     svg,
 )
-from app.figure import Look
-from app.theme import DARK, LIGHT, THEMES, Theme
-from meshcore import MeshError, atomic
+from meshwright.graphics.mesh_figure import Look
+from meshwright.graphics.theme import DARK, LIGHT, THEMES, Theme
+from meshwright_core import MeshError
+from meshwright_core.io import atomic_write
 
 CLASS = "meshwright-picture"
 SMALLEST = 0.62
@@ -43,7 +44,7 @@ class Picture:
         """The picture as SVG, written to ``path`` if given: whole, or not at all."""
         text = svg(self.drawing(_named(theme)))
         if path is not None:
-            with atomic.replacing(path) as temporary:
+            with atomic_write.replacing(path) as temporary:
                 temporary.write_text(text, encoding="utf-8")
         return text
 
@@ -62,7 +63,7 @@ class Picture:
         content = BytesIO()
         raster(scaled(drawn, scale), samples=2).save(content, format="PNG", optimize=True)
         if path is not None:
-            with atomic.replacing(path) as temporary:
+            with atomic_write.replacing(path) as temporary:
                 temporary.write_bytes(content.getvalue())
         return content.getvalue()
 
@@ -124,7 +125,7 @@ def _style() -> str:
 
 @dataclass(frozen=True)
 class ThemedLook(Look):
-    """A look in given colours, be they named in :mod:`app.theme` or not."""
+    """A look in given colours, be they named in :mod:`meshwright.graphics.theme` or not."""
 
     given: Theme = LIGHT
 

@@ -6,22 +6,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.drawing import Disc, Drawing, Line, Polygon, Text
-from app.experiments.halfedge_arrow import arrow
-from app.experiments.picture import Picture, shifted
-from app.experiments.runs import known_policy, one_thread, require_kind
-from app.experiments.still import MARGIN, given_mesh, still
-from app.experiments.template_figure import template_figure
-from app.markers import label
-from app.theme import LIGHT, Theme
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh, MeshError
-from meshcore.halfedge import ORIGIN
-from meshcore.operations import CATALOGUE, Operation
+from meshwright.experiments.halfedge_arrow import arrow
+from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh, still
+from meshwright.experiments.picture import Picture, shifted
+from meshwright.experiments.rollouts import known_policy, one_thread, require_kind
+from meshwright.experiments.template_figure import template_figure
+from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Text
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import LIGHT, Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.core.arrays import ORIGIN
+from meshwright_core.operations.catalogue import CATALOGUE, Operation
 
 if TYPE_CHECKING:
-    from agent.outlook import Outlook
-    from agent.policies import Policy
+    from meshwright_agent.policy.policy_files import Policy
+    from meshwright_agent.policy.what_if import Outlook
 
 MESH, FLAT = (456, 400), (400, 400)
 ROW, BAR, GAP = 24.0, 288.0, 24
@@ -31,7 +31,7 @@ def policy_view(mesh: Any, policy: str | Policy, halfedge: int | None = None) ->
     """Look at a mesh as a policy does.
 
     Args:
-        mesh: as :func:`app.experiments.compare` takes it; it is not changed.
+        mesh: as :func:`meshwright.experiments.compare` takes it; it is not changed.
         policy: the name of a shipped one, a file, or a policy that is there.
         halfedge: where to look. A policy that reads one template is shown that of this half-edge;
             one with a shortlist is given it among the others. None: where it looks by itself, at
@@ -39,8 +39,8 @@ def policy_view(mesh: Any, policy: str | Policy, halfedge: int | None = None) ->
 
     Raises MeshError with one sentence for a wrong policy, or a half-edge that is not there.
     """
-    from agent.outlook import candidates, outlook
-    from agent.policies import PolicyError
+    from meshwright_agent.policy.policy_files import PolicyError
+    from meshwright_agent.policy.what_if import candidates, outlook
 
     shown = given_mesh(mesh)
     known = known_policy(policy)
@@ -66,8 +66,8 @@ class PolicyView(Picture):
     """A half-edge as a policy sees it."""
 
     def __init__(self, mesh: HalfEdgeMesh, policy: Policy, halfedge: int, seen: Outlook) -> None:
-        from agent.insight import field_of_view, template_of
-        from agent.outlook import template_slots
+        from meshwright_agent.policy.explanation import field_of_view, template_of
+        from meshwright_agent.policy.what_if import template_slots
 
         self._task = task = policy.task
         arrays = mesh.arrays

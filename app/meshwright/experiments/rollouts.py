@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh, MeshError, Operation
+from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 if TYPE_CHECKING:
-    from agent.policies import Policy
-    from agent.task import Task
+    from meshwright_agent.env.task import Task
+    from meshwright_agent.policy.policy_files import Policy
 
 Step = tuple[tuple[Operation, int], ...]
 
@@ -73,7 +73,7 @@ def known_policy(name: object) -> Policy:
 
     Raises MeshError with one sentence.
     """
-    from agent.policies import Policy, PolicyError, load
+    from meshwright_agent.policy.policy_files import Policy, PolicyError, load
 
     if isinstance(name, Policy):
         return name
@@ -109,7 +109,7 @@ def play(
 
     steps: decisions that a run may take; None: as many as the policy was trained with.
     """
-    from agent.evaluate import roll_out
+    from meshwright_agent.evaluation.rollouts import roll_out
 
     if mesh.score > mesh.optimum:
         _warm_up(policy.task)
@@ -139,17 +139,17 @@ def play(
 @cache
 def _warm_up(task: Task) -> None:
     """What is compiled, or loaded, at the first look of a policy is not measured."""
-    from agent.batch import Batch
-    from meshcore import generate, shapes
+    from meshwright_agent.env.vector_env import Batch
+    from meshwright_core.domains import gallery, meshing
 
-    start = generate.mesh_domain(shapes.shape("l-shape"), task.kind)
+    start = meshing.mesh_domain(gallery.shape("l-shape"), task.kind)
     batch = Batch(task, [start], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
 
 
 def _limited(policy: Policy, mesh: HalfEdgeMesh, steps: int | None) -> Policy:
     """The policy with runs of so many decisions; a task does not go below ten, runs are cut."""
-    from agent.evaluate import longer
+    from meshwright_agent.evaluation.rollouts import longer
 
     if steps is None:
         return policy

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from html import escape
 from typing import Any
 
-from app.experiments.comparison import Comparison
-from meshcore import MeshError
+from meshwright.experiments.comparison import Comparison
+from meshwright_core import MeshError
 
 
 def side_by_side(
@@ -17,12 +17,12 @@ def side_by_side(
     """The best run of each policy in a widget of its own, in a row.
 
     Args:
-        comparison: what :func:`app.experiments.compare` brought.
+        comparison: what :func:`meshwright.experiments.compare` brought.
         policies: its names, or one of them; None: the first two.
         height: of the meshes, in pixels.
 
     Returns a box for Jupyter, whose ``children`` are boxes of a name and a
-    :class:`app.notebook.MeshWidget`, or in marimo a row of them.
+    :class:`meshwright.notebook.MeshWidget`, or in marimo a row of them.
     """
     if not isinstance(comparison, Comparison):
         raise MeshError("Side by side go the runs of a comparison: make one by compare().")

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from app.drawing import Drawing, Text, text_width
-from app.experiments.picture import Picture, shifted
-from app.experiments.runs import whole_number
-from app.experiments.still import given_mesh, still
-from app.film import Film
-from app.theme import LIGHT, Theme
-from meshcore import HalfEdgeMesh, MeshError
+from meshwright.experiments.mesh_thumbnail import given_mesh, still
+from meshwright.experiments.picture import Picture, shifted
+from meshwright.experiments.rollouts import whole_number
+from meshwright.graphics.drawing import Drawing, Text, text_width
+from meshwright.graphics.export.film import Film
+from meshwright.graphics.theme import LIGHT, Theme
+from meshwright_core import HalfEdgeMesh, MeshError
 
 CELL, GAP, FOOT = 208, 16, 40
 MOST = 400

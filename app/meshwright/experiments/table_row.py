@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.experiments.runs import known_policy, one_thread, whole_number
-from meshcore import MeshError
+from meshwright.experiments.rollouts import known_policy, one_thread, whole_number
+from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from agent.policies import Policy
+    from meshwright_agent.policy.policy_files import Policy
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -96,8 +96,8 @@ def table_row(
 
     Raises MeshError with one sentence.
     """
-    from agent import paper
-    from agent.evaluate import NothingToDo, roll_out, unseen
+    from meshwright_agent.evaluation import paper_results
+    from meshwright_agent.evaluation.rollouts import NothingToDo, roll_out, unseen
 
     known = known_policy(policy)
     count, tries = whole_number(meshes, 1, "meshes"), whole_number(rollouts, 1, "rollouts")
@@ -114,7 +114,7 @@ def table_row(
         raise MeshError(f"{sentence[0].upper()}{sentence[1:]}.") from None
     with one_thread():
         rolled = roll_out(known, starts, tries, given_seed)
-    reported = paper.row(known.kind, (low, high))
+    reported = paper_results.row(known.kind, (low, high))
     return TableRow(
         known.name, known.kind, (low, high), rolled.returns, rolled.gaps, rolled.operations,
         count - len(starts), None if reported is None else tuple(reported.best),

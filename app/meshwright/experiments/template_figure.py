@@ -11,11 +11,11 @@ from functools import cache
 
 import numpy as np
 
-from app.drawing import Disc, Drawing, Line, Polygon, Segments, Text
-from app.experiments.axes import dashes
-from app.experiments.halfedge_arrow import arrow
-from app.markers import label
-from app.theme import Theme
+from meshwright.experiments.axes import dashes
+from meshwright.experiments.halfedge_arrow import arrow
+from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Segments, Text
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import Theme
 
 _DEPTH = {3: (0.0, 0.72, 0.5), 4: (0.0, 0.64, 0.27)}
 """How far the elements of each ring reach, relative to a side of the first; later ones as the

@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from meshcore import MeshError
+from meshwright_core import MeshError
 
 POINT = ("iteration", "decisions", "seconds", "mean", "std", "at_optimum")
-"""The numbers of a point of a learning curve; see :class:`agent.training.Progress`."""
+"""The numbers of a point of a learning curve; see
+:class:`meshwright_agent.training.trainer.Progress`.
+"""
 FILES = ("checkpoint.safetensors", "curve.json", "policy.safetensors")
 """What holds a learning curve, the newest first: a training that goes on has a checkpoint only."""
 _LONGEST_HEADER = 64 * 1024 * 1024
@@ -72,10 +74,10 @@ def _notes(path: Path) -> dict[str, Any]:
 
 def updates(folder: Path) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """The numbers of every update in the events beside a curve, by the names that
-    :data:`agent.events.TAGS` has for them: updates (n,) and values (n,). Empty without events,
-    whose writing needs an optional package; MeshError where they are torn.
+    :data:`meshwright_agent.training.tensorboard.TAGS` has for them: updates (n,) and values (n,).
+    Empty without events, whose writing needs an optional package; MeshError where they are torn.
     """
-    from agent.events import TAGS
+    from meshwright_agent.training.tensorboard import TAGS
 
     names = {tag: name for name, tag in TAGS.items()}
     found: dict[str, dict[int, float]] = {}

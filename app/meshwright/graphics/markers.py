@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh
 
 BASE_RADIUS = 10.0
 """Pixels of the disc of a vertex with |delta| = 1, where the mesh leaves room."""

@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app import curve
-from app.drawing import Area, Disc, Drawing, Line, Segments, Square, Text, hatching
-from app.markers import READABLE, Markers, label, markers
-from app.theme import Theme, theme
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh, quality
-from meshcore.halfedge import ORIGIN, TWIN
+from meshwright.document import score_series
+from meshwright.graphics.drawing import Area, Disc, Drawing, Line, Segments, Square, Text, hatching
+from meshwright.graphics.markers import READABLE, Markers, label, markers
+from meshwright.graphics.theme import Theme, theme
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import ORIGIN, TWIN
+from meshwright_core.geometry import quality
 
 REFERENCE = 800.0
 """Pixels of the shorter side of a figure whose lines and letters have their nominal size."""
@@ -30,8 +31,8 @@ MOST_INVERTED = 500
 class Look:
     """What a figure shows. ``size`` in pixels; ``numbers`` inside the discs of irregular vertices;
     ``score`` above the mesh; ``curve`` below it; ``changes`` since the moment before. ``theme`` and
-    ``colours`` are what :func:`app.theme.theme` takes. ``unit`` scales lines and letters; 0: by the
-    size, so that a small figure is a large one made smaller.
+    ``colours`` are what :func:`meshwright.graphics.theme.theme` takes. ``unit`` scales lines and
+    letters; 0: by the size, so that a small figure is a large one made smaller.
     """
 
     size: tuple[int, int] = (960, 720)
@@ -212,19 +213,21 @@ def _add_curve(drawing: Drawing, moment: Moment, colours: Theme, unit: float) ->
     width, height = drawing.size
     left, right = (MARGIN + 40.0) * unit, width - (MARGIN + 4.0) * unit
     top = height - (FOOT - 18.0) * unit
-    box = curve.frame(moment.scores, moment.optima, left, top, right - left, (FOOT - 46.0) * unit)
+    box = score_series.frame(
+        moment.scores, moment.optima, left, top, right - left, (FOOT - 46.0) * unit
+    )
     goal = float(box.y(moment.optima[moment.state]))
     level = np.array([[[left, goal], [right, goal]]])
     drawing.add(Segments(level, colours.muted, 1.0 * unit, dash=4.0 * unit))
     if box.broken:
-        drawing.add(Segments(curve.break_mark(box, unit), colours.muted, 1.2 * unit))
+        drawing.add(Segments(score_series.break_mark(box, unit), colours.muted, 1.2 * unit))
     size = 11.5 * unit
     labels = {float(box.y(moment.scores[0])): f"{moment.scores[0]:,}"}
     labels[goal] = f"{moment.optima[moment.state]:,}"
     for y, text in labels.items():
         drawing.add(Text(text, (left - 10.0 * unit, y), size, colours.muted, "right"))
     x = float(box.x(moment.state))
-    line = curve.steps(moment.scores, box)
+    line = score_series.steps(moment.scores, box)
     drawing.add(Line(line, colours.faint, 1.2 * unit))
     done = line[line[:, 0] <= x + 1e-6]
     here = (x, float(box.y(moment.scores[moment.state])))

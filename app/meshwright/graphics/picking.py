@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh
+from meshwright_core import HalfEdgeMesh
 
 _NEAR = (8, 32, 128)
 

@@ -7,7 +7,7 @@ apart); controls have one accent. All distances are multiples of :data:`GRID`.
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import assets
+import meshwright_assets
 
 GRID = 8
 """Pixels: margins and gaps are multiples of this, or half of it inside small controls."""
@@ -122,7 +122,7 @@ def theme(name: str, colours: str = "vermilion") -> Theme:
 
 def style_sheet(theme: Theme) -> str:
     """The Qt style sheet of the whole window."""
-    t, icons = theme, (Path(assets.__file__).parent / "icons").as_posix()
+    t, icons = theme, (Path(meshwright_assets.__file__).parent / "icons").as_posix()
     return f"""
 * {{ color: {t.text}; font-size: 13px; outline: 0; }}
 QMainWindow, QDialog {{ background: {t.panel}; }}

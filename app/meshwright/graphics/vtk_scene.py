@@ -2,17 +2,18 @@
 
 VTK draws the elements and the outline. Markers and numbers are drawn over it by the window, with
 QPainter, so that they are crisp; only where there are very many of them does VTK draw the discs too
-(:attr:`Scene.crowd`). Pictures and films are made without VTK: see :mod:`app.figure`.
+(:attr:`Scene.crowd`). Pictures and films are made without VTK: see
+:mod:`meshwright.graphics.mesh_figure`.
 """
 
 from typing import Any
 
 import numpy as np
 
-from app.markers import Markers, markers
-from app.theme import Theme
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh
+from meshwright.graphics.markers import Markers, markers
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh
 
 CROWD = 1200
 """With more visible irregular vertices than this VTK draws their discs, without numbers."""

@@ -9,9 +9,9 @@ from pathlib import Path
 from reprlib import repr as shortened
 from typing import Any
 
-from app.notebook.messages import DEGREES
-from meshcore import HalfEdgeMesh, MeshError, Operation
-from meshcore.operations import of_kind
+from meshwright.notebook.protocol.requests import DEGREES
+from meshwright_core import HalfEdgeMesh, MeshError, Operation
+from meshwright_core.operations.catalogue import of_kind
 
 _IDS = 2**31
 

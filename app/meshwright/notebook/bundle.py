@@ -2,7 +2,7 @@
 
 The files are plain: top-level functions and classes, no import, no export. They share one scope, so
 a name may be declared once only. Joining them is all there is of a build. The colours are those of
-:mod:`app.theme`, as CSS variables; the scripts read them from there, too.
+:mod:`meshwright.graphics.theme`, as CSS variables; the scripts read them from there, too.
 """
 
 import json
@@ -10,50 +10,56 @@ from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
-from app.strokes import STROKES
-from app.theme import FONTS, GRID, THEMES, Theme
+from meshwright.graphics.icon_paths import STROKES
+from meshwright.graphics.theme import FONTS, GRID, THEMES, Theme
 
 FOLDER = Path(__file__).parent / "front"
 SCRIPTS = (
-    "node.js",
-    "host.js",
-    "mirror.js",
-    "link.js",
-    "film_link.js",
-    "viewport.js",
-    "facts.js",
-    "grid.js",
-    "picking.js",
-    "work.js",
-    "palette.js",
-    "marks.js",
-    "hatching.js",
-    "picture.js",
-    "ghost.js",
-    "hint_badges.js",
-    "overlay.js",
-    "stage.js",
-    "stage_tools.js",
-    "words.js",
-    "pointing.js",
-    "popup.js",
-    "menus.js",
-    "pointer.js",
-    "walking.js",
-    "keys.js",
-    "score_panel.js",
-    "operations_panel.js",
-    "agent_panel.js",
-    "notice.js",
-    "track.js",
-    "track_paint.js",
-    "timeline.js",
-    "levels.js",
+    "dom.js",
+    "link/host_theme.js",
+    "mesh/mesh_replica.js",
+    "link/kernel_link.js",
+    "link/recording_link.js",
+    "canvas/viewport.js",
+    "mesh/derived.js",
+    "mesh/spatial_grid.js",
+    "mesh/picking.js",
+    "mesh/mesh_state.js",
+    "canvas/colours.js",
+    "canvas/markers.js",
+    "canvas/inverted_elements.js",
+    "canvas/mesh_painter.js",
+    "canvas/ghost.js",
+    "canvas/hint_badges.js",
+    "canvas/overlay.js",
+    "canvas/stage.js",
+    "canvas/zoom_buttons.js",
+    "panels/labels.js",
+    "input/hover.js",
+    "panels/popup.js",
+    "panels/menus.js",
+    "input/pointer.js",
+    "input/keyboard_navigation.js",
+    "input/shortcuts.js",
+    "panels/score_panel.js",
+    "panels/operations_panel.js",
+    "panels/agent_panel.js",
+    "panels/notice.js",
+    "mesh/score_series.js",
+    "panels/score_curve.js",
+    "panels/timeline.js",
+    "panels/level_bar.js",
     "card.js",
-    "main.js",
+    "index.js",
 )
 """The files of the module in the order in which they are joined."""
-STYLES = ("card.css", "panel.css", "popups.css", "timeline.css", "levels.css")
+STYLES = (
+    "styles/card.css",
+    "styles/panel.css",
+    "styles/popups.css",
+    "styles/timeline.css",
+    "styles/levels.css",
+)
 """The files of the style, likewise."""
 ROOT = "meshwright"
 """The class of the card, below which every rule of the style applies."""
@@ -106,7 +112,9 @@ def variables(theme: Theme) -> str:
 
 
 def variable(name: str) -> str:
-    """The CSS variable of a colour of :class:`app.theme.Theme`: ``--mw-accent-soft``."""
+    """The CSS variable of a colour of :class:`meshwright.graphics.theme.Theme`:
+    ``--mw-accent-soft``.
+    """
     return f"--mw-{name.replace('_', '-')}"
 
 

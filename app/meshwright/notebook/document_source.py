@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from app import sources
-from app.document import Document
-from app.inputs import KIND_NOUN
-from app.project import is_project
-from meshcore import HalfEdgeMesh, MeshError
+from meshwright.cli.arguments import KIND_NOUN
+from meshwright.document.document import Document
+from meshwright.document.storage.project_file import is_project
+from meshwright.sources import resolve
+from meshwright_core import HalfEdgeMesh, MeshError
 
 
 def document_of(source: Any, kind: str | None = None, name: str = "") -> Document:
@@ -17,7 +17,7 @@ def document_of(source: Any, kind: str | None = None, name: str = "") -> Documen
 
     Args:
         source: a document, which is returned as it is; a mesh, which is not copied; a project,
-            with its history; or whatever :func:`app.sources.mesh` makes a mesh of.
+            with its history; or whatever :func:`meshwright.sources.resolve.mesh` makes a mesh of.
         kind: "tri" or "quad": what a shape is meshed with (quads by default); a mesh must be of
             that kind already.
         name: what a new document is called; by default as the shape or the file.
@@ -35,7 +35,7 @@ def document_of(source: Any, kind: str | None = None, name: str = "") -> Documen
     elif source is None or (isinstance(source, str) and not source.strip()):
         raise MeshError("There is nothing to show: name a shape of the gallery or a file.")
     else:
-        return Document(sources.mesh(source, kind), name or _called(source))
+        return Document(resolve.mesh(source, kind), name or _called(source))
     if kind is not None and document.kind not in ("", kind):
         raise MeshError(
             f"This is a mesh of {KIND_NOUN[document.kind]}, not of {KIND_NOUN.get(kind, kind)}."

@@ -15,7 +15,7 @@ import threading
 from collections.abc import Callable
 from enum import StrEnum
 
-from app.worker import Dispatch
+from meshwright.assistant.worker import Dispatch
 
 LEAVE_SECONDS = 5.0
 """Seconds that the end of the program waits for the thread, at most."""
@@ -26,8 +26,8 @@ _log = logging.getLogger(__name__)
 class Stage(StrEnum):
     """What is being made ready: what a person can do, then what the agent needs."""
 
-    EDITING = "meshcore.warm_up"
-    AGENT = "agent.warm_up"
+    EDITING = "meshwright_core.warm_up"
+    AGENT = "meshwright_agent.warm_up"
     READY = ""
 
 
@@ -137,16 +137,16 @@ DONE: dict[Stage, str] = {
 
 def _is_warm(stage: Stage) -> bool:
     if stage is Stage.EDITING:
-        from meshcore.compiled import is_warm_on_disk
+        from meshwright_core.core.compilation import is_warm_on_disk
     else:
-        from agent.warm_up import is_warm_on_disk
+        from meshwright_agent.warm_up import is_warm_on_disk
     return is_warm_on_disk()
 
 
 def _load() -> None:
-    from meshcore import compiled
+    from meshwright_core.core import compilation
 
-    compiled.warm()
+    compilation.warm()
 
 
 def _command(stage: Stage) -> list[str]:

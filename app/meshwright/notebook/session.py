@@ -7,19 +7,24 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, TypeVar
 from weakref import WeakValueDictionary, finalize
 
-from app.assistant import Assistant
-from app.document import NO_MESH, Document
-from app.notebook import preparing
-from app.notebook.deeds import DEEDS, Deed, require_halfedge, require_operation
-from app.notebook.ghosts import ghost_packet, no_ghost
-from app.notebook.helper import Helper
-from app.notebook.loop import Loop
-from app.notebook.messages import RefusedError, Request, parse
-from app.notebook.preparing import DONE, WAITS, Stage
-from app.notebook.telling import Port, Telling
-from app.notebook.wire import Packet
-from app.signals import Signal
-from meshcore import HalfEdgeMesh, MeshError
+from meshwright.assistant.assistant import Assistant
+from meshwright.document.document import NO_MESH, Document
+from meshwright.notebook import kernel_warmup
+from meshwright.notebook.kernel_warmup import DONE, WAITS, Stage
+from meshwright.notebook.protocol.agent_bridge import Helper
+from meshwright.notebook.protocol.broadcaster import Port, Telling
+from meshwright.notebook.protocol.mesh_sync import Packet
+from meshwright.notebook.protocol.preview_messages import ghost_packet, no_ghost
+from meshwright.notebook.protocol.request_handlers import (
+    DEEDS,
+    Deed,
+    require_halfedge,
+    require_operation,
+)
+from meshwright.notebook.protocol.requests import RefusedError, Request, parse
+from meshwright.notebook.thread_loop import Loop
+from meshwright.signals import Signal
+from meshwright_core import HalfEdgeMesh, MeshError
 
 Result = TypeVar("Result")
 
@@ -217,8 +222,8 @@ class Session:
             raise MeshError("this view is for looking only")
         elif request.do not in self.words:
             raise MeshError(f"there is nothing to '{request.do}' here")
-        elif request.do in NEEDS.get(preparing.PREPARATION.compiling, ()):
-            raise MeshError(WAITS[preparing.PREPARATION.compiling])
+        elif request.do in NEEDS.get(kernel_warmup.PREPARATION.compiling, ()):
+            raise MeshError(WAITS[kernel_warmup.PREPARATION.compiling])
         else:
             why = next(filter(None, (bar(request) for bar in self.bars)), "")
             if why:
@@ -233,7 +238,7 @@ class Session:
             return  # a later one was served in its place
         port, request = held
         halfedge, operation = request["halfedge"], request["operation"]
-        if halfedge < 0 or preparing.PREPARATION.compiling is Stage.EDITING:
+        if halfedge < 0 or kernel_warmup.PREPARATION.compiling is Stage.EDITING:
             self.document.hover = -1
             self.telling.post(port, no_ghost(), request)
             return
@@ -247,13 +252,13 @@ class Session:
 
     def _prepare(self, port: Port, request: Request) -> None:
         """Behind the first view everything is made ready, if it is not."""
-        preparing.PREPARATION.begin(self.loop, self._on_prepared)
-        stage = preparing.PREPARATION.compiling
+        kernel_warmup.PREPARATION.begin(self.loop, self._on_prepared)
+        stage = kernel_warmup.PREPARATION.compiling
         if stage is not Stage.READY:
             self.telling.answer(port, request, "said", WAITS[stage])
 
     def _on_prepared(self) -> None:
-        self.telling.notice("said", DONE[preparing.PREPARATION.compiling])
+        self.telling.notice("said", DONE[kernel_warmup.PREPARATION.compiling])
 
     # What happens here
 

@@ -10,25 +10,32 @@ from typing import TYPE_CHECKING, Any
 import anywidget
 import traitlets
 
-from app import levels
-from app.assistant import Assistant
-from app.document import Document
-from app.history import History, Row
-from app.levels import Level
-from app.notebook import front
-from app.notebook.asking import degree_of, operation_of, policy_of, positive, vertex_of, whole
-from app.notebook.exports import Exports
-from app.notebook.opening import document_of
-from app.notebook.playing import Playing
-from app.notebook.session import Session
-from app.notebook.wire import Packet
-from app.searching import COMPLETE_SECONDS, Effort
-from app.signals import Signal
-from meshcore import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
+from meshwright.assistant.assistant import Assistant
+from meshwright.assistant.search_runner import COMPLETE_SECONDS, Effort
+from meshwright.document.document import Document
+from meshwright.document.history import History, Row
+from meshwright.notebook import bundle
+from meshwright.notebook.arguments import (
+    degree_of,
+    operation_of,
+    policy_of,
+    positive,
+    vertex_of,
+    whole,
+)
+from meshwright.notebook.document_source import document_of
+from meshwright.notebook.export.export_mixin import Exports
+from meshwright.notebook.protocol.level_bridge import Playing
+from meshwright.notebook.protocol.mesh_sync import Packet
+from meshwright.notebook.session import Session
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.level import Level
+from meshwright.signals import Signal
+from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 
 if TYPE_CHECKING:
-    from agent.choices import Choice
-    from meshcore.domain import Domain
+    from meshwright_agent.policy.explanation_types import Choice
+    from meshwright_core.domains.domain import Domain
 
 LOWEST, HIGHEST = 160, 4000
 """Bounds of a widget's height in pixels."""
@@ -74,7 +81,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         """Show ``source``; a document, or another widget's, is shared with whoever has it.
 
         Args:
-            source: see :func:`app.notebook.opening.document_of`; or another widget.
+            source: see :func:`meshwright.notebook.document_source.document_of`; or another widget.
             kind: what a shape is meshed with, "tri" or "quad"; quads by default.
             policy: what the agent follows: a shipped policy, or a file; by default the first that
                 is shipped for this kind of mesh.
@@ -112,11 +119,11 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
     @traitlets.default("_esm")
     def _module(self) -> str:
-        return front.module()
+        return bundle.module()
 
     @traitlets.default("_css")
     def _style(self) -> str:
-        return front.style()
+        return bundle.style()
 
     # What is here
 

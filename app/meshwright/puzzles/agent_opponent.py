@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import StrEnum
 
-from app.assistant import Assistant
-from app.document import Document
-from app.history import History
-from app.levels import Level
-from app.policy_files import label, shipped
-from app.searching import Effort
-from app.signals import Signal
-from meshcore import Operation
+from meshwright.assistant.assistant import Assistant
+from meshwright.assistant.policy_catalogue import label, shipped
+from meshwright.assistant.search_runner import Effort
+from meshwright.document.document import Document
+from meshwright.document.history import History
+from meshwright.puzzles.level import Level
+from meshwright.signals import Signal
+from meshwright_core import Operation
 
 SECONDS = 2.0
 """How long it searches at most."""

@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-import assets
-from meshcore import HalfEdgeMesh, MeshError, Operation
-from meshcore.operations import CODES
+import meshwright_assets
+from meshwright_core import HalfEdgeMesh, MeshError, Operation
+from meshwright_core.operations.catalogue import CODES
 
-FOLDER = Path(assets.__file__).parent / "levels"
+FOLDER = Path(meshwright_assets.__file__).parent / "levels"
 VERSION = 1
 LARGEST = 1000
 """Elements that a level may have."""

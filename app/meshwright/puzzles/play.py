@@ -7,15 +7,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app import levels
-from app.document import Document
-from app.hinting import Hinting
-from app.history import YOU, History
-from app.level_progress import Progress
-from app.levels import Level
-from app.rival import MakeAssistant, Rival, Standing
-from app.signals import Signal
-from meshcore import HalfEdgeMesh, MeshError, Operation
+from meshwright.assistant.hints import Hinting
+from meshwright.document.document import Document
+from meshwright.document.history import YOU, History
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.agent_opponent import MakeAssistant, Rival, Standing
+from meshwright.puzzles.level import Level
+from meshwright.puzzles.progress import Progress
+from meshwright.signals import Signal
+from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 STRIP = Operation.CHORD_COLLAPSE.value
 COUNTED = frozenset(operation.value for operation in Operation)

@@ -13,8 +13,8 @@ from typing import Any
 
 import platformdirs
 
-from meshcore import MeshError
-from meshcore.atomic import replacing
+from meshwright_core import MeshError
+from meshwright_core.io.atomic_write import replacing
 
 VERSION = 1
 MOST_STARS = 3

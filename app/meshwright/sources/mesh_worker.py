@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from app.project import is_project
-from meshcore.errors import MeshError
+from meshwright.document.storage.project_file import is_project
+from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
-    from meshcore import HalfEdgeMesh
-    from meshcore.domain import Domain
+    from meshwright_core import HalfEdgeMesh
+    from meshwright_core.domains.domain import Domain
 
 MOST = 2_000_000
 """Elements that a new mesh may have."""
@@ -86,7 +86,7 @@ class Made:
 
     def mesh(self) -> HalfEdgeMesh:
         """The mesh itself, built anew."""
-        from meshcore import HalfEdgeMesh
+        from meshwright_core import HalfEdgeMesh
 
         return HalfEdgeMesh.from_elements(self.points, self.elements, self.geometric, self.desired)
 
@@ -104,13 +104,15 @@ def make(request: Mapping[str, Any]) -> Made:
     Raises:
         MeshError: one sentence.
     """
-    from meshcore import generate, geometry_files, read
+    from meshwright_core import read
+    from meshwright_core.domains import meshing
+    from meshwright_core.io import drawings
 
     source = request["source"]
     path = source.get("file", "")
     if is_project(path):
         raise MeshError(f"{path}: a project is opened by Open, not here.")
-    if path and not geometry_files.is_geometry(path):
+    if path and not drawings.is_geometry(path):
         mesh = read(path, source["corner_angle"])
         _refuse_many(mesh.n_elements, "has")
         return _made(mesh, Path(path).stem, path)
@@ -120,7 +122,7 @@ def make(request: Mapping[str, Any]) -> Made:
     if max_edge:
         rule = "pairing" if kind == "quad" and quads == "pairing" else kind
         _refuse_many(int(_PER_AREA[rule] * domain.area / max_edge**2), "would need about")
-    mesh = generate.mesh_domain(domain, kind, max_edge, request["min_angle"], quads=quads)
+    mesh = meshing.mesh_domain(domain, kind, max_edge, request["min_angle"], quads=quads)
     _refuse_many(mesh.n_elements, "would have")
     return _made(mesh, domain.name or "drawing", "")
 
@@ -177,21 +179,20 @@ def _answer(requests: BinaryIO, answers: BinaryIO) -> None:
 
 
 def _domain(source: Mapping[str, Any]) -> Domain:
-    from meshcore import geometry_files, parts, shapes
-    from meshcore.domain import Domain
+    from meshwright_core.domains import gallery, random_parts
+    from meshwright_core.domains.domain import Domain
+    from meshwright_core.io import drawings
 
     if "shape" in source:
-        return shapes.shape(source["shape"])
+        return gallery.shape(source["shape"])
     if "domain" in source:
         return Domain.from_json(source["domain"])
     if "file" in source:
-        return geometry_files.read_domain(
-            source["file"], source["corner_angle"], source["curve_step"]
-        )
+        return drawings.read_domain(source["file"], source["corner_angle"], source["curve_step"])
     rng = np.random.default_rng(source["seed"])
     if "part" in source:
-        return parts.random_part(source["part"], rng)
-    return shapes.random_polygon(source["polygon"], rng)
+        return random_parts.random_part(source["part"], rng)
+    return gallery.random_polygon(source["polygon"], rng)
 
 
 def _refuse_many(count: int, verb: str) -> None:

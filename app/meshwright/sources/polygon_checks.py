@@ -1,6 +1,7 @@
 """What may be wrong with loops of corners: crossings, holes outside, loops without area.
 
-In words for the person who draws, with the edges and places to mark. `meshcore.domain` checks again
+In words for the person who draws, with the edges and places to mark.
+`meshwright_core.domains.domain` checks again
 what comes out; this here is quick enough to follow the mouse.
 """
 

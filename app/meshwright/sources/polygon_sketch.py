@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.loops import Loop, Place, Problem, capital, name_of, problem_of
-from app.signals import Signal
-from meshcore.errors import MeshError
+from meshwright.signals import Signal
+from meshwright.sources.polygon_checks import Loop, Place, Problem, capital, name_of, problem_of
+from meshwright_core.errors import MeshError
 
 _NEAR = 1e-9
 """Share of the sketch's size below which two places are one."""
@@ -182,8 +182,8 @@ class Sketch:
         return f"Click the first corner to close {what}, or go on."
 
     def domain(self) -> dict[str, Any]:
-        """The polygon as :meth:`meshcore.domain.Domain.from_json` takes it; MeshError if it is not
-        complete.
+        """The polygon as :meth:`meshwright_core.domains.domain.Domain.from_json` takes it;
+        MeshError if it is not complete.
         """
         if not self.complete:
             raise MeshError(self.words)

@@ -1,6 +1,6 @@
 """Sources: what a person may name when a mesh is wanted, in Python and in notebooks.
 
-The command line has its own door, :mod:`app.inputs`, with errors of its own.
+The command line has its own door, :mod:`meshwright.cli.arguments`, with errors of its own.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh, MeshError
+from meshwright_core import HalfEdgeMesh, MeshError
 
 if TYPE_CHECKING:
-    from meshcore.domain import Domain
+    from meshwright_core.domains.domain import Domain
 
 
 def mesh(
@@ -37,13 +37,13 @@ def mesh(
 
     Raises MeshError, in one sentence, where there is no such thing or it cannot be meshed.
     """
-    from meshcore import generate
+    from meshwright_core.domains import meshing
 
     if kind not in (None, "tri", "quad"):
         raise MeshError(f"There is no kind of mesh {kind!r}: it is 'tri' or 'quad'.")
     found = source.copy() if isinstance(source, HalfEdgeMesh) else _found(source)
     if not isinstance(found, HalfEdgeMesh):
-        return generate.mesh_domain(
+        return meshing.mesh_domain(
             found, kind or "quad", max_edge=max_edge, min_angle=min_angle, seed=seed
         )
     if kind not in (None, found.kind):
@@ -53,9 +53,10 @@ def mesh(
 
 def _found(source: Domain | str | Path | np.ndarray | list | tuple) -> HalfEdgeMesh | Domain:
     """The mesh or the domain that is meant."""
-    from app import project
-    from meshcore import geometry_files, io, shapes
-    from meshcore.domain import Domain
+    from meshwright.document.storage import project_file
+    from meshwright_core.domains import gallery
+    from meshwright_core.domains.domain import Domain
+    from meshwright_core.io import drawings, mesh_files
 
     if isinstance(source, Domain):
         return source
@@ -65,9 +66,9 @@ def _found(source: Domain | str | Path | np.ndarray | list | tuple) -> HalfEdgeM
         raise MeshError(f"A mesh cannot be made of {type(source).__name__}.")
     path = Path(source)
     if isinstance(source, str) and not path.suffix and not path.exists():
-        return shapes.shape(source)
-    if project.is_project(path):
-        return project.read(path).mesh
-    if geometry_files.is_geometry(path):
-        return geometry_files.read_domain(path)
-    return io.read(path)
+        return gallery.shape(source)
+    if project_file.is_project(path):
+        return project_file.read(path).mesh
+    if drawings.is_geometry(path):
+        return drawings.read_domain(path)
+    return mesh_files.read(path)

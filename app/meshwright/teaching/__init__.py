@@ -1,8 +1,8 @@
 """Teaching: exercises that check themselves. No Qt, no torch."""
 
-from app.teaching.answer import Answer
-from app.teaching.exercises import Exercise, exercise
-from app.teaching.patches import patch
-from app.teaching.solution import Solution
+from meshwright.teaching.exercises.example_meshes import patch
+from meshwright.teaching.exercises.exercise import Exercise, exercise
+from meshwright.teaching.exercises.result import Answer
+from meshwright.teaching.exercises.solution import Solution
 
 __all__ = ["Answer", "Exercise", "Solution", "exercise", "patch"]

@@ -15,10 +15,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import assets
-from meshcore import MeshError, atomic
+import meshwright_assets
+from meshwright_core import MeshError
+from meshwright_core.io import atomic_write
 
-FOLDER = Path(assets.__file__).parent / "lessons"
+FOLDER = Path(meshwright_assets.__file__).parent / "lessons"
 ENDING = ".ipynb"
 
 
@@ -106,10 +107,10 @@ def copy_to(folder: str | Path, force: bool = False) -> list[Path]:
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise MeshError(f"{target}: cannot be made ({atomic.reason(error)}).") from error
+        raise MeshError(f"{target}: cannot be made ({atomic_write.reason(error)}).") from error
     written = []
     for lesson in lessons:
-        with atomic.replacing(target / lesson.path.name) as temporary:
+        with atomic_write.replacing(target / lesson.path.name) as temporary:
             temporary.write_bytes(lesson.path.read_bytes())
         written.append(target / lesson.path.name)
     return written

@@ -1,7 +1,7 @@
 """The block decomposition as a structured multi-block grid: the vertices of each block in rows.
 
-Each block of :mod:`meshcore.blocks` is a regular grid of quads, or a closed band of them around a
-hole. Here it becomes an array of vertex ids: what a structured solver wants.
+Each block of :mod:`meshwright_core.analysis.blocks` is a regular grid of quads, or a closed band of
+them around a hole. Here it becomes an array of vertex ids: what a structured solver wants.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore.blocks import block_of, separatrices
-from meshcore.errors import MeshError
-from meshcore.halfedge import ORIGIN, TWIN
+from meshwright_core.analysis.blocks import block_of, separatrices
+from meshwright_core.core.arrays import ORIGIN, TWIN
+from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 _STEP = ((0, -1), (1, 0), (0, 1), (-1, 0))
 """Where the element across each side lies, in columns and rows, the first side below."""
@@ -43,11 +43,12 @@ class Grid:
 
 
 def grids(mesh: HalfEdgeMesh, corners: bool = False) -> list[Grid]:
-    """All blocks, in the order in which :func:`meshcore.blocks.block_of` counts them.
+    """All blocks, in the order in which :func:`meshwright_core.analysis.blocks.block_of` counts
+    them.
 
     Args:
         mesh: a quad mesh.
-        corners: as in :func:`meshcore.blocks.separatrices`.
+        corners: as in :func:`meshwright_core.analysis.blocks.separatrices`.
 
     Raises:
         MeshError: the mesh is of triangles, or a block is no grid, as in a mesh that is corrupt.

@@ -15,11 +15,11 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from meshcore.errors import MeshError
-from meshcore.halfedge import ELEMENT_SLOTS, ORIGIN, TWIN
+from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN, TWIN
+from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 
 def separatrices(mesh: HalfEdgeMesh, corners: bool = False) -> np.ndarray:

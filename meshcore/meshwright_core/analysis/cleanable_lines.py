@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from meshcore.compiled import kernel
-from meshcore.global_lines import check_cleanup
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     DEGREE,
     ELEMENT_SLOTS,
     HALF,
@@ -24,11 +22,13 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
-from meshcore.navigation import is_ring
-from meshcore.refusals import ALLOWED, NEED_ROOM
+from meshwright_core.core.circulators import is_ring
+from meshwright_core.core.compilation import kernel
+from meshwright_core.operations.global_lines import check_cleanup
+from meshwright_core.operations.refusals import ALLOWED, NEED_ROOM
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 
 class Line(NamedTuple):

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from meshcore.bends import PIECE
-from meshcore.halfedge import ELEMENT_SLOTS, ORIGIN, TWIN
+from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN, TWIN
+from meshwright_core.geometry.boundary_spacing import PIECE
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 STRAIGHT = 1e-6
 """Radians by which a side may turn where it counts as straight."""

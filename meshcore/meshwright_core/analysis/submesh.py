@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from meshcore.errors import MeshError
-from meshcore.halfedge import ELEMENT_SLOTS, FLAGS, LOCKED, ORIGIN, TWIN
+from meshwright_core.core.arrays import ELEMENT_SLOTS, FLAGS, LOCKED, ORIGIN, TWIN
+from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 
 class Enclosure(NamedTuple):

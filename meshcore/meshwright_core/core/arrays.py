@@ -34,7 +34,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshcore.compiled import bare_kernel
+from meshwright_core.core.compilation import bare_kernel
 
 # columns of MeshArrays.edge
 ORIGIN, TWIN = 0, 1

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshcore.compiled import bare_kernel, kernel
-from meshcore.global_lines import check_cleanup
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     DEGREE,
     DESIRED,
     ELEMENT_SLOTS,
@@ -21,8 +19,10 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
-from meshcore.journal import begin_step, end_step, put_point, put_vertex, set_degrees
-from meshcore.refusals import ALLOWED, NEED_ROOM
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.history.journal import begin_step, end_step, put_point, put_vertex, set_degrees
+from meshwright_core.operations.global_lines import check_cleanup
+from meshwright_core.operations.refusals import ALLOWED, NEED_ROOM
 
 
 def outgoing(m: MeshArrays, v: int) -> list[int]:

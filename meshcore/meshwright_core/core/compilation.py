@@ -49,11 +49,12 @@ def cache_root() -> Path:
 
 
 @cache
-def cache_folder(package: str = "meshcore") -> Path:
-    """Cache folder of the kernels of one package, keyed by its sources and those of meshcore."""
-    here = Path(__file__).parent
-    key = _source_hash(here)
-    if package != "meshcore":
+def cache_folder(package: str = "meshwright_core") -> Path:
+    """Cache folder of the kernels of one package, keyed by its sources and those of
+    meshwright_core.
+    """
+    key = _source_hash(Path(__file__).parents[1])
+    if package != "meshwright_core":
         module = importlib.import_module(package)
         key += "-" + _source_hash(Path(str(module.__file__)).parent)
     return cache_root() / key
@@ -71,7 +72,7 @@ def bare_kernel(function: F) -> F:
     """A kernel that allocates nothing and so counts no references; numba refuses others.
 
     Counting them takes several times as long as the work itself where small functions over
-    :class:`~meshcore.halfedge.MeshArrays` call each other, as all rewrites do.
+    :class:`~meshwright_core.core.arrays.MeshArrays` call each other, as all rewrites do.
     """
     return _compiled(function, counts_references=False)
 
@@ -99,7 +100,7 @@ def is_warm_on_disk() -> bool:
 
 def warm() -> None:
     """Compile, or load from the cache, every kernel that editing needs. Blocks; thread-safe."""
-    from meshcore import warm_up
+    from meshwright_core import warm_up
 
     warm_up.exercise()
     try:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshcore.errors import MeshError
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DELTA_SUM,
@@ -26,7 +25,7 @@ from meshcore.halfedge import (
     MeshArrays,
     allocate,
 )
-from meshcore.irregularity import (
+from meshwright_core.core.irregularity import (
     CORNER_ANGLE,
     QUAD_INSIDE,
     TRIANGLE_INSIDE,
@@ -34,6 +33,7 @@ from meshcore.irregularity import (
     planar_boundary_angles,
     turning_angles,
 )
+from meshwright_core.errors import MeshError
 
 
 def checked_input(points: np.ndarray, elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

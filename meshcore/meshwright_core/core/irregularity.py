@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshcore.compiled import bare_kernel
+from meshwright_core.core.compilation import bare_kernel
 
 TRIANGLE_INSIDE, TRIANGLE_STRAIGHT = 6, 4
 QUAD_INSIDE, QUAD_STRAIGHT = 4, 3

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshcore import construct, navigation, validate
-from meshcore.halfedge import (
+from meshwright_core.core import circulators, construction, validation
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DELTA_SUM,
@@ -32,10 +32,10 @@ _KINDS = {3: "tri", 4: "quad"}
 
 
 class MeshView:
-    """The reading half of :class:`meshcore.mesh.HalfEdgeMesh`.
+    """The reading half of :class:`meshwright_core.mesh.HalfEdgeMesh`.
 
     Ids of vertices, elements and half-edges are plain ints; -1 is none. See
-    :mod:`meshcore.halfedge` for the arrays behind it.
+    :mod:`meshwright_core.core.arrays` for the arrays behind it.
     """
 
     def __init__(self, arrays: MeshArrays, outline: Outline) -> None:
@@ -157,7 +157,7 @@ class MeshView:
         on_it = np.flatnonzero(self.boundary())
         half = self._arrays.vertex[on_it, HALF].astype(np.int64)
         ahead = half + 1 - self.k * ((half + 1) % self.k == 0)
-        return construct.trace_loops(on_it, self._arrays.edge[ahead, ORIGIN].astype(np.int64))
+        return construction.trace_loops(on_it, self._arrays.edge[ahead, ORIGIN].astype(np.int64))
 
     # -- walking ---------------------------------------------------------------------------------
 
@@ -197,11 +197,11 @@ class MeshView:
         """The half-edges that leave v, counter-clockwise, on the boundary from its outgoing
         edge.
         """
-        return navigation.outgoing(self._arrays, v)
+        return circulators.outgoing(self._arrays, v)
 
     def neighbours(self, v: int) -> list[int]:
         """The vertices joined to v, counter-clockwise."""
-        return navigation.neighbours(self._arrays, v)
+        return circulators.neighbours(self._arrays, v)
 
     def halfedge(self, a: int, b: int) -> int:
         """The half-edge from vertex a to vertex b, -1 if there is none."""
@@ -215,7 +215,7 @@ class MeshView:
         """Check every invariant the slow way; raises MeshError that says what is broken and
         where.
         """
-        validate.validate(self._arrays)
+        validation.validate(self._arrays)
 
     def __repr__(self) -> str:
         """Kind, size and score in one line."""

@@ -12,7 +12,7 @@ from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 GROUP, NAME = "meshwright.display", "figure"
 """Group and name of the entry point. It is a function of a mesh that returns MIME types with their

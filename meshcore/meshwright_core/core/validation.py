@@ -1,5 +1,5 @@
-"""The exhaustive validator: every invariant of :mod:`meshcore.halfedge`, checked slowly and
-clearly.
+"""The exhaustive validator: every invariant of :mod:`meshwright_core.core.arrays`, checked slowly
+and clearly.
 
 It reads the raw arrays and avoids the walks that it is meant to check.
 """
@@ -10,8 +10,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from meshcore.errors import MeshError
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DELTA_SUM,
@@ -32,6 +31,7 @@ from meshcore.halfedge import (
     VERTICES,
     MeshArrays,
 )
+from meshwright_core.errors import MeshError
 
 
 def _require(condition: bool, sentence: str) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from meshcore.errors import MeshError
+from meshwright_core.errors import MeshError
 
 Points = NDArray[np.float64]
 Flags = NDArray[np.bool_]

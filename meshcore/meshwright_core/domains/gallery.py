@@ -12,8 +12,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshcore.domain import Domain, Points
-from meshcore.errors import MeshError
+from meshwright_core.domains.domain import Domain, Points
+from meshwright_core.errors import MeshError
 
 
 def gallery() -> dict[str, Domain]:

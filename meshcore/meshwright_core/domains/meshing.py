@@ -16,11 +16,12 @@ import shapely
 import triangle
 from numpy.typing import NDArray
 
-from meshcore import HalfEdgeMesh, quadrangulate
-from meshcore.domain import Domain, Flags, Points
-from meshcore.errors import MeshError
-from meshcore.irregularity import QUAD_STRAIGHT, TRIANGLE_STRAIGHT
-from meshcore.shapes import random_corners
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.irregularity import QUAD_STRAIGHT, TRIANGLE_STRAIGHT
+from meshwright_core.domains import quadrangulation
+from meshwright_core.domains.domain import Domain, Flags, Points
+from meshwright_core.domains.gallery import random_corners
+from meshwright_core.errors import MeshError
 
 Elements = NDArray[np.int64]
 Arrays = tuple[Points, Elements, Flags]
@@ -113,19 +114,19 @@ def mesh_arrays(
             bounded = max_edge is not None or max_area is not None
             min_angle = MIN_ANGLE if bounded else CURVED_ANGLE if curved else 0.0
         points, triangles, geometric = triangle_arrays(domain, bound, min_angle, max_area, seed)
-        return quadrangulate.catmull_clark(points, [triangles], geometric)
+        return quadrangulation.catmull_clark(points, [triangles], geometric)
     bound = _EDGE_SHARE * domain.diameter if max_edge is None else max_edge
     angle = MIN_ANGLE if min_angle is None else min_angle
     points, triangles, geometric = triangle_arrays(domain, bound, angle, max_area, seed)
     if kind == "tri":
         return points, triangles, geometric
-    paired, alone = quadrangulate.pair(points, triangles)
+    paired, alone = quadrangulation.pair(points, triangles)
     if len(alone) == 0:
-        return quadrangulate.without_doublets(points, paired, geometric)
+        return quadrangulation.without_doublets(points, paired, geometric)
     points, triangles, geometric = triangle_arrays(domain, 2 * bound, angle, max_area, seed)
-    paired, alone = quadrangulate.pair(points, triangles)
-    arrays = quadrangulate.catmull_clark(points, [paired, alone], geometric)
-    return quadrangulate.without_doublets(*arrays)
+    paired, alone = quadrangulation.pair(points, triangles)
+    arrays = quadrangulation.catmull_clark(points, [paired, alone], geometric)
+    return quadrangulation.without_doublets(*arrays)
 
 
 def triangle_arrays(
@@ -209,7 +210,7 @@ def benchmark_arrays(kind: str, sides: int, rng: np.random.Generator) -> Arrays:
     geometric = np.arange(len(points)) < sides
     if kind == "tri":
         return points, elements, geometric
-    return quadrangulate.catmull_clark(points, [elements], geometric)
+    return quadrangulation.catmull_clark(points, [elements], geometric)
 
 
 def benchmark_mesh(kind: str, sides: int, rng: np.random.Generator) -> HalfEdgeMesh:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from meshcore.domain import Flags, Points
+from meshwright_core.domains.domain import Flags, Points
 
 Elements = NDArray[np.int64]
 

@@ -15,10 +15,10 @@ from collections.abc import Callable
 import numpy as np
 import shapely
 
-from meshcore import generate
-from meshcore.domain import Domain, Points
-from meshcore.errors import MeshError
-from meshcore.mesh import HalfEdgeMesh
+from meshwright_core.domains import meshing
+from meshwright_core.domains.domain import Domain, Points
+from meshwright_core.errors import MeshError
+from meshwright_core.mesh import HalfEdgeMesh
 
 DIAMETER = 2.0
 """Largest distance between two corners of a finished part."""
@@ -78,10 +78,11 @@ def parts(count: int, corners: int | tuple[int, int], seed: int) -> list[Domain]
 def part_mesh(
     kind: str, corners: int | tuple[int, int], rng: np.random.Generator, holes: bool | None = None
 ) -> HalfEdgeMesh:
-    """Draw a part and mesh it, "tri" or "quad", as :func:`meshcore.generate.mesh_domain` does by
+    """Draw a part and mesh it, "tri" or "quad", as
+    :func:`meshwright_core.domains.meshing.mesh_domain` does by
     default; the rest, errors too, as for :func:`random_part`.
     """
-    return generate.mesh_domain(random_part(corners, rng, holes), kind)
+    return meshing.mesh_domain(random_part(corners, rng, holes), kind)
 
 
 def _hole_sizes(count: int, rng: np.random.Generator) -> list[int]:

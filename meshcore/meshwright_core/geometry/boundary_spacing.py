@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore import region as regions
-from meshcore.hopeless import turns
-from meshcore.region import Region
+from meshwright_core.geometry import region as regions
+from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.unfixable import turns
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 LEAST_TURN = np.radians(10.0)
 """A side that turns by less in all counts as straight."""

@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshcore.compiled import kernel
-from meshcore.outline import Polylines, place_on
+from meshwright_core.core.compilation import kernel
+from meshwright_core.geometry.outline import Polylines, place_on
 
 MEMORY = 10
 """Pairs that L-BFGS remembers."""

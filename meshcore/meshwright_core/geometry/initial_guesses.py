@@ -11,10 +11,10 @@ import numpy as np
 from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import splu
 
-from meshcore.hopeless import turns
-from meshcore.quality import TOLERANCE
-from meshcore.region import Region
-from meshcore.sides import in_order
+from meshwright_core.geometry.quality import TOLERANCE
+from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.sides import in_order
+from meshwright_core.geometry.unfixable import turns
 
 TANGLED = 0.1
 """Share of inverted elements above which the present positions are not tried first."""

@@ -11,11 +11,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from meshcore.compiled import kernel
-from meshcore.errors import MeshError
+from meshwright_core.core.compilation import kernel
+from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 STRAIGHT = 1e-12
 """Sine of a turn below which a point of the outline counts as lying on a straight line."""

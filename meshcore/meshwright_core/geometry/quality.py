@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore.outline import Outline
+from meshwright_core.geometry.outline import Outline
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 TOLERANCE = 1e-9
 """Sine of a corner's angle up to which the corner counts as flat."""

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from meshcore.errors import MeshError
-from meshcore.halfedge import FLAGS, GEOMETRIC, HALF, LOCKED, ORIGIN, TWIN
-from meshcore.outline import Outline, Polylines, place_all
-from meshcore.quality import TOLERANCE, corner_sines, reference_normals
-from meshcore.sides import Sides
+from meshwright_core.core.arrays import FLAGS, GEOMETRIC, HALF, LOCKED, ORIGIN, TWIN
+from meshwright_core.errors import MeshError
+from meshwright_core.geometry.outline import Outline, Polylines, place_all
+from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
+from meshwright_core.geometry.sides import Sides
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 
 ON_SIDE = 1e-13

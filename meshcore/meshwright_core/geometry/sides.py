@@ -16,9 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore.compiled import kernel
-from meshcore.errors import MeshError
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     FLAGS,
     GEOMETRIC,
     HALF,
@@ -28,10 +26,18 @@ from meshcore.halfedge import (
     following,
     preceding,
 )
-from meshcore.outline import Outline, Polylines, nearest_on, nearest_parameters, place_all
+from meshwright_core.core.compilation import kernel
+from meshwright_core.errors import MeshError
+from meshwright_core.geometry.outline import (
+    Outline,
+    Polylines,
+    nearest_on,
+    nearest_parameters,
+    place_all,
+)
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 
 @kernel

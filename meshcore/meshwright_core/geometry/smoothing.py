@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore import region as regions
-from meshcore.bends import bending, spread
-from meshcore.compiled import kernel
-from meshcore.halfedge import ORIGIN
-from meshcore.hopeless import mendable
-from meshcore.outline import place_on
-from meshcore.quality import TOLERANCE
-from meshcore.region import Region
-from meshcore.untangle import ALL, untangle_region
+from meshwright_core.core.arrays import ORIGIN
+from meshwright_core.core.compilation import kernel
+from meshwright_core.geometry import region as regions
+from meshwright_core.geometry.boundary_spacing import bending, spread
+from meshwright_core.geometry.outline import place_on
+from meshwright_core.geometry.quality import TOLERANCE
+from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.unfixable import mendable
+from meshwright_core.geometry.untangling import ALL, untangle_region
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 GAP = 0.1
 """Share of the room between its neighbours that a sliding vertex keeps to either of them."""

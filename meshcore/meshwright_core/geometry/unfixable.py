@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore import region as regions
-from meshcore.quality import TOLERANCE
-from meshcore.region import Region
+from meshwright_core.geometry import region as regions
+from meshwright_core.geometry.quality import TOLERANCE
+from meshwright_core.geometry.region import Region
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 PLACES = 20000
 """Most combinations of places on sides that the search looks at."""

@@ -1,6 +1,7 @@
 """Untangling: positions at which every element of a plane mesh is positively oriented.
 
-The foldover-free energy (:mod:`meshcore.foldover`) is minimised from the present positions first
+The foldover-free energy (:mod:`meshwright_core.geometry.foldover_energy`) is minimised from the
+present positions first
 and, if elements stay inverted, from other starts. Corners that no position can unfold (a single
 quad at a reflex corner of the outline, a boundary vertex of one element on a straight side, a
 doublet) are left out of the energy, found beforehand, and their elements reported.
@@ -14,15 +15,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshcore import region as regions
-from meshcore.foldover import Problem, unfold
-from meshcore.hopeless import hopeless_corners
-from meshcore.outline import Polylines
-from meshcore.region import Region
-from meshcore.starts import hold_single_quads, starts
+from meshwright_core.geometry import region as regions
+from meshwright_core.geometry.foldover_energy import Problem, unfold
+from meshwright_core.geometry.initial_guesses import hold_single_quads, starts
+from meshwright_core.geometry.outline import Polylines
+from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.unfixable import hopeless_corners
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 UNFOLDING, SHAPING = 1.0, 0.1
 """Weights of equal areas against equal angles (lambda of the paper) before and after the last

@@ -11,8 +11,7 @@ from __future__ import annotations
 from numba import types
 from numba.extending import intrinsic
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     DEGREE,
     DELTA_SUM,
     DESIRED,
@@ -45,6 +44,7 @@ from meshcore.halfedge import (
     VERTEX_SLOTS,
     VERTICES,
 )
+from meshwright_core.core.compilation import bare_kernel
 
 EDGE_WRITE, VERTEX_WRITE, POINT_WRITE, LIST_WRITE = 0, 1, 2, 3
 _WRITE_KINDS = 4

@@ -3,7 +3,7 @@
 A journal holds 16 bytes for each write. A step at rest needs less: the place of a write and an
 integer take 4 bytes each, and a moved vertex is one place with its two coordinates (three off the
 plane z = 0). Done steps hold the values before them, undone steps the values after them, as in
-:mod:`meshcore.journal`; the order of writes is kept.
+:mod:`meshwright_core.history.journal`; the order of writes is kept.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshcore.errors import MeshError
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     RESTORED,
     STEP,
     STEP_COLUMNS,
@@ -26,7 +25,8 @@ from meshcore.halfedge import (
     VERTEX_COLUMNS,
     MeshArrays,
 )
-from meshcore.journal import EDGE_WRITE, LIST_WRITE, POINT_WRITE, VERTEX_WRITE
+from meshwright_core.errors import MeshError
+from meshwright_core.history.journal import EDGE_WRITE, LIST_WRITE, POINT_WRITE, VERTEX_WRITE
 
 WRITE_KINDS = 4
 LENGTH, OPERATION, HALFEDGE, COUNTERS = 0, 1, 2, 3

@@ -1,7 +1,8 @@
 """The far ends of a history: a journal holds the steps near the present, the others rest packed.
 
 One archive belongs to one mesh. Its `past` are done steps before the journal's first, its `future`
-undone steps after the journal's last; both are lists of :class:`~meshcore.steps.Steps` in order.
+undone steps after the journal's last; both are lists of
+:class:`~meshwright_core.history.packed_steps.Steps` in order.
 """
 
 from __future__ import annotations
@@ -10,8 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshcore.errors import MeshError
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     JOURNAL_TOP,
     STEP,
     STEP_COLUMNS,
@@ -20,7 +20,8 @@ from meshcore.halfedge import (
     STEP_STOP,
     MeshArrays,
 )
-from meshcore.steps import Steps, pieces, unpack
+from meshwright_core.errors import MeshError
+from meshwright_core.history.packed_steps import Steps, pieces, unpack
 
 PIECE = 64
 """Steps that are packed together."""

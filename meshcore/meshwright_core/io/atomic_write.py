@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from meshcore.errors import MeshError
+from meshwright_core.errors import MeshError
 
 
 @contextmanager

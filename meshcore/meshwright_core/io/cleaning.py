@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from meshcore.errors import MeshError
-from meshcore.textfiles import Cells, Content
+from meshwright_core.errors import MeshError
+from meshwright_core.io.text_formats import Cells, Content
 
 _IGNORED = frozenset({"vertex", "line", "line3", "line4"})
 _MOST_DEGREE = 10_000

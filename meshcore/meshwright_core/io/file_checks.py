@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from meshcore.atomic import reason
-from meshcore.errors import MeshError
+from meshwright_core.errors import MeshError
+from meshwright_core.io.atomic_write import reason
 
 
 @contextmanager

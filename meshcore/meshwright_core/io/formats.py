@@ -20,12 +20,12 @@ from typing import Any
 
 import numpy as np
 
-from meshcore import legacyvtk, textfiles
-from meshcore.errors import MeshError
-from meshcore.textfiles import Content
+from meshwright_core.errors import MeshError
+from meshwright_core.io import legacy_vtk, text_formats
+from meshwright_core.io.text_formats import Content
 
 SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json")
-"""Endings of files that hold a shape; see :mod:`meshcore.geometry_files`."""
+"""Endings of files that hold a shape; see :mod:`meshwright_core.io.drawings`."""
 
 _ENDS = 1000
 """Empty reads at the end of a file after which its reader is taken to be stuck."""
@@ -224,24 +224,28 @@ def _read_vtk(path: Path) -> Content:
     except meshio.ReadError as error:
         if not any(part in str(error) for part in ("POLYDATA", "Unknown section")):
             raise
-        return legacyvtk.read(path.read_bytes())
+        return legacy_vtk.read(path.read_bytes())
 
 
 _TRIANGLES = ("triangle",)
-_OBJ = Format("OBJ", _own_read(textfiles.read_obj), _own_write(textfiles.write_obj))
-_OFF = Format("OFF", _own_read(textfiles.read_off), _own_write(textfiles.write_off))
+_OBJ = Format("OBJ", _own_read(text_formats.read_obj), _own_write(text_formats.write_obj))
+_OFF = Format("OFF", _own_read(text_formats.read_off), _own_write(text_formats.write_off))
 _STL = Format(
-    "STL", _own_read(textfiles.read_stl), _own_write(textfiles.write_stl), _TRIANGLES, merge=True
+    "STL",
+    _own_read(text_formats.read_stl),
+    _own_write(text_formats.write_stl),
+    _TRIANGLES,
+    merge=True,
 )
 _MSH = Format(
     "Gmsh",
     _meshio_binary("gmsh.main", "read_buffer")[0],
-    _own_write(textfiles.write_msh),
+    _own_write(text_formats.write_msh),
     data=True,
 )
-_INP = Format("Abaqus", _meshio_text("abaqus")[0], _own_write(textfiles.write_inp))
-_SU2 = Format("SU2", _meshio_text("su2")[0], _own_write(textfiles.write_su2))
-_BDF = Format("Nastran", _meshio_text("nastran")[0], _own_write(textfiles.write_bdf))
+_INP = Format("Abaqus", _meshio_text("abaqus")[0], _own_write(text_formats.write_inp))
+_SU2 = Format("SU2", _meshio_text("su2")[0], _own_write(text_formats.write_su2))
+_BDF = Format("Nastran", _meshio_text("nastran")[0], _own_write(text_formats.write_bdf))
 _DAT = Format("Tecplot", *_meshio_text("tecplot"), data=True)
 _XDMF = Format("XDMF", *_meshio_path("xdmf", data_format="XML"), data=True, needs=("h5py",))
 

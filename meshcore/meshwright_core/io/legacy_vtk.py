@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from meshcore.errors import MeshError
-from meshcore.textfiles import Content
+from meshwright_core.errors import MeshError
+from meshwright_core.io.text_formats import Content
 
 _TYPES = {
     "bit": "u1",

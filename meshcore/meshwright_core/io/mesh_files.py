@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from meshcore import assemble, formats, textfiles
-from meshcore.atomic import replacing
-from meshcore.errors import MeshError
-from meshcore.irregularity import CORNER_ANGLE
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.reading import naming, size_of
-from meshcore.textfiles import Content
+from meshwright_core.core.irregularity import CORNER_ANGLE
+from meshwright_core.errors import MeshError
+from meshwright_core.io import cleaning, formats, text_formats
+from meshwright_core.io.atomic_write import replacing
+from meshwright_core.io.file_checks import naming, size_of
+from meshwright_core.io.text_formats import Content
+from meshwright_core.mesh import HalfEdgeMesh
 
 
 def endings() -> tuple[str, ...]:
@@ -85,7 +85,7 @@ def _refuse_incomplete(form: formats.Format, path: Path, content: Content) -> No
     try:
         with formats.contained():
             there = form.read(path)
-        elements = assemble.single_kind(there)
+        elements = cleaning.single_kind(there)
     except MeshError as error:
         raise OSError("it did not arrive whole") from error
     (block,) = content.cells.values()
@@ -100,26 +100,26 @@ def _head(path: Path) -> bytes:
 
 
 def _mesh(content: Content, form: formats.Format, head: bytes, corner_angle: float) -> HalfEdgeMesh:
-    elements = assemble.single_kind(content)
-    promise = textfiles.promised(head)
+    elements = cleaning.single_kind(content)
+    promise = text_formats.promised(head)
     if promise and promise != (len(content.points), len(elements)):
         raise MeshError(
             f"it is cut off: {promise[0]} points and {promise[1]} elements are announced, "
             f"but {len(content.points)} and {len(elements)} are there"
         )
-    assemble.refuse_strays(content.points, elements)
+    cleaning.refuse_strays(content.points, elements)
     if form.merge:
-        content, elements = assemble.merged(content, elements)
-    content, elements = assemble.compacted(content, elements)
+        content, elements = cleaning.merged(content, elements)
+    content, elements = cleaning.compacted(content, elements)
     points = content.points
     if points.shape[1] < 3:
         points = np.column_stack([points, np.zeros((len(points), 3 - points.shape[1]))])
-    elements = assemble.oriented(points, elements)
+    elements = cleaning.oriented(points, elements)
     return HalfEdgeMesh.from_elements(
         points,
         elements,
-        assemble.flags(content.data, len(points)),
-        assemble.desired(content.data, len(points)),
+        cleaning.flags(content.data, len(points)),
+        cleaning.desired(content.data, len(points)),
         corner_angle,
     )
 

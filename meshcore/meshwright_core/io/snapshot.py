@@ -8,7 +8,7 @@
 ``points``         (v, 3) coordinates
 ``irregular``      (room,) the irregular vertices, with what is left behind them
 ``outline.*``      length of each loop of the first outline; vertex ids and points of all loops
-``done.*``         steps that can be undone: see :class:`meshcore.steps.Steps`
+``done.*``         steps that can be undone: see :class:`meshwright_core.history.packed_steps.Steps`
 ``undone.*``       steps that can be done again
 =================  =====================================================================
 
@@ -21,18 +21,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from meshcore import archive
-from meshcore.errors import MeshError
-from meshcore.halfedge import (
-    ELEMENT_SLOTS,
-    MARK,
-    RESTORED,
-    VERTEX_SLOTS,
-    allocate,
-)
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.soundness import require_sound, require_within
-from meshcore.steps import COLUMNS, Steps, divided, joined
+from meshwright_core.core.arrays import ELEMENT_SLOTS, MARK, RESTORED, VERTEX_SLOTS, allocate
+from meshwright_core.errors import MeshError
+from meshwright_core.history import step_archive
+from meshwright_core.history.packed_steps import COLUMNS, Steps, divided, joined
+from meshwright_core.io.snapshot_checks import require_sound, require_within
+from meshwright_core.mesh import HalfEdgeMesh
 
 Arrays = dict[str, np.ndarray]
 
@@ -118,7 +112,7 @@ def restored_steps(
     steps = Steps(rows, places, whole, coordinates)
     m = mesh.arrays
     require_within(steps, mesh.k, len(m.vertex), len(m.element_mark))
-    return tuple(divided(steps, archive.PIECE))
+    return tuple(divided(steps, step_archive.PIECE))
 
 
 def _array(

@@ -1,16 +1,14 @@
 """Arrays that come from a file: every invariant checked before anything walks on them.
 
-:mod:`meshcore.validate` does the same vertex by vertex, for tests; this goes by whole arrays,
-and copes with numbers that point anywhere.
+:mod:`meshwright_core.core.validation` does the same vertex by vertex, for tests; this goes by whole
+arrays, and copes with numbers that point anywhere.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from meshcore.construct import halves_of, twins_of
-from meshcore.errors import MeshError
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DELTA_SUM,
@@ -34,8 +32,10 @@ from meshcore.halfedge import (
     VERTICES,
     MeshArrays,
 )
-from meshcore.journal import EDGE_WRITE, LIST_WRITE, POINT_WRITE, VERTEX_WRITE
-from meshcore.steps import COUNTERS, WRITE_KINDS, Steps, unpack
+from meshwright_core.core.construction import halves_of, twins_of
+from meshwright_core.errors import MeshError
+from meshwright_core.history.journal import EDGE_WRITE, LIST_WRITE, POINT_WRITE, VERTEX_WRITE
+from meshwright_core.history.packed_steps import COUNTERS, WRITE_KINDS, Steps, unpack
 
 _MOST = np.iinfo(np.int32).max
 
@@ -46,7 +46,7 @@ def _require(condition: bool | np.bool_, sentence: str) -> None:
 
 
 def require_sound(m: MeshArrays, k: int) -> None:
-    """Raise MeshError unless all invariants of :mod:`meshcore.halfedge` hold.
+    """Raise MeshError unless all invariants of :mod:`meshwright_core.core.arrays` hold.
 
     Nothing about the numbers in the arrays is taken for granted.
     """

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshcore.errors import MeshError
+from meshwright_core.errors import MeshError
 
 Cells = dict[str, NDArray[np.int64]]
 

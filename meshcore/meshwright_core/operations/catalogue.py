@@ -9,9 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from meshcore import chords, global_lines, global_split, quad_edits, triangle_edits
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     DEGREE,
     DESIRED,
     ELEMENT_SLOTS,
@@ -26,9 +24,17 @@ from meshcore.halfedge import (
     following,
     preceding,
 )
-from meshcore.journal import begin_step, end_step
-from meshcore.merging import survivor
-from meshcore.refusals import ALLOWED, DEAD_HALFEDGE
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.history.journal import begin_step, end_step
+from meshwright_core.operations import (
+    chord_collapse,
+    global_lines,
+    global_split,
+    quad_edits,
+    triangle_edits,
+)
+from meshwright_core.operations.refusals import ALLOWED, DEAD_HALFEDGE
+from meshwright_core.operations.vertex_merge import survivor
 
 
 class Operation(StrEnum):
@@ -168,7 +174,8 @@ def of_kind(kind: str) -> tuple[OperationInfo, ...]:
 
 @bare_kernel
 def check(m, operation, h, cap):
-    """A code of :mod:`meshcore.refusals`: may `operation` be applied to h? No side effect.
+    """A code of :mod:`meshwright_core.operations.refusals`: may `operation` be applied to h? No
+    side effect.
 
     cap: the highest degree that a vertex may get; 0 for no limit.
     """
@@ -192,7 +199,7 @@ def check(m, operation, h, cap):
         return global_split.check_global_split(m, h, cap)
     if operation == CLEANUP:
         return global_lines.check_cleanup(m, h, cap)
-    return chords.check_chord_collapse(m, h, cap)
+    return chord_collapse.check_chord_collapse(m, h, cap)
 
 
 @bare_kernel
@@ -218,7 +225,7 @@ def rewrite(m, operation, h):
     elif operation == CLEANUP:
         global_lines.cleanup(m, h)
     else:
-        chords.chord_collapse(m, h)
+        chord_collapse.chord_collapse(m, h)
     end_step(m)
 
 

@@ -10,8 +10,7 @@ Beyond the paper: it undoes the growth that a global split brings. Every edge th
 
 from __future__ import annotations
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DESIRED,
@@ -25,8 +24,9 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
-from meshcore.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
-from meshcore.journal import (
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
+from meshwright_core.history.journal import (
     drop_element,
     drop_vertex,
     has_room,
@@ -35,8 +35,7 @@ from meshcore.journal import (
     set_degrees,
     touch,
 )
-from meshcore.merging import check_loser, hand_over, survivor
-from meshcore.refusals import (
+from meshwright_core.operations.refusals import (
     ALLOWED,
     CHORD_CROSSES_ITSELF,
     CHORD_PINCHES,
@@ -46,6 +45,7 @@ from meshcore.refusals import (
     NEED_ROOM,
     NO_ELEMENT_LEFT,
 )
+from meshwright_core.operations.vertex_merge import check_loser, hand_over, survivor
 
 
 @bare_kernel

@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from meshcore import journal, operations, refusals
-from meshcore.errors import OperationRefused
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     DEGREE,
     DESIRED,
     ELEMENT_SLOTS,
@@ -32,10 +30,13 @@ from meshcore.halfedge import (
     VERTEX_COLUMNS,
     MeshArrays,
 )
-from meshcore.operations import Operation
+from meshwright_core.errors import OperationRefused
+from meshwright_core.history import journal
+from meshwright_core.operations import catalogue, refusals
+from meshwright_core.operations.catalogue import Operation
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 Result = TypeVar("Result")
 
@@ -122,7 +123,7 @@ def _aside(
     then: Callable[[MeshArrays, int], Result],
 ) -> Result:
     """Apply the operation with another journal; `then` is told the change of s and undoes it."""
-    code = operations.CODES[mesh.k][Operation(operation)]
+    code = catalogue.CODES[mesh.k][Operation(operation)]
     entries = _ENTRIES
     while True:
         held = mesh.arrays.counters.copy()
@@ -132,7 +133,7 @@ def _aside(
         aside.counters[[JOURNAL_TOP, STEP, STEP_END, GROUPED]] = 0
         aside.counters[JOURNALLING] = 1
         try:
-            done = operations.apply_once(*aside, code, h, mesh.degree_cap)
+            done = catalogue.apply_once(*aside, code, h, mesh.degree_cap)
             if done[0] == refusals.ALLOWED:
                 return then(aside, int(done[1]))
         finally:

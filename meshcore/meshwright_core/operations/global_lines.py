@@ -13,8 +13,7 @@ ring, which the paper leaves open. Deleting it merges the elements on its two si
 
 from __future__ import annotations
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DESIRED,
@@ -30,8 +29,9 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
-from meshcore.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
-from meshcore.journal import (
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
+from meshwright_core.history.journal import (
     drop_element,
     drop_vertex,
     has_room,
@@ -40,7 +40,7 @@ from meshcore.journal import (
     put_vertex,
     touch,
 )
-from meshcore.refusals import (
+from meshwright_core.operations.refusals import (
     ALLOWED,
     BOUNDARY_EDGE,
     LINE_CROWDED,

@@ -10,8 +10,7 @@ other way: the two cuts then cross in a new regular vertex.
 
 from __future__ import annotations
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     ELEMENTS,
@@ -21,8 +20,9 @@ from meshcore.halfedge import (
     following,
     preceding,
 )
-from meshcore.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
-from meshcore.journal import (
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
+from meshwright_core.history.journal import (
     add_degree,
     has_room,
     link,
@@ -33,7 +33,7 @@ from meshcore.journal import (
     touch,
     touch_new,
 )
-from meshcore.refusals import (
+from meshwright_core.operations.refusals import (
     ALLOWED,
     BOUNDARY_EDGE,
     DEGREE_CAP,

@@ -1,7 +1,7 @@
 """Local edits of quad meshes: flips, vertex split, element collapse (section 2.2 of the paper).
 
-Each edit is a pair, as in :mod:`meshcore.triangle_edits`. Letters: h runs from a to b in the quad
-(a, b, c, d), its twin t from b to a in the quad (b, a, f, g).
+Each edit is a pair, as in :mod:`meshwright_core.operations.triangle_edits`. Letters: h runs from a
+to b in the quad (a, b, c, d), its twin t from b to a in the quad (b, a, f, g).
 
         d ----- c
         |       |
@@ -12,8 +12,7 @@ Each edit is a pair, as in :mod:`meshcore.triangle_edits`. Letters: h runs from 
 
 from __future__ import annotations
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     DEGREE,
     DESIRED,
     HALF,
@@ -25,8 +24,9 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
-from meshcore.irregularity import QUAD_INSIDE
-from meshcore.journal import (
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.irregularity import QUAD_INSIDE
+from meshwright_core.history.journal import (
     add_degree,
     drop_element,
     drop_vertex,
@@ -40,8 +40,7 @@ from meshcore.journal import (
     touch,
     touch_new,
 )
-from meshcore.merging import check_loser, hand_over, survivor
-from meshcore.refusals import (
+from meshwright_core.operations.refusals import (
     ALLOWED,
     BOTH_ON_BOUNDARY,
     BOUNDARY_EDGE,
@@ -54,6 +53,7 @@ from meshcore.refusals import (
     NEED_ROOM,
     NO_ELEMENT_LEFT,
 )
+from meshwright_core.operations.vertex_merge import check_loser, hand_over, survivor
 
 
 @bare_kernel

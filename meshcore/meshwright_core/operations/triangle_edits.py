@@ -1,6 +1,7 @@
 r"""Local edits of triangle meshes: flip, split, collapse (section 2.2 of the paper).
 
-Each edit is a pair: ``check_*`` has no side effect and returns a code of :mod:`meshcore.refusals`;
+Each edit is a pair: ``check_*`` has no side effect and returns a code of
+:mod:`meshwright_core.operations.refusals`;
 the rewrite trusts that check said ALLOWED. Letters: h runs from a to b in the triangle (a, b, c),
 its twin t from b to a in the triangle (b, a, d).
 
@@ -13,8 +14,7 @@ its twin t from b to a in the triangle (b, a, d).
 
 from __future__ import annotations
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DESIRED,
@@ -27,8 +27,9 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
-from meshcore.irregularity import TRIANGLE_INSIDE, TRIANGLE_STRAIGHT
-from meshcore.journal import (
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.irregularity import TRIANGLE_INSIDE, TRIANGLE_STRAIGHT
+from meshwright_core.history.journal import (
     add_degree,
     drop_element,
     drop_vertex,
@@ -42,8 +43,7 @@ from meshcore.journal import (
     touch,
     touch_new,
 )
-from meshcore.merging import check_loser, hand_over, survivor
-from meshcore.refusals import (
+from meshwright_core.operations.refusals import (
     ALLOWED,
     BOTH_ON_BOUNDARY,
     BOUNDARY_EDGE,
@@ -56,6 +56,7 @@ from meshcore.refusals import (
     NEED_ROOM,
     NO_ELEMENT_LEFT,
 )
+from meshwright_core.operations.vertex_merge import check_loser, hand_over, survivor
 
 
 @bare_kernel

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from meshcore import refusals
-from meshcore.operations import Operation
+from meshwright_core.operations import refusals
+from meshwright_core.operations.catalogue import Operation
 
 if TYPE_CHECKING:
-    from meshcore.mesh import HalfEdgeMesh
+    from meshwright_core.mesh import HalfEdgeMesh
 
 
 class Verdict:
@@ -17,7 +17,9 @@ class Verdict:
     __slots__ = ("code", "reason")
 
     def __init__(self, code: int, reason: str) -> None:
-        """code: one of :mod:`meshcore.refusals`; reason: empty if it is ALLOWED."""
+        """code: one of :mod:`meshwright_core.operations.refusals`; reason: empty if it is
+        ALLOWED.
+        """
         self.code = code
         self.reason = reason
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from meshcore.compiled import bare_kernel
-from meshcore.halfedge import (
+from meshwright_core.core.arrays import (
     DEGREE,
     DESIRED,
     FLAGS,
@@ -15,9 +14,10 @@ from meshcore.halfedge import (
     on_boundary,
     preceding,
 )
-from meshcore.irregularity import usual_desired
-from meshcore.journal import put_edge
-from meshcore.refusals import ALLOWED, LOSER_DESIRED, LOSER_LOCKED, TWO_GEOMETRIC
+from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.irregularity import usual_desired
+from meshwright_core.history.journal import put_edge
+from meshwright_core.operations.refusals import ALLOWED, LOSER_DESIRED, LOSER_LOCKED, TWO_GEOMETRIC
 
 
 @bare_kernel

@@ -10,11 +10,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from meshcore.errors import MeshError
-from meshcore.halfedge import DEGREE, DESIRED, JOURNAL_TOP, RESTORED
-from meshcore.mesh import HalfEdgeMesh
-from meshcore.operations import Operation
-from meshcore.oracle import FaceList, Refused
+from meshwright_core.core.arrays import DEGREE, DESIRED, JOURNAL_TOP, RESTORED
+from meshwright_core.errors import MeshError
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import Operation
+from meshwright_core.testing.face_list_oracle import FaceList, Refused
 
 _LARGEST = 60  # elements; beyond it a run starts afresh, since the face list is slow
 _RUN = 150  # operations before a run is undone to its beginning and a new one starts

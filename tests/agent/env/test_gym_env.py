@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from agent.registration import QUADS, TRIANGLES
-from meshcore.generate import benchmark_mesh
+from meshwright_agent.registration import QUADS, TRIANGLES
+from meshwright_core.domains.meshing import benchmark_mesh
 
 
 @pytest.mark.parametrize("name", [TRIANGLES, QUADS])
@@ -20,7 +20,7 @@ def test_passes_the_checker(name):
 
 @pytest.mark.parametrize("name", [TRIANGLES, QUADS])
 def test_is_found_by_name_alone(name):
-    code = f"import gymnasium; gymnasium.make('agent.registration:{name}').reset(seed=0)"
+    code = f"import gymnasium; gymnasium.make('meshwright_agent.registration:{name}').reset(seed=0)"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import torch
 
-from agent.network import Architecture, Block, PolicyNetwork
-from agent.patch import LARGEST, Patches, assemble, describe
-from agent.potential import field, forget, solve_potential
-from agent.task import Scratch, Task, look
-from meshcore.generate import benchmark_mesh
-from meshcore.halfedge import TWIN
+from meshwright_agent.env.local_patch import LARGEST, Patches, assemble, describe
+from meshwright_agent.env.potential import field, forget, solve_potential
+from meshwright_agent.env.task import Scratch, Task, look
+from meshwright_agent.policy.network import Architecture, Block, PolicyNetwork
+from meshwright_core.core.arrays import TWIN
+from meshwright_core.domains.meshing import benchmark_mesh
 
 
 def _whole(network, mesh):

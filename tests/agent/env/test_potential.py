@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from agent.potential import (
+from meshwright_agent.env.potential import (
     NEIGHBOURHOOD,
     SCREENING,
     SWEEPS,
@@ -12,7 +12,7 @@ from agent.potential import (
     forget,
     solve_potential,
 )
-from meshcore.generate import benchmark_mesh, grid
+from meshwright_core.domains.meshing import benchmark_mesh, grid
 
 
 def _potentials(mesh, near=-1):

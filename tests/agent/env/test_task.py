@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 import torch
 
-from agent.batch import Batch, start_meshes
-from agent.network import Architecture, PolicyNetwork
-from agent.policies import Policy, PolicyError
-from agent.ppo import decide, normalised_advantages
-from agent.rollout import Runner
-from agent.selection import permitted, template_plan
-from agent.task import Task
-from meshcore import HalfEdgeMesh
-from meshcore.generate import benchmark_mesh
-from meshcore.halfedge import JOURNALLING, MeshArrays
-from meshcore.operations import NAMES, score_change
+from meshwright_agent.env.candidates import permitted, template_plan
+from meshwright_agent.env.task import Task
+from meshwright_agent.env.vector_env import Batch, start_meshes
+from meshwright_agent.policy.network import Architecture, PolicyNetwork
+from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.policy.rollout import Runner
+from meshwright_agent.training.ppo import decide, normalised_advantages
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import JOURNALLING, MeshArrays
+from meshwright_core.domains.meshing import benchmark_mesh
+from meshwright_core.operations.catalogue import NAMES, score_change
 
 
 def _policy(kind, **settings):

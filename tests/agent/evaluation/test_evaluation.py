@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from agent import figures, paper, strips
-from agent.assessment import Wanted, assess
-from agent.contest import BASELINES, RACERS, attempt, share_within
-from agent.evaluate import NothingToDo, longer, roll_out, unseen
-from agent.policies import load
-from meshcore.mesh import HalfEdgeMesh
+from meshwright_agent.evaluation import figures, paper_results, rollout_strip
+from meshwright_agent.evaluation.baselines import BASELINES, RACERS, attempt, share_within
+from meshwright_agent.evaluation.rollouts import NothingToDo, longer, roll_out, unseen
+from meshwright_agent.evaluation.table_row import Wanted, assess
+from meshwright_agent.policy.policy_files import load
+from meshwright_core.mesh import HalfEdgeMesh
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def test_longer_runs_share_the_network(policy):
 
 def test_polygons_with_nothing_to_do_are_refused(monkeypatch):
     square = HalfEdgeMesh.from_elements([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1, 2, 3]])
-    monkeypatch.setattr("agent.evaluate.start_meshes", lambda *_: [square])
+    monkeypatch.setattr("meshwright_agent.evaluation.rollouts.start_meshes", lambda *_: [square])
     with pytest.raises(NothingToDo, match="at its optimum"):
         unseen("quad", (4, 4), 1, seed=0)
 
@@ -87,13 +87,20 @@ def test_an_assessment_and_its_figures(policy, tmp_path):
     figures.learning_curve(curve, "quad", "Quads", tmp_path / "learning.png")
     figures.returns_by_steps([("8-9 sides", found.rolled, 0.98)], "quad", tmp_path / "steps.png")
     figures.shares_by_seconds([("8-9 sides", found.times)], 0.05, "quad", tmp_path / "race.png")
-    strips.rollout_strip(mesh, steps, tmp_path / "strip.svg")
+    rollout_strip.rollout_strip(mesh, steps, tmp_path / "strip.svg")
     for name in ("learning.png", "steps.png", "race.png", "strip.svg"):
         assert (tmp_path / name).stat().st_size > 10_000
 
 
 def test_the_paper_has_its_rows():
-    assert [row.best.mean for row in paper.ROWS["tri"]] == [0.83, 0.87, 0.83, 0.78, 0.75, 0.86]
-    assert [row.best.mean for row in paper.ROWS["quad"]] == [0.98, 0.97, 0.94, 0.91, 0.992]
-    assert (paper.single("tri"), paper.single("quad")) == (0.81, 0.95)
-    assert paper.row("tri", (10, 21)) is None
+    assert [row.best.mean for row in paper_results.ROWS["tri"]] == [
+        0.83,
+        0.87,
+        0.83,
+        0.78,
+        0.75,
+        0.86,
+    ]
+    assert [row.best.mean for row in paper_results.ROWS["quad"]] == [0.98, 0.97, 0.94, 0.91, 0.992]
+    assert (paper_results.single("tri"), paper_results.single("quad")) == (0.81, 0.95)
+    assert paper_results.row("tri", (10, 21)) is None

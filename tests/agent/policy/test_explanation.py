@@ -3,23 +3,24 @@
 import numpy as np
 import pytest
 
-from agent import policies
-from agent.insight import WEIGHED, field_of_view, hints, same_result
-from agent.patch import seen_vertex
-from agent.policies import PolicyError
-from agent.rollout import Runner
-from agent.selection import gather
-from meshcore import Operation, generate, shapes
-from meshcore.operations import CODES, score_change
+from meshwright_agent.env.candidates import gather
+from meshwright_agent.env.local_patch import seen_vertex
+from meshwright_agent.policy import policy_files
+from meshwright_agent.policy.explanation import WEIGHED, field_of_view, hints, same_result
+from meshwright_agent.policy.policy_files import PolicyError
+from meshwright_agent.policy.rollout import Runner
+from meshwright_core import Operation
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.operations.catalogue import CODES, score_change
 
 
-@pytest.fixture(params=policies.shipped())
+@pytest.fixture(params=policy_files.shipped())
 def policy(request):
-    return policies.load(request.param)
+    return policy_files.load(request.param)
 
 
 def star(kind):
-    return generate.mesh_domain(shapes.shape("star"), kind)
+    return meshing.mesh_domain(gallery.shape("star"), kind)
 
 
 def test_a_run_that_is_looked_at_is_the_same_run(policy):
@@ -75,7 +76,7 @@ def test_the_template_is_that_of_the_selection(policy):
 
 
 def test_the_field_of_view_grows_with_the_blocks():
-    mesh = generate.grid("quad", 400)
+    mesh = meshing.grid("quad", 400)
     middle = 4 * 210
     for blocks, size in ((0, 1), (1, 2), (2, 5), (3, 8)):
         field = field_of_view(mesh.arrays, 4, blocks, middle)
@@ -97,8 +98,8 @@ def test_hints_are_the_same_each_time_and_can_be_taken(policy):
 
 
 def test_hints_near_a_place_stay_there():
-    mesh = generate.mesh_domain(shapes.random_polygon(60, np.random.default_rng(3)), "quad")
-    policy = policies.load("quad")
+    mesh = meshing.mesh_domain(gallery.random_polygon(60, np.random.default_rng(3)), "quad")
+    policy = policy_files.load("quad")
     vertex = int(np.flatnonzero(mesh.irregularity())[-1])
     (best, *_) = hints(mesh, policy, near=np.array([vertex]))
     around = {v for n in mesh.neighbours(vertex) for v in (n, *mesh.neighbours(n))}
@@ -116,11 +117,11 @@ def test_a_mesh_of_the_other_kind_is_refused(policy):
 
 
 def test_no_hint_where_nothing_is_irregular():
-    assert hints(generate.grid("quad", 16), policies.load("quad")) == ()
+    assert hints(meshing.grid("quad", 16), policy_files.load("quad")) == ()
 
 
 def test_same_results():
-    mesh = generate.grid("quad", 16)
+    mesh = meshing.grid("quad", 16)
     for h in range(4 * mesh.n_elements):
         for operation in (Operation.FLIP_LEFT, Operation.COLLAPSE, Operation.SPLIT):
             other = same_result(mesh.arrays, 4, operation, h)

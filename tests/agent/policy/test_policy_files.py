@@ -5,9 +5,9 @@ import json
 import pytest
 import torch
 
-from agent.network import Architecture, PolicyNetwork
-from agent.policies import Policy, PolicyError, load, save_policy, shipped
-from agent.task import Task
+from meshwright_agent.env.task import Task
+from meshwright_agent.policy.network import Architecture, PolicyNetwork
+from meshwright_agent.policy.policy_files import Policy, PolicyError, load, save_policy, shipped
 
 
 def _saved(tmp_path, kind="quad"):

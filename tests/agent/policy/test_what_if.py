@@ -3,21 +3,21 @@
 import numpy as np
 import pytest
 
-from agent import policies
-from agent.outlook import candidates, outlook, template_slots
-from agent.policies import PolicyError
-from agent.rollout import Runner
-from meshcore import generate, shapes
-from meshcore.operations import CODES, score_change
+from meshwright_agent.policy import policy_files
+from meshwright_agent.policy.policy_files import PolicyError
+from meshwright_agent.policy.rollout import Runner
+from meshwright_agent.policy.what_if import candidates, outlook, template_slots
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.operations.catalogue import CODES, score_change
 
 
 @pytest.fixture(params=["quad", "quad-paper", "tri", "tri-paper"])
 def policy(request):
-    return policies.load(request.param)
+    return policy_files.load(request.param)
 
 
 def star(kind):
-    return generate.mesh_domain(shapes.shape("star"), kind)
+    return meshing.mesh_domain(gallery.shape("star"), kind)
 
 
 def test_it_is_what_a_run_would_do(policy):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from replay import replayed
 
-from agent.annealing import Annealer, anneal, greedy, random_walk
-from meshcore.generate import benchmark_mesh
+from meshwright_agent.search.annealing import Annealer, anneal, greedy, random_walk
+from meshwright_core.domains.meshing import benchmark_mesh
 
 KINDS = ("tri", "quad")
 

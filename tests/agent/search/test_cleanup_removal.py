@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from replay import replayed
 
-from agent.annealing import anneal
-from agent.refining import without_cleanups
-from meshcore import generate, shapes
+from meshwright_agent.search.annealing import anneal
+from meshwright_agent.search.cleanup_removal import without_cleanups
+from meshwright_core.domains import gallery, meshing
 
 
 @pytest.mark.parametrize("name", ["annulus", "star", "t-shape"])
 def test_s_stays_as_low_and_no_elements_are_lost(name):
-    mesh = generate.mesh_domain(shapes.shape(name), "quad")
+    mesh = meshing.mesh_domain(gallery.shape(name), "quad")
     operations, score = anneal(mesh, proposals=100_000, seed=1)
     assert any(operation == "cleanup" for operation, _ in operations)
     finer = without_cleanups(mesh, operations)
@@ -23,6 +23,6 @@ def test_s_stays_as_low_and_no_elements_are_lost(name):
 
 
 def test_operations_without_clean_ups_stay_as_they_are():
-    mesh = generate.benchmark_mesh("tri", 10, np.random.default_rng(0))
+    mesh = meshing.benchmark_mesh("tri", 10, np.random.default_rng(0))
     operations, _ = anneal(mesh, proposals=20_000)
     assert without_cleanups(mesh, operations) is operations

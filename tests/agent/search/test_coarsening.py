@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from replay import replayed
 
-from agent.annealing import anneal
-from agent.coarsening import coarsen, undrawable
-from meshcore import generate, shapes
+from meshwright_agent.search.annealing import anneal
+from meshwright_agent.search.coarsening import coarsen, undrawable
+from meshwright_core.domains import gallery, meshing
 
 
 def optimal(name):
-    mesh = generate.mesh_domain(shapes.shape(name), "quad")
+    mesh = meshing.mesh_domain(gallery.shape(name), "quad")
     for operation, h in anneal(mesh, proposals=1_000_000)[0]:
         mesh.apply(operation, h)
     assert mesh.score == mesh.optimum
@@ -28,13 +28,13 @@ def test_gallery_shapes_become_coarse_at_the_optimum(name, most):
 
 
 def test_the_floor_is_kept():
-    mesh = generate.grid("quad", 36)
+    mesh = meshing.grid("quad", 36)
     after = replayed(mesh, coarsen(mesh, proposals=50_000, seconds=None, floor=12))
     assert 12 <= after.n_elements < 36
 
 
 def test_nothing_for_triangles_and_nothing_when_cancelled():
-    mesh = generate.benchmark_mesh("tri", 10, np.random.default_rng(0))
+    mesh = meshing.benchmark_mesh("tri", 10, np.random.default_rng(0))
     assert coarsen(mesh) == []
-    quads = generate.benchmark_mesh("quad", 10, np.random.default_rng(0))
+    quads = meshing.benchmark_mesh("quad", 10, np.random.default_rng(0))
     assert coarsen(quads, seconds=60.0, cancelled=lambda: True) == []

@@ -10,10 +10,10 @@ would be fewer than none.
 from functools import cache
 from itertools import combinations_with_replacement
 
-from agent.policies import load
-from agent.solver import solve
-from meshcore.generate import mesh_domain
-from meshcore.shapes import shape
+from meshwright_agent.policy.policy_files import load
+from meshwright_agent.search.solver import solve
+from meshwright_core.domains.gallery import shape
+from meshwright_core.domains.meshing import mesh_domain
 
 DESIRED = {"reflex": 4, "tip": 2, "flat": 3}
 

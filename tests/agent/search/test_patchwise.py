@@ -3,27 +3,28 @@
 import numpy as np
 import pytest
 
-from agent import policies
-from agent.agenda import FILL, agenda, dequeue, enlarged, enlist
-from agent.batch import stack
-from agent.cutout import MOST_TAKEN, cut_out, next_patch, put_back
-from agent.large import improve_large, is_large
-from agent.policies import PolicyError
-from agent.solver import solve
-from agent.task import Task
-from meshcore import HalfEdgeMesh, generate, quadrangulate
-from meshcore.halfedge import JOURNALLING, STEP_COLUMNS, allocate
-from meshcore.operations import CODES, NAMES, score_change
+from meshwright_agent.env.task import Task
+from meshwright_agent.env.vector_env import stack
+from meshwright_agent.policy import policy_files
+from meshwright_agent.policy.policy_files import PolicyError
+from meshwright_agent.search.patch_extraction import MOST_TAKEN, cut_out, next_patch, put_back
+from meshwright_agent.search.patchwise import improve_large, is_large
+from meshwright_agent.search.repair_queue import FILL, agenda, dequeue, enlarged, enlist
+from meshwright_agent.search.solver import solve
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import JOURNALLING, STEP_COLUMNS, allocate
+from meshwright_core.domains import meshing, quadrangulation
+from meshwright_core.operations.catalogue import CODES, NAMES, score_change
 
 
 def scrambled(kind, levels=3, seed=0):
     rng = np.random.default_rng(seed)
     if kind == "tri":
-        mesh = generate.grid("tri", 6 * 4**levels)
+        mesh = meshing.grid("tri", 6 * 4**levels)
     else:
-        points, quads, geometric = generate.benchmark_arrays("quad", 9, rng)
+        points, quads, geometric = meshing.benchmark_arrays("quad", 9, rng)
         for _ in range(levels):
-            points, quads, geometric = quadrangulate.catmull_clark(points, [quads], geometric)
+            points, quads, geometric = quadrangulation.catmull_clark(points, [quads], geometric)
         mesh = HalfEdgeMesh.from_elements(points, quads, geometric)
     names = list(CODES[mesh.k])[: 3 if kind == "tri" else 4]
     wanted = mesh.n_elements // 5
@@ -45,7 +46,7 @@ def quads():
 
 @pytest.fixture(scope="module")
 def policy():
-    return policies.load(policies.shipped("quad")[0])
+    return policy_files.load(policy_files.shipped("quad")[0])
 
 
 def replayed(mesh, run):
@@ -161,7 +162,7 @@ def test_a_scrambled_mesh_is_mended_by_operations_that_replay(kind):
     mesh = scrambled(kind)
     told = []
     run = improve_large(
-        mesh, policies.load(kind), max_steps=1500, progress=lambda *said: told.append(said)
+        mesh, policy_files.load(kind), max_steps=1500, progress=lambda *said: told.append(said)
     )
     run.mesh.validate()
     after = replayed(mesh, run)
@@ -196,17 +197,17 @@ def test_a_run_stops_when_it_is_told_to(quads, policy):
 
 def test_the_policy_must_be_for_this_kind(quads):
     with pytest.raises(PolicyError, match="not quad"):
-        improve_large(quads, policies.load("tri"))
+        improve_large(quads, policy_files.load("tri"))
 
 
 def test_a_regular_mesh_is_left_as_it_is(policy):
-    mesh = generate.grid("quad", 100)
+    mesh = meshing.grid("quad", 100)
     run = improve_large(mesh, policy)
     assert (len(run.operations), run.removed, run.reason) == (0, 0.0, "at the optimum")
 
 
 def test_the_solver_goes_patch_by_patch_where_much_is_irregular(quads, policy):
-    few = generate.benchmark_mesh("quad", 50, np.random.default_rng(0))
+    few = meshing.benchmark_mesh("quad", 50, np.random.default_rng(0))
     assert is_large(quads) and not is_large(few)
     told = []
     found = solve(quads, policy, max_steps=400, progress=lambda *said: told.append(said[1]))

@@ -5,22 +5,23 @@ import threading
 import numpy as np
 import pytest
 
-from agent import policies
-from agent.confined import KEEP, solve_within
-from agent.policies import PolicyError
-from meshcore import MeshError, generate, shapes
-from meshcore.enclosure import enclose, holding
-from meshcore.halfedge import ORIGIN
-from meshcore.region import rings
-from meshcore.smoothing import relax
+from meshwright_agent.policy import policy_files
+from meshwright_agent.policy.policy_files import PolicyError
+from meshwright_agent.search.region_search import KEEP, solve_within
+from meshwright_core import MeshError
+from meshwright_core.analysis.submesh import enclose, holding
+from meshwright_core.core.arrays import ORIGIN
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry.region import rings
+from meshwright_core.geometry.smoothing import relax
 
 
 @pytest.fixture(params=["quad", "tri"])
 def case(request):
     """A policy, a mesh, and a region around an irregular vertex in its middle."""
-    domain = shapes.random_polygon(16, np.random.default_rng(7))
-    mesh = generate.mesh_domain(domain, request.param, max_edge=0.14)
-    return policies.load(request.param), mesh, region(mesh, 3)
+    domain = gallery.random_polygon(16, np.random.default_rng(7))
+    mesh = meshing.mesh_domain(domain, request.param, max_edge=0.14)
+    return policy_files.load(request.param), mesh, region(mesh, 3)
 
 
 def region(mesh, reach):
@@ -60,11 +61,11 @@ def test_it_replays_lowers_s_and_leaves_the_rest(case):
 
 
 def test_it_knows_when_nothing_more_can_be_gained():
-    mesh = generate.grid("quad", 64)
+    mesh = meshing.grid("quad", 64)
     h = 4 * 27
     mesh.apply("flip_left", h)
     elements = mesh.element_ids()
-    found = solve_within(mesh, policies.load("quad"), elements, seconds=20.0)
+    found = solve_within(mesh, policy_files.load("quad"), elements, seconds=20.0)
     assert found.score == found.optimum == 0 and found.seconds < 10.0
     again = mesh.copy()
     for operation, at in found.operations:
@@ -73,11 +74,11 @@ def test_it_knows_when_nothing_more_can_be_gained():
 
 
 def test_a_region_with_much_to_repair_goes_patch_by_patch(monkeypatch):
-    mesh = generate.mesh_domain(shapes.shape("gear"), "tri", max_edge=0.05)
+    mesh = meshing.mesh_domain(gallery.shape("gear"), "tri", max_edge=0.05)
     elements = region(mesh, 12)
-    monkeypatch.setattr("agent.confined.MANY", 8)
+    monkeypatch.setattr("meshwright_agent.search.region_search.MANY", 8)
     halfedges, ends = outside_of(mesh, elements)
-    found = solve_within(mesh, policies.load("tri"), elements, rollouts=2, seed=2)
+    found = solve_within(mesh, policy_files.load("tri"), elements, rollouts=2, seed=2)
     assert found.score < mesh.score
     inside = enclose(mesh, elements)
     with holding(mesh, inside.held):
@@ -106,6 +107,6 @@ def test_what_makes_no_sense_is_refused(case):
     policy, mesh, elements = case
     with pytest.raises(MeshError, match="No vertex lies inside"):
         solve_within(mesh, policy, elements[:1])
-    other = policies.load("tri" if mesh.kind == "quad" else "quad")
+    other = policy_files.load("tri" if mesh.kind == "quad" else "quad")
     with pytest.raises(PolicyError):
         solve_within(mesh, other, elements)

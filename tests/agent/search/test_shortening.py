@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from replay import replayed
 
-from agent.annealing import anneal
-from agent.shortening import shorten, without_loops
-from meshcore.generate import benchmark_mesh
+from meshwright_agent.search.annealing import anneal
+from meshwright_agent.search.shortening import shorten, without_loops
+from meshwright_core.domains.meshing import benchmark_mesh
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])

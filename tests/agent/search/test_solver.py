@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from agent import policies
-from agent.policies import PolicyError
-from agent.solver import Solution, prepare, solve
-from meshcore import shapes
-from meshcore.generate import benchmark_mesh, mesh_domain
+from meshwright_agent.policy import policy_files
+from meshwright_agent.policy.policy_files import PolicyError
+from meshwright_agent.search.solver import Solution, prepare, solve
+from meshwright_core.domains import gallery
+from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
 
 
 @pytest.fixture(scope="module", params=["tri", "quad"])
 def policy(request):
-    policy = policies.load(policies.shipped(request.param)[0])
+    policy = policy_files.load(policy_files.shipped(request.param)[0])
     prepare(policy)
     return policy
 
@@ -77,7 +77,7 @@ def test_a_mesh_at_its_optimum_needs_nothing(policy):
 
 
 def test_quads_end_with_fewer_elements_only_if_asked():
-    policy = policies.load("quad")
+    policy = policy_files.load("quad")
     mesh = start("quad", 20)
     fine = solve(mesh, policy, rollouts=6, coarsen=False)
     coarse = solve(mesh, policy, rollouts=6)
@@ -100,7 +100,7 @@ def test_a_policy_of_the_other_kind_is_refused(policy):
 
 
 def test_a_disc_stays_a_disc(policy):
-    mesh = mesh_domain(shapes.shape("disc"), policy.kind)
+    mesh = mesh_domain(gallery.shape("disc"), policy.kind)
     found = solve(mesh, policy, rollouts=1, seconds=1.0)
     after = replayed(mesh, found)
     assert after.score == found.score < mesh.score

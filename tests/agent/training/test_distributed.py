@@ -13,13 +13,13 @@ import pytest
 import torch
 from safetensors.torch import load_file
 
-from agent import checkpoint
-from agent.batch import Batch, start_meshes
-from agent.network import Architecture, PolicyNetwork
-from agent.ppo import tensors
-from agent.processes import DeviceError, Processes, joined
-from agent.task import Task
-from agent.training import train
+from meshwright_agent.env.task import Task
+from meshwright_agent.env.vector_env import Batch, start_meshes
+from meshwright_agent.policy.network import Architecture, PolicyNetwork
+from meshwright_agent.training import checkpoint
+from meshwright_agent.training.distributed import DeviceError, Processes, joined
+from meshwright_agent.training.ppo import tensors
+from meshwright_agent.training.trainer import train
 
 ROOT = Path(__file__).parents[2]
 
@@ -113,7 +113,7 @@ def test_a_training_that_was_killed_goes_on_from_its_last_checkpoint(tmp_path, m
     (tmp_path / "long.toml").write_text(TINY.format(iterations=100_000))
     words = ["train", "--kind", "quad", "--config", "long.toml", "-o", "out"]
     started = subprocess.Popen(
-        [sys.executable, "-m", "app", *words],
+        [sys.executable, "-m", "meshwright", *words],
         stderr=subprocess.PIPE,
         text=True,
         env=environment(),
@@ -129,7 +129,10 @@ def test_a_training_that_was_killed_goes_on_from_its_last_checkpoint(tmp_path, m
     assert log[1].split()[0] == "1/100000"
     before = checkpoint.unpack(path.read_bytes())[1]["progress"]
     assert before["iteration"] >= 2
-    monkeypatch.setattr("agent.training.evaluate", lambda *_: {"single_mean": 0.0, "seconds": 1.0})
+    monkeypatch.setattr(
+        "meshwright_agent.training.trainer.evaluate",
+        lambda *_: {"single_mean": 0.0, "seconds": 1.0},
+    )
     (tmp_path / "long.toml").write_text(TINY.format(iterations=before["iteration"] + 2))
     after = train(tmp_path / "long.toml", tmp_path / "out")
     assert after["iteration"] == before["iteration"] + 2

@@ -7,13 +7,18 @@ import numpy as np
 import pytest
 import torch
 
-from agent import checkpoint
-from agent.evaluate import evaluate
-from agent.events import Events
-from agent.policies import load
-from agent.solver import solve
-from agent.training import ConfigurationError, read_configuration, shipped_configuration, train
-from meshcore.generate import benchmark_mesh
+from meshwright_agent.evaluation.rollouts import evaluate
+from meshwright_agent.policy.policy_files import load
+from meshwright_agent.search.solver import solve
+from meshwright_agent.training import checkpoint
+from meshwright_agent.training.tensorboard import Events
+from meshwright_agent.training.trainer import (
+    ConfigurationError,
+    read_configuration,
+    shipped_configuration,
+    train,
+)
+from meshwright_core.domains.meshing import benchmark_mesh
 
 _TINY = {
     "sides": [8, 10],
@@ -29,7 +34,10 @@ _TINY = {
 
 
 def test_a_training_can_be_stopped_and_resumed(tmp_path, monkeypatch):
-    monkeypatch.setattr("agent.training.evaluate", lambda *_: {"single_mean": 0.0, "seconds": 1.0})
+    monkeypatch.setattr(
+        "meshwright_agent.training.trainer.evaluate",
+        lambda *_: {"single_mean": 0.0, "seconds": 1.0},
+    )
 
     class Stop(Exception):
         pass
@@ -60,8 +68,11 @@ def test_a_training_ends_early_and_its_best_policy_is_the_result(tmp_path, monke
     def rolled(*_):
         return SimpleNamespace(returns=np.array([[next(means)]]), gaps=np.array([[1]]))
 
-    monkeypatch.setattr("agent.training.roll_out", rolled)
-    monkeypatch.setattr("agent.training.evaluate", lambda *_: {"single_mean": 0.0, "seconds": 1.0})
+    monkeypatch.setattr("meshwright_agent.training.trainer.roll_out", rolled)
+    monkeypatch.setattr(
+        "meshwright_agent.training.trainer.evaluate",
+        lambda *_: {"single_mean": 0.0, "seconds": 1.0},
+    )
     found = train({**_TINY, "iterations": 9, "patience": 2}, tmp_path)
     assert (found["iteration"], found["best_iteration"], found["best_return"]) == (3, 1, 0.8)
     parts, notes = checkpoint.unpack((tmp_path / "checkpoint.safetensors").read_bytes())

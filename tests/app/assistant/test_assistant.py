@@ -6,9 +6,9 @@ import threading
 
 import pytest
 
-from app.assistant import Assistant, State
-from app.document import Document
-from app.searching import Effort
+from meshwright.assistant.assistant import Assistant, State
+from meshwright.assistant.search_runner import Effort
+from meshwright.document.document import Document
 
 
 @pytest.fixture
@@ -419,8 +419,8 @@ def test_a_program_that_breaks_off_is_not_held_by_a_run():
     """A worker waits until its decision is applied; nobody applies it once the program dies."""
     code = """if True:
         import time
-        from app.assistant import Assistant
-        from app.document import Document
+        from meshwright.assistant.assistant import Assistant
+        from meshwright.document.document import Document
         from meshcore import generate, shapes
 
         class Runner:

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from app.policy_files import kind_of, label, shipped
+from meshwright.assistant.policy_catalogue import kind_of, label, shipped
 
 
 def header(path, content):

@@ -5,19 +5,19 @@ import threading
 import numpy as np
 import pytest
 
-from app.assistant import Assistant
-from app.document import Document
-from app.searching import Effort
-from meshcore import generate, shapes
-from meshcore.enclosure import enclose
-from meshcore.halfedge import ORIGIN
-from meshcore.region import rings
+from meshwright.assistant.assistant import Assistant
+from meshwright.assistant.search_runner import Effort
+from meshwright.document.document import Document
+from meshwright_core.analysis.submesh import enclose
+from meshwright_core.core.arrays import ORIGIN
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry.region import rings
 
 
 @pytest.fixture(params=["quad", "tri"])
 def document(request):
-    domain = shapes.random_polygon(14, np.random.default_rng(7))
-    return Document(generate.mesh_domain(domain, request.param, max_edge=0.16))
+    domain = gallery.random_polygon(14, np.random.default_rng(7))
+    return Document(meshing.mesh_domain(domain, request.param, max_edge=0.16))
 
 
 @pytest.fixture

@@ -2,8 +2,8 @@
 
 from threading import Event
 
-from agent.policies import load
-from app.searching import Effort, SearchRunner
+from meshwright.assistant.search_runner import Effort, SearchRunner
+from meshwright_agent.policy.policy_files import load
 
 
 def _all_steps(runner):

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from app import benchmarks, cli
+from meshwright import benchmarks, cli
 
 
 def test_suites_are_listed(capsys):

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app import cli, outputs, report
-from app.commands import COMMANDS, shapes
-from app.report import Report, UserError
+from meshwright import cli, console
+from meshwright.cli import output_files
+from meshwright.cli.commands import COMMANDS, shapes
+from meshwright.console import Report, UserError
 
 
 def raising(error: BaseException):
@@ -117,7 +118,7 @@ def test_no_memory_is_one_line_and_code_2(broken, capsys):
 
 def test_reader_that_goes_away_is_no_news():
     code = (
-        "import sys; from app.cli import main; from app.commands import shapes; "
+        "import sys; from meshwright.cli import main; from meshwright.cli.commands import shapes; "
         "shapes.run = lambda _, report: report.result({}, 'text'); sys.exit(main(['shapes']))"
     )
     child = subprocess.Popen(
@@ -132,7 +133,7 @@ def test_reader_that_goes_away_is_no_news():
 
 def test_json_turns_numpy_and_nan_into_plain_values():
     values = {"a": np.float64(1.5), "b": np.arange(2), "c": float("nan"), "d": Path("x"), 3: (1,)}
-    assert json.loads(report.as_json(values)) == {
+    assert json.loads(console.as_json(values)) == {
         "a": 1.5,
         "b": [0, 1],
         "c": None,
@@ -172,28 +173,28 @@ def test_progress_is_shown_on_a_terminal(monkeypatch):
 def test_output_is_checked_before_the_work(tmp_path, name, says):
     (tmp_path / "file.txt").write_text("")
     with pytest.raises(UserError, match=says):
-        outputs.checked_output(str(tmp_path / name), (".vtk", ".obj"))
+        output_files.checked_output(str(tmp_path / name), (".vtk", ".obj"))
 
 
 def test_output_may_be_new_or_replaced(tmp_path):
-    assert outputs.checked_output(str(tmp_path / "a.VTK"), (".vtk",)) == tmp_path / "a.VTK"
+    assert output_files.checked_output(str(tmp_path / "a.VTK"), (".vtk",)) == tmp_path / "a.VTK"
     (tmp_path / "a.VTK").write_text("old")
-    assert outputs.checked_output(str(tmp_path / "a.VTK"), (".vtk",)) == tmp_path / "a.VTK"
+    assert output_files.checked_output(str(tmp_path / "a.VTK"), (".vtk",)) == tmp_path / "a.VTK"
 
 
 def test_folder_is_checked_before_the_work(tmp_path):
-    assert outputs.checked_folder(str(tmp_path / "new")) == tmp_path / "new"
+    assert output_files.checked_folder(str(tmp_path / "new")) == tmp_path / "new"
     (tmp_path / "file").write_text("")
     with pytest.raises(UserError, match="that is a file"):
-        outputs.checked_folder(str(tmp_path / "file"))
+        output_files.checked_folder(str(tmp_path / "file"))
     with pytest.raises(UserError, match="does not exist"):
-        outputs.checked_folder(str(tmp_path / "no" / "new"))
+        output_files.checked_folder(str(tmp_path / "no" / "new"))
 
 
 def test_replacing_puts_the_new_file_in_place(tmp_path):
     target = tmp_path / "a.png"
     target.write_text("old")
-    with outputs.replacing(target) as temporary:
+    with output_files.replacing(target) as temporary:
         temporary.write_text("new")
     assert target.read_text() == "new"
     assert list(tmp_path.iterdir()) == [target]
@@ -205,7 +206,7 @@ def test_replacing_keeps_the_old_file_when_writing_fails(tmp_path, error):
     target.write_text("old")
 
     def write():
-        with outputs.replacing(target) as temporary:
+        with output_files.replacing(target) as temporary:
             temporary.write_text("half")
             raise error
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-import meshcore
-from app import cli
+import meshwright_core
+from meshwright import cli
 
 pytestmark = pytest.mark.usefixtures("prepared_agent")
 
@@ -154,10 +154,10 @@ def test_quads_into_a_format_of_triangles(refused):
 
 
 def shipped_policy(kind: str) -> Path:
-    from agent import policies
+    from meshwright_agent.policy import policy_files
 
-    name = policies.shipped(kind)[0]
-    return Path(str(files("assets") / "policies" / f"{name}.safetensors"))
+    name = policy_files.shipped(kind)[0]
+    return Path(str(files("meshwright_assets") / "policies" / f"{name}.safetensors"))
 
 
 def test_missing_policy(refused, tmp_path):
@@ -208,17 +208,17 @@ def test_full_disk_leaves_the_old_mesh_whole(refused, tmp_path, capfd, ending):
     capfd.readouterr()
     with files_no_larger_than(500):
         refused(*words, says="too large|No space|cannot write")
-    meshcore.read(tmp_path / f"a.{ending}").validate()
+    meshwright_core.read(tmp_path / f"a.{ending}").validate()
 
 
 def test_full_disk_leaves_the_old_picture_whole(refused, tmp_path, monkeypatch):
-    from app import pictures
+    from meshwright.graphics.export import export_job
 
     def picture(mesh, path, *_):
         path.write_bytes(b"half")
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(pictures, "save_mesh_picture", picture)
+    monkeypatch.setattr(export_job, "save_mesh_picture", picture)
     (tmp_path / "a.obj").write_text(TRIANGLES)
     (tmp_path / "a.png").write_bytes(b"old")
     words = ["improve", "a.obj", "-o", "a.obj", "--png", "a.png", "--rollouts", "1"]

@@ -6,18 +6,24 @@ import shutil
 
 import pytest
 
-from agent import paper, policies
-from app import cli, evaluation_table, training_display
-from app.policy_files import ENDING
+from meshwright import cli
+from meshwright.assistant.policy_catalogue import ENDING
+from meshwright.cli import training_progress
+from meshwright.experiments import evaluation_table
+from meshwright_agent.evaluation import paper_results
+from meshwright_agent.policy import policy_files
 
 
 @pytest.fixture
 def small_table(monkeypatch):
-    rows = (paper.Row((6, 7), paper.Measured(0.98, 0.03)), paper.Row((8, 8), *_TWO))
-    monkeypatch.setitem(paper.ROWS, "quad", rows)
+    rows = (
+        paper_results.Row((6, 7), paper_results.Measured(0.98, 0.03)),
+        paper_results.Row((8, 8), *_TWO),
+    )
+    monkeypatch.setitem(paper_results.ROWS, "quad", rows)
 
 
-_TWO = (paper.Measured(0.992, 0.02), paper.Measured(0.95, 0.05))
+_TWO = (paper_results.Measured(0.992, 0.02), paper_results.Measured(0.95, 0.05))
 
 
 def test_a_table_with_everything(small_table, tmp_path, capfd):
@@ -43,11 +49,11 @@ def test_a_table_with_everything(small_table, tmp_path, capfd):
 
 def test_a_table_can_be_noted_in_the_policy(small_table, tmp_path, capfd):
     path = tmp_path / f"mine{ENDING}"
-    shutil.copy(policies._shipped_folder() / f"quad{ENDING}", path)
+    shutil.copy(policy_files._shipped_folder() / f"quad{ENDING}", path)
     words = ["evaluate", "--kind", "quad", "--meshes", "1", "--rollouts", "1", "--note"]
     assert cli.main([*words, "--table", "--policy", str(path)]) == 0
     assert "best of 1" in capfd.readouterr().out
-    policy = policies.load(path)
+    policy = policy_files.load(path)
     assert [row["sides"] for row in policy.header["table"]] == [[6, 7], [8, 8]]
     assert policy.header["progress"]["curve"]
     assert cli.main([*words, "--table"]) == 2
@@ -63,7 +69,7 @@ def test_a_grid_is_aligned():
 
 def test_a_training_writes_a_line_at_each_evaluation_into_a_log():
     stream = io.StringIO()
-    with training_display.shown(stream, 3) as display:
+    with training_progress.shown(stream, 3) as display:
         display.update(1, 3, {"decisions": 2048.0, "decisions_per_second": 1000.0, "entropy": 1.25})
         evaluated = {"mean": 0.9, "at_optimum": 0.5, "played": float("nan")}
         display.update(2, 3, {"decisions": 4096.0, **evaluated})
@@ -78,4 +84,4 @@ def test_a_training_writes_a_line_at_each_evaluation_into_a_log():
 
 
 def test_a_clock_counts_hours_only_when_there_are_some():
-    assert [training_display.clock(x) for x in (5.2, 65, 3725)] == ["0:05", "1:05", "1:02:05"]
+    assert [training_progress.clock(x) for x in (5.2, 65, 3725)] == ["0:05", "1:05", "1:02:05"]

@@ -4,10 +4,10 @@ import json
 
 import pytest
 
-import meshcore
-from app import cli
-from app.commands import view
-from app.document import Document
+import meshwright_core
+from meshwright import cli
+from meshwright.cli.commands import view
+from meshwright.document.document import Document
 
 SLOT = '<path d="M0 0H60A20 20 0 0 1 60 40H0Z"/><circle cx="60" cy="20" r="8"/>'
 SVG = f'<svg xmlns="http://www.w3.org/2000/svg">{SLOT}</svg>'
@@ -38,7 +38,7 @@ def test_mesh_of_a_drawing(here, capsys, name):
     (here / name).write_text(SOUND[name])
     assert cli.main(["mesh", name, "-o", "out.vtk", "--max-edge", "5", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
-    mesh = meshcore.read(here / "out.vtk")
+    mesh = meshwright_core.read(here / "out.vtk")
     assert mesh.kind == told["kind"] == "quad"
     assert mesh.n_elements == told["elements"]
     mesh.validate()
@@ -90,7 +90,7 @@ def test_a_document_opens_a_drawing_and_stays_as_it_was_where_it_is_bad(here, st
     (here / "part.svg").write_text(SVG)
     (here / "cut.svg").write_text(SVG[:50])
     document = Document(star, "star")
-    with pytest.raises(meshcore.MeshError, match="not XML"):
+    with pytest.raises(meshwright_core.MeshError, match="not XML"):
         document.open(here / "cut.svg")
     assert document.mesh is star
     document.open(here / "part.svg")

@@ -4,8 +4,10 @@ import json
 
 import pytest
 
-from app import cli, desktop, display, levels
-from app.level_progress import Progress
+from meshwright import cli, desktop
+from meshwright.cli import display_check
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.progress import Progress
 
 
 @pytest.fixture(autouse=True)
@@ -17,7 +19,7 @@ def _own_stars(monkeypatch, tmp_path):
 def opened(monkeypatch):
     """The levels that the window was opened on."""
     found = []
-    monkeypatch.setattr(display.Probe, "problem", lambda self: "")
+    monkeypatch.setattr(display_check.Probe, "problem", lambda self: "")
     monkeypatch.setattr(desktop, "run", lambda level: found.append(level.name) or 0)
     return found
 
@@ -57,6 +59,6 @@ def test_a_level_that_is_none_is_refused_in_one_line(capsys, opened):
 
 
 def test_without_a_display_play_says_so(capsys, monkeypatch):
-    monkeypatch.setattr(display.Probe, "problem", lambda self: "There is no display")
+    monkeypatch.setattr(display_check.Probe, "problem", lambda self: "There is no display")
     assert cli.main(["play"]) == 2
     assert "notebook" in capsys.readouterr().err

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import meshcore
-from agent import warm_up
-from app import cli
-from meshcore import quality, shapes
+import meshwright_core
+from meshwright import cli
+from meshwright_agent import warm_up
+from meshwright_core.domains import gallery
+from meshwright_core.geometry import quality
 
 KINDS = ("tri", "quad")
 pytestmark = pytest.mark.usefixtures("prepared_agent")
@@ -47,7 +48,7 @@ def corners(mesh) -> set[tuple[float, ...]]:
 
 def test_shapes_lists_the_gallery(run, capfd):
     listed = run("shapes")["shapes"]
-    assert [row["name"] for row in listed] == list(shapes.names())
+    assert [row["name"] for row in listed] == list(gallery.names())
     assert cli.main(["shapes"]) == 0
     assert "star" in capfd.readouterr().out
 
@@ -55,9 +56,9 @@ def test_shapes_lists_the_gallery(run, capfd):
 @pytest.mark.parametrize("kind", KINDS)
 def test_mesh_writes_a_mesh_of_the_shape(run, kind, tmp_path):
     said = run("mesh", "star", "-o", "star.vtk", "--kind", kind)
-    mesh = meshcore.read(tmp_path / "star.vtk")
+    mesh = meshwright_core.read(tmp_path / "star.vtk")
     mesh.validate()
-    domain = shapes.shape("star")
+    domain = gallery.shape("star")
     assert corners(mesh) == {(*np.round(p, 9), 0.0) for p in domain.outline}
     assert (said["kind"], said["elements"], said["vertices"]) == (
         kind,
@@ -73,7 +74,7 @@ def test_mesh_takes_a_polygon_file(run, tmp_path):
     polygon = {"outline": [[0, 0], [0, 3], [3, 3], [3, 0]], "holes": [hole]}
     (tmp_path / "a.json").write_text(json.dumps(polygon))
     said = run("mesh", "a.json", "-o", "a.obj", "--kind", "quad", "--max-edge", "0.5")
-    mesh = meshcore.read(tmp_path / "a.obj")
+    mesh = meshwright_core.read(tmp_path / "a.obj")
     assert mesh.euler == 0
     assert said["corners"] == 8
     ends = mesh.elements()
@@ -93,7 +94,10 @@ def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
     made = run("mesh", "star", "-o", "in.vtk", "--kind", kind)
     words = ("improve", "in.vtk", "-o", "out.vtk", "--rollouts", "3", "--png", "out.png")
     said = run(*words, "--film", "out.gif")
-    before, after = meshcore.read(tmp_path / "in.vtk"), meshcore.read(tmp_path / "out.vtk")
+    before, after = (
+        meshwright_core.read(tmp_path / "in.vtk"),
+        meshwright_core.read(tmp_path / "out.vtk"),
+    )
     after.validate()
     assert corners(after) == corners(before)
     assert said["score_before"] == made["score"] == before.score
@@ -188,7 +192,7 @@ def test_ctrl_c_leaves_the_old_file(run, tmp_path):
     run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad", "--max-edge", "0.04")
     (tmp_path / "b.vtk").write_text("old")
     code = (
-        "import os, signal, sys, threading; from app.cli import main; "
+        "import os, signal, sys, threading; from meshwright.cli import main; "
         "threading.Timer(5, os.kill, (os.getpid(), signal.SIGINT)).start(); "
         "sys.exit(main(['improve', 'a.vtk', '-o', 'b.vtk', '--search', '60']))"
     )

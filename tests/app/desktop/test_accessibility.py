@@ -13,12 +13,12 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop import actions
-from app.desktop.about import AboutDialog
-from app.desktop.application import open_window as open_a_window
-from app.desktop.preferences_dialog import PreferencesDialog
-from app.document import Document
-from meshcore import io
+from meshwright.desktop.actions import registry
+from meshwright.desktop.application.preferences_dialog import PreferencesDialog
+from meshwright.desktop.help.about_dialog import AboutDialog
+from meshwright.desktop.main_window.startup import open_window as open_a_window
+from meshwright.document.document import Document
+from meshwright_core.io import mesh_files
 
 CONTROLS = (QAbstractButton, QAbstractSlider, QAbstractSpinBox, QComboBox, QLineEdit)
 
@@ -73,7 +73,7 @@ def test_every_control_of_the_dialogs_has_them_too(qtbot, open_window, star, pag
 
 
 def test_every_action_says_what_it_does():
-    for action in actions.ACTIONS:
+    for action in registry.ACTIONS:
         assert action.title and action.tooltip and action.menu, action.id
         assert not action.tooltip.endswith("."), action.id
         assert action.tooltip[0].isupper(), action.id
@@ -99,7 +99,7 @@ def test_a_persons_own_window_shows_the_tour_once(qtbot, open_window, star, tmp_
 
 def test_recent_files_are_offered_where_there_is_no_mesh(qtbot, open_window, star, tmp_path):
     path = tmp_path / "part.vtk"
-    io.write(path, star)
+    mesh_files.write(path, star)
     window = open_window()
     window.settings.recent = [str(path), str(tmp_path / "gone.vtk")]
     assert [button.text() for button in window.empty.recent] == ["part.vtk"]

@@ -4,9 +4,9 @@ from driving import WAIT, find, point_at, press
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QApplication
 
-from app.desktop import actions
-from app.desktop.action import Action, needs
-from app.desktop.palette import Entry, rank
+from meshwright.desktop.actions import registry
+from meshwright.desktop.actions.action import Action, needs
+from meshwright.desktop.help.command_palette import Entry, rank
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 
@@ -22,7 +22,7 @@ def open_palette(qtbot, window):
 def test_it_lists_all_actions_of_the_menus_with_their_keys(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
-    listed = [a for _, members in actions.groups(window) for a in members]
+    listed = [a for _, members in registry.groups(window) for a in members]
     assert [entry.id for entry in palette.shown] == [action.id for action in listed]
     keys = {entry.id: entry.key for entry in palette.shown}
     assert keys["undo"] == "Ctrl+Z"
@@ -112,13 +112,13 @@ def test_every_action_that_can_be_impossible_has_its_reason():
     always = Action.__dataclass_fields__["enabled"].default
     silent = [
         action.id
-        for action in actions.ACTIONS
+        for action in registry.ACTIONS
         if action.enabled is not always
         and not action.id.startswith(("tri.", "quad."))  # listed for their kind of mesh only
         and needs(action) == "Not possible now."
     ]
     assert silent == []
-    assert all(needs(action).endswith(".") for action in actions.ACTIONS)
+    assert all(needs(action).endswith(".") for action in registry.ACTIONS)
 
 
 def test_matches_in_the_title_come_first_and_the_possible_before_the_impossible():

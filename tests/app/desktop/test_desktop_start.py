@@ -1,12 +1,12 @@
 """What the window needs before it is there, measured in a process of its own."""
 
-from app.benchmarks import desktop
-from app.benchmarks.desktop.display import display
-from meshcore import compiled
+from meshwright.benchmarks import desktop
+from meshwright.benchmarks.desktop.display import display
+from meshwright_core.core import compilation
 
 
 def test_the_window_is_there_before_torch_and_kernels():
-    compiled.warm()
+    compilation.warm()
     with display() as environment:
         started = desktop._probe("start", environment)
     assert not started["torch_at_first_paint"]

@@ -7,12 +7,12 @@ from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
 from qtpy.QtWidgets import QApplication, QFileDialog
 
-from app import recovery
-from app.autosave import Autosave
-from app.desktop.lost_work import LostWork
-from app.desktop.question import Question
-from app.document import Document
-from meshcore import HalfEdgeMesh
+from meshwright.desktop.files.recovery_dialog import LostWork
+from meshwright.desktop.files.save_question import Question
+from meshwright.document.document import Document
+from meshwright.document.storage import recovery
+from meshwright.document.storage.autosave import Autosave
+from meshwright_core import HalfEdgeMesh
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.fuzzy import match
+from meshwright.desktop.help.fuzzy_match import match
 
 TITLES = ["Flip left", "Flip right", "Fit", "Light or dark", "Save as\u2026", "Smooth", "Clean all"]
 

@@ -1,11 +1,13 @@
 """Getting the kernels ready behind the window, and a window that is closed before they are."""
 
-from app.desktop.warmup import Warmup
+from meshwright.desktop.application.kernel_warmup import Warmup
 
 
 def test_what_was_loaded_when_the_window_closed_is_told_to_nobody(qtbot, monkeypatch):
-    monkeypatch.setattr("app.desktop.warmup.compiled.is_warm_on_disk", lambda: True)
-    monkeypatch.setattr("app.desktop.warmup.compiled.warm", lambda: None)
+    monkeypatch.setattr(
+        "meshwright.desktop.application.kernel_warmup.compiled.is_warm_on_disk", lambda: True
+    )
+    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.compiled.warm", lambda: None)
     warmup, told = Warmup(), []
     warmup.ready.connect(lambda: told.append("ready"))
     warmup.start()
@@ -16,7 +18,9 @@ def test_what_was_loaded_when_the_window_closed_is_told_to_nobody(qtbot, monkeyp
 
 
 def test_a_window_that_has_closed_starts_nothing(qtbot, monkeypatch):
-    monkeypatch.setattr("app.desktop.warmup.compiled.is_warm_on_disk", lambda: True)
+    monkeypatch.setattr(
+        "meshwright.desktop.application.kernel_warmup.compiled.is_warm_on_disk", lambda: True
+    )
     warmup = Warmup()
     warmup.stop()
     warmup.start()
@@ -27,8 +31,10 @@ def test_failure_is_told_in_a_sentence(qtbot, monkeypatch):
     def break_off() -> None:
         raise OSError("no room")
 
-    monkeypatch.setattr("app.desktop.warmup.compiled.is_warm_on_disk", lambda: True)
-    monkeypatch.setattr("app.desktop.warmup.compiled.warm", break_off)
+    monkeypatch.setattr(
+        "meshwright.desktop.application.kernel_warmup.compiled.is_warm_on_disk", lambda: True
+    )
+    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.compiled.warm", break_off)
     warmup = Warmup()
     with qtbot.waitSignal(warmup.failed) as failed:
         warmup.start()

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from app import recovery
-from app.desktop.guard import Guard
-from app.document import Document
-from app.history import YOU
+from meshwright.desktop.files.unsaved_work import Guard
+from meshwright.document.document import Document
+from meshwright.document.history import YOU
+from meshwright.document.storage import recovery
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
 
@@ -20,13 +20,13 @@ import sys, time
 from pathlib import Path
 sys.path.insert(0, {tests!r})
 from conftest import Greedy
-from app.assistant import Assistant
-from app.desktop.application import application
-from app.desktop.dispatch import Dispatcher
-from app.desktop.settings import Settings
-from app.desktop.window import MainWindow
-from app.document import Document
-from app.history import YOU
+from meshwright.assistant.assistant import Assistant
+from meshwright.desktop.main_window.startup import application
+from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.main_window.window import MainWindow
+from meshwright.document.document import Document
+from meshwright.document.history import YOU
 from meshcore import compiled, generate, shapes
 
 compiled.warm()

@@ -5,10 +5,10 @@ import re
 from driving import press
 from qtpy.QtCore import Qt
 
-from app.desktop import actions
-from app.desktop.about import AboutDialog, own_version
-from app.desktop.keys import MOUSE, key_blocks, spread
-from app.licences import UNKNOWN, licences
+from meshwright.desktop.actions import registry
+from meshwright.desktop.help.about_dialog import AboutDialog, own_version
+from meshwright.desktop.help.licences import UNKNOWN, licences
+from meshwright.desktop.help.shortcuts_dialog import MOUSE, key_blocks, spread
 
 
 def test_every_package_that_is_needed_is_told_with_its_licence():
@@ -46,7 +46,7 @@ def test_the_page_of_keys_has_every_key_and_stays_open(qtbot, open_window, star)
     assert window.guide.keys.isVisible()
     window.activateWindow()
     assert window.guide.keys.isVisible()
-    blocks = key_blocks(actions.groups(window))
+    blocks = key_blocks(registry.groups(window))
     told = {keys for _, lines in blocks for keys, *_ in lines}
     assert {"Ctrl+Z", "F1", "Ctrl+K", "F"} <= told
     assert len(blocks[-1][1]) == len(MOUSE)

@@ -10,11 +10,12 @@ from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDropEvent
 from qtpy.QtWidgets import QApplication
 
-from app import making
-from app.desktop.new_mesh import NewMeshDialog
-from app.desktop.new_mesh.maker import Maker
-from app.theme import theme
-from meshcore import MeshError, generate, read, shapes, write
+from meshwright.desktop.files.new_mesh import NewMeshDialog
+from meshwright.desktop.files.new_mesh.mesh_process import Maker
+from meshwright.graphics.theme import theme
+from meshwright.sources import mesh_worker
+from meshwright_core import MeshError, read, write
+from meshwright_core.domains import gallery, meshing
 
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
 SQUARE = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
@@ -42,7 +43,7 @@ def dialog(qtbot):
     assert not [timer for timer in made.findChildren(QTimer) if timer.isActive()]
 
 
-def wait_for_mesh(qtbot, dialog) -> making.Made:
+def wait_for_mesh(qtbot, dialog) -> mesh_worker.Made:
     qtbot.waitUntil(lambda: dialog.made is not None, timeout=WAIT)
     return dialog.made
 
@@ -97,7 +98,7 @@ def key(qtbot, widget, key, modifier=Qt.KeyboardModifier.NoModifier) -> None:
 
 def test_gallery_shows_every_shape_and_previews_the_chosen_one(qtbot, dialog):
     pictures = dialog.gallery.shapes
-    assert pictures.count() == len(shapes.names())
+    assert pictures.count() == len(gallery.names())
     assert dialog.options.numbers == {
         "elements": "24", "vertices": "35", "score": "12", "optimum": "4",
     }  # fmt: skip
@@ -178,7 +179,7 @@ def test_make_waits_for_the_mesh(qtbot, dialog):
     assert dialog.made.name == "gear"
     mesh = dialog.made.mesh()
     mesh.validate()
-    same = generate.mesh_domain(shapes.shape("gear"), "quad")
+    same = meshing.mesh_domain(gallery.shape("gear"), "quad")
     assert (mesh.points == same.points).all() and (mesh.elements() == same.elements()).all()
     assert (mesh.desired() == same.desired()).all()
 
@@ -206,7 +207,7 @@ def test_random_polygons_by_seed(qtbot, dialog):
     assert made.name == "polygon-10"
     page.seed.setValue(7)
     again = wait_for_mesh(qtbot, dialog)
-    corners = shapes.random_corners(10, np.random.default_rng(7))
+    corners = gallery.random_corners(10, np.random.default_rng(7))
     assert (again.points[:10, :2] == corners).all()
     assert page.pictures.key == 7
     page.sides.setValue(15)
@@ -402,13 +403,13 @@ def test_a_process_that_dies_is_told_and_replaced(qtbot):
 
 
 def test_frames_hold_all():
-    made = making.make(REQUEST)
-    content = making.frame(made)
-    assert making.length(content[:8]) == len(content)
-    again = making.unframed(content)
+    made = mesh_worker.make(REQUEST)
+    content = mesh_worker.frame(made)
+    assert mesh_worker.length(content[:8]) == len(content)
+    again = mesh_worker.unframed(content)
     assert json.dumps([again.name, again.kind, again.score]) == '["star", "quad", 12]'
     assert all((getattr(again, f) == getattr(made, f)).all() for f in ("points", "rim", "desired"))
-    assert making.unframed(making.frame("No.")) == "No."
+    assert mesh_worker.unframed(mesh_worker.frame("No.")) == "No."
 
 
 @pytest.mark.parametrize(
@@ -422,4 +423,4 @@ def test_frames_hold_all():
 )
 def test_bad_requests_end_in_a_sentence(change, says):
     with pytest.raises(MeshError, match=says):
-        making.make({**REQUEST, **change})
+        mesh_worker.make({**REQUEST, **change})

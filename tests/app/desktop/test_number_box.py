@@ -5,8 +5,8 @@ from qtpy.QtCore import QPoint, QPointF, Qt
 from qtpy.QtGui import QWheelEvent
 from qtpy.QtWidgets import QApplication
 
-from app.desktop.application import application
-from app.desktop.number_box import DecimalBox, IntegerBox
+from meshwright.desktop.main_window.startup import application
+from meshwright.desktop.widgets.number_box import DecimalBox, IntegerBox
 
 
 def turn(box) -> bool:

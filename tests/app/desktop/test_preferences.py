@@ -5,11 +5,11 @@ from driving import find, point_at, press
 from qtpy.QtCore import QSettings, Qt
 from qtpy.QtGui import QGuiApplication
 
-from app.desktop import preferences
-from app.desktop.preferences import system_theme
-from app.desktop.preferences_dialog import PreferencesDialog
-from app.desktop.settings import RECENT, Settings
-from app.theme import COLOURS, theme
+from meshwright.desktop.application import preferences_controller
+from meshwright.desktop.application.preferences_controller import system_theme
+from meshwright.desktop.application.preferences_dialog import PreferencesDialog
+from meshwright.desktop.application.settings import RECENT, Settings
+from meshwright.graphics.theme import COLOURS, theme
 
 
 @pytest.fixture
@@ -84,7 +84,7 @@ def test_the_theme_follows_the_desktop_until_one_is_chosen(open_window, star, mo
     desktop = QGuiApplication.styleHints()
 
     def turn(name: str, scheme: Qt.ColorScheme) -> None:  # this platform tells no scheme itself
-        monkeypatch.setattr(preferences, "system_theme", lambda: name)
+        monkeypatch.setattr(preferences_controller, "system_theme", lambda: name)
         desktop.colorSchemeChanged.emit(scheme)
 
     turn("dark", Qt.ColorScheme.Dark)

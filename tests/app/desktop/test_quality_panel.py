@@ -5,10 +5,11 @@ import pytest
 from driving import WAIT, find, point_at, press
 from qtpy.QtCore import Qt
 
-from app.desktop.quality_panel import ANGLE, JACOBIAN
-from app.desktop.tally import short
-from meshcore import HalfEdgeMesh, quality
-from meshcore.blocks import block_count
+from meshwright.desktop.quality.irregularity_chart import short
+from meshwright.desktop.quality.quality_panel import ANGLE, JACOBIAN
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.analysis.blocks import block_count
+from meshwright_core.geometry import quality
 
 
 def measured(qtbot, window):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app import journalfile, recovery
+from meshwright.document.storage import autosave_log, recovery
 
 PATIENCE = 90.0
 
@@ -29,7 +29,7 @@ class Program:
             "MESHWRIGHT_STATE_DIR": str(home / "state"),
         }
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "app", *words], env=self.environment, cwd=home
+            [sys.executable, "-m", "meshwright", *words], env=self.environment, cwd=home
         )
 
     def xdotool(self, *words: str) -> str:
@@ -67,7 +67,7 @@ def until(condition):
 
 def steps(state: Path) -> int:
     """Steps that the autosave has written down: the first together with the mesh."""
-    written = [list(journalfile.records(path)) for path in (state / "autosave").glob("*.journal")]
+    written = [list(autosave_log.records(path)) for path in (state / "autosave").glob("*.journal")]
     return max((len(records) for records in written), default=0)
 
 

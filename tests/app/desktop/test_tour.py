@@ -4,7 +4,7 @@ import pytest
 from driving import WAIT, find, point_at, press
 from qtpy.QtCore import QPoint, QRect, Qt
 
-from app.desktop.tour import STOPS
+from meshwright.desktop.help.tour import STOPS
 
 
 def click(qtbot, button):

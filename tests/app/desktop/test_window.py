@@ -10,11 +10,11 @@ from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtGui import QColor, QWheelEvent
 from qtpy.QtWidgets import QApplication, QWidget
 
-from app.assistant import State
-from app.desktop import actions
-from app.desktop.editing import POINT_FIRST, PREPARING
-from app.desktop.warmup import AGENT_FIRST
-from meshcore.operations import of_kind
+from meshwright.assistant.assistant import State
+from meshwright.desktop.actions import registry
+from meshwright.desktop.application.kernel_warmup import AGENT_FIRST
+from meshwright.desktop.editing.edit_controller import POINT_FIRST, PREPARING
+from meshwright_core.operations.catalogue import of_kind
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
@@ -56,15 +56,15 @@ def test_every_operation_of_a_kind_has_its_own_key():
     for kind in ("tri", "quad"):
         shortcuts = [
             keys
-            for action in actions.ACTIONS
+            for action in registry.ACTIONS
             for keys in action.shortcuts
             if not action.id.startswith({"tri": "quad.", "quad": "tri."}[kind])
         ]
         assert len(set(shortcuts)) == len(shortcuts)
-    assert len({action.id for action in actions.ACTIONS}) == len(actions.ACTIONS)
-    used = {name for group in actions.TOOLBAR for name in group}
-    assert used <= {action.id for action in actions.ACTIONS if action.icon}
-    assert {action.menu for action in actions.ACTIONS} <= set(actions.MENUS)
+    assert len({action.id for action in registry.ACTIONS}) == len(registry.ACTIONS)
+    used = {name for group in registry.TOOLBAR for name in group}
+    assert used <= {action.id for action in registry.ACTIONS if action.icon}
+    assert {action.menu for action in registry.ACTIONS} <= set(registry.MENUS)
 
 
 def test_a_refused_key_shows_the_reason(qtbot, open_window, star):
@@ -209,9 +209,13 @@ def test_the_window_closes_in_mid_run(qtbot, open_window, star):
 
 
 def test_before_the_kernels_are_ready_operations_say_so(qtbot, open_window, star, monkeypatch):
-    monkeypatch.setattr("app.desktop.warmup.Warmup.start", lambda self: None)
-    monkeypatch.setattr("app.desktop.warmup.Warmup._run", lambda self, module, then: None)
-    monkeypatch.setattr("app.desktop.warmup.agent_is_warm", lambda: False)
+    monkeypatch.setattr(
+        "meshwright.desktop.application.kernel_warmup.Warmup.start", lambda self: None
+    )
+    monkeypatch.setattr(
+        "meshwright.desktop.application.kernel_warmup.Warmup._run", lambda self, module, then: None
+    )
+    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.agent_is_warm", lambda: False)
     window = open_window(star, ready=False)
     halfedge = find(star, "flip_left")
     point_at(qtbot, window, halfedge)

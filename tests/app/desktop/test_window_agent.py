@@ -8,8 +8,8 @@ from driving import WAIT, press
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QFileDialog
 
-from app.assistant import State
-from meshcore.region import rings
+from meshwright.assistant.assistant import State
+from meshwright_core.geometry.region import rings
 
 
 def hinted(qtbot, window):

@@ -7,8 +7,8 @@ from qtpy.QtCore import QPoint, QPointF, Qt, QTimer
 from qtpy.QtGui import QWheelEvent
 from qtpy.QtWidgets import QApplication
 
-from app.assistant import State
-from app.document import Document
+from meshwright.assistant.assistant import State
+from meshwright.document.document import Document
 
 ALT, SHIFT = Qt.KeyboardModifier.AltModifier, Qt.KeyboardModifier.ShiftModifier
 LEFT = Qt.MouseButton.LeftButton
@@ -259,7 +259,8 @@ def test_ten_thousand_steps_are_listed_and_hovered_cheaply(qtbot, open_window, s
 def ask(qtbot, window, choose, monkeypatch, path) -> None:
     """Open the dialog by its key, ``choose(dialog)`` in it, and name ``path``."""
     monkeypatch.setattr(
-        "app.desktop.exporting.QFileDialog.getSaveFileName", lambda *arguments: (str(path), "")
+        "meshwright.desktop.history.export_controller.QFileDialog.getSaveFileName",
+        lambda *arguments: (str(path), ""),
     )
 
     def answer():

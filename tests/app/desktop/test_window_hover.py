@@ -5,9 +5,9 @@ import pytest
 from driving import WAIT, beside, find, pixel, point_at, press
 from qtpy.QtCore import QPoint, Qt
 
-from app.desktop import pointing
-from app.preview import best, choices
-from meshcore import HalfEdgeMesh
+from meshwright.desktop.editing import hover_controller
+from meshwright.document.operation_preview import best, choices
+from meshwright_core import HalfEdgeMesh
 
 
 def click_at(qtbot, window, halfedge, button=Qt.MouseButton.LeftButton):
@@ -143,7 +143,7 @@ def test_ghosts_can_be_switched_off(qtbot, open_window, star):
 
 
 def test_a_ghost_through_a_large_mesh_waits_for_rest(qtbot, open_window, monkeypatch, grid):
-    monkeypatch.setattr(pointing, "LARGE", 4)
+    monkeypatch.setattr(hover_controller, "LARGE", 4)
     window = open_window(grid)
     window.pointing.arm("cleanup")
     point_at(qtbot, window, grid.halfedge(8, 15))

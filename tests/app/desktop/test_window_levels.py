@@ -5,11 +5,11 @@ from driving import WAIT, point_at, press
 from qtpy.QtCore import Qt, QTimer
 from qtpy.QtWidgets import QApplication
 
-from app import levels
-from app.assistant import Assistant
-from app.desktop.dispatch import Dispatcher
-from app.level_progress import Progress
-from app.rival import Standing
+from meshwright.assistant.assistant import Assistant
+from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.puzzles import level
+from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.progress import Progress
 
 
 @pytest.fixture
@@ -111,7 +111,7 @@ def test_the_dialog_shows_what_is_won_and_goes_by_keys(qtbot, window):
     in_dialog(look)
     window.levels.choose()
     assert seen["stars"][:2] == [2, 0]
-    assert len(seen["stars"]) == len(levels.names())
+    assert len(seen["stars"]) == len(level.names())
     assert "done in 3, 2 of 3 stars" in seen["names"][0]
     assert seen["focus"]
     assert window.levels.level.name == "quarter-turn"
@@ -125,7 +125,7 @@ def test_escape_leaves_the_dialog_without_a_level(qtbot, window):
 
 
 def test_what_is_not_played_in_a_level_is_refused_with_a_reason(qtbot, window):
-    from app.desktop.vertex_menu import vertex_menu
+    from meshwright.desktop.editing.vertex_menu import vertex_menu
 
     window.levels.open("three-blocks")
     window.actions_by_id["clean_all"].trigger()
@@ -163,12 +163,12 @@ def test_the_agent_answers_beside_and_shows_its_way(qtbot, window):
 
 def test_levels_are_dropped_without_a_question(qtbot, window, tmp_path, monkeypatch):
     window.files.watch(tmp_path / "autosave")
-    monkeypatch.setattr("app.desktop.guard.Question", None)  # who asks fails
+    monkeypatch.setattr("meshwright.desktop.files.unsaved_work.Question", None)  # who asks fails
     window.levels.open("two-turns")
     solve(window)
     assert not window.isWindowModified()
     window.levels.next()
-    assert window.levels.level.name == levels.after("two-turns")
+    assert window.levels.level.name == level.after("two-turns")
     window.files.make("star", "quad")
     assert window.levels.level is None
     assert not window.levels.bar.isVisible()
@@ -194,7 +194,7 @@ def test_the_actions_make_sense_only_in_a_level(window):
     action = window.actions_by_id
     assert action["levels"].isEnabled()
     assert not action["level.again"].isEnabled()
-    window.levels.open(levels.names()[-1])
+    window.levels.open(level.names()[-1])
     assert action["level.again"].isEnabled()
     assert not action["level.next"].isEnabled()
     action["level.leave"].trigger()
@@ -217,9 +217,9 @@ def test_the_bar_keeps_its_height(qtbot, window, theme):
 
 @pytest.mark.usefixtures("_own_settings")
 def test_the_window_opens_on_a_level(qtbot):
-    from app.desktop.application import open_window as open_on
+    from meshwright.desktop.main_window.startup import open_window as open_on
 
-    window = open_on(level=levels.load("two-turns"))
+    window = open_on(level=level.load("two-turns"))
     qtbot.addWidget(window)
     qtbot.waitUntil(lambda: window.canvas.plotter is not None, timeout=WAIT)
     assert window.levels.bar.isVisible()

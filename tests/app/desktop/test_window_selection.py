@@ -8,9 +8,9 @@ from driving import WAIT, beside, pixel, press
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QApplication
 
-from app.desktop.vertex_menu import GONE_ON
-from app.dragging import CORNER, LOCK
-from meshcore import HalfEdgeMesh
+from meshwright.desktop.editing.vertex_menu import GONE_ON
+from meshwright.document.vertex_drag import CORNER, LOCK
+from meshwright_core import HalfEdgeMesh
 
 NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
 LASSO = SHIFT | Qt.KeyboardModifier.AltModifier

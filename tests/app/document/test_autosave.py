@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from test_branches import bits, serials, wander
 
-from app import autosave, journalfile, recovery
-from app.autosave import Autosave
-from app.document import Document
-from meshcore import MeshError
+from meshwright.document.document import Document
+from meshwright.document.storage import autosave, autosave_log, recovery
+from meshwright.document.storage.autosave import Autosave
+from meshwright_core import MeshError
 
 
 @pytest.fixture(params=["quad", "tri"])
@@ -252,7 +252,7 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(document, tmp_path):
 def test_what_is_whole_but_not_sound_is_told_and_stays(document, tmp_path):
     path = tmp_path / "1-a.journal"
     header = {"event": "document", "name": "odd", "version": 1}
-    path.write_bytes(b"".join(journalfile.encoded(header, {})))
+    path.write_bytes(b"".join(autosave_log.encoded(header, {})))
     (lost,) = recovery.lost(tmp_path)
     with pytest.raises(MeshError, match=r"What was kept of odd cannot be recovered.*\.$"):
         lost.read()
@@ -264,8 +264,8 @@ CHILD = """
 import sys
 from pathlib import Path
 import numpy as np
-from app.autosave import Autosave
-from app.document import Document
+from meshwright.document.storage.autosave import Autosave
+from meshwright.document.document import Document
 from meshcore import generate, shapes
 sys.path.insert(0, {tests!r})
 from test_branches import wander

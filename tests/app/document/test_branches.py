@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from app import branches
-from app.branches import every
-from app.document import Document
-from meshcore import MeshError, OperationRefused
-from meshcore.operations import of_kind
+from meshwright.document import branches
+from meshwright.document.branches import every
+from meshwright.document.document import Document
+from meshwright_core import MeshError, OperationRefused
+from meshwright_core.operations.catalogue import of_kind
 
 
 def wander(document: Document, steps: int, seed: int) -> None:

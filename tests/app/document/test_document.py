@@ -6,10 +6,10 @@ import sys
 import numpy as np
 import pytest
 
-from app.document import NO_MESH, Document
-from app.history import History, normalised_return
-from meshcore import HalfEdgeMesh, MeshError, OperationRefused
-from meshcore.operations import of_kind
+from meshwright.document.document import NO_MESH, Document
+from meshwright.document.history import History, normalised_return
+from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
+from meshwright_core.operations.catalogue import of_kind
 
 
 def first_allowed(mesh: HalfEdgeMesh, operation: str) -> int:
@@ -195,11 +195,18 @@ def test_hover_goes_away_with_its_half_edge(star):
     assert told == [collapsing, -1]
 
 
-@pytest.mark.parametrize("module", ["app.document", "app.assistant", "app.scene"])
+@pytest.mark.parametrize(
+    "module",
+    [
+        "meshwright.document.document",
+        "meshwright.assistant.assistant",
+        "meshwright.graphics.vtk_scene",
+    ],
+)
 def test_import_brings_neither_qt_nor_torch(module):
     code = (
         f"import sys, {module}; "
-        "sys.exit(any(m.split('.')[0] in ('torch', 'qtpy', 'PySide6', 'agent') "
+        "sys.exit(any(m.split('.')[0] in ('torch', 'qtpy', 'PySide6', 'meshwright_agent') "
         "for m in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0

@@ -6,9 +6,11 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from app.document import Document
-from meshcore import HalfEdgeMesh, compiled, generate, shapes
-from meshcore.operations import of_kind
+from meshwright.document.document import Document
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core import compilation
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.operations.catalogue import of_kind
 
 OPERATIONS = 10_000
 LOCAL = ("flip", "flip_left", "flip_right", "split", "collapse")
@@ -17,7 +19,7 @@ MOST_BYTES = 2048
 
 @pytest.fixture(scope="module", autouse=True)
 def _kernels():
-    compiled.warm()
+    compilation.warm()
 
 
 def everything(mesh: HalfEdgeMesh) -> list[bytes]:
@@ -48,7 +50,7 @@ def work(document: Document, operations: int, rng: np.random.Generator, most: in
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_ten_thousand_operations_undone_to_the_first_bit_and_redone(kind):
-    mesh = generate.mesh_domain(shapes.shape("star"), kind, max_edge=0.2)
+    mesh = meshing.mesh_domain(gallery.shape("star"), kind, max_edge=0.2)
     mesh.reserve(5000, 5000)
     document = Document(mesh)
     document.auto_smooth = False  # positions of so many random operations are of no use
@@ -71,7 +73,7 @@ def test_ten_thousand_operations_undone_to_the_first_bit_and_redone(kind):
 @pytest.mark.parametrize(("kind", "edge"), [("tri", 0.05), ("quad", 0.05)])
 def test_a_local_operation_takes_at_most_two_kibibytes(kind, edge):
     """The operation, the smoothing around it, and its row, all together."""
-    mesh = generate.mesh_domain(shapes.shape("star"), kind, max_edge=edge)
+    mesh = meshing.mesh_domain(gallery.shape("star"), kind, max_edge=edge)
     work(Document(mesh.copy()), 10, np.random.default_rng(0), 0)  # loads what is needed
     document = Document(mesh)
     gc.collect()

@@ -6,8 +6,8 @@ import sys
 import numpy as np
 import pytest
 
-from app.preview import GLOBAL, best, choices, following, ghost
-from meshcore import OperationRefused
+from meshwright.document.operation_preview import GLOBAL, best, choices, following, ghost
+from meshwright_core import OperationRefused
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
@@ -59,11 +59,18 @@ def test_refused_ones_have_no_ghost(star):
         ghost(star, "flip_left", boundary)
 
 
-@pytest.mark.parametrize("module", ["app.preview", "app.selection", "app.dragging"])
+@pytest.mark.parametrize(
+    "module",
+    [
+        "meshwright.document.operation_preview",
+        "meshwright.document.selection",
+        "meshwright.document.vertex_drag",
+    ],
+)
 def test_import_brings_neither_qt_nor_torch(module):
     code = (
         f"import sys, {module}; "
-        "sys.exit(any(m.split('.')[0] in ('torch', 'qtpy', 'PySide6', 'agent') "
+        "sys.exit(any(m.split('.')[0] in ('torch', 'qtpy', 'PySide6', 'meshwright_agent') "
         "for m in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0

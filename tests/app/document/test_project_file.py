@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from test_branches import bits, serials, wander
 
-from app import inputs, project
-from app.document import Document
-from app.report import UserError
-from meshcore import MeshError
+from meshwright.cli import arguments
+from meshwright.console import UserError
+from meshwright.document.document import Document
+from meshwright.document.storage import project_file
+from meshwright_core import MeshError
 
 
 @pytest.fixture(params=["quad", "tri"])
@@ -161,7 +162,7 @@ def test_words_for_what_is_wrong(document, tmp_path, change, words):
     document.save(path)
     rewritten(path, change)
     with pytest.raises(MeshError, match=words):
-        project.read(path)
+        project_file.read(path)
 
 
 def test_files_that_are_none(tmp_path):
@@ -169,11 +170,11 @@ def test_files_that_are_none(tmp_path):
         path = tmp_path / f"{name}.meshwright"
         path.write_bytes(data)
         with pytest.raises(MeshError, match="not a Meshwright project"):
-            project.read(path)
+            project_file.read(path)
     with pytest.raises(MeshError, match="no such file"):
-        project.read(tmp_path / "nowhere.meshwright")
+        project_file.read(tmp_path / "nowhere.meshwright")
     with pytest.raises(MeshError, match="cannot be read"):
-        project.read(tmp_path)
+        project_file.read(tmp_path)
 
 
 def test_a_save_that_fails_leaves_the_old_file(document, tmp_path, monkeypatch):
@@ -196,13 +197,13 @@ def test_a_save_that_fails_leaves_the_old_file(document, tmp_path, monkeypatch):
 def test_commands_take_projects_too(document, tmp_path):
     path = tmp_path / "a.meshwright"
     document.save(path)
-    opened = inputs.read_project(str(path))
+    opened = arguments.read_project(str(path))
     assert bits(opened) == bits(document)
     assert opened.path == path
-    mesh = inputs.read_mesh(str(path))
+    mesh = arguments.read_mesh(str(path))
     assert np.array_equal(mesh.points, document.mesh.points)
     assert mesh.steps == 0
     path.write_text("nothing of the kind")
-    for read in (inputs.read_project, inputs.read_mesh):
+    for read in (arguments.read_project, arguments.read_mesh):
         with pytest.raises(UserError, match="not a Meshwright project"):
             read(str(path))

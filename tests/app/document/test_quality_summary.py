@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from app.quality_summary import CHUNK, summarise
-from meshcore import HalfEdgeMesh, quality
-from meshcore.blocks import block_count
+from meshwright.document.quality_summary import CHUNK, summarise
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.analysis.blocks import block_count
+from meshwright_core.geometry import quality
 
 
 def grid(n: int) -> HalfEdgeMesh:

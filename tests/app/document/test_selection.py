@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from app.document import Document
-from app.selection import in_box, in_lasso
-from meshcore import HalfEdgeMesh
+from meshwright.document.document import Document
+from meshwright.document.selection import in_box, in_lasso
+from meshwright_core import HalfEdgeMesh
 
 
 @pytest.fixture

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from app.document import Document
-from app.dragging import CORNER, LOCK, Drag, refusal
-from meshcore import HalfEdgeMesh, generate, shapes
+from meshwright.document.document import Document
+from meshwright.document.vertex_drag import CORNER, LOCK, Drag, refusal
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.domains import gallery, meshing
 
 
 @pytest.fixture
@@ -44,7 +45,7 @@ def test_a_boundary_vertex_stays_on_its_side_and_between_its_neighbours(board):
 
 
 def test_on_a_curve_it_follows_the_curve():
-    mesh = generate.mesh_domain(shapes.shape("disc"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("disc"), "quad")
     slides = mesh.boundary() & ~mesh.geometric()
     vertex = int(np.flatnonzero(slides)[0])
     drag = Drag(mesh, [vertex], vertex)

@@ -7,16 +7,17 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from app import sources
-from app.document import Document
-from app.experiments import Comparison, compare, side_by_side, table_row
-from app.experiments.runs import best_of
-from meshcore import HalfEdgeMesh, MeshError, generate, shapes
+from meshwright.document.document import Document
+from meshwright.experiments import Comparison, compare, side_by_side, table_row
+from meshwright.experiments.rollouts import best_of
+from meshwright.sources import resolve
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.domains import gallery, meshing
 
 
 @pytest.fixture(scope="module")
 def mesh() -> HalfEdgeMesh:
-    return generate.mesh_domain(shapes.shape("l-shape"), "quad")
+    return meshing.mesh_domain(gallery.shape("l-shape"), "quad")
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def both(mesh: HalfEdgeMesh) -> Comparison:
 
 def test_importing_brings_no_torch_no_matplotlib_no_qt() -> None:
     code = (
-        "import sys, app.experiments;"
+        "import sys, meshwright.experiments;"
         "print([m for m in ('torch', 'matplotlib', 'qtpy', 'PIL', 'scipy.optimize') "
         "if m in sys.modules])"
     )
@@ -113,7 +114,7 @@ def test_a_mesh_at_its_optimum_has_runs_without_steps(both: Comparison) -> None:
 
 
 def test_triangles_documents_and_names_are_meshes_too() -> None:
-    triangles = Document(generate.mesh_domain(shapes.shape("star"), "tri"))
+    triangles = Document(meshing.mesh_domain(gallery.shape("star"), "tri"))
     found = compare(triangles, "tri-paper", rollouts=2, steps=4)
     assert found.policies == ("tri-paper",)
     assert compare("square", "quad", rollouts=1, steps=1).start > 0
@@ -153,8 +154,8 @@ def test_unknown_runs_are_refused(both: Comparison) -> None:
 
 
 def test_a_row_of_the_table_is_what_the_command_line_measures() -> None:
-    from agent.evaluate import evaluate
-    from agent.policies import load
+    from meshwright_agent.evaluation.rollouts import evaluate
+    from meshwright_agent.policy.policy_files import load
 
     row = table_row("quad-paper", (10, 20), meshes=4, rollouts=2, seed=3)
     told = evaluate("quad", (10, 20), 4, 2, 3, load("quad-paper"))
@@ -200,13 +201,13 @@ def test_a_comparison_follows_the_kind_and_takes_one_policy_too(mesh: HalfEdgeMe
     from importlib.resources import files
     from pathlib import Path
 
-    from agent import policies
+    from meshwright_agent.policy import policy_files
 
-    triangles = sources.mesh("square", "tri")
+    triangles = resolve.mesh("square", "tri")
     assert compare(triangles, rollouts=1).policies == ("tri", "tri-paper")
     assert compare(mesh, rollouts=1).policies == ("quad", "quad-paper")
-    path = Path(str(files("assets") / "policies" / "quad-paper.safetensors"))
-    for one in (path, policies.load("quad-paper")):
+    path = Path(str(files("meshwright_assets") / "policies" / "quad-paper.safetensors"))
+    for one in (path, policy_files.load("quad-paper")):
         assert compare(mesh, one, rollouts=1).policies == ("quad-paper",)
     one = compare(mesh, "quad", rollouts=1)
     assert len(side_by_side(one, "quad").children) == 1

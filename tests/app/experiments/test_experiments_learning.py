@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agent.configuration import configuration_of
-from agent.events import available
-from agent.training import CHECKPOINT, EVENTS, Trainer
-from app.experiments import learning_curves
-from app.experiments.training_log import updates
-from meshcore import MeshError
+from meshwright.experiments import learning_curves
+from meshwright.experiments.training_log import updates
+from meshwright_agent.training.configuration import configuration_of
+from meshwright_agent.training.tensorboard import available
+from meshwright_agent.training.trainer import CHECKPOINT, EVENTS, Trainer
+from meshwright_core import MeshError
 
 TINY = {
     "sides": [5, 6],
@@ -28,7 +28,7 @@ TINY = {
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Trainer, list[dict]]:
     """A training of three updates as it stands on the disk while it goes on."""
-    from agent.events import Events
+    from meshwright_agent.training.tensorboard import Events
 
     folder = tmp_path_factory.mktemp("trainings") / "tiny"
     trainer = Trainer(configuration_of(TINY, "tiny"), folder)

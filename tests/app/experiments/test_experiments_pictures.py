@@ -8,16 +8,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.document import Document
-from app.experiments import Picture, block_view, compare, policy_view, small_multiples
-from app.experiments.template_figure import layout, slot_of_corner
-from app.film import Film
-from app.theme import DARK, LIGHT
-from meshcore import HalfEdgeMesh, MeshError, generate, shapes
+from meshwright.document.document import Document
+from meshwright.experiments import Picture, block_view, compare, policy_view, small_multiples
+from meshwright.experiments.template_figure import layout, slot_of_corner
+from meshwright.graphics.export.film import Film
+from meshwright.graphics.theme import DARK, LIGHT
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.domains import gallery, meshing
 
 
 def star(kind: str = "quad") -> HalfEdgeMesh:
-    return generate.mesh_domain(shapes.shape("star"), kind)
+    return meshing.mesh_domain(gallery.shape("star"), kind)
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def film() -> Film:
 
 
 def test_many_meshes_are_data_and_a_grid() -> None:
-    meshes = [star(), generate.mesh_domain(shapes.shape("cross"), "quad"), star("tri")]
+    meshes = [star(), meshing.mesh_domain(gallery.shape("cross"), "quad"), star("tri")]
     grid = small_multiples([*meshes, Document(star()), "square"], columns=2)
     assert grid.scores.tolist()[:3] == [mesh.score for mesh in meshes]
     assert grid.optima.tolist()[:3] == [mesh.optimum for mesh in meshes]
@@ -91,7 +92,7 @@ def test_pictures_in_light_in_dark_and_in_their_host(tmp_path: Path) -> None:
 
 
 def test_blocks_are_counted_and_tinted_apart() -> None:
-    view = block_view(generate.mesh_domain(shapes.shape("square-with-hole"), "quad"))
+    view = block_view(meshing.mesh_domain(gallery.shape("square-with-hole"), "quad"))
     assert len(view) == len(view.rows) == len(view.grids)
     assert sum(row["elements"] for row in view.rows) == view.mesh.n_elements
     assert repr(view).startswith(f"{len(view)} blocks: ")

@@ -10,15 +10,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app import curve, movie, pictures
-from app.curve import Track
-from app.document import Document
-from app.drawing import Area, Drawing, Segments, hatching, raster, svg
-from app.figure import Look, edges, figure, summary
-from app.film import Film
-from app.pictures import Order
-from app.theme import THEMES
-from meshcore import HalfEdgeMesh, MeshError, smoothing
+from meshwright.document import score_series
+from meshwright.document.document import Document
+from meshwright.document.score_series import Track
+from meshwright.graphics.drawing import Area, Drawing, Segments, hatching, raster, svg
+from meshwright.graphics.export import export_job, video
+from meshwright.graphics.export.export_job import Order
+from meshwright.graphics.export.film import Film
+from meshwright.graphics.mesh_figure import Look, edges, figure, summary
+from meshwright.graphics.theme import THEMES
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.geometry import smoothing
 
 SMALL = Look(size=(320, 240))
 
@@ -65,34 +67,34 @@ def test_a_curve_of_many_states_is_no_longer_than_its_pixels():
     rng = np.random.default_rng(2)
     scores = 40 + rng.integers(-1, 2, 10_000).cumsum()
     scores -= scores.min()
-    box = curve.frame(scores, np.zeros_like(scores), 10, 5, 600, 50)
-    line = curve.steps(scores, box)
+    box = score_series.frame(scores, np.zeros_like(scores), 10, 5, 600, 50)
+    line = score_series.steps(scores, box)
     assert len(line) <= 4 * 601
     assert line[:, 1].min() == pytest.approx(5.0)
     assert line[:, 1].max() == pytest.approx(55.0)
     assert (np.diff(line[:, 0]) >= 0).all()
     assert [box.state(x) for x in (-5, 10, 310, 610, 900)] == [0, 0, 5000, 9999, 9999]
     few = np.array([5, 4, 6, 2, 3])
-    line = curve.steps(few, curve.frame(few, few * 0, 0, 0, 100, 10))
+    line = score_series.steps(few, score_series.frame(few, few * 0, 0, 0, 100, 10))
     assert line[:, 0].tolist() == [0, 25, 25, 50, 50, 75, 75, 100, 100]
     level = np.full(1000, 7)
-    assert len(curve.steps(level, curve.frame(level, level, 0, 0, 100, 10))) == 2
+    assert len(score_series.steps(level, score_series.frame(level, level, 0, 0, 100, 10))) == 2
 
 
 def test_a_far_optimum_does_not_flatten_the_curve():
     scores, optima = np.array([3336, 3340, 3330]), np.full(3, 20)
-    box = curve.frame(scores, optima, 0, 0, 100, 60)
+    box = score_series.frame(scores, optima, 0, 0, 100, 60)
     assert box.broken
     assert float(np.ptp(box.y(scores))) > 30
     assert box.y(20) == 60.0
-    assert len(curve.break_mark(box)) == 2
-    assert not curve.frame(np.array([40, 12]), np.array([4, 4]), 0, 0, 100, 60).broken
+    assert len(score_series.break_mark(box)) == 2
+    assert not score_series.frame(np.array([40, 12]), np.array([4, 4]), 0, 0, 100, 60).broken
 
 
 def test_the_best_state_counts_from_the_last_change_of_the_task():
-    assert curve.best_state(np.array([9, 5, 7, 5]), np.array([2, 2, 2, 2])) == 1
-    assert curve.best_state(np.array([9, 5, 7, 6]), np.array([2, 2, 3, 3])) == 3
-    assert curve.best_state(np.array([4]), np.array([2])) == 0
+    assert score_series.best_state(np.array([9, 5, 7, 5]), np.array([2, 2, 2, 2])) == 1
+    assert score_series.best_state(np.array([9, 5, 7, 6]), np.array([2, 2, 3, 3])) == 3
+    assert score_series.best_state(np.array([4]), np.array([2])) == 0
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
@@ -157,7 +159,7 @@ def test_figure_in_pixels_shows_the_loud_things_and_no_others(walked):
 
 def test_a_picture_needs_neither_display_nor_vtk(tmp_path):
     code = (
-        "import sys; from app import pictures; from app.figure import Look; "
+        "import sys; from app import pictures; from meshwright.graphics.mesh_figure import Look; "
         "from meshcore import generate, shapes; "
         "m = generate.mesh_domain(shapes.shape('star'), 'quad'); "
         f"pictures.save_mesh_picture(m, r'{tmp_path / 'star.png'}', Look((300, 200), 'dark')); "
@@ -257,19 +259,19 @@ def test_a_cancelled_or_refused_export_leaves_nothing(walked, tmp_path, ending):
     if order.moving:
         path.write_bytes(b"before")
         with pytest.raises(KeyboardInterrupt):
-            pictures.write_order(film, order, path, stop)
+            export_job.write_order(film, order, path, stop)
         assert path.read_bytes() == b"before"
-    assert pictures.write_order(film, order, path) == (len(film) if order.moving else 1)
+    assert export_job.write_order(film, order, path) == (len(film) if order.moving else 1)
     assert path.stat().st_size > 500
     assert [found.name for found in tmp_path.iterdir()] == [path.name]
     with pytest.raises(MeshError, match="does not exist"):
-        pictures.write_order(film, order, tmp_path / "none" / path.name)
+        export_job.write_order(film, order, tmp_path / "none" / path.name)
 
 
 def test_a_still_is_of_the_state_where_the_film_stands(walked, tmp_path):
     film = Film(walked)
     state = film.state
-    pictures.write_order(film, Order(ending=".svg"), tmp_path / "a.svg")
+    export_job.write_order(film, Order(ending=".svg"), tmp_path / "a.svg")
     assert film.state == state
     assert f">s {walked.mesh.score}<" in (tmp_path / "a.svg").read_text()
 
@@ -279,7 +281,7 @@ def test_other_endings_are_refused_in_one_sentence(walked, tmp_path):
         with pytest.raises(MeshError, match=r"\.gif or \.mp4"):
             Film(walked).save(tmp_path / name)
         with pytest.raises(MeshError, match=r"\.png or \.svg"):
-            pictures.save_mesh_picture(walked.mesh, tmp_path / name)
+            export_job.save_mesh_picture(walked.mesh, tmp_path / name)
     with pytest.raises(MeshError, match="no mesh"):
         Film(Document())
 
@@ -288,12 +290,12 @@ def test_a_long_history_leaves_out_steps(walked):
     film = Film(walked)
     assert Order().stride(film) == 1
     film.rows = film.rows * 1000
-    assert len(film.stops(Order().stride(film))) <= pictures.MOST_FRAMES + 1
+    assert len(film.stops(Order().stride(film))) <= export_job.MOST_FRAMES + 1
 
 
 def test_the_palette_of_a_gif_holds_the_theme():
     for colours in THEMES.values():
-        rows = np.array(movie.palette(colours)).reshape(-1, 3).tolist()
+        rows = np.array(video.palette(colours)).reshape(-1, 3).tolist()
         assert len(rows) == 256
         for colour in (colours.background, colours.fill, colours.plus, colours.minus, colours.text):
             assert [int(colour[i : i + 2], 16) for i in (1, 3, 5)] in rows

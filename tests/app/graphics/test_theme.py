@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.theme import COLOURS, THEMES, Theme, style_sheet, theme
+from meshwright.graphics.theme import COLOURS, THEMES, Theme, style_sheet, theme
 
 
 def luminance(colour: str) -> float:

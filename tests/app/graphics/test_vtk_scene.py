@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from app.markers import label, markers
-from app.picking import Picker
-from app.policy_files import shipped
-from app.theme import THEMES, style_sheet, theme
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh
+from meshwright.assistant.policy_catalogue import shipped
+from meshwright.graphics.markers import label, markers
+from meshwright.graphics.picking import Picker
+from meshwright.graphics.theme import THEMES, style_sheet, theme
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh
 
 
 def test_viewport_goes_there_and_back():

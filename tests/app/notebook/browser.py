@@ -4,9 +4,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from app.benchmarks.notebook.card import MOMENT, Card
-from app.benchmarks.notebook.lab import LabNotebook
-from app.benchmarks.notebook.servers import Server
+from meshwright.benchmarks.notebook.jupyterlab import LabNotebook
+from meshwright.benchmarks.notebook.servers import Server
+from meshwright.benchmarks.notebook.widget_driver import MOMENT, Card
 
 MARIMO = """import marimo
 
@@ -17,7 +17,7 @@ app = marimo.App()
 def _():
     import json
     import marimo as mo
-    from app.notebook import MeshWidget
+    from meshwright.notebook import MeshWidget
 
     return MeshWidget, json, mo
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import pytest
 from browser import Lab, Watched
 
-from app.benchmarks.notebook import chromium, servers
-from app.report import UserError
+from meshwright.benchmarks.notebook import chromium, servers
+from meshwright.console import UserError
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +37,6 @@ def lab(_lab: Lab) -> Iterator[Lab]:
 @pytest.fixture(scope="session")
 def warm(prepared_agent) -> None:
     """Kernels lie compiled on the disk, so that no server's process has to begin with that."""
-    from meshcore import compiled
+    from meshwright_core.core import compilation
 
-    compiled.warm()
+    compilation.warm()

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from app.notebook.preparing import Preparation, Stage
-from app.notebook.session import Session
-from app.notebook.wire import Frame, Packet, Slots
-from meshcore import HalfEdgeMesh
+from meshwright.notebook.kernel_warmup import Preparation, Stage
+from meshwright.notebook.protocol.mesh_sync import Frame, Packet, Slots
+from meshwright.notebook.session import Session
+from meshwright_core import HalfEdgeMesh
 
 TYPES = ("<f4", "i1", "u1", "<i4", "<i4")
 
@@ -131,12 +131,15 @@ def script_agent(monkeypatch: Any, greedy: Any) -> None:
         seen = greedy(mesh).look()
         return () if seen is None else seen.choices[:5]
 
-    monkeypatch.setattr("app.notebook.preparing.PREPARATION", _ready())
-    monkeypatch.setattr("app.worker._load_policy", lambda name: name)
-    monkeypatch.setattr("app.worker._make_runner", lambda mesh, policy, seed: greedy(mesh))
-    monkeypatch.setattr("app.worker._ask_policy", ask)
+    monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", _ready())
+    monkeypatch.setattr("meshwright.assistant.worker._load_policy", lambda name: name)
     monkeypatch.setattr(
-        "app.searching.SearchRunner._search", lambda self: _all_of(greedy(self._mesh))
+        "meshwright.assistant.worker._make_runner", lambda mesh, policy, seed: greedy(mesh)
+    )
+    monkeypatch.setattr("meshwright.assistant.worker._ask_policy", ask)
+    monkeypatch.setattr(
+        "meshwright.assistant.search_runner.SearchRunner._search",
+        lambda self: _all_of(greedy(self._mesh)),
     )
 
 

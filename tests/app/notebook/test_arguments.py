@@ -5,10 +5,10 @@ import gc
 import numpy as np
 import pytest
 
-from app.document import Document
-from app.notebook import MeshWidget
-from app.notebook.session import Session
-from meshcore import MeshError
+from meshwright.document.document import Document
+from meshwright.notebook import MeshWidget
+from meshwright.notebook.session import Session
+from meshwright_core import MeshError
 
 WRONG = [
     (lambda w: w.apply("flip_lef", 4), "did you mean flip_left"),
@@ -82,7 +82,7 @@ def test_a_widget_that_cannot_be_made_leaves_nothing_on_the_document(star, optio
 def test_policies_as_files(widget, tmp_path):
     from importlib.resources import files
 
-    whole = (files("assets") / "policies" / "quad.safetensors").read_bytes()
+    whole = (files("meshwright_assets") / "policies" / "quad.safetensors").read_bytes()
     path = tmp_path / "mine.safetensors"
     path.write_bytes(whole[: len(whole) // 2])
     with pytest.raises(MeshError, match=r"mine\.safetensors: this policy file is cut off\."):

@@ -8,9 +8,9 @@ import time
 
 import pytest
 
-from app import cli
-from app.benchmarks.notebook import chromium, servers
-from app.report import UserError
+from meshwright import cli
+from meshwright.benchmarks.notebook import chromium, servers
+from meshwright.console import UserError
 
 
 def test_suite_measures_clicks_panning_and_bytes(warm, capsys):
@@ -60,7 +60,7 @@ def test_server_ends_with_the_process_that_wanted_it(tmp_path):
     path = tmp_path / "book.py"
     path.write_text("import marimo\napp = marimo.App()\n")
     code = (
-        "import os, pathlib, sys; from app.benchmarks.notebook import servers\n"
+        "import os, pathlib, sys; from meshwright.benchmarks.notebook import servers\n"
         "with servers.marimo(pathlib.Path(sys.argv[1])) as server:\n"
         "    print(server.url, flush=True)\n"
         "    os.kill(os.getpid(), 9)"

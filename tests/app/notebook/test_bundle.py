@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from app.notebook import front
-from app.theme import THEMES
+from meshwright.graphics.theme import THEMES
+from meshwright.notebook import bundle
 
-FOLDER = Path(front.__file__).parent / "front"
+FOLDER = Path(bundle.__file__).parent / "front"
 SCRIPTS = sorted(path.name for path in FOLDER.glob("*.js"))
 STYLES = sorted(path.name for path in FOLDER.glob("*.css"))
 
@@ -31,22 +31,22 @@ def declared(text: str) -> list[str]:
 
 
 def test_every_file_is_listed_once_and_there() -> None:
-    assert sorted(front.SCRIPTS) == SCRIPTS
-    assert sorted(front.STYLES) == STYLES
+    assert sorted(bundle.SCRIPTS) == SCRIPTS
+    assert sorted(bundle.STYLES) == STYLES
 
 
 def test_names_are_declared_once_in_the_whole_module() -> None:
-    names = declared(front.module())
+    names = declared(bundle.module())
     assert len(names) > 100
     assert sorted(names) == sorted(set(names))
 
 
 def test_the_module_exports_its_door_and_imports_nothing() -> None:
-    lines = without_comments(front.module()).splitlines()
+    lines = without_comments(bundle.module()).splitlines()
     words = [line for line in lines if re.match(r"\s*(import|export)\b", line)]
     assert words == ["export default { render };"]
-    assert front.module().endswith(front.EXPORT)
-    assert front.script() + front.EXPORT == front.module()
+    assert bundle.module().endswith(bundle.EXPORT)
+    assert bundle.script() + bundle.EXPORT == bundle.module()
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
@@ -74,16 +74,16 @@ def test_files_are_short(name: str) -> None:
 
 
 def test_every_colour_that_is_used_exists() -> None:
-    given = set(re.findall(r"^\s+(--mw-[\w-]+):", front.style(), flags=re.MULTILINE))
-    used = set(re.findall(r"var\((--mw-[\w-]+)", front.style() + front.module()))
+    given = set(re.findall(r"^\s+(--mw-[\w-]+):", bundle.style(), flags=re.MULTILINE))
+    used = set(re.findall(r"var\((--mw-[\w-]+)", bundle.style() + bundle.module()))
     assert used <= given
-    for name in re.findall(r"\bpalette\.([a-z_]+)\b(?!\()", without_comments(front.module())):
+    for name in re.findall(r"\bpalette\.([a-z_]+)\b(?!\()", without_comments(bundle.module())):
         if name not in ("font", "theme"):
-            assert front.variable(name) in given
+            assert bundle.variable(name) in given
 
 
 def test_both_themes_give_the_same_variables() -> None:
-    rules = [front.variables(theme) for theme in THEMES.values()]
+    rules = [bundle.variables(theme) for theme in THEMES.values()]
     names = [re.findall(r"--mw-[\w-]+(?=:)", rule) for rule in rules]
     assert names[0] == names[1]
     for theme, rule in zip(THEMES.values(), rules, strict=True):
@@ -99,7 +99,7 @@ def test_styles_apply_to_the_card_only(name: str) -> None:
     selectors = [part for rule in re.findall(r"([^{}]+)\{", text) for part in rule.split(",")]
     assert selectors
     for selector in selectors:
-        assert selector.strip().startswith(f".{front.ROOT}"), selector
+        assert selector.strip().startswith(f".{bundle.ROOT}"), selector
 
 
 @pytest.mark.parametrize("name", STYLES)
@@ -116,7 +116,7 @@ def test_elements_get_no_ids(name: str) -> None:
 
 def test_icons_of_the_scripts_exist() -> None:
     strokes = json.loads(
-        front.constants().split("ICON_STROKES = ", 1)[1].rstrip(";\n").replace("\n", " ")
+        bundle.constants().split("ICON_STROKES = ", 1)[1].rstrip(";\n").replace("\n", " ")
     )
-    for name in re.findall(r"\bicon\(\"(\w+)\"|\bsign: \"(\w+)\"", front.module()):
+    for name in re.findall(r"\bicon\(\"(\w+)\"|\bsign: \"(\w+)\"", bundle.module()):
         assert (name[0] or name[1]) in strokes

@@ -3,8 +3,8 @@
 import pytest
 from browser import Watched
 
-from app.benchmarks.notebook.card import Card, differing
-from app.notebook import MeshWidget
+from meshwright.benchmarks.notebook.widget_driver import Card, differing
+from meshwright.notebook import MeshWidget
 
 
 def turn(widget: MeshWidget, times: int) -> None:

@@ -9,14 +9,15 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from app.document import Document
-from app.film import Film
-from app.notebook import MeshWidget, front
-from app.notebook.page import page
-from app.notebook.recording import record
-from app.notebook.wire import Frame, Slots
-from app.timeline import NO_MESH
-from meshcore import MeshError, generate, shapes
+from meshwright.document.document import Document
+from meshwright.document.timeline import NO_MESH
+from meshwright.graphics.export.film import Film
+from meshwright.notebook import MeshWidget, bundle
+from meshwright.notebook.export.html_page import page
+from meshwright.notebook.export.recording import record
+from meshwright.notebook.protocol.mesh_sync import Frame, Slots
+from meshwright_core import MeshError
+from meshwright_core.domains import gallery, meshing
 
 HOSTILE = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 1'>\"&"
 TYPES = ("<f4", "i1", "u1", "<i4", "<i4")
@@ -144,8 +145,8 @@ def test_a_page_lets_no_script_run_but_its_own(walked):
 
 
 def test_nothing_in_the_front_ends_its_own_element():
-    assert "</script" not in front.script().lower() and "<!--" not in front.script()
-    assert "</style" not in front.style().lower()
+    assert "</script" not in bundle.script().lower() and "<!--" not in bundle.script()
+    assert "</style" not in bundle.style().lower()
 
 
 def test_names_are_words_and_never_markup(star):
@@ -175,8 +176,8 @@ def test_a_page_without_steps_says_so(star):
 
 def test_sizes_of_pages(star):
     """24 and about 1,000 elements, 50 steps each."""
-    wrapping = len(front.script()) + len(front.style())
-    large = generate.mesh_domain(shapes.shape("l-shape"), "quad", 0.08)
+    wrapping = len(bundle.script()) + len(bundle.style())
+    large = meshing.mesh_domain(gallery.shape("l-shape"), "quad", 0.08)
     for mesh, most in ((star, 100_000), (large, 300_000)):
         document, rng = Document(mesh), np.random.default_rng(3)
         while len(document.history) < 50:

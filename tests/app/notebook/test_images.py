@@ -10,11 +10,13 @@ from urllib.parse import unquote
 import pytest
 from PIL import Image
 
-from app import mimebundle
-from app.document import Document
-from app.notebook import MeshWidget, stills
-from app.timeline import NO_MESH
-from meshcore import MeshError, generate, shapes
+from meshwright.document.document import Document
+from meshwright.document.timeline import NO_MESH
+from meshwright.graphics.export import mimebundle
+from meshwright.notebook import MeshWidget
+from meshwright.notebook.export import images
+from meshwright_core import MeshError
+from meshwright_core.domains import gallery, meshing
 
 SMALL = (160, 120)
 
@@ -59,7 +61,7 @@ def test_a_small_mesh_is_vectors_with_words(star):
 
 
 def test_a_large_mesh_is_pixels_for_sharp_screens():
-    mesh = generate.mesh_domain(shapes.shape("l-shape"), "quad", 0.08)
+    mesh = meshing.mesh_domain(gallery.shape("l-shape"), "quad", 0.08)
     assert 800 < mesh.n_elements < 1200
     html = mimebundle.mimebundle(mesh)[0]["text/html"]
     kind, _, text = image_of(html)["src"].partition(",")
@@ -97,29 +99,29 @@ def test_a_saved_notebook_keeps_a_picture_beside_the_widget(document):
 
 def test_pictures_as_bytes_and_as_files(document, tmp_path):
     path = tmp_path / "star.png"
-    whole = stills.png(document, SMALL, path)
+    whole = images.png(document, SMALL, path)
     assert path.read_bytes() == whole
     assert Image.open(io.BytesIO(whole)).size == SMALL
-    drawing = stills.svg(document, SMALL)
+    drawing = images.svg(document, SMALL)
     assert ElementTree.fromstring(drawing).get("height") == "120"
-    assert "#121416" in stills.svg(document, SMALL, theme="dark")
+    assert "#121416" in images.svg(document, SMALL, theme="dark")
     assert document.history.cursor == 2
 
 
 def test_films_as_bytes_and_as_files(document, tmp_path):
     document.go_to(1)
-    film = Image.open(io.BytesIO(stills.gif(document, 0.1, SMALL)))
+    film = Image.open(io.BytesIO(images.gif(document, 0.1, SMALL)))
     assert film.size == SMALL and film.n_frames == 3
     path = tmp_path / "star.mp4"
-    whole = stills.mp4(document, path, 0.1, SMALL)
+    whole = images.mp4(document, path, 0.1, SMALL)
     assert path.read_bytes() == whole and whole[4:8] == b"ftyp"
     assert document.history.cursor == 1
 
 
 def test_a_widget_gives_away_the_same(document, tmp_path):
     widget = MeshWidget(document, theme="dark")
-    assert widget.to_png(size=SMALL) == stills.png(document, SMALL, theme="dark")
-    assert widget.to_svg(size=SMALL) == stills.svg(document, SMALL, theme="dark")
+    assert widget.to_png(size=SMALL) == images.png(document, SMALL, theme="dark")
+    assert widget.to_svg(size=SMALL) == images.svg(document, SMALL, theme="dark")
     assert widget.to_gif(tmp_path / "a.gif", 0.1, SMALL)[:6] == b"GIF89a"
     assert widget.to_mp4(tmp_path / "a.mp4", 0.1, SMALL)[4:8] == b"ftyp"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.mp4"]
@@ -129,18 +131,18 @@ def test_a_widget_gives_away_the_same(document, tmp_path):
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda d, at: stills.png(d, (0, 100)), "A size is two whole numbers"),
-        (lambda d, at: stills.png(d, (True, 100)), "A size is two whole numbers"),
-        (lambda d, at: stills.png(d, "large"), "A size is two whole numbers"),
-        (lambda d, at: stills.svg(d, (100, 100_000)), "A size is two whole numbers"),
-        (lambda d, at: stills.gif(d, 0), "A frame stays between 0 and 60 seconds, not 0"),
-        (lambda d, at: stills.gif(d, float("nan")), "not nan"),
-        (lambda d, at: stills.gif(d, "fast"), "not 'fast'"),
-        (lambda d, at: stills.png(d, theme="pink"), "There is no theme 'pink'"),
-        (lambda d, at: stills.png(d, path=at / "a.jpg"), "the name must end in .png"),
-        (lambda d, at: stills.mp4(d, at / "a.gif"), "the name must end in .mp4"),
-        (lambda d, at: stills.png(d, SMALL, at / "no" / "a.png"), "no does not exist"),
-        (lambda d, at: stills.png(Document()), re.escape(NO_MESH)),
+        (lambda d, at: images.png(d, (0, 100)), "A size is two whole numbers"),
+        (lambda d, at: images.png(d, (True, 100)), "A size is two whole numbers"),
+        (lambda d, at: images.png(d, "large"), "A size is two whole numbers"),
+        (lambda d, at: images.svg(d, (100, 100_000)), "A size is two whole numbers"),
+        (lambda d, at: images.gif(d, 0), "A frame stays between 0 and 60 seconds, not 0"),
+        (lambda d, at: images.gif(d, float("nan")), "not nan"),
+        (lambda d, at: images.gif(d, "fast"), "not 'fast'"),
+        (lambda d, at: images.png(d, theme="pink"), "There is no theme 'pink'"),
+        (lambda d, at: images.png(d, path=at / "a.jpg"), "the name must end in .png"),
+        (lambda d, at: images.mp4(d, at / "a.gif"), "the name must end in .mp4"),
+        (lambda d, at: images.png(d, SMALL, at / "no" / "a.png"), "no does not exist"),
+        (lambda d, at: images.png(Document()), re.escape(NO_MESH)),
     ],
 )
 def test_what_cannot_be_is_said_in_one_sentence(document, tmp_path, call, words):
@@ -157,9 +159,9 @@ def test_an_old_file_stays_where_the_new_one_fails(document, tmp_path, monkeypat
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("app.pictures.save_picture", full)
+    monkeypatch.setattr("meshwright.graphics.export.export_job.save_picture", full)
     with pytest.raises(MeshError, match=r"star.png: cannot be written \(no space left on device\)"):
-        stills.png(document, SMALL, path)
+        images.png(document, SMALL, path)
     assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 1
     with pytest.raises(MeshError, match=r"^The picture cannot be made \(no space left on device\)"):
-        stills.png(document, SMALL)
+        images.png(document, SMALL)

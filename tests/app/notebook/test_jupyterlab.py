@@ -3,10 +3,10 @@
 import pytest
 from browser import Lab
 
-from app.benchmarks.notebook.card import MOMENT, Card, differing
-from app.benchmarks.notebook.lab import PANEL
+from meshwright.benchmarks.notebook.jupyterlab import PANEL
+from meshwright.benchmarks.notebook.widget_driver import MOMENT, Card, differing
 
-SETUP = "import time\nfrom app.notebook import MeshWidget\n"
+SETUP = "import time\nfrom meshwright.notebook import MeshWidget\n"
 STAR = SETUP + "widget = MeshWidget('star')\nwidget"
 TURNED = "flip_left"
 RESTART = f"async () => {{ {PANEL} await panel.sessionContext.session.kernel.restart(); }}"

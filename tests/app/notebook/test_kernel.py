@@ -12,9 +12,9 @@ import pytest
 BEGIN = """
 import sys
 sys.path.insert(0, {folder!r})
-import app.worker, app.notebook.preparing as preparing
-from app.notebook import MeshWidget
-from app.preview import GLOBAL, choices
+import meshwright.assistant.worker, meshwright.notebook.kernel_warmup as preparing
+from meshwright.notebook import MeshWidget
+from meshwright.document.operation_preview import GLOBAL, choices
 
 class Runner:
     "Takes the best local operation anywhere, six times."
@@ -36,8 +36,8 @@ class Runner:
         self.left -= 1
         return [(c.operation, h)]
 
-app.worker._load_policy = lambda name: name
-app.worker._make_runner = Runner
+meshwright.assistant.worker._load_policy = lambda name: name
+meshwright.assistant.worker._make_runner = Runner
 preparing.PREPARATION._stage = preparing.Stage.READY
 w = MeshWidget("star")
 """
@@ -121,12 +121,16 @@ class Kernel:
 def kernel() -> Iterator[Kernel]:
     from jupyter_client.manager import start_new_kernel
 
-    from app import document
+    from meshwright.document import document
 
     manager, client = start_new_kernel()
     try:
         started = Kernel(client)
-        started.run(BEGIN.format(folder=document.__file__.removesuffix("app/document.py")))
+        started.run(
+            BEGIN.format(
+                folder=document.__file__.removesuffix("app/meshwright/document/document.py")
+            )
+        )
         state = started.answer(started.say("hello"))
         assert state["say"] in ("state", "agent")
         yield started

@@ -11,9 +11,9 @@ import pytest
 from nbclient import NotebookClient
 from nbformat import v4
 
-from app import lessons
-from app.lessons import Lesson
-from app.teaching.answer import BLANK, MIME, RIGHT, WRONG
+from meshwright.teaching import lessons
+from meshwright.teaching.exercises.result import BLANK, MIME, RIGHT, WRONG
+from meshwright.teaching.lessons import Lesson
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
 ALLOWED_LINKS = {

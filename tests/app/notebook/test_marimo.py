@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import pytest
 from browser import Marimo, Watched
 
-from app.benchmarks.notebook import servers
-from app.benchmarks.notebook.card import differing
+from meshwright.benchmarks.notebook import servers
+from meshwright.benchmarks.notebook.widget_driver import differing
 
 TURNED = "flip_left"
 

@@ -6,12 +6,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from porting import Replica, allowed
 
-from app.document import Document
-from app.notebook.head import Head
-from app.notebook.wire import ALIVE, BOUNDARY, CORNER, FIXED, Frame, Mirror, Slots
-from meshcore import HalfEdgeMesh, generate, shapes
-from meshcore.operations import of_kind
-from meshcore.quality import inverted
+from meshwright.document.document import Document
+from meshwright.notebook.protocol.document_status import Head
+from meshwright.notebook.protocol.mesh_sync import (
+    ALIVE,
+    BOUNDARY,
+    CORNER,
+    FIXED,
+    Frame,
+    Mirror,
+    Slots,
+)
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry.quality import inverted
+from meshwright_core.operations.catalogue import of_kind
 
 
 def follow(mesh: HalfEdgeMesh) -> tuple[Mirror, Replica]:
@@ -69,7 +78,7 @@ def test_a_patch_larger_than_the_whole_is_the_whole(star):
     live = star.vertices()
     star.move(live, star.points[live] + 0.1)
     assert mirror.patch(star).content["say"] == "patch"  # all vertices, but no half-edge
-    other = generate.mesh_domain(shapes.shape("l-shape"), "quad")
+    other = meshing.mesh_domain(gallery.shape("l-shape"), "quad")
     packet = mirror.patch(other)
     assert packet.content["say"] == "state"
     replica.take(packet)
@@ -88,7 +97,7 @@ def test_no_mesh_is_a_state_too(star):
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
 def test_a_replica_follows_whatever_happens(kind, data):
-    mesh = generate.mesh_domain(shapes.shape("l-shape"), kind)
+    mesh = meshing.mesh_domain(gallery.shape("l-shape"), kind)
     document = Document(mesh)
     mirror, replica = follow(mesh)
     head = Head(document)
@@ -124,7 +133,7 @@ def test_a_replica_follows_whatever_happens(kind, data):
 def test_bytes_of_a_local_operation_do_not_grow_with_the_mesh():
     sizes = []
     for edge in (0.2, 0.065):
-        mesh = generate.mesh_domain(shapes.shape("square"), "quad", max_edge=edge)
+        mesh = meshing.mesh_domain(gallery.shape("square"), "quad", max_edge=edge)
         document = Document(mesh)
         mirror, _ = follow(mesh)
         largest = 0

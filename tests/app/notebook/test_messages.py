@@ -7,9 +7,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from porting import Port, allowed
 
-from app.document import Document
-from app.notebook.messages import LARGEST, WORDS, RefusedError, parse
-from app.notebook.session import Session
+from meshwright.document.document import Document
+from meshwright.notebook.protocol.requests import LARGEST, WORDS, RefusedError, parse
+from meshwright.notebook.session import Session
 
 GOOD = {
     "hello": {},

@@ -7,9 +7,9 @@ import time
 import pytest
 from porting import Port, allowed, script_agent
 
-from app.document import Document
-from app.notebook.preparing import Preparation, Stage
-from app.notebook.session import Session
+from meshwright.document.document import Document
+from meshwright.notebook.kernel_warmup import Preparation, Stage
+from meshwright.notebook.session import Session
 
 
 @pytest.fixture
@@ -50,7 +50,7 @@ def until(port, condition) -> None:
 
 def test_all_is_ready_at_once_where_it_was_compiled_before(port, tmp_path, monkeypatch):
     gates = Gates(tmp_path, ())
-    monkeypatch.setattr("app.notebook.preparing.PREPARATION", gates.preparation)
+    monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", gates.preparation)
     port.ask("hello")
     port.operate(*allowed(port.session.mesh))
     assert port.of("notice") == [] and len(port.session.document.history) == 1
@@ -63,7 +63,7 @@ def test_all_is_ready_at_once_where_it_was_compiled_before(port, tmp_path, monke
 @pytest.mark.parametrize("code", [0, 1])
 def test_what_needs_it_waits_for_the_compiler(port, tmp_path, monkeypatch, code):
     gates = Gates(tmp_path, (Stage.EDITING, Stage.AGENT), code)
-    monkeypatch.setattr("app.notebook.preparing.PREPARATION", gates.preparation)
+    monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", gates.preparation)
     state, *_, notice = port.ask("hello")
     assert state["say"] == "state" and notice["tone"] == "said"
     assert notice["sentence"].startswith("Preparing the operations")
@@ -91,7 +91,7 @@ def test_a_preparation_that_cannot_be_is_logged_and_stops_nobody(port, monkeypat
         raise RuntimeError("no compiler")
 
     preparation = Preparation(lambda stage: True, broken)
-    monkeypatch.setattr("app.notebook.preparing.PREPARATION", preparation)
+    monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", preparation)
     port.ask("hello")
     until(port, lambda: "no compiler" in caplog.text)
     port.operate(*allowed(port.session.mesh))
@@ -100,7 +100,7 @@ def test_a_preparation_that_cannot_be_is_logged_and_stops_nobody(port, monkeypat
 
 def test_two_sessions_are_told_and_one_thread_works(port, triangles, tmp_path, monkeypatch):
     gates = Gates(tmp_path, (Stage.EDITING,))
-    monkeypatch.setattr("app.notebook.preparing.PREPARATION", gates.preparation)
+    monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", gates.preparation)
     other = Port(Session.of(Document(triangles)))
     port.ask("hello")
     other.ask("hello")

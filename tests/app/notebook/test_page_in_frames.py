@@ -6,8 +6,8 @@ from html import escape
 import pytest
 from browser import Watched
 
-from app.document import Document
-from app.notebook.page import page as frozen
+from meshwright.document.document import Document
+from meshwright.notebook.export.html_page import page as frozen
 
 HOSTILE = '</script><img src=x onerror="window.broken = 1"><script>window.broken = 1</script>'
 MESH = """root => {

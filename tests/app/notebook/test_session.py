@@ -8,13 +8,13 @@ import weakref
 import pytest
 from porting import Port, allowed, script_agent
 
-from app.assistant import State
-from app.document import Document
-from app.notebook import loop as loops
-from app.notebook import telling
-from app.notebook.session import Session
-from app.notebook.wire import Packet
-from meshcore import MeshError
+from meshwright.assistant.assistant import State
+from meshwright.document.document import Document
+from meshwright.notebook import thread_loop as loops
+from meshwright.notebook.protocol import broadcaster
+from meshwright.notebook.protocol.mesh_sync import Packet
+from meshwright.notebook.session import Session
+from meshwright_core import MeshError
 
 
 @pytest.fixture(autouse=True)
@@ -246,14 +246,14 @@ def test_another_mesh_is_a_new_state_for_all(port, triangles):
 
 def test_much_at_once_travels_together_and_the_end_arrives(port, star, monkeypatch):
     monkeypatch.setattr(type(port.session.loop), "running", property(lambda self: True))
-    monkeypatch.setattr(telling, "PACE", 1e9)
+    monkeypatch.setattr(broadcaster, "PACE", 1e9)
     operation, halfedge = allowed(star)
     for count in range(1, 40):
         port.session.document.submit(operation, halfedge)
         if count < 5:
             assert port.replica.shows(star, frame(port))  # a few are seen at once
         port.session.document.undo()
-    assert len(port.of("patch")) <= telling.BURST
+    assert len(port.of("patch")) <= broadcaster.BURST
     port.session.document.submit(operation, halfedge)
     port.session.loop.drain()
     assert port.replica.shows(star, frame(port))

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from app.notebook import loop as loops
-from app.notebook.loop import Loop
+from meshwright.notebook import thread_loop as loops
+from meshwright.notebook.thread_loop import Loop
 
 
 def in_thread(work) -> None:

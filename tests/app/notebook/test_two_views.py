@@ -10,10 +10,10 @@ from collections.abc import Callable
 import pytest
 from porting import Port, script_agent
 
-from app.document import Document
-from app.notebook.session import Session
-from meshcore import HalfEdgeMesh, MeshError
-from meshcore.operations import of_kind
+from meshwright.document.document import Document
+from meshwright.notebook.session import Session
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.operations.catalogue import of_kind
 
 
 class Monkey:

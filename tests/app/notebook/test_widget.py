@@ -12,10 +12,10 @@ import pytest
 import traitlets
 from porting import Replica, allowed, script_agent
 
-from app.document import Document
-from app.notebook import MeshWidget
-from app.notebook.wire import Packet
-from meshcore import HalfEdgeMesh, MeshError, OperationRefused
+from meshwright.document.document import Document
+from meshwright.notebook import MeshWidget
+from meshwright.notebook.protocol.mesh_sync import Packet
+from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
 
 
 @pytest.fixture(autouse=True)
@@ -69,7 +69,8 @@ def widget(show, star) -> Shown:
 
 
 def test_what_can_be_shown(show, star, tmp_path):
-    from meshcore import io, shapes
+    from meshwright_core.domains import gallery
+    from meshwright_core.io import mesh_files
 
     assert show(star).mesh is star
     document = Document(star, "mine")
@@ -77,8 +78,8 @@ def test_what_can_be_shown(show, star, tmp_path):
     assert widget.document is document and widget.label == "mine"
     assert show(widget).document is document
     assert show("l-shape").mesh.kind == "quad" and show("l-shape", kind="tri").mesh.kind == "tri"
-    assert show(shapes.shape("star")).label == "star"
-    io.write(tmp_path / "m.obj", star)
+    assert show(gallery.shape("star")).label == "star"
+    mesh_files.write(tmp_path / "m.obj", star)
     assert show(tmp_path / "m.obj").mesh.n_elements == 24
     document.submit(*allowed(star))
     document.save(tmp_path / "p.meshwright")
@@ -340,8 +341,8 @@ def test_nothing_is_kept_of_a_closed_widget(star):
 
 def test_a_widget_is_quick_to_import_and_brings_neither_qt_nor_torch():
     code = (
-        "import sys, app.notebook; print([m for m in ('torch', 'qtpy', 'PySide6', 'pyvista',"
-        " 'matplotlib', 'PIL', 'agent', 'scipy.sparse') if m in sys.modules])"
+        "import sys, meshwright.notebook; print([m for m in ('torch', 'qtpy', 'PySide6', 'pyvista',"
+        " 'matplotlib', 'PIL', 'meshwright_agent', 'scipy.sparse') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.stdout.strip() == "[]", done.stderr
@@ -349,16 +350,16 @@ def test_a_widget_is_quick_to_import_and_brings_neither_qt_nor_torch():
 
 def test_the_program_ends_with_a_run_under_way():
     code = (
-        "from app.notebook import MeshWidget\n"
-        "import app.worker, time, threading\n"
+        "from meshwright.notebook import MeshWidget\n"
+        "import meshwright.assistant.worker, time, threading\n"
         "class Slow:\n"
         "    finished, reason = False, ''\n"
         "    def look(self): return None\n"
         "    def step(self):\n"
         "        time.sleep(0.2)\n"
         "        return []\n"
-        "app.worker._load_policy = lambda name: name\n"
-        "app.worker._make_runner = lambda mesh, policy, seed: Slow()\n"
+        "meshwright.assistant.worker._load_policy = lambda name: name\n"
+        "meshwright.assistant.worker._make_runner = lambda mesh, policy, seed: Slow()\n"
         "w = MeshWidget('star')\n"
         "w.play()\n"
         "print(any(t.name == 'assistant' for t in threading.enumerate()))\n"

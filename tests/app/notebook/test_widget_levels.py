@@ -5,11 +5,11 @@ import json
 import pytest
 from porting import Port, script_agent
 
-from app import levels
-from app.notebook import MeshWidget
-from app.notebook.playing import Playing
-from app.rival import Standing
-from meshcore import MeshError
+from meshwright.notebook import MeshWidget
+from meshwright.notebook.protocol.level_bridge import Playing
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.agent_opponent import Standing
+from meshwright_core import MeshError
 
 
 @pytest.fixture(autouse=True)

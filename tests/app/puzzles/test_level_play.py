@@ -5,14 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from app import levels
-from app.assistant import Assistant
-from app.document import Document
-from app.level_play import LevelPlay, stars, tally
-from app.level_progress import Best, Progress, usual_path
-from app.preview import choices
-from app.rival import Standing
-from meshcore import MeshError
+from meshwright.assistant.assistant import Assistant
+from meshwright.document.document import Document
+from meshwright.document.operation_preview import choices
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.play import LevelPlay, stars, tally
+from meshwright.puzzles.progress import Best, Progress, usual_path
+from meshwright_core import MeshError
 
 
 class Playing:
@@ -286,7 +286,7 @@ def test_a_level_that_is_left_is_a_mesh_like_others(playing):
 
 
 def test_no_step_of_a_level_is_autosaved(playing, tmp_path):
-    from app.autosave import Autosave
+    from meshwright.document.storage.autosave import Autosave
 
     autosave = Autosave(playing.document, tmp_path / "autosave")
     playing.play.open("two-turns")

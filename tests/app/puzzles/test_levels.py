@@ -6,10 +6,10 @@ import json
 import numpy as np
 import pytest
 
-from agent.fewest import fewest
-from app import levels
-from app.benchmarks.levels import played
-from meshcore import HalfEdgeMesh, MeshError, Operation
+from meshwright.benchmarks.levels import played
+from meshwright.puzzles import level as levels
+from meshwright_agent.search.exhaustive import fewest
+from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 LARGEST = 60
 

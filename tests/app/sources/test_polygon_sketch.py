@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.loops import Loop
-from app.sketch import Sketch
-from app.snapping import Snapper
-from meshcore import MeshError
-from meshcore.domain import Domain
+from meshwright.sources.polygon_checks import Loop
+from meshwright.sources.polygon_sketch import Sketch
+from meshwright.sources.snapping import Snapper
+from meshwright_core import MeshError
+from meshwright_core.domains.domain import Domain
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 

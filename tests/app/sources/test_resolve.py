@@ -7,20 +7,21 @@ import sys
 import numpy as np
 import pytest
 
-import meshcore
 import meshwright
-from app.sources import mesh
-from meshcore import MeshError, shapes
+import meshwright_core
+from meshwright.sources.resolve import mesh
+from meshwright_core import MeshError
+from meshwright_core.domains import gallery
 
 
 def test_each_kind_of_source_becomes_a_mesh(tmp_path):
     path = tmp_path / "star.vtk"
-    meshcore.write(path, mesh("star", "tri"))
+    meshwright_core.write(path, mesh("star", "tri"))
     polygon = tmp_path / "square.json"
     polygon.write_text(json.dumps({"outline": [[0, 0], [2, 0], [2, 2], [0, 2]]}))
     corners = [[0, 0], [1, 0], [1, 1], [0, 1]]
     assert mesh("star").kind == "quad"
-    assert mesh(shapes.shape("l-shape"), "tri", max_edge=0.3).n_elements > 20
+    assert mesh(gallery.shape("l-shape"), "tri", max_edge=0.3).n_elements > 20
     assert mesh(np.array(corners)).n_elements == mesh(corners).n_elements
     assert mesh(str(path)).n_elements == mesh(path, "tri").n_elements
     assert mesh(polygon, "tri").kind == "tri"

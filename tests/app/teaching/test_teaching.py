@@ -7,15 +7,23 @@ import sys
 import numpy as np
 import pytest
 
-from app import cli, lessons
-from app.commands import lessons as command
-from app.lessons import ExerciseCell
-from app.teaching import Answer, exercise, patch
-from app.teaching.answer import MIME
-from app.teaching.exercises import TOPICS, Blank, Wrong, declare
-from app.teaching.given import called, choice, mesh_of, whole, wholes, yes_or_no
-from app.teaching.patches import PATCHES
-from meshcore import MeshError, quality
+from meshwright import cli
+from meshwright.cli.commands import lessons as command
+from meshwright.teaching import Answer, exercise, lessons, patch
+from meshwright.teaching.exercises.answer_parsing import (
+    called,
+    choice,
+    mesh_of,
+    whole,
+    wholes,
+    yes_or_no,
+)
+from meshwright.teaching.exercises.example_meshes import PATCHES
+from meshwright.teaching.exercises.exercise import TOPICS, Blank, Wrong, declare
+from meshwright.teaching.exercises.result import MIME
+from meshwright.teaching.lessons import ExerciseCell
+from meshwright_core import MeshError
+from meshwright_core.geometry import quality
 
 NAMES = [cell.name for lesson in lessons.shipped() for cell in lesson.exercises()]
 
@@ -169,8 +177,8 @@ def test_a_solution_takes_the_place_of_the_blank():
 
 
 def test_teaching_needs_neither_torch_nor_qt():
-    code = "import app.teaching, app.lessons, sys; print(*sys.modules)"
-    topics = "".join(f"; import app.teaching.{topic}" for topic in list(TOPICS.values())[:4])
+    code = "import meshwright.teaching, meshwright.teaching.lessons, sys; print(*sys.modules)"
+    topics = "".join(f"; import meshwright.teaching.{topic}" for topic in list(TOPICS.values())[:4])
     done = subprocess.run(
         [sys.executable, "-c", code.replace("; print", f"{topics}; print")],
         capture_output=True,

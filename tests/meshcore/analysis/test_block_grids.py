@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from meshcore import HalfEdgeMesh, MeshError, generate, shapes
-from meshcore.block_grids import grids
-from meshcore.blocks import block_of
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.analysis.block_grids import grids
+from meshwright_core.analysis.blocks import block_of
+from meshwright_core.domains import gallery, meshing
 
 
 def ring(sides: int, rows: int) -> HalfEdgeMesh:
@@ -41,7 +42,7 @@ def check(mesh: HalfEdgeMesh) -> None:
 
 
 def test_a_plain_grid_is_one_block() -> None:
-    mesh = generate.grid("quad", 24)
+    mesh = meshing.grid("quad", 24)
     (grid,) = grids(mesh)
     assert grid.elements.size == mesh.n_elements and not grid.closed
     assert len(np.unique(grid.vertices)) == mesh.n_vertices
@@ -50,7 +51,7 @@ def test_a_plain_grid_is_one_block() -> None:
 
 @pytest.mark.parametrize("name", ["star", "l-shape", "square-with-hole", "single-notch"])
 def test_a_fresh_mesh_falls_into_grids(name: str) -> None:
-    check(generate.mesh_domain(shapes.shape(name), "quad"))
+    check(meshing.mesh_domain(gallery.shape(name), "quad"))
 
 
 @pytest.mark.parametrize(("sides", "rows"), [(4, 1), (7, 3), (5, 2)])
@@ -62,7 +63,7 @@ def test_a_ring_is_a_closed_band(sides: int, rows: int) -> None:
 
 
 def test_after_a_global_split_blocks_are_longer() -> None:
-    mesh = generate.mesh_domain(shapes.shape("cross"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("cross"), "quad")
     for h in range(0, 4 * mesh.n_elements, 3):
         if mesh.check("global_split", h):
             mesh.apply("global_split", h)
@@ -72,4 +73,4 @@ def test_after_a_global_split_blocks_are_longer() -> None:
 
 def test_triangles_have_no_blocks() -> None:
     with pytest.raises(MeshError, match="Only quad meshes"):
-        grids(generate.mesh_domain(shapes.shape("star"), "tri"))
+        grids(meshing.mesh_domain(gallery.shape("star"), "tri"))

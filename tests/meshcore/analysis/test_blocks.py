@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from tiny_meshes import grid, ring, square_of_triangles
 
-from meshcore import HalfEdgeMesh, generate, quadrangulate
-from meshcore.blocks import block_count, block_of, separatrices
-from meshcore.errors import MeshError
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.analysis.blocks import block_count, block_of, separatrices
+from meshwright_core.domains import meshing, quadrangulation
+from meshwright_core.errors import MeshError
 
 
 def _slow_block_count(mesh):
@@ -61,7 +62,7 @@ def test_an_irregular_vertex_inside():
         [[0, 0], *hexagon], [[0, 1, 2, 3], [0, 3, 4, 5], [0, 5, 6, 1]]
     )
     assert block_count(coarse) == 3
-    once = quadrangulate.catmull_clark(coarse.points, [coarse.elements()], np.ones(7, bool))
+    once = quadrangulation.catmull_clark(coarse.points, [coarse.elements()], np.ones(7, bool))
     assert block_count(HalfEdgeMesh.from_elements(*once)) == 3
 
 
@@ -74,7 +75,7 @@ def test_corners_of_degree_three_cut_only_when_asked():
 @pytest.mark.parametrize("seed", range(4))
 def test_blocks_agree_with_the_slow_way(seed):
     rng = np.random.default_rng(seed)
-    mesh = generate.benchmark_mesh("quad", 12, rng)
+    mesh = meshing.benchmark_mesh("quad", 12, rng)
     operations = ("flip_left", "flip_right", "collapse", "global_split", "cleanup")
     for _ in range(60):
         h = int(rng.choice(mesh.element_ids())) * 4 + int(rng.integers(4))

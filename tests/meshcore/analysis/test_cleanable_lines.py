@@ -5,8 +5,8 @@ from itertools import pairwise
 import pytest
 from tiny_meshes import grid, ring, square_of_triangles
 
-from meshcore import generate, shapes
-from meshcore.lines import cleanable_lines
+from meshwright_core.analysis.cleanable_lines import cleanable_lines
+from meshwright_core.domains import gallery, meshing
 
 
 def test_a_grid_has_one_line_for_each_inner_row_and_column():
@@ -35,7 +35,7 @@ def test_rings_are_lines_too():
 
 
 def test_the_vertices_follow_one_another_along_edges():
-    mesh = generate.mesh_domain(shapes.shape("l-shape"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("l-shape"), "quad")
     for line in cleanable_lines(mesh):
         chain = line.vertices.tolist()
         assert all(mesh.halfedge(a, b) >= 0 for a, b in pairwise(chain))

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from tiny_meshes import grid, ring
 
-from meshcore import HalfEdgeMesh, generate, shapes, smoothing
-from meshcore.obstacles import Obstacles
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.analysis.drawability import Obstacles
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry import smoothing
 
 DART = [[0, 0], [1, -1], [0.4, 0], [1, 1]]
 HALF_SQUARE = [[0, 0], [1, 0], [2, 0], [1, 1]]
@@ -18,7 +20,7 @@ def _count(mesh):
 @pytest.mark.parametrize("name", ["star", "l-shape", "square-with-hole", "annulus", "arch", "gear"])
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_fresh_meshes_have_none(name, kind):
-    assert _count(generate.mesh_domain(shapes.shape(name), kind)) == 0
+    assert _count(meshing.mesh_domain(gallery.shape(name), kind)) == 0
 
 
 def test_grids_and_rings_have_none():
@@ -77,7 +79,7 @@ def test_sides_that_bend_keep_their_edges():
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_what_has_an_obstacle_stays_inverted(kind):
     rng = np.random.default_rng(3)
-    mesh = generate.benchmark_mesh(kind, 8, rng)
+    mesh = meshing.benchmark_mesh(kind, 8, rng)
     obstacles = Obstacles(mesh)
     seen = 0
     for _ in range(200):

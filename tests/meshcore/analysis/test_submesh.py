@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
-from meshcore import HalfEdgeMesh, MeshError, Operation, generate
-from meshcore.enclosure import enclose, holding
-from meshcore.smoothing import relax
+from meshwright_core import HalfEdgeMesh, MeshError, Operation
+from meshwright_core.analysis.submesh import enclose, holding
+from meshwright_core.domains import meshing
+from meshwright_core.geometry.smoothing import relax
 
 
 @pytest.fixture
 def grid() -> HalfEdgeMesh:
     """4 x 4 quads, numbered row by row."""
-    return generate.grid("quad", 16)
+    return meshing.grid("quad", 16)
 
 
 def corners(mesh, elements):
@@ -43,7 +44,7 @@ def test_elements_that_touch_in_a_vertex_alone_are_left_out(grid, extra):
 
 
 def test_parts_that_do_not_touch_are_all_kept():
-    grid = generate.grid("quad", 100)
+    grid = meshing.grid("quad", 100)
     parts = [0, 1, 10, 11, 88, 89, 98, 99]
     assert enclose(grid, np.array(parts)).elements.tolist() == parts
 

@@ -5,19 +5,19 @@ from importlib.metadata import EntryPoint
 import pytest
 from tiny_meshes import grid
 
-from meshcore import display
+from meshwright_core.core import notebook_display
 
 
 @pytest.fixture(autouse=True)
 def _forgotten():
-    display.drawer.cache_clear()
+    notebook_display.drawer.cache_clear()
     yield
-    display.drawer.cache_clear()
+    notebook_display.drawer.cache_clear()
 
 
 def installed(monkeypatch, *points: EntryPoint) -> None:
     monkeypatch.setattr(
-        display, "entry_points", lambda group: [p for p in points if p.group == group]
+        notebook_display, "entry_points", lambda group: [p for p in points if p.group == group]
     )
 
 
@@ -33,11 +33,11 @@ def test_without_a_drawer_the_line_of_text_remains(monkeypatch):
 
 
 def test_the_drawer_is_found_by_its_name_and_asked_when_a_mesh_is_shown(monkeypatch):
-    group, here = display.GROUP, f"{__name__}:squares"
+    group, here = notebook_display.GROUP, f"{__name__}:squares"
     installed(
         monkeypatch,
         EntryPoint("other", "nowhere:nothing", group),
-        EntryPoint(display.NAME, here, group),
+        EntryPoint(notebook_display.NAME, here, group),
     )
     mesh = grid(3)
     data, metadata = mesh._repr_mimebundle_(include=None, exclude=None)
@@ -46,6 +46,9 @@ def test_the_drawer_is_found_by_its_name_and_asked_when_a_mesh_is_shown(monkeypa
 
 
 def test_a_drawer_that_is_broken_says_so(monkeypatch):
-    installed(monkeypatch, EntryPoint(display.NAME, "no_such_module:draw", display.GROUP))
+    installed(
+        monkeypatch,
+        EntryPoint(notebook_display.NAME, "no_such_module:draw", notebook_display.GROUP),
+    )
     with pytest.raises(ModuleNotFoundError):
         grid(2)._repr_mimebundle_()

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from meshcore import MeshError, shapes
-from meshcore.domain import Domain, turning_angles
+from meshwright_core import MeshError
+from meshwright_core.domains import gallery
+from meshwright_core.domains.domain import Domain, turning_angles
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
@@ -104,9 +105,9 @@ def test_flags_must_fit():
     assert "1 lists of hole corners for 0 holes" in refusal(SQUARE, hole_corners=[[True]])
 
 
-@pytest.mark.parametrize("name", shapes.names())
+@pytest.mark.parametrize("name", gallery.names())
 def test_json_round_trip(name, tmp_path):
-    domain = shapes.shape(name)
+    domain = gallery.shape(name)
     path = tmp_path / "domain.json"
     path.write_text(json.dumps(domain.to_json()))
     again = Domain.from_json(path)
@@ -163,7 +164,7 @@ def test_files_that_cannot_be_read(tmp_path):
 
 @given(st.integers(3, 40), st.integers(0, 2**32 - 1), st.booleans())
 def test_random_polygons_are_domains(sides, seed, turned):
-    corners = shapes.random_corners(sides, np.random.default_rng(seed))
+    corners = gallery.random_corners(sides, np.random.default_rng(seed))
     domain = Domain(corners[::-1] if turned else corners)
     assert domain.area == pytest.approx(domain.polygon.area)
     assert 0 < domain.area < np.pi
@@ -177,7 +178,7 @@ def test_diameter_is_the_largest_of_all_distances(count):
     for outline in (
         np.column_stack([np.cos(angle), np.sin(angle)]),
         np.column_stack([3 * np.cos(angle + 0.3), np.sin(angle)]),
-        shapes.random_corners(count, np.random.default_rng(count)),
+        gallery.random_corners(count, np.random.default_rng(count)),
     ):
         apart = outline[:, None] - outline[None]
         assert Domain(outline).diameter == np.sqrt((apart**2).sum(-1)).max()

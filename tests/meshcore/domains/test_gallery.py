@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from meshcore import MeshError, shapes
+from meshwright_core import MeshError
+from meshwright_core.domains import gallery as shapes
 
 IN_THE_PAPER = {
     "l-shape",

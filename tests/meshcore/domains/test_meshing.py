@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshcore import MeshError, generate, quadrangulate, shapes
-from meshcore.domain import Domain
+from meshwright_core import MeshError
+from meshwright_core.domains import gallery, meshing, quadrangulation
+from meshwright_core.domains.domain import Domain
 
 SQUARE = Domain([[0, 0], [1, 0], [1, 1], [0, 1]])
 WAYS = [("tri", {}), ("quad", {}), ("quad", {"quads": "pairing"}), ("quad", {"max_edge": 0.2})]
@@ -42,10 +43,10 @@ def assert_meshes(domain, mesh):
 
 
 @pytest.mark.parametrize(("kind", "options"), WAYS)
-@pytest.mark.parametrize("name", shapes.names())
+@pytest.mark.parametrize("name", gallery.names())
 def test_gallery(name, kind, options):
-    domain = shapes.shape(name)
-    mesh = generate.mesh_domain(domain, kind, **options)
+    domain = gallery.shape(name)
+    mesh = meshing.mesh_domain(domain, kind, **options)
     assert mesh.kind == kind
     assert_meshes(domain, mesh)
     interior = np.flatnonzero(~mesh.boundary() & (mesh.degree() > 0))
@@ -61,23 +62,23 @@ def test_gallery(name, kind, options):
 )
 def test_random_polygons_with_a_hole(sides, seed, kind, hole):
     rng = np.random.default_rng(seed)
-    outline = shapes.random_corners(sides, rng)
-    ring = shapes.random_corners(5, rng) * {"small": 0.2, "turned": -0.2}.get(hole, 1)
+    outline = gallery.random_corners(sides, rng)
+    ring = gallery.random_corners(5, rng) * {"small": 0.2, "turned": -0.2}.get(hole, 1)
     domain = Domain(outline, [ring] if hole else [])
-    assert_meshes(domain, generate.mesh_domain(domain, kind))
+    assert_meshes(domain, meshing.mesh_domain(domain, kind))
 
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(3, 30), st.integers(0, 2**32 - 1), st.floats(0.08, 1.0))
 def test_no_edge_is_longer_than_asked_for(sides, seed, bound):
-    domain = shapes.random_polygon(sides, np.random.default_rng(seed))
+    domain = gallery.random_polygon(sides, np.random.default_rng(seed))
     for kind, quads in [("tri", "pairing"), ("quad", "catmull-clark"), ("quad", "pairing")]:
-        points, elements, _ = generate.mesh_arrays(domain, kind, max_edge=bound, quads=quads)
+        points, elements, _ = meshing.mesh_arrays(domain, kind, max_edge=bound, quads=quads)
         assert longest_edge(points, elements) <= bound * (1 + 1e-12)
 
 
 def test_default_triangles_keep_angle_and_edges():
-    points, triangles, _ = generate.mesh_arrays(SQUARE, "tri")
+    points, triangles, _ = meshing.mesh_arrays(SQUARE, "tri")
     corners = points[triangles]
     u, v = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     cosine = (u * v).sum(2) / np.linalg.norm(u, axis=2) / np.linalg.norm(v, axis=2)
@@ -86,35 +87,35 @@ def test_default_triangles_keep_angle_and_edges():
 
 
 def test_default_quads_of_straight_sides_add_no_points():
-    points, quads, geometric = generate.mesh_arrays(shapes.shape("star"), "quad")
+    points, quads, geometric = meshing.mesh_arrays(gallery.shape("star"), "quad")
     assert len(quads) == 3 * 8
-    assert np.array_equal(points[:10], shapes.shape("star").outline)
+    assert np.array_equal(points[:10], gallery.shape("star").outline)
     assert geometric.tolist() == [True] * 10 + [False] * (len(points) - 10)
 
 
 def test_largest_area_is_kept():
-    points, triangles, _ = generate.mesh_arrays(SQUARE, "tri", max_edge=9, max_area=0.01)
+    points, triangles, _ = meshing.mesh_arrays(SQUARE, "tri", max_edge=9, max_area=0.01)
     assert areas(points, triangles).max() <= 0.01
 
 
 def test_scale_does_not_matter():
     small = Domain(SQUARE.outline * 2.0**-200)
-    one = generate.mesh_arrays(SQUARE, "tri", max_edge=0.1)
-    other = generate.mesh_arrays(small, "tri", max_edge=0.1 * 2.0**-200)
+    one = meshing.mesh_arrays(SQUARE, "tri", max_edge=0.1)
+    other = meshing.mesh_arrays(small, "tri", max_edge=0.1 * 2.0**-200)
     assert np.array_equal(one[1], other[1])
     assert np.array_equal(one[0] * 2.0**-200, other[0])
 
 
 def test_seed_makes_another_mesh_of_the_same_domain_and_repeats():
-    domain = shapes.shape("polygon")
-    plain = generate.mesh_arrays(domain, "tri")
-    turned = [generate.mesh_arrays(domain, "tri", seed=seed) for seed in (3, 3, 4)]
+    domain = gallery.shape("polygon")
+    plain = meshing.mesh_arrays(domain, "tri")
+    turned = [meshing.mesh_arrays(domain, "tri", seed=seed) for seed in (3, 3, 4)]
     assert all(np.array_equal(a, b) for a, b in zip(*turned[:2], strict=True))
     assert any(len(turned[i][1]) != len(plain[1]) for i in (0, 2))
-    assert_meshes(domain, generate.mesh_domain(domain, "quad", seed=3))
-    holes = shapes.shape("plate-with-holes")
+    assert_meshes(domain, meshing.mesh_domain(domain, "quad", seed=3))
+    holes = gallery.shape("plate-with-holes")
     for seed in range(1, 9):
-        assert_meshes(holes, generate.mesh_domain(holes, "tri", seed=seed))
+        assert_meshes(holes, meshing.mesh_domain(holes, "tri", seed=seed))
 
 
 @pytest.mark.parametrize(
@@ -132,21 +133,21 @@ def test_seed_makes_another_mesh_of_the_same_domain_and_repeats():
 )
 def test_bad_arguments(arguments, says):
     with pytest.raises(MeshError, match=says):
-        generate.mesh_domain(SQUARE, **arguments)
+        meshing.mesh_domain(SQUARE, **arguments)
 
 
 def test_mesh_that_would_grow_without_end_is_refused(monkeypatch):
-    monkeypatch.setattr(generate, "MAX_TRIANGLES", 2000)
+    monkeypatch.setattr(meshing, "MAX_TRIANGLES", 2000)
     thin = Domain([[0, 0], [1, 0], [1, 1e-5], [0, 1e-5]])
     with pytest.raises(MeshError, match="more than 2,000 triangles"):
-        generate.mesh_domain(thin, "tri")
+        meshing.mesh_domain(thin, "tri")
 
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(3, 50), st.integers(0, 2**32 - 1), st.sampled_from(["tri", "quad"]))
 def test_benchmark_mesh(sides, seed, kind):
-    mesh = generate.benchmark_mesh(kind, sides, np.random.default_rng(seed))
-    domain = shapes.random_polygon(sides, np.random.default_rng(seed))
+    mesh = meshing.benchmark_mesh(kind, sides, np.random.default_rng(seed))
+    domain = gallery.random_polygon(sides, np.random.default_rng(seed))
     assert mesh.geometric().sum() == sides
     assert mesh.euler == 1
     assert areas(mesh.points, mesh.elements()).sum() == pytest.approx(domain.area)
@@ -160,7 +161,7 @@ def test_benchmark_is_the_size_that_others_measured():
     for kind, sides, expected in [("tri", (10, 20), 54), ("quad", (10, 20), 39)]:
         rng = np.random.default_rng(1)
         sizes = [
-            len(generate.benchmark_arrays(kind, int(rng.integers(sides[0], sides[1] + 1)), rng)[1])
+            len(meshing.benchmark_arrays(kind, int(rng.integers(sides[0], sides[1] + 1)), rng)[1])
             for _ in range(200)
         ]
         assert np.mean(sizes) == pytest.approx(expected, rel=0.08)
@@ -172,7 +173,7 @@ def test_benchmark_arrays_are_quick(kind):
     times = []
     for _ in range(30):
         start = time.perf_counter()
-        generate.benchmark_arrays(kind, 30, rng)
+        meshing.benchmark_arrays(kind, 30, rng)
         times.append(time.perf_counter() - start)
     assert min(times) < 2e-3
 
@@ -181,7 +182,7 @@ def test_benchmark_arrays_are_quick(kind):
 @pytest.mark.parametrize(("kind", "count"), [("tri", 800), ("quad", 400)])
 def test_grid(kind, count, random):
     rng = np.random.default_rng(2) if random else None
-    mesh = generate.grid(kind, count, rng)
+    mesh = meshing.grid(kind, count, rng)
     assert_meshes(SQUARE, mesh)
     assert mesh.n_elements == count
     assert mesh.n_vertices == 21**2
@@ -190,17 +191,17 @@ def test_grid(kind, count, random):
 
 
 def test_grid_of_few_elements():
-    assert generate.grid("quad", 1).n_elements == 1
-    assert generate.grid("tri", 1).n_elements == 2
+    assert meshing.grid("quad", 1).n_elements == 1
+    assert meshing.grid("tri", 1).n_elements == 2
     with pytest.raises(MeshError, match="at least one element"):
-        generate.grid("quad", 0)
+        meshing.grid("quad", 0)
 
 
 def test_catmull_clark_counts_and_mixes():
     points = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0.5]], dtype=float)
     quad, triangle = np.array([[0, 1, 2, 3]]), np.array([[1, 4, 2]])
     geometric = np.array([1, 0, 0, 1, 1], bool)
-    new, quads, flags = quadrangulate.catmull_clark(points, [quad, triangle], geometric)
+    new, quads, flags = quadrangulation.catmull_clark(points, [quad, triangle], geometric)
     assert len(new) == 5 + 6 + 2
     assert len(quads) == 4 + 3
     assert flags.tolist() == geometric.tolist() + [False] * 8
@@ -209,16 +210,16 @@ def test_catmull_clark_counts_and_mixes():
 
 
 def test_pairing_finds_a_perfect_matching():
-    points, triangles, _ = generate.grid_arrays("tri", 72, np.random.default_rng(1))
-    quads, alone = quadrangulate.pair(points, triangles)
+    points, triangles, _ = meshing.grid_arrays("tri", 72, np.random.default_rng(1))
+    quads, alone = quadrangulation.pair(points, triangles)
     assert len(quads) == 36
     assert len(alone) == 0
     assert areas(points, quads).sum() == pytest.approx(1.0)
 
 
 def test_large_pairing_is_greedy_and_valid():
-    points, triangles, _ = generate.grid_arrays("tri", 1800, np.random.default_rng(1))
-    quads, alone = quadrangulate.pair(points, triangles)
+    points, triangles, _ = meshing.grid_arrays("tri", 1800, np.random.default_rng(1))
+    quads, alone = quadrangulation.pair(points, triangles)
     assert 2 * len(quads) + len(alone) == 1800
     assert areas(points, quads).min() > 0
     assert len(quads) > 700
@@ -226,7 +227,7 @@ def test_large_pairing_is_greedy_and_valid():
 
 def test_pairing_joins_no_triangles_to_a_dart():
     points = np.array([[0, 0], [4, 0], [1, 1], [0, 4]], dtype=float)
-    quads, alone = quadrangulate.pair(points, np.array([[0, 1, 2], [0, 2, 3]]))
+    quads, alone = quadrangulation.pair(points, np.array([[0, 1, 2], [0, 2, 3]]))
     assert len(quads) == 0
     assert len(alone) == 2
 
@@ -235,7 +236,7 @@ def test_doublets_are_merged():
     # a 2 by 1 strip whose left square is cut into two darts through vertex 6
     points = np.array([[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1], [0.4, 0.5]], dtype=float)
     quads = np.array([[0, 1, 4, 6], [0, 6, 4, 3], [1, 2, 5, 4]])
-    new, merged, flags = quadrangulate.without_doublets(points, quads, np.arange(7) < 6)
+    new, merged, flags = quadrangulation.without_doublets(points, quads, np.arange(7) < 6)
     assert len(new) == len(flags) == 6
     assert {frozenset(q) for q in merged.tolist()} == {
         frozenset({0, 1, 4, 3}),
@@ -245,9 +246,9 @@ def test_doublets_are_merged():
 
 
 def test_triangle_is_deterministic():
-    domains = [shapes.shape("gear"), shapes.shape("plate-with-holes")]
+    domains = [gallery.shape("gear"), gallery.shape("plate-with-holes")]
     runs = [
-        [generate.mesh_arrays(d, k)[1].tobytes() for d in domains for k in ("tri", "quad")]
+        [meshing.mesh_arrays(d, k)[1].tobytes() for d in domains for k in ("tri", "quad")]
         for _ in range(3)
     ]
     assert all(a == b for a, b in itertools.pairwise(runs))

@@ -4,10 +4,18 @@ import numpy as np
 import pytest
 import shapely
 
-from meshcore import quality
-from meshcore.domain import turning_angles
-from meshcore.errors import MeshError
-from meshcore.parts import DIAMETER, FLATTEST, GAP, SHARPEST, part_mesh, parts, random_part
+from meshwright_core.domains.domain import turning_angles
+from meshwright_core.domains.random_parts import (
+    DIAMETER,
+    FLATTEST,
+    GAP,
+    SHARPEST,
+    part_mesh,
+    parts,
+    random_part,
+)
+from meshwright_core.errors import MeshError
+from meshwright_core.geometry import quality
 
 RANGES = [(8, 24), (25, 50)]
 

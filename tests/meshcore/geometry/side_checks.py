@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshcore.sides import Sides
+from meshwright_core.geometry.sides import Sides
 
 
 def assert_on_sides(mesh):

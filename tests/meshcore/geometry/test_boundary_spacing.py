@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from meshcore import region, shapes, smoothing
-from meshcore.bends import anchors, bending
-from meshcore.generate import mesh_domain
+from meshwright_core.domains import gallery
+from meshwright_core.domains.meshing import mesh_domain
+from meshwright_core.geometry import region, smoothing
+from meshwright_core.geometry.boundary_spacing import anchors, bending
 
 
 def _area(points):
@@ -19,7 +20,7 @@ def _gaps(points):
 
 def _coarsened(name, rng):
     """A mesh of the shape from which clean-ups and collapses have taken boundary vertices."""
-    mesh = mesh_domain(shapes.shape(name), "quad")
+    mesh = mesh_domain(gallery.shape(name), "quad")
     for _ in range(4000):
         ids = mesh.element_ids()
         h = int(rng.choice(ids)) * 4 + int(rng.integers(4))
@@ -30,7 +31,7 @@ def _coarsened(name, rng):
 
 
 def test_a_disc_stays_round():
-    mesh = mesh_domain(shapes.shape("disc"), "quad")
+    mesh = mesh_domain(gallery.shape("disc"), "quad")
     (loop,) = mesh.boundary_loops()
     # crowd the boundary vertices on one half of the circle
     angle = np.arctan2(mesh.points[loop, 1], mesh.points[loop, 0])
@@ -59,7 +60,7 @@ def test_coarse_boundaries_keep_their_spacing(name):
 
 
 def test_a_hole_pulled_off_its_circle_goes_back_to_it():
-    mesh = mesh_domain(shapes.shape("annulus"), "quad")
+    mesh = mesh_domain(gallery.shape("annulus"), "quad")
     inner, outer = sorted(mesh.boundary_loops(), key=lambda loop: _area(mesh.points[loop]))
     radii = [np.linalg.norm(mesh.points[loop], axis=1).mean() for loop in (inner, outer)]
     mesh.move(inner, 0.4 * mesh.points[inner])
@@ -71,7 +72,7 @@ def test_a_hole_pulled_off_its_circle_goes_back_to_it():
 
 @pytest.mark.parametrize("name", ["star", "l-shape", "plate-with-holes", "gear"])
 def test_only_sides_that_bend_are_spread(name):
-    mesh = mesh_domain(shapes.shape(name), "quad")
+    mesh = mesh_domain(gallery.shape(name), "quad")
     whole = region.whole(mesh)
     bent = whole.vertices[bending(whole)]
     curved = name in ("plate-with-holes", "gear")
@@ -83,7 +84,7 @@ def test_only_sides_that_bend_are_spread(name):
     ("name", "count"), [("disc", 12), ("annulus", 24), ("half-disc", 5), ("star", 0)]
 )
 def test_anchors_keep_the_look_of_sides_that_bend(name, count):
-    mesh = mesh_domain(shapes.shape(name), "quad")
+    mesh = mesh_domain(gallery.shape(name), "quad")
     chosen = anchors(mesh)
     assert len(chosen) == count
     assert mesh.boundary()[chosen].all()
@@ -95,7 +96,7 @@ def test_anchors_keep_the_look_of_sides_that_bend(name, count):
 
 
 def test_with_anchors_locked_a_disc_is_not_coarsened_to_a_square():
-    mesh = mesh_domain(shapes.shape("disc"), "quad")
+    mesh = mesh_domain(gallery.shape("disc"), "quad")
     for vertex in anchors(mesh).tolist():
         mesh.set_locked(vertex)
     rng = np.random.default_rng(0)

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from meshcore import HalfEdgeMesh, quality
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry import quality
 
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 

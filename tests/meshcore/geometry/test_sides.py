@@ -1,17 +1,18 @@
 import numpy as np
 import pytest
 
-from meshcore import HalfEdgeMesh, MeshError, generate, shapes
-from meshcore.outline import Outline
-from meshcore.sides import Sides, in_order
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry.outline import Outline
+from meshwright_core.geometry.sides import Sides, in_order
 
 
 def grid(n=4):
-    return generate.grid("quad", n * n)
+    return meshing.grid("quad", n * n)
 
 
 def disc():
-    return generate.mesh_domain(shapes.shape("disc"), "quad")
+    return meshing.mesh_domain(gallery.shape("disc"), "quad")
 
 
 def test_a_square_has_four_straight_sides():
@@ -48,7 +49,7 @@ def test_only_sliding_boundary_vertices_have_a_seat():
 
 
 def test_some_sides_are_those_of_all():
-    mesh = generate.mesh_domain(shapes.shape("plate-with-holes"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("plate-with-holes"), "quad")
     everything = Sides(mesh)
     for vertex in np.flatnonzero(mesh.boundary() & ~mesh.geometric()).tolist():
         own = Sides(mesh, [vertex])

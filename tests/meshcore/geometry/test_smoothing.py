@@ -2,13 +2,15 @@ import numpy as np
 import pytest
 from side_checks import assert_on_sides
 
-from meshcore import HalfEdgeMesh, MeshError, generate, quality, shapes, smoothing
-from meshcore import region as regions
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry import quality, smoothing
+from meshwright_core.geometry import region as regions
 
 
 def jittered(kind, elements, amount, seed=0):
     """A grid whose interior vertices have been shaken."""
-    mesh = generate.grid(kind, elements)
+    mesh = meshing.grid(kind, elements)
     inside = np.flatnonzero(~mesh.boundary())
     rng = np.random.default_rng(seed)
     mesh.points[inside, :2] += amount * rng.uniform(-1, 1, (len(inside), 2))
@@ -18,7 +20,7 @@ def jittered(kind, elements, amount, seed=0):
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 @pytest.mark.parametrize("name", ["star", "l-shape", "disc", "plate-with-holes", "airfoil"])
 def test_smoothing_makes_the_worst_no_worse_and_keeps_the_outline(kind, name):
-    mesh = generate.mesh_domain(shapes.shape(name), kind)
+    mesh = meshing.mesh_domain(gallery.shape(name), kind)
     corners = np.flatnonzero(mesh.geometric())
     before = mesh.points[corners].copy()
     region = regions.whole(mesh)
@@ -136,7 +138,7 @@ def test_relax_of_a_large_mesh_mends_it_in_one_step(monkeypatch):
 
 
 def test_relax_after_every_operation_keeps_the_mesh_drawn():
-    mesh = generate.mesh_domain(shapes.shape("l-shape"), "tri", max_edge=0.4)
+    mesh = meshing.mesh_domain(gallery.shape("l-shape"), "tri", max_edge=0.4)
     rng = np.random.default_rng(1)
     corners = mesh.points[mesh.geometric()].copy()
     flags, done = mesh.geometric(), 0
@@ -153,7 +155,7 @@ def test_relax_after_every_operation_keeps_the_mesh_drawn():
 
 
 def test_a_surface_is_smoothed_in_its_tangent_planes():
-    mesh = generate.grid("quad", 100, np.random.default_rng(0))
+    mesh = meshing.grid("quad", 100, np.random.default_rng(0))
     mesh.points[:, 2] = 0.2 * np.sin(3 * mesh.points[:, 0])
     mesh.outline = [(ids, mesh.points[ids].copy()) for ids, _ in mesh.outline]
     before = mesh.points.copy()
@@ -173,7 +175,7 @@ def test_a_closed_surface_does_no_harm():
 
 
 def test_nothing_to_do_leaves_no_step():
-    mesh = generate.grid("quad", 4)
+    mesh = meshing.grid("quad", 4)
     steps = mesh.steps
     assert len(smoothing.relax(mesh, [])) == 0
     assert mesh.steps == steps

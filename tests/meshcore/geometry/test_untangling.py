@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 from side_checks import assert_on_sides
 
-from meshcore import HalfEdgeMesh, foldover, generate, quality, shapes, untangle
-from meshcore import region as regions
-from meshcore.hopeless import hopeless, hopeless_corners
-from meshcore.sides import Sides
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry import foldover_energy, quality, untangling
+from meshwright_core.geometry import region as regions
+from meshwright_core.geometry.sides import Sides
+from meshwright_core.geometry.unfixable import hopeless, hopeless_corners
 
 
 def mended(mesh, vertices=None):
-    found = untangle.untangle(mesh, vertices)
+    found = untangling.untangle(mesh, vertices)
     fixed = mesh.geometric()
     before = mesh.points[fixed].copy()
     mesh.move(found.vertices, found.positions)
@@ -25,7 +27,7 @@ def mended(mesh, vertices=None):
 @pytest.mark.parametrize("name", ["star", "disc", "square-with-hole", "airfoil"])
 @pytest.mark.parametrize("eps", [1.0, 1e-2])
 def test_gradient_against_finite_differences(kind, name, eps):
-    mesh = generate.mesh_domain(shapes.shape(name), kind)
+    mesh = meshing.mesh_domain(gallery.shape(name), kind)
     region = regions.whole(mesh)
     rng = np.random.default_rng(0)
     free = np.flatnonzero(region.free)
@@ -33,7 +35,7 @@ def test_gradient_against_finite_differences(kind, name, eps):
     unit = 0.3
     targets = np.full(len(region.elements), unit * unit)
     centre = region.points.mean(axis=0)[:2]
-    problem, x = untangle.energy_problem(
+    problem, x = untangling.energy_problem(
         region,
         np.zeros(region.elements.shape, bool),
         (region.points[:, :2] - centre) / unit,
@@ -43,13 +45,13 @@ def test_gradient_against_finite_differences(kind, name, eps):
     )
     x = x + 1e-3  # off the bends of polylines, where there is no gradient
     gradient, unused = np.zeros(len(x)), np.zeros(len(x))
-    value, _ = foldover.energy(problem, x, gradient, eps, 0.5)
+    value, _ = foldover_energy.energy(problem, x, gradient, eps, 0.5)
     assert np.isfinite(value)
     for i in rng.choice(len(x), min(len(x), 20), replace=False):
         step = np.zeros(len(x))
         step[i] = 1e-6
-        above, _ = foldover.energy(problem, x + step, unused, eps, 0.5)
-        below, _ = foldover.energy(problem, x - step, unused, eps, 0.5)
+        above, _ = foldover_energy.energy(problem, x + step, unused, eps, 0.5)
+        below, _ = foldover_energy.energy(problem, x - step, unused, eps, 0.5)
         scale = max(1.0, np.abs(gradient).max())
         assert (above - below) / 2e-6 == pytest.approx(gradient[i], rel=1e-4, abs=1e-5 * scale)
 
@@ -58,7 +60,7 @@ def test_gradient_against_finite_differences(kind, name, eps):
 @pytest.mark.parametrize("start", ["point", "outside", "random", "sides"])
 @pytest.mark.parametrize("name", ["star", "l-shape", "gear", "plate-with-holes", "disc"])
 def test_terrible_starts(kind, start, name):
-    mesh = generate.mesh_domain(shapes.shape(name), kind)
+    mesh = meshing.mesh_domain(gallery.shape(name), kind)
     inside = np.flatnonzero(~mesh.boundary())
     rng = np.random.default_rng(5)
     if start == "point":
@@ -77,14 +79,14 @@ def test_terrible_starts(kind, start, name):
 
 
 def test_the_same_input_gives_the_same_output():
-    mesh = generate.mesh_domain(shapes.shape("gear"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("gear"), "quad")
     mesh.points[~mesh.boundary(), :2] = 0.1
-    first, second = untangle.untangle(mesh), untangle.untangle(mesh)
+    first, second = untangling.untangle(mesh), untangling.untangle(mesh)
     assert first.positions.tobytes() == second.positions.tobytes()
 
 
 def test_untangling_moves_only_what_it_may():
-    mesh = generate.grid("quad", 100)
+    mesh = meshing.grid("quad", 100)
     middle = np.flatnonzero(~mesh.boundary())
     near = middle[np.linalg.norm(mesh.points[middle] - [0.5, 0.5, 0], axis=1) < 0.25]
     mesh.points[near] = [0.9, 0.5, 0]
@@ -96,12 +98,12 @@ def test_untangling_moves_only_what_it_may():
 def test_a_single_quad_at_a_reflex_corner_is_hopeless():
     points = np.array([[0, 0], [2, 0], [0.5, 0.5], [0, 2]])
     mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 2, 3]])
-    found = untangle.untangle(mesh)
+    found = untangling.untangle(mesh)
     assert found.inverted.tolist() == found.hopeless.tolist() == [0]
 
 
 def test_a_flat_boundary_vertex_is_hopeless_and_the_rest_is_mended():
-    mesh = generate.grid("quad", 64)
+    mesh = meshing.grid("quad", 64)
     slides = np.flatnonzero((mesh.points[:, 1] == 0) & ~mesh.geometric())
     vertex = int(slides[len(slides) // 2])
     # a flip takes the only edge inwards from a boundary vertex: three corners on one line
@@ -125,7 +127,7 @@ def test_a_flat_boundary_vertex_is_hopeless_and_the_rest_is_mended():
 def test_a_doublet_is_hopeless():
     points = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1.5, 0.5]])
     mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 2, 4], [0, 4, 2, 3]])
-    found = untangle.untangle(mesh)
+    found = untangling.untangle(mesh)
     assert set(found.inverted) <= {0, 1}
     assert found.hopeless.tolist() == found.inverted.tolist()
 
@@ -147,7 +149,7 @@ def test_boundary_vertices_of_one_quad_find_the_bends_of_a_circle(pieces, turn):
 
 
 def test_a_circle_seen_from_outside_is_hopeless_for_a_single_quad():
-    mesh = generate.mesh_domain(shapes.shape("annulus"), "tri")
+    mesh = meshing.mesh_domain(gallery.shape("annulus"), "tri")
     inner = min(mesh.boundary_loops(), key=len)
     region = regions.whole(mesh)
     assert not hopeless_corners(region).any()
@@ -158,11 +160,11 @@ def test_a_circle_seen_from_outside_is_hopeless_for_a_single_quad():
         if mesh.check("flip", h)
     )
     mesh.apply("flip", h)
-    assert len(hopeless(mesh)) == len(untangle.untangle(mesh).inverted)
+    assert len(hopeless(mesh)) == len(untangling.untangle(mesh).inverted)
 
 
 def test_locked_vertices_stay():
-    mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
     inside = int(np.flatnonzero(~mesh.boundary())[0])
     mesh.set_locked(inside)
     before = mesh.points[inside].copy()
@@ -175,7 +177,7 @@ def test_locked_vertices_stay():
 
 def test_a_tilted_plane_is_untangled_in_its_plane():
     turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
-    flat = generate.mesh_domain(shapes.shape("l-shape"), "quad")
+    flat = meshing.mesh_domain(gallery.shape("l-shape"), "quad")
     mesh = HalfEdgeMesh.from_elements(flat.points @ turn.T + 3.0, flat.elements(), flat.geometric())
     mesh.points[~mesh.boundary()] = mesh.points[0]
     assert len(mended(mesh).inverted) == 0
@@ -183,18 +185,18 @@ def test_a_tilted_plane_is_untangled_in_its_plane():
 
 
 def test_a_surface_is_left_alone():
-    mesh = generate.grid("quad", 16)
+    mesh = meshing.grid("quad", 16)
     mesh.points[:, 2] = mesh.points[:, 0] ** 2
-    found = untangle.untangle(mesh)
+    found = untangling.untangle(mesh)
     assert len(found.vertices) == 0
     assert found.starts == 0
 
 
 def test_ten_thousand_elements_in_seconds():
-    mesh = generate.grid("quad", 10_000)
+    mesh = meshing.grid("quad", 10_000)
     inside = ~mesh.boundary()
     mesh.points[inside, :2] = np.random.default_rng(0).random((inside.sum(), 2))
     begin = time.perf_counter()
-    found = untangle.untangle(mesh)
+    found = untangling.untangle(mesh)
     assert len(found.inverted) == 0
     assert time.perf_counter() - begin < 10.0

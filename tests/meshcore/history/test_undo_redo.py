@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from meshcore import HalfEdgeMesh, MeshError, OperationRefused, archive, generate, shapes
-from meshcore.operations import of_kind
-from meshcore.steps import pack, unpack
+from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.history import step_archive
+from meshwright_core.history.packed_steps import pack, unpack
+from meshwright_core.operations.catalogue import of_kind
 
 
 def state(mesh: HalfEdgeMesh) -> list[bytes]:
@@ -45,14 +47,14 @@ def wander(mesh: HalfEdgeMesh, steps: int, seed: int = 0) -> list[list[bytes]]:
 
 @pytest.fixture
 def small_pieces(monkeypatch):
-    monkeypatch.setattr(archive, "PIECE", 4)
-    monkeypatch.setattr(archive, "LOOSE", 16)
+    monkeypatch.setattr(step_archive, "PIECE", 4)
+    monkeypatch.setattr(step_archive, "LOOSE", 16)
 
 
 @pytest.mark.usefixtures("small_pieces")
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_packed_steps_are_undone_and_redone_to_the_bit(kind):
-    mesh = generate.mesh_domain(shapes.shape("star"), kind)
+    mesh = meshing.mesh_domain(gallery.shape("star"), kind)
     states = [state(mesh)]
     for part in range(8):
         states += wander(mesh, 15, part)
@@ -74,7 +76,7 @@ def test_packed_steps_are_undone_and_redone_to_the_bit(kind):
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_what_was_undone_is_cut_out_and_grafted_on_again(kind):
-    mesh = generate.mesh_domain(shapes.shape("star"), kind)
+    mesh = meshing.mesh_domain(gallery.shape("star"), kind)
     wander(mesh, 10)
     fork, end = state(mesh), wander(mesh, 20, 1)[-1]
     for _ in range(20):
@@ -101,7 +103,7 @@ def test_what_was_undone_is_cut_out_and_grafted_on_again(kind):
 
 
 def test_the_last_step_can_be_done_again_on_another_copy():
-    mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
     other = mesh.copy()
     other.reserve(50, 50)
     for seed in range(30):
@@ -116,7 +118,7 @@ def test_the_last_step_can_be_done_again_on_another_copy():
 
 
 def test_a_refused_or_idle_edit_leaves_what_can_be_redone():
-    mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
     end = wander(mesh, 6)[-1]
     for _ in range(4):
         mesh.undo()
@@ -139,7 +141,7 @@ def test_a_refused_or_idle_edit_leaves_what_can_be_redone():
 
 
 def test_an_edit_drops_what_was_grafted():
-    mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
     wander(mesh, 4)
     for _ in range(4):
         mesh.undo()
@@ -150,7 +152,7 @@ def test_an_edit_drops_what_was_grafted():
 
 
 def test_a_copy_may_have_the_history():
-    mesh = generate.mesh_domain(shapes.shape("star"), "tri")
+    mesh = meshing.mesh_domain(gallery.shape("star"), "tri")
     first, last = state(mesh), wander(mesh, 30)[-1]
     copy = mesh.copy(history=True)
     while copy.undo():
@@ -161,7 +163,7 @@ def test_a_copy_may_have_the_history():
 
 
 def test_packing_keeps_what_is_off_the_plane_and_refuses_what_does_not_fit():
-    mesh = generate.mesh_domain(shapes.shape("star"), "tri")
+    mesh = meshing.mesh_domain(gallery.shape("star"), "tri")
     mesh.move([3, 5], np.array([(0.5, 0.25, -0.0), (0.5, 0.5, 2.0)]))
     steps = mesh.last_step()
     assert steps.coordinates.shape == (2, 3)

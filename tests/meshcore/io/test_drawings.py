@@ -8,8 +8,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from meshcore import MeshError, generate, geometry_files
-from meshcore.domain import Domain
+from meshwright_core import MeshError
+from meshwright_core.domains import meshing
+from meshwright_core.domains.domain import Domain
+from meshwright_core.io import drawings
 
 
 def dxf(*entities: str, sections: str = "") -> str:
@@ -50,7 +52,7 @@ def opened(tmp_path):
     def read(name: str, content: str | bytes, **options: float) -> Domain:
         path = tmp_path / name
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        return geometry_files.read_domain(path, **options)
+        return drawings.read_domain(path, **options)
 
     return read
 
@@ -234,7 +236,7 @@ def test_corner_angle_and_curve_step(opened):
 def test_domains_from_files_can_be_meshed(opened):
     for name, content in [("a.dxf", PLATE), ("a.svg", svg(f'<path d="{SLOT}"/>')), ("a.wkt", WKT)]:
         for kind in ("tri", "quad"):
-            mesh = generate.mesh_domain(opened(name, content), kind)
+            mesh = meshing.mesh_domain(opened(name, content), kind)
             mesh.validate()
             assert mesh.n_elements > 10
 
@@ -316,12 +318,12 @@ def test_bad_file_is_refused_in_one_sentence(refused, name):
 
 def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(MeshError, match="no such file"):
-        geometry_files.read_domain(tmp_path / "missing.dxf")
+        drawings.read_domain(tmp_path / "missing.dxf")
     (tmp_path / "folder.svg").mkdir()
     with pytest.raises(MeshError, match="a folder"):
-        geometry_files.read_domain(tmp_path / "folder.svg")
+        drawings.read_domain(tmp_path / "folder.svg")
     with pytest.raises(MeshError, match="no name for a file"):
-        geometry_files.read_domain("a\0.dxf")
+        drawings.read_domain("a\0.dxf")
 
 
 def test_too_much_is_refused(refused):

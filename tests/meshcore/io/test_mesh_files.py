@@ -13,10 +13,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import meshcore
-from meshcore import HalfEdgeMesh, MeshError, generate, shapes
-from meshcore.formats import FORMATS
-from meshcore.io import endings
+import meshwright_core
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.io.formats import FORMATS
+from meshwright_core.io.mesh_files import endings
 
 HERE = [
     ending
@@ -38,7 +39,7 @@ def meshes():
     """An airfoil of each kind: round sides without corners, a hole, and dead slots."""
     made = {}
     for kind in ("tri", "quad"):
-        points, elements, geometric = generate.mesh_arrays(shapes.shape("airfoil"), kind)
+        points, elements, geometric = meshing.mesh_arrays(gallery.shape("airfoil"), kind)
         points = np.vstack([[[9.0, 9.0]], points, [[8.0, 8.0]]])
         geometric = np.concatenate([[False], geometric, [False]])
         mesh = HalfEdgeMesh.from_elements(points, elements + 1, geometric)
@@ -51,7 +52,7 @@ def meshes():
 
 def refusal(path, **options) -> str:
     with pytest.raises(MeshError) as error:
-        meshcore.read(path, **options)
+        meshwright_core.read(path, **options)
     message = str(error.value)
     assert "\n" not in message
     assert message.startswith(str(path))
@@ -68,8 +69,8 @@ def polygons(mesh):
 def test_round_trip(ending, kind, name, meshes, tmp_path, capfd):
     mesh = meshes[kind]
     path = tmp_path / f"mesh{ending}"
-    meshcore.write(path, mesh)
-    again = meshcore.read(path)
+    meshwright_core.write(path, mesh)
+    again = meshwright_core.read(path)
     again.validate()
     assert again.kind == kind
     assert os.listdir(tmp_path) == [path.name]
@@ -97,32 +98,32 @@ def test_round_trip(ending, kind, name, meshes, tmp_path, capfd):
 )
 def test_straight_sides_keep_their_optimum_in_every_format(tmp_path_factory, sides, seed, way):
     ending, kind, _ = way
-    mesh = generate.benchmark_mesh(kind, sides, np.random.default_rng(seed))
+    mesh = meshing.benchmark_mesh(kind, sides, np.random.default_rng(seed))
     path = tmp_path_factory.mktemp("round") / f"mesh{ending}"
-    meshcore.write(path, mesh)
-    again = meshcore.read(path)
+    meshwright_core.write(path, mesh)
+    again = meshwright_core.read(path)
     assert (again.score, again.optimum) == (mesh.score, mesh.optimum)
     assert again.geometric().sum() == mesh.geometric().sum()
 
 
 def test_corner_angle_raises_the_bar_for_corners(meshes, tmp_path):
     path = tmp_path / "wing.obj"
-    meshcore.write(path, meshes["tri"])
-    assert meshcore.read(path).geometric().sum() > 15
-    assert meshcore.read(path, corner_angle=89).geometric().sum() == 5
+    meshwright_core.write(path, meshes["tri"])
+    assert meshwright_core.read(path).geometric().sum() > 15
+    assert meshwright_core.read(path, corner_angle=89).geometric().sum() == 5
 
 
 def test_formats_that_hold_no_quads_say_so(meshes, tmp_path):
     for ending in (".stl", ".glb", ".xml"):
         with pytest.raises(MeshError, match=r"files hold no quads\.$"):
-            meshcore.write(tmp_path / f"mesh{ending}", meshes["quad"])
+            meshwright_core.write(tmp_path / f"mesh{ending}", meshes["quad"])
     assert os.listdir(tmp_path) == []
 
 
 def test_packages_that_a_format_needs_are_named(meshes, tmp_path, monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(MeshError, match="need the package h5py, which is not installed"):
-        meshcore.write(tmp_path / "mesh.xdmf", meshes["quad"])
+        meshwright_core.write(tmp_path / "mesh.xdmf", meshes["quad"])
 
 
 def test_surfaces_out_of_the_plane(tmp_path):
@@ -130,10 +131,10 @@ def test_surfaces_out_of_the_plane(tmp_path):
     faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
     mesh = HalfEdgeMesh.from_elements(tetrahedron, faces)
     for ending in (".ply", ".stl", ".vtk"):
-        meshcore.write(tmp_path / f"solid{ending}", mesh)
-        assert meshcore.read(tmp_path / f"solid{ending}").euler == 2
+        meshwright_core.write(tmp_path / f"solid{ending}", mesh)
+        assert meshwright_core.read(tmp_path / f"solid{ending}").euler == 2
     with pytest.raises(MeshError, match="plane z = 0"):
-        meshcore.write(tmp_path / "solid.su2", mesh)
+        meshwright_core.write(tmp_path / "solid.su2", mesh)
     assert not (tmp_path / "solid.su2").exists()
 
 
@@ -155,17 +156,17 @@ def signed_areas(mesh):
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 @pytest.mark.parametrize("share", [0.3, 1.0])
 def test_orientation_is_mended(kind, share, tmp_path):
-    points, elements, _ = generate.grid_arrays(kind, 50)
+    points, elements, _ = meshing.grid_arrays(kind, 50)
     turned = np.random.default_rng(3).random(len(elements)) < share
     faces = [e[::-1] if t else e for e, t in zip(elements.tolist(), turned, strict=True)]
     points = np.column_stack([points, np.zeros(len(points))])
-    mesh = meshcore.read(put_obj(tmp_path / "mixed.obj", points.tolist(), faces))
+    mesh = meshwright_core.read(put_obj(tmp_path / "mixed.obj", points.tolist(), faces))
     assert (signed_areas(mesh) > 0).all()
 
 
 def test_each_part_is_oriented_for_itself(tmp_path):
     points = [*SQUARE, *([x + 3, y, 0] for x, y, _ in SQUARE)]
-    mesh = meshcore.read(put_obj(tmp_path / "two.obj", points, [[0, 3, 2, 1], [4, 5, 6, 7]]))
+    mesh = meshwright_core.read(put_obj(tmp_path / "two.obj", points, [[0, 3, 2, 1], [4, 5, 6, 7]]))
     assert (signed_areas(mesh) > 0).all()
 
 
@@ -184,7 +185,7 @@ def test_moebius_strip_cannot_be_oriented(tmp_path):
 
 def test_unused_points_are_dropped(tmp_path):
     points = [[7, 7, 7], *SQUARE, [float("nan")] * 3]
-    mesh = meshcore.read(put_obj(tmp_path / "loose.obj", points, [[1, 2, 3, 4]]))
+    mesh = meshwright_core.read(put_obj(tmp_path / "loose.obj", points, [[1, 2, 3, 4]]))
     assert mesh.n_vertices == 4
     assert mesh.points[:4].tolist() == SQUARE
 
@@ -196,14 +197,14 @@ def test_obj_as_others_write_it(tmp_path):
         + "".join(f"v {x} {y} {z} 1.0\n" for x, y, z in SQUARE)
         + "vt 0 0\nvn 0 0 1\ns off\nusemtl m\ng part\nf -4/1/1 -3//1 \\\n -2/1\nf 1 3 4\nl 1 2\n"
     )
-    mesh = meshcore.read(path)
+    mesh = meshwright_core.read(path)
     assert mesh.elements().tolist() == [[0, 1, 2], [0, 2, 3]]
 
 
 def test_off_as_others_write_it(tmp_path):
     path = tmp_path / "other.off"
     path.write_text("OFF 4 2 5 # counts\n\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3\n")
-    assert meshcore.read(path).n_elements == 2
+    assert meshwright_core.read(path).n_elements == 2
 
 
 def test_binary_stl(tmp_path):
@@ -213,7 +214,7 @@ def test_binary_stl(tmp_path):
     whole = b"solid but binary".ljust(80) + (2).to_bytes(4, "little") + facets.tobytes()
     path = tmp_path / "plate.stl"
     path.write_bytes(whole)
-    mesh = meshcore.read(path)
+    mesh = meshwright_core.read(path)
     assert (mesh.n_vertices, mesh.n_elements) == (4, 2)
     path.write_bytes(b"binary".ljust(80) + whole[80:-20])
     assert "cut off" in refusal(path)
@@ -232,7 +233,7 @@ def test_vtk_polygonal_data(version, tmp_path):
         "0 0 0 1 0 0 1 1 0\n0 1 0 2 0 0 2 1 0\nMETADATA\nINFORMATION 0\n\n"
         f"{polygons}POINT_DATA 6\nNORMALS n float\n" + "0 0 1\n" * 6
     )
-    assert meshcore.read(path).elements().tolist() == [[0, 1, 2, 3], [1, 4, 5, 2]]
+    assert meshwright_core.read(path).elements().tolist() == [[0, 1, 2, 3], [1, 4, 5, 2]]
     path.write_text(path.read_text().partition("POINT_DATA")[0][:-6])
     assert "cut off" in refusal(path)
 
@@ -252,7 +253,7 @@ def test_foreign_point_data_is_not_taken_for_ours(tmp_path):
     data = {"geometric": np.array([0.5, 0, 1, 0]), "desired_degree": np.array([-1, 2, 2, 2])}
     foreign = meshio.Mesh(np.array(SQUARE, float), [("quad", [[0, 1, 2, 3]])], point_data=data)
     foreign.write(tmp_path / "foreign.vtu")
-    mesh = meshcore.read(tmp_path / "foreign.vtu")
+    mesh = meshwright_core.read(tmp_path / "foreign.vtu")
     assert mesh.geometric().sum() == 4
     assert mesh.desired()[:4].tolist() == [2, 2, 2, 2]
 
@@ -279,7 +280,7 @@ def test_missing_folder_empty_text(ending, tmp_path):
 @pytest.mark.parametrize(("ending", "kind", "name"), WAYS)
 def test_cut_off_files(ending, kind, name, tmp_path, capfd):
     path = tmp_path / f"whole{ending}"
-    meshcore.write(path, generate.benchmark_mesh(kind, 8, np.random.default_rng(4)))
+    meshwright_core.write(path, meshing.benchmark_mesh(kind, 8, np.random.default_rng(4)))
     whole = path.read_bytes()
     cut = tmp_path / f"cut{ending}"
     for length in np.linspace(1, 0.9 * len(whole), 12).astype(int):
@@ -329,15 +330,15 @@ def test_odd_paths(tmp_path, meshes):
     assert "holds a shape" in refusal(put_obj(tmp_path / "shape.json", [], [[0]]))
     assert "'.foo'" in refusal(put_obj(tmp_path / "mesh.foo", [], [[0]]))
     with pytest.raises(MeshError, match="no name for a file"):
-        meshcore.read("mesh\0.vtk")
+        meshwright_core.read("mesh\0.vtk")
     with pytest.raises(MeshError, match="no name for a file"):
-        meshcore.write("mesh\0.vtk", meshes["tri"])
+        meshwright_core.write("mesh\0.vtk", meshes["tri"])
     with pytest.raises(MeshError, match=r"'\.foo' is not one of a mesh file"):
-        meshcore.write(tmp_path / "mesh.foo", meshes["tri"])
+        meshwright_core.write(tmp_path / "mesh.foo", meshes["tri"])
     os.mkfifo(tmp_path / "pipe.vtk")
     assert "not an ordinary file" in refusal(tmp_path / "pipe.vtk")
     with pytest.raises(MeshError, match="not an ordinary file"):
-        meshcore.write(tmp_path / "pipe.vtk", meshes["tri"])
+        meshwright_core.write(tmp_path / "pipe.vtk", meshes["tri"])
 
 
 # -- writing whole or not at all -------------------------------------------------------------------
@@ -345,7 +346,7 @@ def test_odd_paths(tmp_path, meshes):
 
 def assert_old_file_is_whole(path, old, mesh, match):
     with pytest.raises(MeshError, match=match) as error:
-        meshcore.write(path, mesh)
+        meshwright_core.write(path, mesh)
     assert str(error.value).startswith(str(path))
     assert "\n" not in str(error.value)
     assert path.read_bytes() == old
@@ -366,9 +367,9 @@ def files_no_longer_than(size):
 @pytest.mark.parametrize(("ending", "kind", "name"), WAYS)
 def test_old_file_survives_a_disk_that_takes_no_more(ending, kind, name, tmp_path, monkeypatch):
     path = tmp_path / f"mesh{ending}"
-    meshcore.write(path, generate.grid(kind, 4))
+    meshwright_core.write(path, meshing.grid(kind, 4))
     old = path.read_bytes()
-    large = generate.grid(kind, 400, np.random.default_rng(0))
+    large = meshing.grid(kind, 400, np.random.default_rng(0))
     with files_no_longer_than(4096):
         assert_old_file_is_whole(path, old, large, "cannot be written")
 
@@ -382,7 +383,7 @@ def test_old_file_survives_a_disk_that_takes_no_more(ending, kind, name, tmp_pat
 def test_output_folder_that_does_not_exist(meshes, tmp_path):
     path = tmp_path / "missing" / "mesh.vtk"
     with pytest.raises(MeshError, match=r"the folder .*missing does not exist"):
-        meshcore.write(path, meshes["tri"])
+        meshwright_core.write(path, meshes["tri"])
     assert os.listdir(tmp_path) == []
 
 
@@ -390,13 +391,13 @@ def test_output_that_is_a_folder(meshes, tmp_path):
     path = tmp_path / "mesh.vtk"
     path.mkdir()
     with pytest.raises(MeshError, match="folder, not a file"):
-        meshcore.write(path, meshes["tri"])
+        meshwright_core.write(path, meshes["tri"])
     assert os.listdir(tmp_path) == ["mesh.vtk"]
 
 
 def test_interrupt_leaves_nothing_behind(meshes, tmp_path, monkeypatch):
     path = tmp_path / "mesh.obj"
-    meshcore.write(path, meshes["tri"])
+    meshwright_core.write(path, meshes["tri"])
     old = path.read_bytes()
 
     def interrupt(descriptor):
@@ -404,7 +405,7 @@ def test_interrupt_leaves_nothing_behind(meshes, tmp_path, monkeypatch):
 
     monkeypatch.setattr(os, "fsync", interrupt)
     with pytest.raises(KeyboardInterrupt):
-        meshcore.write(path, meshes["quad"])
+        meshwright_core.write(path, meshes["quad"])
     assert path.read_bytes() == old
     assert os.listdir(tmp_path) == ["mesh.obj"]
 
@@ -412,13 +413,13 @@ def test_interrupt_leaves_nothing_behind(meshes, tmp_path, monkeypatch):
 def test_links_are_followed_and_permissions_kept(meshes, tmp_path):
     (tmp_path / "store").mkdir()
     target, link = tmp_path / "store" / "mesh.obj", tmp_path / "link.obj"
-    meshcore.write(target, meshes["tri"])
+    meshwright_core.write(target, meshes["tri"])
     target.chmod(0o640)
     link.symlink_to(target)
-    meshcore.write(link, meshes["quad"])
+    meshwright_core.write(link, meshes["quad"])
     assert link.is_symlink()
     assert target.stat().st_mode & 0o777 == 0o640
-    assert meshcore.read(target).kind == "quad"
+    assert meshwright_core.read(target).kind == "quad"
 
 
 def test_mesh_libraries_are_not_imported_with_the_package():

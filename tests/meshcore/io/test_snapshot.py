@@ -2,18 +2,21 @@
 
 import numpy as np
 import pytest
-from test_history import state, wander
+from test_undo_redo import state, wander
 
-from meshcore import HalfEdgeMesh, MeshError, archive, generate, shapes, snapshot
-from meshcore.steps import WRITE_KINDS
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.history import step_archive
+from meshwright_core.history.packed_steps import WRITE_KINDS
+from meshwright_core.io import snapshot
 
 
 @pytest.fixture(params=["tri", "quad"])
 def mesh(request, monkeypatch) -> HalfEdgeMesh:
     """In the middle of a long history, part of it packed."""
-    monkeypatch.setattr(archive, "PIECE", 4)
-    monkeypatch.setattr(archive, "LOOSE", 16)
-    made = generate.mesh_domain(shapes.shape("square-with-hole"), request.param)
+    monkeypatch.setattr(step_archive, "PIECE", 4)
+    monkeypatch.setattr(step_archive, "LOOSE", 16)
+    made = meshing.mesh_domain(gallery.shape("square-with-hole"), request.param)
     made.degree_cap = 9
     for part in range(4):
         wander(made, 15, part)

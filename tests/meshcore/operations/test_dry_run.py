@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from tiny_meshes import faces, grid, ring, square_of_triangles
 
-from meshcore import HalfEdgeMesh, OperationRefused, generate, shapes
-from meshcore.operations import of_kind
-from meshcore.trial import trial
+from meshwright_core import HalfEdgeMesh, OperationRefused
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.operations.catalogue import of_kind
+from meshwright_core.operations.dry_run import trial
 
 
 def _pairs(segments):
@@ -95,7 +96,7 @@ def test_a_refused_operation_says_why():
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_trials_tell_the_truth_and_change_nothing(kind):
-    mesh = generate.mesh_domain(shapes.shape("star"), kind)
+    mesh = meshing.mesh_domain(gallery.shape("star"), kind)
     rng = np.random.default_rng(3)
     infos = of_kind(kind)
     seen_once = set()

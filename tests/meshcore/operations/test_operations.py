@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tiny_meshes import faces, fan, grid, ring, square_of_triangles
 
-from meshcore import HalfEdgeMesh, MeshError, Operation, OperationRefused, operations
+from meshwright_core import HalfEdgeMesh, MeshError, Operation, OperationRefused
+from meshwright_core.operations import catalogue
 
 
 def _apply(mesh, operation, a, b):
@@ -221,10 +222,10 @@ def test_refusals_that_are_no_operation_of_the_mesh():
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_the_catalogue_names_every_operation_of_the_kind(kind):
     mesh = square_of_triangles() if kind == "tri" else grid(2)
-    names = [info.operation for info in operations.of_kind(kind)]
+    names = [info.operation for info in catalogue.of_kind(kind)]
     assert set(mesh.allowed(0)) == set(names)
     assert all(isinstance(name, Operation) for name in names)
-    assert len({info.key for info in operations.of_kind(kind)}) == len(names)
+    assert len({info.key for info in catalogue.of_kind(kind)}) == len(names)
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 
-from meshcore import HalfEdgeMesh, OperationRefused
-from meshcore.fuzz import agree, face_list, snapshot, start_mesh
-from meshcore.oracle import Refused
+from meshwright_core import HalfEdgeMesh, OperationRefused
+from meshwright_core.testing.face_list_oracle import Refused
+from meshwright_core.testing.fuzzing import agree, face_list, snapshot, start_mesh
 
 
 class _Machine(RuleBasedStateMachine):

@@ -13,8 +13,8 @@ import tempfile
 import time
 from typing import Any
 
-from app.benchmarks.desktop.display import display
-from app.report import Update
+from meshwright.benchmarks.desktop.display import display
+from meshwright.console import Update
 
 SUMMARY = "start of the window, and its answers to mouse and keys"
 SIZES = (1_000, 10_000, 100_000)
@@ -43,7 +43,7 @@ def run(
     """
     with display() as environment:
         update(0, "kernels")
-        for module in ("meshcore.warm_up", "agent.warm_up"):
+        for module in ("meshwright_core.warm_up", "meshwright_agent.warm_up"):
             subprocess.run([sys.executable, "-m", module], check=True, capture_output=True)
         update(1, "start")
         _probe("start", environment)  # warm: the second start is the one that counts
@@ -61,8 +61,10 @@ def run(
 
 
 def _probe(what: str, environment: dict[str, str], *numbers: int) -> dict[str, Any]:
-    """Run one of the measurements of :mod:`app.benchmarks.desktop.probe` in a fresh process."""
-    command = [sys.executable, "-m", "app.benchmarks.desktop.probe", what, repr(time.time())]
+    """Run one of the measurements of :mod:`meshwright.benchmarks.desktop.probe` in a fresh
+    process.
+    """
+    command = [sys.executable, "-m", "meshwright.benchmarks.desktop.probe", what, repr(time.time())]
     command += [str(number) for number in numbers]
     with tempfile.TemporaryDirectory() as home:  # nobody's settings are read or written
         apart = {**environment, "XDG_CONFIG_HOME": home, "XDG_STATE_HOME": home}

@@ -27,7 +27,7 @@ def start(began: float, *numbers: int) -> dict[str, Any]:
     """Open the window on the star and note when what is there."""
     from qtpy.QtCore import QEvent, QObject
 
-    from app.desktop.application import application, open_window
+    from meshwright.desktop.main_window.startup import application, open_window
 
     result: dict[str, Any] = {}
 
@@ -72,8 +72,8 @@ def answer(began: float, size: int, seed: int) -> dict[str, Any]:
 
 def play(began: float, size: int, seed: int) -> dict[str, Any]:
     """Let the shipped policy play on a mesh of ``size`` quads while the mouse moves."""
-    from app.assistant import State
-    from app.policy_files import shipped
+    from meshwright.assistant.assistant import State
+    from meshwright.assistant.policy_catalogue import shipped
 
     mesh = scrambled(size, seed, every=5)
     app, window = _open(mesh)
@@ -106,12 +106,12 @@ def play(began: float, size: int, seed: int) -> dict[str, Any]:
 
 
 def _open(mesh: Any) -> tuple[Any, Any]:
-    from app.desktop.application import application
-    from app.desktop.window import MainWindow
-    from app.document import Document
-    from meshcore import compiled
+    from meshwright.desktop.main_window.startup import application
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright.document.document import Document
+    from meshwright_core.core import compilation
 
-    compiled.warm()
+    compilation.warm()
     app = application()
     window = MainWindow(Document(mesh), ready=True)
     window.resize(1280, 800)
@@ -124,11 +124,13 @@ def _open(mesh: Any) -> tuple[Any, Any]:
 
 def scrambled(size: int, seed: int, every: int = SCRAMBLES) -> Any:
     """A square grid of ``size`` quads after random flips, smoothed."""
-    from meshcore import compiled, generate, smoothing
+    from meshwright_core.core import compilation
+    from meshwright_core.domains import meshing
+    from meshwright_core.geometry import smoothing
 
-    compiled.warm()
+    compilation.warm()
     rng = np.random.default_rng(seed)
-    mesh = generate.grid("quad", size)
+    mesh = meshing.grid("quad", size)
     for h in rng.integers(0, 4 * mesh.n_elements, size // every).tolist():
         if mesh.check("flip_left", h):
             mesh.apply("flip_left", h)

@@ -11,11 +11,11 @@ import statistics
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.benchmarks.notebook.chromium import browser
-from app.benchmarks.notebook.lab import LabNotebook
-from app.benchmarks.notebook.probe import NOTING, Probe
-from app.benchmarks.notebook.servers import jupyterlab
-from app.report import Update
+from meshwright.benchmarks.notebook.chromium import browser
+from meshwright.benchmarks.notebook.jupyterlab import LabNotebook
+from meshwright.benchmarks.notebook.probe import NOTING, Probe
+from meshwright.benchmarks.notebook.servers import jupyterlab
+from meshwright.console import Update
 
 SUMMARY = "the notebook's widget in JupyterLab: click to redrawn, panning, bytes sent"
 SIZES = (100, 1_000, 10_000)

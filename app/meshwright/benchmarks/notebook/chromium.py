@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from app.benchmarks.notebook.servers import need
-from app.report import UserError
+from meshwright.benchmarks.notebook.servers import need
+from meshwright.console import UserError
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from app.benchmarks.notebook.servers import Server
+from meshwright.benchmarks.notebook.servers import Server
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -9,8 +9,8 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-from app.benchmarks.notebook.card import Card
-from app.benchmarks.notebook.lab import LabNotebook
+from meshwright.benchmarks.notebook.jupyterlab import LabNotebook
+from meshwright.benchmarks.notebook.widget_driver import Card
 
 NOTING = """(() => {
     // what the socket carries and when, when the mouse was released, and what runs in a frame
@@ -81,8 +81,8 @@ COUNT = """root => {
 CODE = """
 import time
 import numpy as np
-from app.benchmarks.desktop.probe import scrambled
-from app.notebook import MeshWidget
+from meshwright.benchmarks.desktop.probe import scrambled
+from meshwright.notebook import MeshWidget
 mesh = scrambled({size}, {seed})
 widget = MeshWidget(mesh)
 rng, spent = np.random.default_rng({seed}), []

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from app.report import UserError
+from meshwright.console import UserError
 
 PATIENCE = 90.0
 """Seconds until a server must answer."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 from typing import Protocol
 
-from app.commands import (
+from meshwright.cli.commands import (
     bench,
     demo,
     evaluate,
@@ -22,7 +22,7 @@ from app.commands import (
     train,
     view,
 )
-from app.report import Report
+from meshwright.console import Report
 
 
 class Command(Protocol):

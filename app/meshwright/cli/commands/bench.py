@@ -11,8 +11,8 @@ import time
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from app import inputs
-from app.report import Report, UserError, table
+from meshwright.cli import arguments as inputs
+from meshwright.console import Report, UserError, table
 
 SUMMARY = "measure the program itself on this machine"
 DESCRIPTION = "Run a suite of measurements and report the numbers."
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Run the suite, or list the suites."""
-    from app import benchmarks
+    from meshwright import benchmarks
 
     names = benchmarks.names()
     if arguments.suite is None:

@@ -6,12 +6,13 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app import display, inputs
-from app.outputs import checked_output
-from app.report import Report
+from meshwright.cli import arguments as inputs
+from meshwright.cli import display_check
+from meshwright.cli.output_files import checked_output
+from meshwright.console import Report
 
 if TYPE_CHECKING:
-    from meshcore import HalfEdgeMesh
+    from meshwright_core import HalfEdgeMesh
 
 SUMMARY = "open a shape with the agent ready; without a display, write a picture of its run"
 DESCRIPTION = (
@@ -39,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Open the window where that is possible and wanted, else write the picture."""
     output = _checked(arguments.output) if arguments.output else None
-    probe = None if output else display.Probe()
+    probe = None if output else display_check.Probe()
     domain = inputs.read_domain(arguments.shape)
     mesh = inputs.make_mesh(domain, arguments.kind)
     name = domain.name or Path(arguments.shape).stem
@@ -47,8 +48,8 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     if output or problem:
         _picture(mesh, name, output or _checked(PICTURE), problem, report)
         return
-    from app import desktop
-    from app.document import Document
+    from meshwright import desktop
+    from meshwright.document.document import Document
 
     code = desktop.run(Document(mesh, name=name), demo=True)
     if code != 0:
@@ -62,12 +63,12 @@ def _checked(path: str) -> Path:
 
 
 def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: Report) -> None:
-    from app import filmstrip
-    from app.commands.improve import ROLLOUTS, normalised_return
-    from app.report import one_line
+    from meshwright.cli.commands.improve import ROLLOUTS, normalised_return
+    from meshwright.console import one_line
+    from meshwright.graphics.export import filmstrip
 
     policy = inputs.read_policy(None, mesh.kind)
-    from agent import solver
+    from meshwright_agent.search import solver
 
     inputs.prepare_agent(report)
     with report.progress("the policy is at work", ROLLOUTS) as update:

@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app import evaluation_table, inputs
-from app.outputs import checked_folder, checked_output
-from app.report import Report, UserError
+from meshwright.cli import arguments as inputs
+from meshwright.cli.output_files import checked_folder, checked_output
+from meshwright.console import Report, UserError
+from meshwright.experiments import evaluation_table
 
 if TYPE_CHECKING:
-    from agent.assessment import Assessment
-    from agent.policies import Policy
+    from meshwright_agent.evaluation.table_row import Assessment
+    from meshwright_agent.policy.policy_files import Policy
 
 SUMMARY = "measure a policy on random polygons: the paper's tables and figures"
 DESCRIPTION = (
@@ -95,10 +96,10 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     folder = checked_folder(arguments.figure, "--figure") if arguments.figure else None
     noted = _checked_note(arguments) if arguments.note else None
     policy = inputs.read_policy(arguments.policy, arguments.kind)
-    from agent import assessment, evaluate, paper
+    from meshwright_agent.evaluation import paper_results, rollouts, table_row
 
-    table = [row.sides for row in paper.ROWS[arguments.kind]]
-    wanted = assessment.Wanted(
+    table = [row.sides for row in paper_results.ROWS[arguments.kind]]
+    wanted = table_row.Wanted(
         arguments.meshes,
         arguments.rollouts,
         arguments.seed,
@@ -106,16 +107,16 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         arguments.race or (BRIEF if folder else None),
         arguments.shorten,
     )
-    played = evaluate.longer(policy, arguments.steps)
+    played = rollouts.longer(policy, arguments.steps)
     found = []
     for sides in table if arguments.table else [arguments.sides]:
         title = evaluation_table.sides(sides)
         with report.progress(title, arguments.meshes) as update:
             try:
-                row = assessment.assess(
+                row = table_row.assess(
                     played, sides, wanted, lambda what, done, update=update: update(done, what)
                 )
-            except evaluate.NothingToDo as error:
+            except rollouts.NothingToDo as error:
                 raise UserError(f"{title}, {arguments.meshes} meshes: {error}") from error
         found.append(row)
     given = {
@@ -143,7 +144,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path) -> list[Path]:
     """Draw all figures; returns their paths."""
-    from agent import evaluate, figures, paper, strips
+    from meshwright_agent.evaluation import figures, paper_results, rollout_strip, rollouts
 
     folder.mkdir(exist_ok=True)
     kind, written = policy.kind, []
@@ -160,28 +161,32 @@ def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path)
         figures.learning_curve(curve, kind, title, path("learning"))
     titles = [evaluation_table.sides(row.sides) for row in found]
     returns = [
-        (title, row.rolled, known.best.mean if (known := paper.row(kind, row.sides)) else None)
+        (
+            title,
+            row.rolled,
+            known.best.mean if (known := paper_results.row(kind, row.sides)) else None,
+        )
         for title, row in zip(titles, found, strict=True)
     ]
     figures.returns_by_steps(returns, kind, path("returns"))
     races = [(title, row.times) for title, row in zip(titles, found, strict=True)]
     figures.shares_by_seconds(races, wanted.race, kind, path("seconds"))
     for sides in STRIPS[kind]:
-        meshes = evaluate.unseen(kind, (sides, sides), 4, wanted.seed)[:1]
-        rolled = evaluate.roll_out(policy, meshes, wanted.rollouts, wanted.seed)
+        meshes = rollouts.unseen(kind, (sides, sides), 4, wanted.seed)[:1]
+        rolled = rollouts.roll_out(policy, meshes, wanted.rollouts, wanted.seed)
         steps = rolled.steps(policy.task, meshes[0], 0, int(rolled.best()[0]))
-        strips.rollout_strip(meshes[0], steps, path(f"rollout-{sides}"))
+        rollout_strip.rollout_strip(meshes[0], steps, path(f"rollout-{sides}"))
     return written
 
 
 def note(policy: Policy, rows: Sequence[dict[str, Any]], path: Path) -> None:
     """Write the table into the header of the policy's file, which stays whole if that fails."""
-    from agent import policies
-    from meshcore.errors import MeshError
+    from meshwright_agent.policy import policy_files
+    from meshwright_core.errors import MeshError
 
     policy.header["table"] = list(rows)
     try:
-        policies.save_policy(policy, path)
+        policy_files.save_policy(policy, path)
     except MeshError as error:
         raise UserError(str(error)) from error
 

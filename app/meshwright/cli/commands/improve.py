@@ -8,13 +8,14 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app import inputs, meshfile
-from app.outputs import checked_output, replacing
-from app.report import Report, table
+from meshwright.cli import arguments as inputs
+from meshwright.cli import mesh_output
+from meshwright.cli.output_files import checked_output, replacing
+from meshwright.console import Report, table
 
 if TYPE_CHECKING:
-    from agent.solver import Solution
-    from meshcore import HalfEdgeMesh
+    from meshwright_agent.search.solver import Solution
+    from meshwright_core import HalfEdgeMesh
 
 SUMMARY = "let a trained policy improve the connectivity of a mesh file"
 DESCRIPTION = (
@@ -68,11 +69,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Check everything that can be checked, then search, replay, settle and write."""
-    meshfile.checked_mesh_output(arguments.output)
+    mesh_output.checked_mesh_output(arguments.output)
     png = checked_output(arguments.png, (".png",), "--png") if arguments.png else None
     film = checked_output(arguments.film, (".gif", ".mp4"), "--film") if arguments.film else None
     mesh = inputs.read_mesh(arguments.input, arguments.corner_angle)
-    output = meshfile.checked_mesh_output(arguments.output, mesh.kind)
+    output = mesh_output.checked_mesh_output(arguments.output, mesh.kind)
     policy = inputs.read_policy(arguments.policy, mesh.kind)
 
     inputs.prepare_agent(report)
@@ -81,7 +82,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     solution = _search(arguments, report, mesh, policy)
     first = mesh.copy() if film else mesh
     replay(mesh, solution)
-    inverted = meshfile.settle(mesh)
+    inverted = mesh_output.settle(mesh)
     mesh.validate()
     if mesh.optimum != before["optimum"]:
         raise RuntimeError(f"s* changed from {before['optimum']} to {mesh.optimum}")
@@ -91,7 +92,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         if film is not None:
             temporary = stack.enter_context(replacing(film))
             _write_film(temporary, first, solution, policy.name, Path(arguments.input).stem, report)
-        meshfile.write_mesh(output, mesh)
+        mesh_output.write_mesh(output, mesh)
 
     values = {
         "command": "improve",
@@ -119,23 +120,23 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 
 def _write_picture(path: Path, mesh: HalfEdgeMesh) -> None:
-    from app import pictures
-    from app.figure import Look
+    from meshwright.graphics.export import export_job
+    from meshwright.graphics.mesh_figure import Look
 
-    pictures.save_mesh_picture(mesh, path, Look(PICTURE_SIZE))
+    export_job.save_mesh_picture(mesh, path, Look(PICTURE_SIZE))
 
 
 def _write_film(
     path: Path, mesh: HalfEdgeMesh, solution: Solution, by: str, name: str, report: Report
 ) -> None:
     """The operations one by one on ``mesh``, which is as it was before, smoothed on the way."""
-    from app import pictures
-    from app.film import Film
+    from meshwright.graphics.export import export_job
+    from meshwright.graphics.export.film import Film
 
     film = Film.of_run(mesh, solution.operations, by, name)
-    order = pictures.Order(ending=path.suffix.lower())
+    order = export_job.Order(ending=path.suffix.lower())
     with report.progress("filming", len(film.stops(order.stride(film)))) as update:
-        pictures.save_order(film, order, path, lambda done, total: update(done))
+        export_job.save_order(film, order, path, lambda done, total: update(done))
 
 
 def replay(mesh: HalfEdgeMesh, solution: Solution) -> None:
@@ -154,7 +155,7 @@ def normalised_return(start: int, end: int, optimum: int) -> float:
 def _search(
     arguments: argparse.Namespace, report: Report, mesh: HalfEdgeMesh, policy: Any
 ) -> Solution:
-    from agent import solver
+    from meshwright_agent.search import solver
 
     rollouts = None if arguments.search else arguments.rollouts or ROLLOUTS
     with report.progress("searching", rollouts) as update:
@@ -177,7 +178,7 @@ def _text(values: dict[str, Any]) -> str:
     rows = [
         ("s", s),
         ("elements", f"{elements} {inputs.KIND_NOUN[values['kind']]}"),
-        ("inverted", meshfile.inverted_words(values["inverted_ids"]) or "none"),
+        ("inverted", mesh_output.inverted_words(values["inverted_ids"]) or "none"),
         ("operations", f"{values['operations']} (best of {values['rollouts']})"),
         ("seconds", f"{values['seconds']:.1f}"),
     ]

@@ -7,10 +7,10 @@ import shlex
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from app.report import Report, UserError, table
+from meshwright.console import Report, UserError, table
 
 if TYPE_CHECKING:
-    from app.lessons import Lesson
+    from meshwright.teaching.lessons import Lesson
 
 SUMMARY = "list the lessons, or copy them into a folder"
 DESCRIPTION = (
@@ -31,8 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """List the lessons, or copy them and say how to open them."""
-    from app import lessons
-    from meshcore import MeshError
+    from meshwright.teaching import lessons
+    from meshwright_core import MeshError
 
     found = lessons.shipped()
     if arguments.folder is None:

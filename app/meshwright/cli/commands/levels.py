@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from app.report import Report, UserError, table
+from meshwright.console import Report, UserError, table
 
 SUMMARY = "list the levels: meshes with a goal, a par and stars"
 DESCRIPTION = (
@@ -19,9 +19,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """List each level with what it is and how well it was done."""
-    from app import levels
-    from app.level_progress import Progress
-    from meshcore import MeshError
+    from meshwright.puzzles import level as levels
+    from meshwright.puzzles.progress import Progress
+    from meshwright_core import MeshError
 
     progress, rows = Progress(), []
     lines: list[tuple[str, object]] = []

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import time
 
-from app import inputs, meshfile
-from app.report import Report
+from meshwright.cli import arguments as inputs
+from meshwright.cli import mesh_output
+from meshwright.console import Report
 
 SUMMARY = "make a triangle or quad mesh of a shape and write it to a file"
 DESCRIPTION = (
@@ -43,14 +44,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Make the mesh, settle its positions, write it."""
-    output = meshfile.checked_mesh_output(arguments.output, arguments.kind)
+    output = mesh_output.checked_mesh_output(arguments.output, arguments.kind)
     domain = inputs.read_domain(arguments.shape, arguments.corner_angle)
     start = time.perf_counter()
     with report.progress(f"meshing {domain.name or arguments.shape}"):
         mesh = inputs.make_mesh(domain, arguments.kind, arguments.max_edge, arguments.seed)
-        inverted = meshfile.settle(mesh)
+        inverted = mesh_output.settle(mesh)
         mesh.validate()
-    meshfile.write_mesh(output, mesh)
+    mesh_output.write_mesh(output, mesh)
     values = {
         "command": "mesh",
         "shape": arguments.shape,
@@ -74,4 +75,4 @@ def _text(values: dict[str, object]) -> str:
         f"{values['output']}: {values['elements']} {noun}, {values['vertices']} vertices, "
         f"s = {values['score']}, s* = {values['optimum']}"
     )
-    return text + meshfile.inverted_words(values["inverted_ids"], lead="; ")
+    return text + mesh_output.inverted_words(values["inverted_ids"], lead="; ")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from app import display
-from app.report import Report, UserError
+from meshwright.cli import display_check
+from meshwright.console import Report, UserError
 
 SUMMARY = "open the window on a level"
 DESCRIPTION = (
@@ -21,9 +21,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Find the level, then open the window on it; return when it is closed."""
-    probe = display.Probe()
-    from app import levels
-    from meshcore import MeshError
+    probe = display_check.Probe()
+    from meshwright.puzzles import level as levels
+    from meshwright_core import MeshError
 
     try:
         level = levels.load(arguments.level if arguments.level is not None else _first())
@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     problem = probe.problem()
     if problem:
         raise UserError(f"{problem}; levels can be played in a notebook, too")
-    from app import desktop
+    from meshwright import desktop
 
     code = desktop.run(level=level)
     if code != 0:
@@ -43,8 +43,8 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 def _first() -> str:
     """The first level without a star, else the first of all."""
-    from app import levels
-    from app.level_progress import Progress
+    from meshwright.puzzles import level as levels
+    from meshwright.puzzles.progress import Progress
 
     progress, names = Progress(), levels.names()
     return next((name for name in names if not progress.best(name).stars), names[0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from app.report import Report, table
+from meshwright.console import Report, table
 
 SUMMARY = "list the shapes of the gallery"
 DESCRIPTION = "List the shapes that mesh, view and demo know by name."
@@ -16,10 +16,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """List each shape with its corners and holes."""
-    from meshcore import shapes
+    from meshwright_core.domains import gallery
 
     rows = []
-    for name, domain in shapes.gallery().items():
+    for name, domain in gallery.gallery().items():
         corners = sum(int(flags.sum()) for flags in domain.loop_corners)
         rows.append({"name": name, "corners": corners, "holes": len(domain.holes)})
     text = table([(row["name"], _words(row["corners"], row["holes"])) for row in rows], indent="")

@@ -7,9 +7,9 @@ import os
 from contextlib import nullcontext
 from typing import Any
 
-from app import inputs
-from app.outputs import checked_folder
-from app.report import Report, UserError, table
+from meshwright.cli import arguments as inputs
+from meshwright.cli.output_files import checked_folder
+from meshwright.console import Report, UserError, table
 
 SUMMARY = "train a policy on random polygons"
 DESCRIPTION = (
@@ -47,25 +47,25 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     """Train, then say how good the policy has become."""
     folder = checked_folder(arguments.output)
     configuration = inputs.read_configuration(arguments.config, arguments.kind)
-    from agent import events, training
-    from app.training_display import shown
+    from meshwright.cli.training_progress import shown
+    from meshwright_agent.training import tensorboard, trainer
 
     # of the processes that torchrun starts, the first one speaks
     speaks = os.environ.get("RANK", "0") == "0"
-    if speaks and not events.available():
+    if speaks and not tensorboard.available():
         report.note(NO_EVENTS)
     total, minutes = configuration.iterations, arguments.minutes
     with shown(report.err, total, minutes) if speaks else nullcontext() as display:
         try:
-            found = training.train(
-                arguments.config or training.shipped_configuration(arguments.kind),
+            found = trainer.train(
+                arguments.config or trainer.shipped_configuration(arguments.kind),
                 folder,
                 minutes=minutes,
                 seed=arguments.seed,
                 report=display.update if display else None,
                 finishing=display.finish if display else None,
             )
-        except training.ConfigurationError as error:
+        except trainer.ConfigurationError as error:
             raise UserError(str(error)) from error
     if found:
         values = {"command": "train", "kind": arguments.kind, "folder": str(folder), **found}

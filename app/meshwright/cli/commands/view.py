@@ -6,11 +6,12 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app import display, inputs
-from app.report import Report, UserError
+from meshwright.cli import arguments as inputs
+from meshwright.cli import display_check
+from meshwright.console import Report, UserError
 
 if TYPE_CHECKING:
-    from app.document import Document
+    from meshwright.document.document import Document
 
 SUMMARY = "open the window, on a mesh file or a shape if one is named"
 DESCRIPTION = "Open the window. The words view FILE may be shortened to FILE."
@@ -38,12 +39,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Read what is to be opened, then open the window; return when it is closed."""
-    probe = display.Probe()
+    probe = display_check.Probe()
     document = _document(arguments)
     problem = probe.problem()
     if problem:
         raise UserError(f"{problem}; without one, meshwright demo writes a picture")
-    from app import desktop
+    from meshwright import desktop
 
     code = desktop.run(document)
     if code != 0:
@@ -56,8 +57,8 @@ def _document(arguments: argparse.Namespace) -> Document | None:
     name = arguments.file
     if name is None:
         return None
-    from app.document import Document
-    from app.project import is_project
+    from meshwright.document.document import Document
+    from meshwright.document.storage.project_file import is_project
 
     path = Path(name)
     is_file = path.exists() or inputs.looks_like_path(name)
@@ -72,20 +73,20 @@ def _document(arguments: argparse.Namespace) -> Document | None:
 
 
 def _holds_shape(path: Path) -> bool:
-    from meshcore import geometry_files
+    from meshwright_core.io import drawings
 
-    return geometry_files.is_geometry(path)
+    return drawings.is_geometry(path)
 
 
 def _refuse_near_command(word: str) -> None:
     """Raise UserError if the word is no shape but close to a command: ``meshwright improv``."""
     from difflib import get_close_matches
 
-    from app.commands import COMMANDS
-    from meshcore import shapes
+    from meshwright.cli.commands import COMMANDS
+    from meshwright_core.domains import gallery
 
     close = get_close_matches(word, COMMANDS, n=1, cutoff=0.75)
-    if close and word not in shapes.names():
+    if close and word not in gallery.names():
         raise UserError(
             f"{word}: neither a command, a shape nor a file; did you mean the command {close[0]}?"
         )

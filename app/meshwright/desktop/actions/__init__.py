@@ -1,1 +1,3 @@
-"""The parts of the table of actions, one module a topic; :mod:`app.desktop.actions` joins them."""
+"""The parts of the table of actions, one module a topic; :mod:`meshwright.desktop.actions.registry`
+joins them.
+"""

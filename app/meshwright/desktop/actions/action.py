@@ -1,4 +1,6 @@
-"""One thing that a person can do, as a row of the table in :mod:`app.desktop.actions`."""
+"""One thing that a person can do, as a row of the table in
+:mod:`meshwright.desktop.actions.registry`.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +10,10 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtGui import QKeySequence
 
-from app.assistant import State
+from meshwright.assistant.assistant import State
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 When = Callable[["MainWindow"], bool]
 Run = Callable[["MainWindow"], None]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.assistant import State
-from app.desktop.action import Action, can_run, needing
-from app.searching import COMPLETE_SECONDS
+from meshwright.assistant.assistant import State
+from meshwright.assistant.search_runner import COMPLETE_SECONDS
+from meshwright.desktop.actions.action import Action, can_run, needing
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 HINTS = 5
 """Hints that have a key of their own."""

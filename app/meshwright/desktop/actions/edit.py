@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.desktop.action import Action
+from meshwright.desktop.actions.action import Action
 
 ACTIONS: tuple[Action, ...] = (
     Action(

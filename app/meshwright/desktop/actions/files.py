@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.desktop.action import Action, has_mesh, needing
+from meshwright.desktop.actions.action import Action, has_mesh, needing
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 @needing("No file has been opened or saved yet.")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.desktop.action import Action, needing
-from app.desktop.levels import is_last
+from meshwright.desktop.actions.action import Action, needing
+from meshwright.desktop.levels.level_controller import is_last
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 @needing("No level is being played.")

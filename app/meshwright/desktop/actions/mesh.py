@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.desktop.action import Action, has_mesh, has_quads
-from meshcore.operations import CATALOGUE, OperationInfo
+from meshwright.desktop.actions.action import Action, has_mesh, has_quads
+from meshwright_core.operations.catalogue import CATALOGUE, OperationInfo
 
 
 def operation_id(info: OperationInfo) -> str:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.desktop.action import Action, has_mesh
+from meshwright.desktop.actions.action import Action, has_mesh
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 def _pan(right: float, up: float, window: MainWindow) -> None:

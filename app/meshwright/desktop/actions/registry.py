@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import QObject, Qt
 from qtpy.QtGui import QAction, QKeySequence
 
-from app.desktop import icons
-from app.desktop.action import Action, tooltip
-from app.desktop.tables import (
+from meshwright.desktop.actions import (
     agent,
     edit,
     files,
@@ -18,16 +16,18 @@ from app.desktop.tables import (
     history,
     levels,
     mesh,
+    navigate,
     select,
     view,
-    walk,
 )
-from app.desktop.tables.mesh import operation_id
-from app.theme import Theme
-from meshcore.operations import CATALOGUE
+from meshwright.desktop.actions.action import Action, tooltip
+from meshwright.desktop.actions.mesh import operation_id
+from meshwright.desktop.widgets import icons
+from meshwright.graphics.theme import Theme
+from meshwright_core.operations.catalogue import CATALOGUE
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 ACTIONS: tuple[Action, ...] = (
     *files.ACTIONS,
@@ -35,7 +35,7 @@ ACTIONS: tuple[Action, ...] = (
     *select.ACTIONS,
     *mesh.ACTIONS,
     *view.ACTIONS,
-    *walk.ACTIONS,
+    *navigate.ACTIONS,
     *history.ACTIONS,
     *agent.ACTIONS,
     *levels.ACTIONS,

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.desktop.action import Action, has_mesh
-from app.desktop.selecting import BOX, EDIT, LASSO
+from meshwright.desktop.actions.action import Action, has_mesh
+from meshwright.desktop.editing.selection_controller import BOX, EDIT, LASSO
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 DEGREES = range(2, 9)
 """Degrees that can be selected by."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.desktop.action import Action, has_mesh, has_quads
+from meshwright.desktop.actions.action import Action, has_mesh, has_quads
 
 ACTIONS: tuple[Action, ...] = (
     Action(

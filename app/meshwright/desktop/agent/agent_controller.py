@@ -8,21 +8,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from qtpy.QtWidgets import QFileDialog
 
-from app.assistant import State
-from app.desktop.hints import Hints
-from app.desktop.layers.hints import percent
-from app.desktop.layers.insight import FieldLayer, sight
-from app.document import title_of
-from app.markers import label
-from app.policy_files import ENDING, kind_of
-from app.policy_files import label as policy_label
-from app.searching import Effort
-from meshcore.halfedge import ORIGIN
+from meshwright.assistant.assistant import State
+from meshwright.assistant.policy_catalogue import ENDING, kind_of
+from meshwright.assistant.policy_catalogue import label as policy_label
+from meshwright.assistant.search_runner import Effort
+from meshwright.desktop.agent.hints_controller import Hints
+from meshwright.desktop.canvas.layers.hints import percent
+from meshwright.desktop.canvas.layers.policy_view import FieldLayer, sight
+from meshwright.document.document import title_of
+from meshwright.graphics.markers import label
+from meshwright_core.core.arrays import ORIGIN
 
 if TYPE_CHECKING:
-    from agent.choices import Insight
-    from app.desktop.window import MainWindow
-    from meshcore import HalfEdgeMesh
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright_agent.policy.explanation_types import Insight
+    from meshwright_core import HalfEdgeMesh
 
 KINDS = {"tri": "triangle", "quad": "quad"}
 

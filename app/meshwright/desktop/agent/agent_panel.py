@@ -18,16 +18,16 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.assistant import Assistant, State
-from app.desktop import icons
-from app.desktop.actions import ActionSet
-from app.desktop.hint_list import HintList
-from app.desktop.number_box import IntegerBox
-from app.desktop.settings import Settings
-from app.desktop.widgets import Bar, named
-from app.document import Document
-from app.policy_files import kind_of, label, shipped
-from app.theme import GRID, Theme
+from meshwright.assistant.assistant import Assistant, State
+from meshwright.assistant.policy_catalogue import kind_of, label, shipped
+from meshwright.desktop.actions.registry import ActionSet
+from meshwright.desktop.agent.hint_list import HintList
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import Bar, named
+from meshwright.desktop.widgets.number_box import IntegerBox
+from meshwright.document.document import Document
+from meshwright.graphics.theme import GRID, Theme
 
 NO_POLICY = {"tri": "No policy for triangle meshes", "quad": "No policy for quad meshes"}
 SPEEDS = (0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60)

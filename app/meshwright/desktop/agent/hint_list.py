@@ -7,11 +7,11 @@ from functools import partial
 from qtpy.QtCore import QEvent, QObject, Qt, Signal
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from app.desktop.layers.ghost import change_colour
-from app.desktop.layers.hints import Hint
-from app.desktop.widgets import named, tabular
-from app.markers import label
-from app.theme import GRID, Theme
+from meshwright.desktop.canvas.layers.ghost import change_colour
+from meshwright.desktop.canvas.layers.hints import Hint
+from meshwright.desktop.widgets.basic import named, tabular
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import GRID, Theme
 
 MOST = 5
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from qtpy.QtCore import QPointF, Qt
 
-from app.desktop.editing import told
-from app.desktop.layers.hints import Hint, HintsLayer
-from app.document import title_of
-from app.preview import ghost
-from meshcore import HalfEdgeMesh, MeshError, OperationRefused
+from meshwright.desktop.canvas.layers.hints import Hint, HintsLayer
+from meshwright.desktop.editing.edit_controller import told
+from meshwright.document.document import title_of
+from meshwright.document.operation_preview import ghost
+from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
 
 if TYPE_CHECKING:
-    from agent.choices import Choice
-    from app.desktop.mouse import Click
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.canvas.mouse import Click
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright_agent.policy.explanation_types import Choice
 
 
 class Hints:

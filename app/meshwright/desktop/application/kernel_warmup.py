@@ -7,8 +7,8 @@ from functools import partial
 
 from qtpy.QtCore import QObject, QProcess, Signal
 
-from app.desktop.dispatch import Dispatcher
-from meshcore import compiled
+from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright_core.core import compilation
 
 FIRST_START = "Preparing (first start only)\u2026"
 EVERY_START = "Preparing\u2026"
@@ -41,11 +41,11 @@ class Warmup(QObject):
         """Begin; returns at once."""
         if self._stopped:
             return
-        if compiled.is_warm_on_disk():
+        if compilation.is_warm_on_disk():
             self._load()
             return
         self.noted.emit(FIRST_START)
-        self._run("meshcore.warm_up", self._load)
+        self._run("meshwright_core.warm_up", self._load)
 
     def _run(self, module: str, then: Callable[[], None]) -> None:
         """Run a module in a process of its own; what comes then also comes after a failure, and
@@ -87,7 +87,7 @@ class Warmup(QObject):
 
     def _warm(self) -> None:
         try:
-            compiled.warm()
+            compilation.warm()
         except Exception as error:  # a thread's boundary: the window tells the person
             self._dispatch(partial(self._fail, f"The compiled kernels cannot be used: {error}"))
         else:
@@ -102,7 +102,7 @@ class Warmup(QObject):
             self.agent_ready.emit()
         else:
             self.noted.emit(AGENT_FIRST)
-            self._run("agent.warm_up", self.agent_ready.emit)
+            self._run("meshwright_agent.warm_up", self.agent_ready.emit)
 
     def _fail(self, sentence: str) -> None:
         if not self._stopped:
@@ -111,6 +111,6 @@ class Warmup(QObject):
 
 def agent_is_warm() -> bool:
     """Whether the agent's kernels were compiled before; the agent is not imported sooner."""
-    from agent.warm_up import is_warm_on_disk
+    from meshwright_agent.warm_up import is_warm_on_disk
 
     return is_warm_on_disk()

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QGuiApplication
 
-from app.desktop.settings import SYSTEM
+from meshwright.desktop.application.settings import SYSTEM
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 class Preferences:
@@ -62,7 +62,7 @@ class Preferences:
 
     def show(self) -> None:
         """Open the dialog."""
-        from app.desktop.preferences_dialog import PreferencesDialog
+        from meshwright.desktop.application.preferences_dialog import PreferencesDialog
 
         dialog = PreferencesDialog(self._window.settings, self._window)
         dialog.exec()

@@ -15,9 +15,9 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop.settings import SYSTEM, Settings
-from app.desktop.widgets import named
-from app.theme import COLOURS, GRID
+from meshwright.desktop.application.settings import SYSTEM, Settings
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.theme import COLOURS, GRID
 
 _THEMES = (
     (SYSTEM, "System", "Light or dark as the desktop is"),

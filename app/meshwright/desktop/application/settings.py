@@ -6,8 +6,8 @@ alone by :meth:`Settings.flag` and its like, under a key that begins with the pa
 
 from qtpy.QtCore import QByteArray, QSettings
 
-from app.signals import Signal
-from app.theme import COLOURS, THEMES
+from meshwright.graphics.theme import COLOURS, THEMES
+from meshwright.signals import Signal
 
 ORGANISATION, NAME = "meshwright", "meshwright"
 SYSTEM = "system"
@@ -46,7 +46,9 @@ class Settings:
 
     @property
     def colours(self) -> str:
-        """The pair of colours of irregular vertices, a key of :data:`app.theme.COLOURS`."""
+        """The pair of colours of irregular vertices, a key of
+        :data:`meshwright.graphics.theme.COLOURS`.
+        """
         return self.choice("look/colours", tuple(COLOURS))
 
     @colours.setter

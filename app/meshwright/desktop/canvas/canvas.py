@@ -7,15 +7,15 @@ from qtpy.QtCore import QEvent, QObject, QPoint, QPointF, Qt, QTimer, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QVBoxLayout, QWidget
 
-from app.desktop.gestures import Gesture
-from app.desktop.mouse import Mouse
-from app.desktop.overlay import Overlay
-from app.document import Document
-from app.markers import label
-from app.picking import Picker
-from app.scene import CROWD, Scene
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.desktop.canvas.gestures import Gesture
+from meshwright.desktop.canvas.mouse import Mouse
+from meshwright.desktop.canvas.overlay import Overlay
+from meshwright.document.document import Document
+from meshwright.graphics.markers import label
+from meshwright.graphics.picking import Picker
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright.graphics.vtk_scene import CROWD, Scene
 
 VERTEX_REACH = 12
 """Pixels around a vertex that count as on it."""
@@ -27,7 +27,8 @@ class Canvas(QWidget):
     """Shows ``document`` and follows the mouse; it never writes the mesh.
 
     The plotter is made by :meth:`build`, after the window has been shown, because its import takes
-    longer than all the rest. ``clicked(click)`` carries a :class:`~app.desktop.mouse.Click`,
+    longer than all the rest. ``clicked(click)`` carries a
+    :class:`~meshwright.desktop.canvas.mouse.Click`,
     ``pointed(at)`` where the mouse is now, None when it is gone; ``escaped()`` says that Escape has
     been pressed and nothing was under way; ``drawn()`` follows every frame. What a drag with the
     left button does is asked of :attr:`gesture_at`: None moves the picture.

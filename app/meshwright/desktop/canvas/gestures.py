@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from qtpy.QtCore import QPointF, Qt
 
-from app.desktop.layers.band import BandLayer
-from app.desktop.layers.rubber import RubberLayer
-from app.dragging import Drag
+from meshwright.desktop.canvas.layers.selection_band import BandLayer
+from meshwright.desktop.canvas.layers.vertex_drag import RubberLayer
+from meshwright.document.vertex_drag import Drag
 
 if TYPE_CHECKING:
-    from app.desktop.canvas import Canvas
+    from meshwright.desktop.canvas.canvas import Canvas
 
 NEAR = 3.0
 """Pixels between the points of a lasso."""

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import QEvent, QPoint, QPointF, Qt
 from qtpy.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 
-from app.desktop.gestures import Gesture, Pan
+from meshwright.desktop.canvas.gestures import Gesture, Pan
 
 if TYPE_CHECKING:
-    from app.desktop.canvas import Canvas
+    from meshwright.desktop.canvas.canvas import Canvas
 
 DRAG = 4
 """Pixels that the mouse may move between press and release of a click."""

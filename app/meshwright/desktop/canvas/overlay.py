@@ -9,13 +9,13 @@ from qtpy.QtCore import QRectF, Qt
 from qtpy.QtGui import QPainter, QPaintEvent
 from qtpy.QtWidgets import QWidget
 
-from app.desktop.layers.card import CardLayer
-from app.desktop.layers.hover import ArrowLayer, ElementLayer, polygon
-from app.desktop.layers.layer import Layer
-from app.desktop.layers.markers import MarkersLayer
-from app.markers import Markers
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.desktop.canvas.layers.base import Layer
+from meshwright.desktop.canvas.layers.hover import ArrowLayer, ElementLayer, polygon
+from meshwright.desktop.canvas.layers.markers import MarkersLayer
+from meshwright.desktop.canvas.layers.text_card import CardLayer
+from meshwright.graphics.markers import Markers
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
 
 
 class Overlay(QWidget):

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from qtpy.QtCore import QPointF, Qt, QTimer
 
-from app.desktop.layers.lines import LinesLayer
-from app.desktop.mouse import Click
-from meshcore.operations import Operation
+from meshwright.desktop.canvas.layers.cleanable_lines import LinesLayer
+from meshwright.desktop.canvas.mouse import Click
+from meshwright_core.operations.catalogue import Operation
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
-    from meshcore.lines import Line
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright_core.analysis.cleanable_lines import Line
 
 LINES = "editing/lines"
 """The setting that makes lines glow."""
@@ -81,7 +81,7 @@ class Lines:
         mesh = self._window.document.mesh
         self._lines = []
         if mesh is not None and mesh.k == 4 and self.shown and self._window.ready:
-            from meshcore.lines import cleanable_lines
+            from meshwright_core.analysis.cleanable_lines import cleanable_lines
 
             self._lines = cleanable_lines(mesh)
         self._index()

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QPoint, Qt
 
-from app.desktop.mouse import Click
-from app.desktop.operation_menu import OperationMenu
-from app.desktop.widgets import sentence
-from app.history import YOU, Row
-from app.markers import label
-from app.preview import choices
-from meshcore import Operation
+from meshwright.desktop.canvas.mouse import Click
+from meshwright.desktop.editing.operation_menu import OperationMenu
+from meshwright.desktop.widgets.basic import sentence
+from meshwright.document.history import YOU, Row
+from meshwright.document.operation_preview import choices
+from meshwright.graphics.markers import label
+from meshwright_core import Operation
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 PREPARING = "Still preparing the operations: a moment, please."
 POINT_FIRST = "Point at a half-edge first, then press the key."

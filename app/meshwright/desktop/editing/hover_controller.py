@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from qtpy.QtCore import QTimer
 
-from app.desktop.layers.ghost import GhostLayer
-from app.preview import GLOBAL, Choice, best, choices, following, ghost
-from meshcore import HalfEdgeMesh, Operation
+from meshwright.desktop.canvas.layers.ghost import GhostLayer
+from meshwright.document.operation_preview import GLOBAL, Choice, best, choices, following, ghost
+from meshwright_core import HalfEdgeMesh, Operation
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 GHOSTS = "editing/ghosts"
 """The setting that shows ghosts."""
@@ -29,7 +29,7 @@ FEW = 2000
 class Pointing:
     """The operation that is meant is, in this order: the one that a menu's row is pointed at, the
     one chosen with Tab at this half-edge, the armed one, the best of the local ones (see
-    :func:`app.preview.best`).
+    :func:`meshwright.document.operation_preview.best`).
     """
 
     def __init__(self, window: MainWindow) -> None:

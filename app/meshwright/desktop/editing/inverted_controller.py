@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.desktop.layers.hatch import HatchLayer
-from meshcore.halfedge import ORIGIN
+from meshwright.desktop.canvas.layers.inverted_elements import HatchLayer
+from meshwright_core.core.arrays import ORIGIN
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 class Inverted:

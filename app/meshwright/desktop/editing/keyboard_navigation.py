@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.markers import label
+from meshwright.graphics.markers import label
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 STRIDE = 64.0
 """Pixels that an arrow key moves the picture."""

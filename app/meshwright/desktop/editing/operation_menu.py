@@ -4,13 +4,13 @@ from qtpy.QtCore import QPoint, Qt, Signal
 from qtpy.QtGui import QCloseEvent, QKeyEvent, QMouseEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from app.desktop.filters import OwnKeys
-from app.desktop.layers.ghost import change_colour
-from app.desktop.widgets import sentence, tabular
-from app.markers import label
-from app.preview import Choice
-from app.theme import GRID, Theme
-from meshcore import Operation
+from meshwright.desktop.canvas.layers.ghost import change_colour
+from meshwright.desktop.widgets.basic import sentence, tabular
+from meshwright.desktop.widgets.event_filters import OwnKeys
+from meshwright.document.operation_preview import Choice
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import GRID, Theme
+from meshwright_core import Operation
 
 WIDTH = 296
 

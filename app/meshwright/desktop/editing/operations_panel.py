@@ -4,13 +4,13 @@ from qtpy.QtCore import QRectF, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QAbstractButton, QVBoxLayout, QWidget
 
-from app.desktop.layers.ghost import change_colour
-from app.desktop.widgets import named, sentence, tabular
-from app.document import Document
-from app.markers import label
-from app.preview import Choice
-from app.theme import GRID, Theme
-from meshcore.operations import Operation, OperationInfo, of_kind
+from meshwright.desktop.canvas.layers.ghost import change_colour
+from meshwright.desktop.widgets.basic import named, sentence, tabular
+from meshwright.document.document import Document
+from meshwright.document.operation_preview import Choice
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import GRID, Theme
+from meshwright_core.operations.catalogue import Operation, OperationInfo, of_kind
 
 HEIGHT = 26
 POINT = "Point at a half-edge: its operations and how each would change s."

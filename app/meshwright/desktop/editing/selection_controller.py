@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from qtpy.QtCore import QPointF, Qt
 
-from app.desktop.editing import plural
-from app.desktop.gestures import Band, Gesture, MoveVertices, Refused
-from app.desktop.layers.band import BandLayer
-from app.desktop.layers.rubber import RubberLayer
-from app.desktop.layers.selection import RADIUS, RegionLayer, SelectionLayer
-from app.desktop.mouse import Click
-from app.desktop.vertex_menu import selection_menu, vertex_menu
-from app.dragging import Drag, refusal
-from app.selection import in_lasso
-from meshcore.halfedge import FLAGS, LOCKED, ORIGIN
+from meshwright.desktop.canvas.gestures import Band, Gesture, MoveVertices, Refused
+from meshwright.desktop.canvas.layers.selection import RADIUS, RegionLayer, SelectionLayer
+from meshwright.desktop.canvas.layers.selection_band import BandLayer
+from meshwright.desktop.canvas.layers.vertex_drag import RubberLayer
+from meshwright.desktop.canvas.mouse import Click
+from meshwright.desktop.editing.edit_controller import plural
+from meshwright.desktop.editing.vertex_menu import selection_menu, vertex_menu
+from meshwright.document.selection import in_lasso
+from meshwright.document.vertex_drag import Drag, refusal
+from meshwright_core.core.arrays import FLAGS, LOCKED, ORIGIN
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
-    from app.viewport import Viewport
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright.graphics.viewport import Viewport
 
 LOCK_RADIUS = 17.0
 """Pixels of the ring around a selected vertex that is locked."""

@@ -11,11 +11,11 @@ import numpy as np
 from qtpy.QtGui import QAction
 from qtpy.QtWidgets import QMenu
 
-from app.markers import label
+from meshwright.graphics.markers import label
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
-    from app.document import Document
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright.document.document import Document
 
 DEGREES = range(2, 9)
 GONE_ON = "The mesh has changed since the menu was opened."

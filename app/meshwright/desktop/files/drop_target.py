@@ -10,10 +10,10 @@ from qtpy.QtCore import QEvent, QMimeData, QObject, QRectF, Qt
 from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QWidget
 
-from app.theme import GRID, Theme
+from meshwright.graphics.theme import GRID, Theme
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 class Dropping(QObject):

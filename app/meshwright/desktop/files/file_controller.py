@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any
 from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtWidgets import QApplication, QFileDialog
 
-from app.desktop.dropping import Dropping
-from app.desktop.guard import Guard
-from app.desktop.recent import RecentMenu
-from app.desktop.widgets import sentence
-from app.policy_files import shipped
-from app.project import ENDING, is_project
-from app.viewport import FARTHEST, NEAREST
-from meshcore import formats, io
+from meshwright.assistant.policy_catalogue import shipped
+from meshwright.desktop.files.drop_target import Dropping
+from meshwright.desktop.files.recent_menu import RecentMenu
+from meshwright.desktop.files.unsaved_work import Guard
+from meshwright.desktop.widgets.basic import sentence
+from meshwright.document.storage.project_file import ENDING, is_project
+from meshwright.graphics.viewport import FARTHEST, NEAREST
+from meshwright_core.io import formats, mesh_files
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"
 USUAL = ".vtk"
@@ -96,7 +96,7 @@ class Files:
 
     def new(self, file: str = "") -> None:
         """Ask for a shape and how it is meshed, beginning with ``file`` if one is given."""
-        from app.desktop.new_mesh import NewMeshDialog
+        from meshwright.desktop.files.new_mesh import NewMeshDialog
 
         window = self._window
         if not self.may_drop():
@@ -112,10 +112,10 @@ class Files:
 
     def make(self, shape: str, kind: str) -> None:
         """Mesh a gallery shape with elements of ``kind``."""
-        from meshcore import generate, shapes
+        from meshwright_core.domains import gallery, meshing
 
         try:
-            mesh = generate.mesh_domain(shapes.shape(shape), kind)
+            mesh = meshing.mesh_domain(gallery.shape(shape), kind)
         except ValueError as error:
             self._window.notice.tell(one_line(error))
         else:
@@ -227,13 +227,13 @@ def waiting() -> Iterator[None]:
 
 def to_open() -> str:
     """The groups of files that can be opened."""
-    groups = {MESHES: io.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
+    groups = {MESHES: mesh_files.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
     return _filters({"All that can be opened": sum(groups.values(), ()), **groups})
 
 
 def to_save() -> str:
     """The groups of files that can be written."""
-    return _filters({MESHES: io.endings(), PROJECTS: (ENDING,)})
+    return _filters({MESHES: mesh_files.endings(), PROJECTS: (ENDING,)})
 
 
 def _filters(groups: dict[str, tuple[str, ...]]) -> str:

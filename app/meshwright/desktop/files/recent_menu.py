@@ -8,7 +8,7 @@ from pathlib import Path
 
 from qtpy.QtWidgets import QMenu, QWidget
 
-from app.desktop.settings import Settings
+from meshwright.desktop.application.settings import Settings
 
 
 class RecentMenu(QMenu):

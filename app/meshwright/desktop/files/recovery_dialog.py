@@ -16,9 +16,9 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop.widgets import named
-from app.recovery import Lost
-from app.theme import GRID
+from meshwright.desktop.widgets.basic import named
+from meshwright.document.storage.recovery import Lost
+from meshwright.graphics.theme import GRID
 
 STORY = (
     "Meshwright ended before this was saved. Every step up to then has been kept: it can be taken"

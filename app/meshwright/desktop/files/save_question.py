@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QDialog, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
-from app.desktop.widgets import named
-from app.theme import GRID
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.theme import GRID
 
 
 class Question(QDialog):

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app import recovery
-from app.autosave import Autosave
-from app.desktop.question import Question
-from meshcore import MeshError
+from meshwright.desktop.files.save_question import Question
+from meshwright.document.storage import recovery
+from meshwright.document.storage.autosave import Autosave
+from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
-    from app.recovery import Lost
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright.document.storage.recovery import Lost
 
 
 class Guard:
@@ -85,7 +85,7 @@ class Guard:
             self._window.say("There is no lost work: everything was saved or dropped.")
 
     def _offer(self, works: list[Lost]) -> None:
-        from app.desktop.lost_work import LostWork
+        from meshwright.desktop.files.recovery_dialog import LostWork
 
         dialog = LostWork(works, self._window)
         dialog.exec()

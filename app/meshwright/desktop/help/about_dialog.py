@@ -20,10 +20,10 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop import icons
-from app.desktop.widgets import named
-from app.licences import Licence, licences
-from app.theme import GRID
+from meshwright.desktop.help.licences import Licence, licences
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.theme import GRID
 
 _COLUMNS = ("Package", "Version", "Licence")
 _SENTENCES = (

@@ -6,8 +6,8 @@ from qtpy.QtCore import QPoint, QPointF, QRect, QRectF, Qt, Signal
 from qtpy.QtGui import QColor, QPainter, QPainterPath, QPaintEvent, QPen
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
-from app.desktop.widgets import named
-from app.theme import GRID, Theme
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 320
 _TIP = 12

@@ -19,9 +19,9 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop.widgets import named
-from app.fuzzy import match
-from app.theme import GRID, Theme
+from meshwright.desktop.help.fuzzy_match import match
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 560
 ROW = 34

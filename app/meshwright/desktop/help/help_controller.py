@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.desktop import actions
-from app.desktop.action import key_text, needs
-from app.desktop.keys import KeysDialog
-from app.desktop.palette import Entry, Palette
-from app.desktop.tour import Tour
-from app.theme import Theme
+from meshwright.desktop.actions import registry
+from meshwright.desktop.actions.action import key_text, needs
+from meshwright.desktop.help.command_palette import Entry, Palette
+from meshwright.desktop.help.shortcuts_dialog import KeysDialog
+from meshwright.desktop.help.tour import Tour
+from meshwright.graphics.theme import Theme
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 class Guide:
@@ -95,7 +95,7 @@ class Guide:
     def entries(self) -> list[Entry]:
         """All actions of the menus as rows of the palette, as possible as they are now."""
         made = []
-        for menu, members in actions.groups(self._window):
+        for menu, members in registry.groups(self._window):
             for action in members:
                 possible = action.enabled(self._window)
                 made.append(
@@ -123,7 +123,7 @@ class Guide:
         """All keys, and what the mouse does, beside the window."""
         if self.keys is not None:
             self.keys.close()
-        self.keys = KeysDialog(actions.groups(self._window), self._window)
+        self.keys = KeysDialog(registry.groups(self._window), self._window)
         self.keys.finished.connect(self._on_keys_closed)
         self.keys.show()
 
@@ -134,7 +134,9 @@ class Guide:
 
     def show_about(self) -> None:
         """Version and licences."""
-        from app.desktop.about import AboutDialog  # looks through the installed packages
+        from meshwright.desktop.help.about_dialog import (
+            AboutDialog,  # looks through the installed packages
+        )
 
         dialog = AboutDialog(self._window)
         dialog.exec()

@@ -14,9 +14,9 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop.action import Action, key_text
-from app.desktop.widgets import named
-from app.theme import GRID
+from meshwright.desktop.actions.action import Action, key_text
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.theme import GRID
 
 WIDE = 1240
 """Pixels of a window that has room for four columns; others get three."""

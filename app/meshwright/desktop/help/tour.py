@@ -10,11 +10,11 @@ import numpy as np
 from qtpy.QtCore import QEvent, QObject, QPoint, QRect, Signal
 from qtpy.QtWidgets import QWidget
 
-from app.desktop.callout import Callout
-from app.theme import Theme
+from meshwright.desktop.help.callout import Callout
+from meshwright.graphics.theme import Theme
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 @dataclass(frozen=True)

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import Signal
 from qtpy.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QProgressBar, QPushButton
 
-from app.desktop.dispatch import Dispatcher
-from app.desktop.widgets import named
-from app.pictures import Order, write_order
-from app.theme import GRID, Theme
-from meshcore.errors import MeshError
+from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.export.export_job import Order, write_order
+from meshwright.graphics.theme import GRID, Theme
+from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
-    from app.film import Film
+    from meshwright.desktop.main_window.window import MainWindow
+    from meshwright.graphics.export.film import Film
 
 
 _log = logging.getLogger(__name__)
@@ -90,8 +90,8 @@ class Exporting:
 
     def ask(self) -> None:
         """Show the dialog, ask for a file, begin."""
-        from app.desktop.export_dialog import ExportDialog
-        from app.film import Film
+        from meshwright.desktop.history.export_dialog import ExportDialog
+        from meshwright.graphics.export.film import Film
 
         if self.running:
             self._window.say("A film is being written already: wait, or cancel it.")

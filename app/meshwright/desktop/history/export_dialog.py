@@ -17,13 +17,13 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop.number_box import DecimalBox, IntegerBox
-from app.desktop.widgets import named
-from app.drawing import raster
-from app.figure import figure
-from app.film import FIRST, LAST, Film
-from app.pictures import SIZES, Order
-from app.theme import GRID, THEMES
+from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.number_box import DecimalBox, IntegerBox
+from meshwright.graphics.drawing import raster
+from meshwright.graphics.export.export_job import SIZES, Order
+from meshwright.graphics.export.film import FIRST, LAST, Film
+from meshwright.graphics.mesh_figure import figure
+from meshwright.graphics.theme import GRID, THEMES
 
 FORMATS = (
     (".gif", "Film, GIF", "Plays anywhere, also inside a README or a slide"),
@@ -45,7 +45,9 @@ LATER = 80
 
 
 class ExportDialog(QDialog):
-    """Asks for an :class:`app.pictures.Order`, and shows the state where ``film`` stands."""
+    """Asks for an :class:`meshwright.graphics.export.export_job.Order`, and shows the state where
+    ``film`` stands.
+    """
 
     def __init__(self, film: Film, order: Order, parent: QWidget | None = None) -> None:
         super().__init__(parent)

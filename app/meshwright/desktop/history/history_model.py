@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from qtpy.QtCore import QAbstractListModel, QModelIndex, Qt
 
-from app.branches import Branches
-from app.desktop.score_curve import branch_words, row_words
-from app.history import History, Row
+from meshwright.desktop.history.score_curve import branch_words, row_words
+from meshwright.document.branches import Branches
+from meshwright.document.history import History, Row
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class HistoryModel(QAbstractListModel):
         known, count = len(self._rows), len(history)
         same = history is self._history and empty == self._empty
         same = same and self._branches is history.branches
-        # a row always comes after the same rows: see app.curve.Track
+        # a row always comes after the same rows: see meshwright.document.score_series.Track
         kept = same and (
             known == 0 or (known <= count and history[known - 1] is self._rows[known - 1])
         )

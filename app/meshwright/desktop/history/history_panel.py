@@ -2,15 +2,7 @@
 
 from typing import Any
 
-from qtpy.QtCore import (
-    QModelIndex,
-    QPersistentModelIndex,
-    QPointF,
-    QRectF,
-    QSize,
-    Qt,
-    Signal,
-)
+from qtpy.QtCore import QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import (
     QColor,
     QFont,
@@ -33,12 +25,12 @@ from qtpy.QtWidgets import (
     QVBoxLayout,
 )
 
-from app.desktop.filters import OwnKeys
-from app.desktop.history_model import HistoryModel, Line
-from app.desktop.widgets import named, tabular
-from app.history import YOU, History
-from app.markers import label
-from app.theme import GRID, Theme
+from meshwright.desktop.history.history_model import HistoryModel, Line
+from meshwright.desktop.widgets.basic import named, tabular
+from meshwright.desktop.widgets.event_filters import OwnKeys
+from meshwright.document.history import YOU, History
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 224
 ROW = 26

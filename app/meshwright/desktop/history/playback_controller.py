@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QTimer
 
-from app import curve
-from app.curve import Track
-from app.desktop.exporting import Exporting
-from app.desktop.history_panel import HistoryPanel
-from app.desktop.timeline import SPEEDS, Timeline
-from app.theme import Theme
+from meshwright.desktop.history.export_controller import Exporting
+from meshwright.desktop.history.history_panel import HistoryPanel
+from meshwright.desktop.history.timeline import SPEEDS, Timeline
+from meshwright.document import score_series
+from meshwright.document.score_series import Track
+from meshwright.graphics.theme import Theme
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 PAUSE = 100
 """Milliseconds after a change until list and curve follow: the mesh is drawn before."""
@@ -97,7 +97,7 @@ class Film:
         """Show the first state with the lowest score under the present desired degrees."""
         track = Track()
         track.follow(self._window.document.history)
-        self.go_to(curve.best_state(track.scores, track.optima))
+        self.go_to(score_series.best_state(track.scores, track.optima))
 
     def take_branch(self, index: int) -> None:
         """Go to the end of a branch; the steps that are left for it become a branch."""

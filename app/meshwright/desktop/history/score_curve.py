@@ -18,14 +18,14 @@ from qtpy.QtGui import (
 )
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
-from app import curve
-from app.branches import Branches
-from app.curve import Track
-from app.desktop.filters import OwnKeys
-from app.desktop.widgets import tabular
-from app.history import YOU, History, Row
-from app.markers import label
-from app.theme import GRID, Theme
+from meshwright.desktop.widgets.basic import tabular
+from meshwright.desktop.widgets.event_filters import OwnKeys
+from meshwright.document import score_series
+from meshwright.document.branches import Branches
+from meshwright.document.history import YOU, History, Row
+from meshwright.document.score_series import Track
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import GRID, Theme
 
 HEIGHT = 96
 LEFT, RIGHT, TOP, BOTTOM = 7 * GRID, 3 * GRID, 16, 36
@@ -72,7 +72,7 @@ class ScoreCurve(QWidget):
         self._branches: Branches = ()
         self._empty = True
         self._track = Track()
-        self._frame = curve.frame(np.empty(0), np.empty(0), 0, 0, 1, 1)
+        self._frame = score_series.frame(np.empty(0), np.empty(0), 0, 0, 1, 1)
         self._best = 0
         self._forks: list[float] = []
         self._fork = -1
@@ -247,8 +247,8 @@ class ScoreCurve(QWidget):
             return made
         scores, optima = self._track.scores, self._track.optima
         width, height = self.width() - LEFT - RIGHT, self.height() - TOP - BOTTOM
-        self._frame = curve.frame(scores, optima, LEFT, TOP, max(width, 1), height)
-        self._best = curve.best_state(scores, optima)
+        self._frame = score_series.frame(scores, optima, LEFT, TOP, max(width, 1), height)
+        self._best = score_series.best_state(scores, optima)
         painter = QPainter(made)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(self._font)
@@ -257,14 +257,14 @@ class ScoreCurve(QWidget):
         painter.setPen(
             QPen(QColor(self._theme.muted), 1.2, Qt.PenStyle.DashLine, Qt.PenCapStyle.FlatCap)
         )
-        painter.drawPolyline(_polygon(curve.steps(optima, self._frame)))
+        painter.drawPolyline(_polygon(score_series.steps(optima, self._frame)))
         # a wider pen takes fifty times as long, and would fill what lies between many steps
         thin = len(scores) > self._frame.width
         painter.setPen(QPen(QColor(self._theme.accent), 1.0 if thin else 1.8))
-        painter.drawPolyline(_polygon(curve.steps(scores, self._frame)))
+        painter.drawPolyline(_polygon(score_series.steps(scores, self._frame)))
         if self._frame.broken:
             painter.setPen(QPen(QColor(self._theme.muted), 1.2))
-            for begin, end in curve.break_mark(self._frame).tolist():
+            for begin, end in score_series.break_mark(self._frame).tolist():
                 painter.drawLine(QPointF(*begin), QPointF(*end))
         self._draw_best(painter)
         self._draw_forks(painter)

@@ -3,10 +3,10 @@
 from qtpy.QtCore import QSignalBlocker, QSize, Qt, Signal
 from qtpy.QtWidgets import QComboBox, QFrame, QHBoxLayout, QToolButton, QVBoxLayout
 
-from app.desktop import icons
-from app.desktop.actions import ActionSet
-from app.desktop.score_curve import HEIGHT, ScoreCurve
-from app.theme import GRID, Theme
+from meshwright.desktop.actions.registry import ActionSet
+from meshwright.desktop.history.score_curve import HEIGHT, ScoreCurve
+from meshwright.desktop.widgets import icons
+from meshwright.graphics.theme import GRID, Theme
 
 SPEEDS = (1, 2, 4, 8, 15, 30, 60)
 """Steps per second that a film can be played at."""

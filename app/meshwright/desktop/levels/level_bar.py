@@ -6,13 +6,13 @@ from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QPushButton, QToolButton, QVBoxLayout, QWidget
 
-from app import levels
-from app.desktop import icons
-from app.desktop.stars import Stars
-from app.desktop.widgets import named, tabular
-from app.level_play import LevelPlay
-from app.rival import Standing
-from app.theme import GRID, Theme
+from meshwright.desktop.levels.star_rating import Stars
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import named, tabular
+from meshwright.graphics.theme import GRID, Theme
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.play import LevelPlay
 
 WIDE = 1120
 """Pixels from which on two lines of text are enough; else there are three."""

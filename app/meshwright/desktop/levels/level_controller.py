@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app import levels
-from app.assistant import Assistant
-from app.desktop.dispatch import Dispatcher
-from app.desktop.level_bar import LevelBar
-from app.document import Document
-from app.level_play import LevelPlay
-from app.levels import Level
-from app.rival import Standing
-from app.theme import Theme
-from meshcore import MeshError
+from meshwright.assistant.assistant import Assistant
+from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.desktop.levels.level_bar import LevelBar
+from meshwright.document.document import Document
+from meshwright.graphics.theme import Theme
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.level import Level
+from meshwright.puzzles.play import LevelPlay
+from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 class Levels:
@@ -58,7 +58,7 @@ class Levels:
 
     def choose(self) -> None:
         """Show all levels, and play the one that is chosen."""
-        from app.desktop.level_dialog import LevelDialog
+        from meshwright.desktop.levels.level_dialog import LevelDialog
 
         window = self._window
         try:

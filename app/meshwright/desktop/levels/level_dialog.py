@@ -17,12 +17,12 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app import levels
-from app.desktop.stars import Stars
-from app.desktop.widgets import named
-from app.level_progress import MOST_STARS, Progress
-from app.levels import Level
-from app.theme import GRID, Theme
+from meshwright.desktop.levels.star_rating import Stars
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.theme import GRID, Theme
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.level import Level
+from meshwright.puzzles.progress import MOST_STARS, Progress
 
 COLUMNS = 4
 CARD = QSize(184, 200)
@@ -161,8 +161,8 @@ class Card(QPushButton):
 @cache
 def picture(name: str, theme: Theme, ratio: float) -> QPixmap:
     """The start of a level."""
-    from app.drawing import raster
-    from app.figure import Look, figure
+    from meshwright.graphics.drawing import raster
+    from meshwright.graphics.mesh_figure import Look, figure
 
     size = PICTURE * ratio
     look = Look((size.width(), size.height()), theme.name, numbers=False, score=False, curve=False)

@@ -6,8 +6,8 @@ from qtpy.QtCore import QPointF, QSize, Qt
 from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from qtpy.QtWidgets import QWidget
 
-from app.level_progress import MOST_STARS
-from app.theme import Theme
+from meshwright.graphics.theme import Theme
+from meshwright.puzzles.progress import MOST_STARS
 
 INNER = 0.45
 """Radius of the notches, relative to that of the tips."""

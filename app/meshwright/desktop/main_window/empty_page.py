@@ -7,9 +7,9 @@ from pathlib import Path
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
-from app.desktop import icons
-from app.desktop.widgets import named
-from app.theme import GRID
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import named
+from meshwright.graphics.theme import GRID
 
 MOST = 5
 """Recent files that are offered."""

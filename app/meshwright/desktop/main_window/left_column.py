@@ -2,9 +2,9 @@
 
 from qtpy.QtWidgets import QFrame, QVBoxLayout, QWidget
 
-from app.desktop.sidebar import Section
-from app.desktop.widgets import rule
-from app.theme import GRID, Theme
+from meshwright.desktop.main_window.sidebar import Section
+from meshwright.desktop.widgets.basic import rule
+from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 232
 

@@ -3,19 +3,12 @@
 from collections.abc import Sequence
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import (
-    QFrame,
-    QHBoxLayout,
-    QPushButton,
-    QScrollArea,
-    QVBoxLayout,
-    QWidget,
-)
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
-from app.desktop import icons
-from app.desktop.settings import Settings
-from app.desktop.widgets import rule
-from app.theme import GRID, Theme
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import rule
+from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 312
 

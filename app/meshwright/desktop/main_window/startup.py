@@ -6,12 +6,12 @@ from pathlib import Path
 from qtpy.QtGui import QFont, QFontDatabase, QSurfaceFormat
 from qtpy.QtWidgets import QApplication
 
-from app.desktop import icons
-from app.desktop.widgets import tabular
-from app.desktop.window import MainWindow
-from app.document import Document
-from app.levels import Level
-from app.theme import FONTS
+from meshwright.desktop.main_window.window import MainWindow
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import tabular
+from meshwright.document.document import Document
+from meshwright.graphics.theme import FONTS
+from meshwright.puzzles.level import Level
 
 DEMO_SHAPE = "star"
 
@@ -62,7 +62,7 @@ def open_window(
     guided: bool = False,
     level: Level | None = None,
 ) -> MainWindow:
-    """Make and show the window on ``source``, as in :func:`app.desktop.run`.
+    """Make and show the window on ``source``, as in :func:`meshwright.desktop.run`.
 
     ``guided`` for a person's own window: it comes where it was last, keeps every step, asks before
     unsaved work is dropped, offers what was lost, and who has not seen the tour is shown it.
@@ -88,9 +88,9 @@ def open_window(
 
 def load(document: Document, source: str | Path, kind: str) -> None:
     """Put a gallery shape or a mesh file into ``document``."""
-    from meshcore import generate, shapes
+    from meshwright_core.domains import gallery, meshing
 
-    if isinstance(source, str) and source in shapes.names():
-        document.replace(generate.mesh_domain(shapes.shape(source), kind), source)
+    if isinstance(source, str) and source in gallery.names():
+        document.replace(meshing.mesh_domain(gallery.shape(source), kind), source)
     else:
         document.open(source)

@@ -15,32 +15,33 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.assistant import Assistant
-from app.desktop import actions, pages
-from app.desktop.agent import AgentControl
-from app.desktop.agent_panel import AgentPanel
-from app.desktop.canvas import Canvas
-from app.desktop.dashboard import Dashboard
-from app.desktop.dispatch import Dispatcher
-from app.desktop.editing import Editing
-from app.desktop.files import Files
-from app.desktop.film import Film
-from app.desktop.glow import Lines
-from app.desktop.guide import Guide
-from app.desktop.inverted import Inverted
-from app.desktop.left_column import LeftColumn
-from app.desktop.levels import Levels
-from app.desktop.operations_panel import OperationsPanel
-from app.desktop.pointing import Pointing
-from app.desktop.preferences import Preferences
-from app.desktop.selecting import Selecting
-from app.desktop.settings import Settings
-from app.desktop.sidebar import Section, Sidebar
-from app.desktop.walking import Walking
-from app.desktop.warmup import Warmup
-from app.desktop.widgets import Notice
-from app.document import Document
-from app.theme import style_sheet, theme
+from meshwright.assistant.assistant import Assistant
+from meshwright.desktop.actions import registry
+from meshwright.desktop.agent.agent_controller import AgentControl
+from meshwright.desktop.agent.agent_panel import AgentPanel
+from meshwright.desktop.application.kernel_warmup import Warmup
+from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.desktop.application.preferences_controller import Preferences
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.canvas.canvas import Canvas
+from meshwright.desktop.editing.cleanable_lines_controller import Lines
+from meshwright.desktop.editing.edit_controller import Editing
+from meshwright.desktop.editing.hover_controller import Pointing
+from meshwright.desktop.editing.inverted_controller import Inverted
+from meshwright.desktop.editing.keyboard_navigation import Walking
+from meshwright.desktop.editing.operations_panel import OperationsPanel
+from meshwright.desktop.editing.selection_controller import Selecting
+from meshwright.desktop.files.file_controller import Files
+from meshwright.desktop.help.help_controller import Guide
+from meshwright.desktop.history.playback_controller import Film
+from meshwright.desktop.levels.level_controller import Levels
+from meshwright.desktop.main_window import empty_page
+from meshwright.desktop.main_window.left_column import LeftColumn
+from meshwright.desktop.main_window.sidebar import Section, Sidebar
+from meshwright.desktop.quality.quality_controller import Dashboard
+from meshwright.desktop.widgets.basic import Notice
+from meshwright.document.document import Document
+from meshwright.graphics.theme import style_sheet, theme
 
 
 class MainWindow(QMainWindow):
@@ -87,7 +88,7 @@ class MainWindow(QMainWindow):
             self.preferences,
         )
         self.canvas = Canvas(document, self.theme)
-        self.actions_by_id = actions.ActionSet(self)
+        self.actions_by_id = registry.ActionSet(self)
         self.score_panel = self.dashboard.score
         self.agent_panel = AgentPanel(document, self.assistant, self.actions_by_id, self.theme)
         self.operations_panel = OperationsPanel(document, self.theme)
@@ -105,7 +106,7 @@ class MainWindow(QMainWindow):
         self.toolbar = self._make_toolbar()
         self.addToolBar(self.toolbar)
         self._fill_menus()
-        self.empty = pages.EmptyPage(
+        self.empty = empty_page.EmptyPage(
             self.actions_by_id["new"].trigger,
             self.actions_by_id["open"].trigger,
             self.files.open,
@@ -159,13 +160,13 @@ class MainWindow(QMainWindow):
         bar.setMovable(False)
         bar.setIconSize(QSize(20, 20))
         bar.setContextMenuPolicy(Qt.ContextMenuPolicy.PreventContextMenu)
-        words = {action.id: action.word for action in actions.ACTIONS}
-        for number, group in enumerate(actions.TOOLBAR):
+        words = {action.id: action.word for action in registry.ACTIONS}
+        for number, group in enumerate(registry.TOOLBAR):
             if not group:
                 space = QWidget()
                 space.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
                 bar.addWidget(space)
-            elif number and actions.TOOLBAR[number - 1]:
+            elif number and registry.TOOLBAR[number - 1]:
                 bar.addSeparator()
             for action_id in group:
                 bar.addAction(self.actions_by_id[action_id])
@@ -178,7 +179,7 @@ class MainWindow(QMainWindow):
     def _fill_menus(self) -> None:
         bar = self.menuBar()
         bar.clear()
-        for title, members in actions.groups(self):
+        for title, members in registry.groups(self):
             menu = bar.addMenu(title)
             for action in members:
                 menu.addAction(self.actions_by_id[action.id])

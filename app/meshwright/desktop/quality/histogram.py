@@ -4,11 +4,11 @@ from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import QBrush, QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
-from app.desktop.filters import OwnTooltips
-from app.desktop.tally import short
-from app.desktop.widgets import tabular
-from app.quality_summary import Spread
-from app.theme import Theme
+from meshwright.desktop.quality.irregularity_chart import short
+from meshwright.desktop.widgets.basic import tabular
+from meshwright.desktop.widgets.event_filters import OwnTooltips
+from meshwright.document.quality_summary import Spread
+from meshwright.graphics.theme import Theme
 
 HEIGHT = 72
 _AXIS = 18
@@ -18,7 +18,8 @@ _ASIDE = 22
 
 
 class Histogram(QWidget):
-    """Columns of a :class:`~app.quality_summary.Spread`; a triangle points at the worst value.
+    """Columns of a :class:`~meshwright.document.quality_summary.Spread`; a triangle points at the
+    worst value.
 
     Inverted elements are a hatched column of their own at the left. ``stale`` values are pale.
     """

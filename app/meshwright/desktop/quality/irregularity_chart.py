@@ -5,10 +5,10 @@ from qtpy.QtCore import QPointF, QRectF, Qt, Signal
 from qtpy.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
-from app.desktop.filters import OwnTooltips
-from app.desktop.widgets import tabular
-from app.markers import label
-from app.theme import Theme
+from meshwright.desktop.widgets.basic import tabular
+from meshwright.desktop.widgets.event_filters import OwnTooltips
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import Theme
 
 FEWEST, MOST = 2, 4
 """Columns on either side of zero; vertices further away from it are counted in the outermost."""

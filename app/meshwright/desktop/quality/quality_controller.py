@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.desktop.gauge import Gauge
-from app.desktop.layers.spot import SpotLayer
-from app.desktop.quality_panel import QualityPanel
-from app.desktop.score_panel import ScorePanel
-from app.desktop.tally import MOST
-from app.markers import label
-from app.theme import Theme
+from meshwright.desktop.canvas.layers.highlight import SpotLayer
+from meshwright.desktop.quality.irregularity_chart import MOST
+from meshwright.desktop.quality.quality_job import Gauge
+from meshwright.desktop.quality.quality_panel import QualityPanel
+from meshwright.desktop.quality.score_panel import ScorePanel
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import Theme
 
 if TYPE_CHECKING:
-    from app.desktop.window import MainWindow
+    from meshwright.desktop.main_window.window import MainWindow
 
 
 class Dashboard:

@@ -6,10 +6,10 @@ from functools import partial
 
 from qtpy.QtCore import QObject, QTimer, Signal
 
-from app.desktop.dispatch import Dispatcher
-from app.document import Document
-from app.quality_summary import QualitySummary, summarise
-from meshcore import HalfEdgeMesh
+from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.document.document import Document
+from meshwright.document.quality_summary import QualitySummary, summarise
+from meshwright_core import HalfEdgeMesh
 
 PAUSE = 120
 """Milliseconds from a change to the measuring; more changes meanwhile do not put it off."""

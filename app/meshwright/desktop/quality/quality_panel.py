@@ -5,12 +5,12 @@ import math
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QButtonGroup, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
-from app.desktop.gauge import Gauge
-from app.desktop.histogram import Histogram
-from app.desktop.settings import Settings
-from app.desktop.widgets import Link
-from app.quality_summary import QualitySummary, Spread
-from app.theme import Theme
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.quality.histogram import Histogram
+from meshwright.desktop.quality.quality_job import Gauge
+from meshwright.desktop.widgets.basic import Link
+from meshwright.document.quality_summary import QualitySummary, Spread
+from meshwright.graphics.theme import Theme
 
 JACOBIAN, ANGLE = "jacobian", "angle"
 _MEASURES = (

@@ -3,11 +3,11 @@
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from app.desktop.gauge import Gauge
-from app.desktop.tally import Tally
-from app.desktop.widgets import Bar, Fact, Link, Optimal, named, tabular
-from app.document import Document
-from app.theme import GRID, Theme
+from meshwright.desktop.quality.irregularity_chart import Tally
+from meshwright.desktop.quality.quality_job import Gauge
+from meshwright.desktop.widgets.basic import Bar, Fact, Link, Optimal, named, tabular
+from meshwright.document.document import Document
+from meshwright.graphics.theme import GRID, Theme
 
 _NONE = "\u2013"
 _STALE = "\u2026"

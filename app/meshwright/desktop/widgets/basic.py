@@ -12,8 +12,8 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop import icons
-from app.theme import GRID, Theme
+from meshwright.desktop.widgets import icons
+from meshwright.graphics.theme import GRID, Theme
 
 
 def tabular(font: QFont) -> QFont:

@@ -4,8 +4,8 @@ from qtpy.QtCore import QByteArray, QSize, Qt
 from qtpy.QtGui import QIcon, QPainter, QPixmap
 from qtpy.QtSvg import QSvgRenderer
 
-from app.strokes import STROKES
-from app.theme import Theme
+from meshwright.graphics.icon_paths import STROKES
+from meshwright.graphics.theme import Theme
 
 SIZE = 20
 

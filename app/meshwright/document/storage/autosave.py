@@ -2,7 +2,7 @@
 
 The first step after a mesh has come or has been saved writes the whole document; each later event
 appends what it changed. Saving and closing remove the file. What a process that died has left
-behind is found by :mod:`app.recovery`.
+behind is found by :mod:`meshwright.document.storage.recovery`.
 """
 
 import errno
@@ -14,13 +14,13 @@ from typing import Any
 
 import platformdirs
 
-from app import filelock, keeping
-from app.document import Document
-from app.journalfile import encoded
-from app.signals import Signal
-from meshcore import snapshot
-from meshcore.atomic import reason
-from meshcore.snapshot import Arrays
+from meshwright.document.document import Document
+from meshwright.document.storage import document_state, file_lock
+from meshwright.document.storage.autosave_log import encoded
+from meshwright.signals import Signal
+from meshwright_core.io import snapshot
+from meshwright_core.io.atomic_write import reason
+from meshwright_core.io.snapshot import Arrays
 
 ENDING = ".journal"
 WAITING_BYTES = 256 << 20
@@ -88,7 +88,7 @@ class Autosave:
         """Let go of the document, and leave the file for the next start."""
         self._disconnect()
         if self._descriptor is not None:
-            filelock.let_go(self._descriptor)
+            file_lock.let_go(self._descriptor)
         self._path = self._descriptor = None
 
     # Events
@@ -106,7 +106,7 @@ class Autosave:
         mesh, row = self._document.mesh, self._document.history.last
         if event != "step" or mesh is None or row is None:
             return header, {}
-        header["row"] = keeping.row_record(row)
+        header["row"] = document_state.row_record(row)
         header["room"] = [len(mesh.arrays.vertex), len(mesh.arrays.element_mark)]
         return header, snapshot.steps_arrays([mesh.last_step()], "step")
 
@@ -128,11 +128,11 @@ class Autosave:
         begun = time.monotonic()
         if begun < self._not_before:
             return False
-        header, arrays = keeping.taken(self._document.kept())
+        header, arrays = document_state.taken(self._document.kept())
         path = self._folder / f"{os.getpid()}-{secrets.token_hex(6)}{ENDING}"
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            descriptor = filelock.hold(path, fresh=True)
+            descriptor = file_lock.hold(path, fresh=True)
         except OSError as error:
             self._tell(error)
             return False
@@ -197,7 +197,7 @@ class Autosave:
         self._path = self._descriptor = None
         self._waiting.clear()
         if descriptor is not None:
-            filelock.let_go(descriptor)
+            file_lock.let_go(descriptor)
         if path is not None:
             remove(path)
 

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from meshcore.snapshot import Arrays
+from meshwright_core.io.snapshot import Arrays
 
 _MARK = b"MWJR"
 _FRAME = struct.Struct("<4sQI")

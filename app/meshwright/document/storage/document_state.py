@@ -9,11 +9,12 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-from app.branches import Branch, Branches
-from app.history import History, Row
-from meshcore import HalfEdgeMesh, MeshError, snapshot
-from meshcore.snapshot import Arrays
-from meshcore.steps import Steps
+from meshwright.document.branches import Branch, Branches
+from meshwright.document.history import History, Row
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.history.packed_steps import Steps
+from meshwright_core.io import snapshot
+from meshwright_core.io.snapshot import Arrays
 
 VERSION = 1
 """Of the header and of the arrays; files of a later one are refused in words."""
@@ -30,7 +31,8 @@ class Kept:
     """What is kept of a document.
 
     ``path`` is the file that *Save* writes; ``saved`` what the document was when it was written,
-    as :attr:`app.document.Document.saved_state`; ``settings`` what the views want to find again.
+    as :attr:`meshwright.document.document.Document.saved_state`; ``settings`` what the views want
+    to find again.
     """
 
     mesh: HalfEdgeMesh

@@ -1,7 +1,7 @@
 """The project file, ``.meshwright``: a mesh with its whole history, branches, and settings.
 
 It is a zip archive, as ``numpy.load`` reads it: ``project.json`` and one ``.npy`` for each array
-(:mod:`meshcore.snapshot` tells which). Nothing in it is ever run.
+(:mod:`meshwright_core.io.snapshot` tells which). Nothing in it is ever run.
 """
 
 import io
@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from app import keeping
-from app.keeping import Kept
-from meshcore import MeshError
-from meshcore.atomic import replacing
-from meshcore.reading import naming
-from meshcore.snapshot import Arrays
+from meshwright.document.storage import document_state
+from meshwright.document.storage.document_state import Kept
+from meshwright_core import MeshError
+from meshwright_core.io.atomic_write import replacing
+from meshwright_core.io.file_checks import naming
+from meshwright_core.io.snapshot import Arrays
 
 ENDING = ".meshwright"
 _HEADER = "project.json"
@@ -54,7 +54,7 @@ def write(path: str | os.PathLike[str], kept: Kept) -> None:
     Raises MeshError, one sentence that begins with the path, where the system refuses; an old file
     is then as it was.
     """
-    header, arrays = keeping.taken(kept)
+    header, arrays = document_state.taken(kept)
     text = json.dumps({"format": _FORMAT, **header}, ensure_ascii=False)
     with (
         replacing(path) as temporary,
@@ -79,7 +79,7 @@ def read(path: str | os.PathLike[str]) -> Kept:
             header, arrays = _members(place)
             if not isinstance(header, dict) or header.get("format") != _FORMAT:
                 raise MeshError("it is not a Meshwright project")
-            kept = keeping.restored(header, arrays)
+            kept = document_state.restored(header, arrays)
         except MeshError:
             raise
         except _BROKEN as error:

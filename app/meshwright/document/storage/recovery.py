@@ -1,14 +1,17 @@
-"""Work that a process left behind when it died, as :mod:`app.autosave` wrote it down."""
+"""Work that a process left behind when it died, as :mod:`meshwright.document.storage.autosave`
+wrote it down.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from app import autosave, filelock, keeping
-from app.document import Document
-from app.journalfile import Record, records
-from app.keeping import Kept
-from meshcore import MeshError, snapshot
+from meshwright.document.document import Document
+from meshwright.document.storage import autosave, document_state, file_lock
+from meshwright.document.storage.autosave_log import Record, records
+from meshwright.document.storage.document_state import Kept
+from meshwright_core import MeshError
+from meshwright_core.io import snapshot
 
 
 @dataclass
@@ -24,8 +27,8 @@ class Lost:
     when: float
     """Time of the last step, in seconds since 1970."""
     now: dict[str, Any]
-    """What :meth:`app.autosave.Autosave` notes with every event: ``steps``, ``score``,
-    ``optimum``, ``elements``, ``kind``.
+    """What :meth:`meshwright.document.storage.autosave.Autosave` notes with every event: ``steps``,
+    ``score``, ``optimum``, ``elements``, ``kind``.
     """
     _descriptor: int | None = None
 
@@ -50,7 +53,7 @@ class Lost:
     def release(self) -> None:
         """Leave it for another start."""
         if self._descriptor is not None:
-            filelock.let_go(self._descriptor)
+            file_lock.let_go(self._descriptor)
         self._descriptor = None
 
 
@@ -64,7 +67,7 @@ def lost(where: Path | None = None) -> list[Lost]:
         return []
     for path in paths:
         try:
-            descriptor = filelock.hold(path)
+            descriptor = file_lock.hold(path)
             one = _look(path, descriptor) if descriptor is not None else None
         except OSError:
             continue  # it may have gone meanwhile, or belong to somebody else
@@ -78,7 +81,7 @@ def _look(path: Path, descriptor: int) -> Lost | None:
     when = path.stat().st_mtime
     headers = [record.header for record in records(path)]
     if not headers or headers[0].get("event") != "document":
-        filelock.let_go(descriptor)
+        file_lock.let_go(descriptor)
         autosave.remove(path)
         return None
     first, now = headers[0], headers[-1].get("now")
@@ -98,7 +101,7 @@ def _replayed(path: Path) -> Kept:
     document = Document()
     for record in records(path):
         if document.empty:
-            document.adopt(keeping.restored(record.header, record.arrays))
+            document.adopt(document_state.restored(record.header, record.arrays))
         else:
             try:
                 _again(document, record)
@@ -121,7 +124,7 @@ def _again(document: Document, record: Record) -> None:
         _make_room(document, record.header.get("room"))
         mesh = document.mesh
         steps = snapshot.restored_steps(record.arrays, "step", mesh) if mesh else ()
-        document.again(keeping.row_of(record.header.get("row")), steps)
+        document.again(document_state.row_of(record.header.get("row")), steps)
     else:
         raise MeshError("an event of the record is unknown")
 

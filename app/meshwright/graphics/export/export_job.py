@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from app import movie
-from app.drawing import Drawing, raster, svg
-from app.figure import Look, figure
-from app.film import Film
-from app.movie import Progress
-from meshcore import HalfEdgeMesh, atomic
-from meshcore.errors import MeshError
+from meshwright.graphics.drawing import Drawing, raster, svg
+from meshwright.graphics.export import video
+from meshwright.graphics.export.film import Film
+from meshwright.graphics.export.video import Progress
+from meshwright.graphics.mesh_figure import Look, figure
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.errors import MeshError
+from meshwright_core.io import atomic_write
 
-FILMS = movie.ENDINGS
+FILMS = video.ENDINGS
 STILLS = (".png", ".svg")
 SIZES = ((640, 480), (960, 720), (1280, 720), (1920, 1080), (1200, 1200))
 """Pixels on offer; all sides are even, as films want it."""
@@ -68,7 +69,7 @@ def write_order(
 
     Raises MeshError, which names ``path``, where the file cannot be written.
     """
-    with atomic.replacing(path) as temporary:
+    with atomic_write.replacing(path) as temporary:
         return save_order(film, order, temporary, progress)
 
 

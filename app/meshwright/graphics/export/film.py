@@ -11,15 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from app import movie
-from app.curve import Track
-from app.document import NO_MESH, Document
-from app.drawing import raster
-from app.figure import Look, Moment, edges, figure, fitted
-from app.history import YOU, Row
-from app.markers import label
-from app.viewport import Viewport
-from meshcore import HalfEdgeMesh, MeshError, Operation
+from meshwright.document.document import NO_MESH, Document
+from meshwright.document.history import YOU, Row
+from meshwright.document.score_series import Track
+from meshwright.graphics.drawing import raster
+from meshwright.graphics.export import video
+from meshwright.graphics.markers import label
+from meshwright.graphics.mesh_figure import Look, Moment, edges, figure, fitted
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 SAMPLES = 2
 """Frames are drawn this many times larger: a still picture takes more care."""
@@ -168,12 +168,12 @@ class Film:
         look: Look | None = None,
         seconds: float = 0.25,
         every: int = 1,
-        progress: movie.Progress | None = None,
+        progress: video.Progress | None = None,
     ) -> int:
         """Write the film as GIF or MP4, as the ending says; returns the number of frames.
 
         ``seconds`` is how long one frame stays, ``every`` how many steps it stands for. Raises,
-        and calls ``progress``, as :func:`app.movie.save` does.
+        and calls ``progress``, as :func:`meshwright.graphics.export.video.save` does.
         """
         look = look or Look()
         stops = self.stops(every)
@@ -181,7 +181,7 @@ class Film:
         times[0] = max(seconds, FIRST if len(stops) > 1 else LAST)
         times[-1] = max(seconds, LAST)
         frames = zip(self.images(stops, look), times, strict=True)
-        movie.save(path, frames, len(stops), look, progress)
+        video.save(path, frames, len(stops), look, progress)
         return len(stops)
 
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.drawing import raster
-from app.figure import Look, Moment, elements, figure
-from app.outputs import replacing
+from meshwright.cli.output_files import replacing
+from meshwright.graphics.drawing import raster
+from meshwright.graphics.mesh_figure import Look, Moment, elements, figure
 
 if TYPE_CHECKING:
-    from meshcore import HalfEdgeMesh, Operation
+    from meshwright_core import HalfEdgeMesh, Operation
 
 FRAME_SIZE = (800, 800)
 
@@ -27,7 +27,7 @@ def write(
 
     Raises UserError if the file cannot be written.
     """
-    from meshcore import smoothing
+    from meshwright_core.geometry import smoothing
 
     work = mesh.copy()
     look = Look(size, theme)

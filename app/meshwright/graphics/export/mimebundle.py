@@ -1,7 +1,7 @@
 """The still picture that stands for a mesh at the end of a notebook's cell.
 
-It is found by the entry point ``meshwright.display`` (see :mod:`meshcore.display`), and it needs
-nothing but numpy and Pillow.
+It is found by the entry point ``meshwright.display`` (see
+:mod:`meshwright_core.core.notebook_display`), and it needs nothing but numpy and Pillow.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from base64 import b64encode
 from html import escape
 from urllib.parse import quote
 
-from app.drawing import raster, svg
-from app.figure import Look, elements, figure
-from app.movie import flat
-from meshcore import HalfEdgeMesh
-from meshcore.display import Bundle
+from meshwright.graphics.drawing import raster, svg
+from meshwright.graphics.export.video import flat
+from meshwright.graphics.mesh_figure import Look, elements, figure
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.notebook_display import Bundle
 
 SIZE = (480, 360)
 """Pixels that the picture takes on the page."""

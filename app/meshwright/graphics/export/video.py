@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from app.figure import Look
-from app.theme import Theme
-from meshcore.errors import MeshError
+from meshwright.graphics.mesh_figure import Look
+from meshwright.graphics.theme import Theme
+from meshwright_core.errors import MeshError
 
 ENDINGS = (".gif", ".mp4")
 RATE = 20
@@ -44,7 +44,8 @@ def save(
     """Write ``count`` frames, each a Pillow image of ``look.size`` and its seconds, to ``path``.
 
     ``progress(done, count)`` is called after each; what it raises ends the work, with a file that
-    is not whole: :func:`app.pictures.write_order` sees to that. Raises MeshError for another ending
+    is not whole: :func:`meshwright.graphics.export.export_job.write_order` sees to that. Raises
+    MeshError for another ending
     or a size that cannot be encoded, OSError where the file cannot be written.
     """
     followed = _followed(frames, count, progress)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from app import mimebundle
-from app.document import Document
-from app.notebook import page, stills
-from app.notebook.stills import SECONDS, SIZE, File
+from meshwright.document.document import Document
+from meshwright.graphics.export import mimebundle
+from meshwright.notebook.export import html_page, images
+from meshwright.notebook.export.images import SECONDS, SIZE, File
 
 
 class Exports:
-    """The half of :class:`app.notebook.widget.MeshWidget` that writes.
+    """The half of :class:`meshwright.notebook.widget.MeshWidget` that writes.
 
     Where a path is given the file is written whole or not at all. All raise MeshError, in one
     sentence, where there is no mesh or the file cannot be written.
@@ -25,27 +25,27 @@ class Exports:
 
     def to_html(self, path: File = None, *, title: str = "") -> str:
         """One HTML file that goes through the film of the history, without Python or a network."""
-        return self._do(lambda: page.page(self.document, str(title), path))
+        return self._do(lambda: html_page.page(self.document, str(title), path))
 
     def to_png(self, path: File = None, size: tuple[int, int] = SIZE) -> bytes:
         """A picture of the mesh as it is now, ``size`` in pixels."""
-        return self._do(lambda: stills.png(self.document, size, path, self._colours))
+        return self._do(lambda: images.png(self.document, size, path, self._colours))
 
     def to_svg(self, path: File = None, size: tuple[int, int] = SIZE) -> str:
         """The same picture as vectors."""
-        return self._do(lambda: stills.svg(self.document, size, path, self._colours))
+        return self._do(lambda: images.svg(self.document, size, path, self._colours))
 
     def to_gif(
         self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
     ) -> bytes:
         """The film of the history; each frame stays for so many seconds."""
-        return self._do(lambda: stills.gif(self.document, seconds, size, path, self._colours))
+        return self._do(lambda: images.gif(self.document, seconds, size, path, self._colours))
 
     def to_mp4(
         self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
     ) -> bytes:
         """The film of the history as MP4."""
-        return self._do(lambda: stills.mp4(self.document, path, seconds, size, self._colours))
+        return self._do(lambda: images.mp4(self.document, path, seconds, size, self._colours))
 
     @property
     def _colours(self) -> str:

@@ -13,12 +13,12 @@ from hashlib import sha256
 from html import escape
 from typing import Any
 
-from app.document import Document
-from app.figure import elements
-from app.notebook import front
-from app.notebook.recording import record
-from app.theme import DARK, LIGHT, Theme
-from meshcore import atomic
+from meshwright.document.document import Document
+from meshwright.graphics.mesh_figure import elements
+from meshwright.graphics.theme import DARK, LIGHT, Theme
+from meshwright.notebook import bundle
+from meshwright.notebook.export.recording import record
+from meshwright_core.io import atomic_write
 
 LONGEST = 200
 """Characters of a title."""
@@ -39,7 +39,7 @@ def page(document: Document, title: str = "", path: str | os.PathLike[str] | Non
     heading = _heading(title or document.name or elements(document.mesh))
     text = _html(heading, _note(film), film)
     if path is not None:
-        with atomic.replacing(path) as temporary:
+        with atomic_write.replacing(path) as temporary:
             temporary.write_text(text, encoding="utf-8", newline="\n")
     return text
 
@@ -56,7 +56,7 @@ def _html(heading: str, note: str, film: dict[str, Any]) -> str:
 <title>{escape(heading)}</title>
 <style>
 {_page_style()}
-{front.style()}</style>
+{bundle.style()}</style>
 </head>
 <body>
 <main>
@@ -101,7 +101,7 @@ def _script() -> str:
     """The front, and what puts the film into the page."""
     return f"""(() => {{
 "use strict";
-{front.script()}
+{bundle.script()}
 const recording = JSON.parse(document.getElementById("recording").textContent);
 const place = document.getElementById("film");
 const room = Math.min(innerHeight - {HEAD_AND_FOOT}, place.clientWidth, {HIGHEST});

@@ -6,11 +6,12 @@ import os
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.document import Document
-from app.film import Film
-from app.pictures import Order, save_order
-from app.theme import THEMES
-from meshcore import MeshError, atomic
+from meshwright.document.document import Document
+from meshwright.graphics.export.export_job import Order, save_order
+from meshwright.graphics.export.film import Film
+from meshwright.graphics.theme import THEMES
+from meshwright_core import MeshError
+from meshwright_core.io import atomic_write
 
 SIZE = (960, 720)
 """Pixels of a picture that is not told otherwise."""
@@ -82,7 +83,7 @@ def _made(
         _check_ending(path, ending)
     film = Film(document)
     if path is not None:
-        with atomic.replacing(path) as temporary:
+        with atomic_write.replacing(path) as temporary:
             save_order(film, order, temporary)
             return temporary.read_bytes()
     try:
@@ -91,7 +92,7 @@ def _made(
             save_order(film, order, made)
             return made.read_bytes()
     except OSError as error:
-        raise MeshError(f"The picture cannot be made ({atomic.reason(error)}).") from error
+        raise MeshError(f"The picture cannot be made ({atomic_write.reason(error)}).") from error
 
 
 def _checked_size(size: tuple[int, int]) -> tuple[int, int]:

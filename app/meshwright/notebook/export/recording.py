@@ -5,11 +5,11 @@ from __future__ import annotations
 from base64 import b64encode
 from typing import Any
 
-from app.document import Document
-from app.history import History
-from app.keeping import Kept
-from app.notebook.head import Head
-from app.notebook.wire import Mirror, Packet
+from meshwright.document.document import Document
+from meshwright.document.history import History
+from meshwright.document.storage.document_state import Kept
+from meshwright.notebook.protocol.document_status import Head
+from meshwright.notebook.protocol.mesh_sync import Mirror, Packet
 
 VERSION = 1
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.assistant import FASTEST, Assistant
-from app.document import NO_MESH, Document, title_of
-from app.inputs import KIND_NOUN, looks_like_path
-from app.notebook.loop import Loop
-from app.notebook.wire import Packet
-from app.policy_files import kind_of, label, shipped
-from app.searching import Effort
-from meshcore import MeshError
+from meshwright.assistant.assistant import FASTEST, Assistant
+from meshwright.assistant.policy_catalogue import kind_of, label, shipped
+from meshwright.assistant.search_runner import Effort
+from meshwright.cli.arguments import KIND_NOUN, looks_like_path
+from meshwright.document.document import NO_MESH, Document, title_of
+from meshwright.notebook.protocol.mesh_sync import Packet
+from meshwright.notebook.thread_loop import Loop
+from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from agent.choices import Choice
+    from meshwright_agent.policy.explanation_types import Choice
 
 
 class Helper:

@@ -7,13 +7,13 @@ import time
 from typing import Any, Protocol
 from weakref import ReferenceType, ref
 
-from app.document import Document
-from app.notebook.head import Head
-from app.notebook.helper import Helper
-from app.notebook.loop import Loop
-from app.notebook.messages import Request
-from app.notebook.wire import Mirror, Packet
-from meshcore.operations import of_kind
+from meshwright.document.document import Document
+from meshwright.notebook.protocol.agent_bridge import Helper
+from meshwright.notebook.protocol.document_status import Head
+from meshwright.notebook.protocol.mesh_sync import Mirror, Packet
+from meshwright.notebook.protocol.requests import Request
+from meshwright.notebook.thread_loop import Loop
+from meshwright_core.operations.catalogue import of_kind
 
 PACE = 0.02
 """Seconds between two patches, on average, while a cell works; what comes sooner travels with the

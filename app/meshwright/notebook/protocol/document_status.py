@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from app.curve import Track
-from app.document import Document
-from meshcore import HalfEdgeMesh
-from meshcore.halfedge import ELEMENT_SLOTS, ORIGIN
-from meshcore.outline import Outline
-from meshcore.quality import TOLERANCE, corner_sines, inverted
+from meshwright.document.document import Document
+from meshwright.document.score_series import Track
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN
+from meshwright_core.geometry.outline import Outline
+from meshwright_core.geometry.quality import TOLERANCE, corner_sines, inverted
 
 BLOCKS_UP_TO = 20_000
 """Elements of a quad mesh above which its blocks are not counted after every step."""
@@ -137,6 +137,6 @@ def _element_slots(mesh: HalfEdgeMesh) -> int:
 def _blocks(mesh: HalfEdgeMesh | None) -> int | None:
     if mesh is None or mesh.k != 4 or mesh.n_elements > BLOCKS_UP_TO:
         return None
-    from meshcore.blocks import block_count  # imported late, for it pulls in scipy
+    from meshwright_core.analysis.blocks import block_count  # imported late, for it pulls in scipy
 
     return block_count(mesh)

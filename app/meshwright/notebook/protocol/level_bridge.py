@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from app import levels
-from app.assistant import Assistant
-from app.document import Document
-from app.level_play import LevelPlay
-from app.levels import Level
-from app.notebook.wire import Packet
-from app.rival import Standing
-from meshcore import MeshError
+from meshwright.assistant.assistant import Assistant
+from meshwright.document.document import Document
+from meshwright.notebook.protocol.mesh_sync import Packet
+from meshwright.puzzles import level as levels
+from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.level import Level
+from meshwright.puzzles.play import LevelPlay
+from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from app.notebook.messages import Request
-    from app.notebook.session import Session
+    from meshwright.notebook.protocol.requests import Request
+    from meshwright.notebook.session import Session
 
 BARRED = {"clean_all": "clean_all", "desired": "desired", "lock": "locked", "corner": "geometric"}
 """Words of a browser, and the steps that they bring about."""

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh
-from meshcore.halfedge import (
+from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import (
     DEGREE,
     DESIRED,
     ELEMENT_SLOTS,

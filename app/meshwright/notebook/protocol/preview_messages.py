@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from app.notebook.wire import Frame, Packet
-from app.preview import Choice, best, choices, ghost
-from meshcore import HalfEdgeMesh
+from meshwright.document.operation_preview import Choice, best, choices, ghost
+from meshwright.notebook.protocol.mesh_sync import Frame, Packet
+from meshwright_core import HalfEdgeMesh
 
 
 def ghost_packet(

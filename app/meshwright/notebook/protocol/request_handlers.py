@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.history import Row
-from meshcore import HalfEdgeMesh, MeshError
-from meshcore.operations import of_kind
+from meshwright.document.history import Row
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.operations.catalogue import of_kind
 
 if TYPE_CHECKING:
-    from app.notebook.messages import Request
-    from app.notebook.session import Session
+    from meshwright.notebook.protocol.requests import Request
+    from meshwright.notebook.session import Session
 
 Deed = Callable[["Session", "Request"], str]
 

@@ -1,5 +1,5 @@
 """Reading what students give: each helper returns it in the form that a check wants, or raises
-:class:`~app.teaching.exercises.Wrong` with a sentence that says what is wanted.
+:class:`~meshwright.teaching.exercises.exercise.Wrong` with a sentence that says what is wanted.
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ import operator
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from app.teaching.exercises import Blank, Wrong
-from meshcore import HalfEdgeMesh
+from meshwright.teaching.exercises.exercise import Blank, Wrong
+from meshwright_core import HalfEdgeMesh
 
 LONGEST = 80
 """Letters of a student's own value that a sentence quotes."""

@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from meshcore import HalfEdgeMesh, MeshError, smoothing
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.geometry import smoothing
 
 
 def patch(name: str) -> HalfEdgeMesh:

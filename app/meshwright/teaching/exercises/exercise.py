@@ -13,8 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from app.teaching.answer import BLANK, RIGHT, WRONG, Answer
-from app.teaching.solution import Solution, solution_of
+from meshwright.teaching.exercises.result import BLANK, RIGHT, WRONG, Answer
+from meshwright.teaching.exercises.solution import Solution, solution_of
 
 Check = Callable[..., str]
 """Takes what the student gives; returns why it is right, or raises :class:`Wrong` or
@@ -99,7 +99,7 @@ def exercise(name: str) -> Exercise:
     name = str(name)
     topic = TOPICS.get(name.partition(".")[0])
     if topic is not None:
-        importlib.import_module(f"app.teaching.{topic}")
+        importlib.import_module(f"meshwright.teaching.{topic}")
     if name not in _DECLARED:
         near = difflib.get_close_matches(name, _DECLARED, 3, 0.5)
         hint = f"did you mean {' or '.join(near)}?" if near else "the first lesson begins with 1.1."

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.teaching.exercises import declare
-from app.teaching.given import called, edited, expect, whole
-from app.teaching.patches import fan, grid
+from meshwright.teaching.exercises.answer_parsing import called, edited, expect, whole
+from meshwright.teaching.exercises.example_meshes import fan, grid
+from meshwright.teaching.exercises.exercise import declare
 
 STAR = 24
 """Quads of the star of the gallery."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.teaching.exercises import Wrong, declare
-from app.teaching.given import called, edited, expect, letters, whole
+from meshwright.teaching.exercises.answer_parsing import called, edited, expect, letters, whole
+from meshwright.teaching.exercises.exercise import Wrong, declare
 
 ANGLES = {90: 2, 180: 3, 270: 4, 60: 2, 120: 2, 150: 3, 240: 4, 350: 5, 45.17: 2, 242.83: 4, 20: 2}
 """Desired degree in quads by the angle in degrees; none is half-way between two."""

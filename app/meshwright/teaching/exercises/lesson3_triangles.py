@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.teaching.exercises import declare
-from app.teaching.given import called, edited, expect, whole, wholes
-from app.teaching.patches import hexagon, trap
+from meshwright.teaching.exercises.answer_parsing import called, edited, expect, whole, wholes
+from meshwright.teaching.exercises.example_meshes import hexagon, trap
+from meshwright.teaching.exercises.exercise import declare
 
 
 @declare("3.1", "Write down the four new numbers first; then compare the sums of their sizes.")

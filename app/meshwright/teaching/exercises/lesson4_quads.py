@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.teaching.exercises import declare
-from app.teaching.given import edited, expect, mesh_of, whole, yes_or_no
+from meshwright.teaching.exercises.answer_parsing import edited, expect, mesh_of, whole, yes_or_no
+from meshwright.teaching.exercises.exercise import declare
 
 
 @declare("4.1", "Follow the edge in the picture until it stands where it stood.")

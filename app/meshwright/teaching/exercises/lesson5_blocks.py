@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.teaching.exercises import declare
-from app.teaching.given import called, edited, expect, whole
-from meshcore.block_grids import Grid
-from meshcore.blocks import block_count
+from meshwright.teaching.exercises.answer_parsing import called, edited, expect, whole
+from meshwright.teaching.exercises.exercise import declare
+from meshwright_core.analysis.block_grids import Grid
+from meshwright_core.analysis.blocks import block_count
 
 NOTCH = 4
 """Blocks that the notch needs."""

@@ -7,9 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from app.teaching.exercises import Wrong, declare
-from app.teaching.given import called, expect, quoted, whole, wholes, yes_or_no
-from app.teaching.patches import grid
+from meshwright.teaching.exercises.answer_parsing import (
+    called,
+    expect,
+    quoted,
+    whole,
+    wholes,
+    yes_or_no,
+)
+from meshwright.teaching.exercises.example_meshes import grid
+from meshwright.teaching.exercises.exercise import Wrong, declare
 
 GAMMA, REWARDS, START = 0.9, (0, 0, 2), 4
 RETURN = sum(GAMMA**k * r for k, r in enumerate(REWARDS)) / START

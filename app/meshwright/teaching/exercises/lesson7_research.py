@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.experiments.comparison import Comparison
-from app.teaching.exercises import Wrong, declare
-from app.teaching.given import called, expect, letters, quoted, whole
+from meshwright.experiments.comparison import Comparison
+from meshwright.teaching.exercises.answer_parsing import called, expect, letters, quoted, whole
+from meshwright.teaching.exercises.exercise import Wrong, declare
 
 POLICY = "quad-paper"
 PAIRS = (0.9 + 1.0 + 1.0) / 3.0

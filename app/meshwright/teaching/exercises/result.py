@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-from app.theme import DARK, LIGHT, Theme
+from meshwright.graphics.theme import DARK, LIGHT, Theme
 
 RIGHT, WRONG, BLANK = "right", "wrong", "blank"
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-from app import lessons
-from app.teaching.answer import STYLE
+from meshwright.teaching import lessons
+from meshwright.teaching.exercises.result import STYLE
 
 _LOOK = (
     ".mw-code{max-width:720px;margin:4px 0;padding:8px 12px;border:1px solid var(--mw-line);"

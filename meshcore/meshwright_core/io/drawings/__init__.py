@@ -12,13 +12,13 @@ from typing import Any
 
 import shapely
 
-from meshcore import curves, dxf, svg
-from meshcore.curves import CURVE_STEP, Piece
-from meshcore.domain import CORNER_ANGLE, Domain, load_json
-from meshcore.errors import MeshError
-from meshcore.formats import SHAPES
-from meshcore.reading import naming, size_of
-from meshcore.tracing import traced
+from meshwright_core.domains.domain import CORNER_ANGLE, Domain, load_json
+from meshwright_core.errors import MeshError
+from meshwright_core.io.drawings import curves, dxf, svg
+from meshwright_core.io.drawings.curves import CURVE_STEP, Piece
+from meshwright_core.io.drawings.loop_tracing import traced
+from meshwright_core.io.file_checks import naming, size_of
+from meshwright_core.io.formats import SHAPES
 
 MAX_BYTES = 256 * 2**20
 """Size of a file beyond which it is not read."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshcore.domain import Flags, Points
+from meshwright_core.domains.domain import Flags, Points
 
 CURVE_STEP = 15.0
 """Degrees by which a polyline that stands for a curve turns at each of its points, at most."""

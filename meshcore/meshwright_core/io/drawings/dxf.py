@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from meshcore import curves
-from meshcore.curves import Affine, Piece
-from meshcore.domain import Points
-from meshcore.errors import MeshError
+from meshwright_core.domains.domain import Points
+from meshwright_core.errors import MeshError
+from meshwright_core.io.drawings import curves
+from meshwright_core.io.drawings.curves import Affine, Piece
 
 _BINARY = b"AutoCAD Binary DXF"
 _DEPTH = 8

@@ -8,9 +8,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from meshcore.curves import Piece
-from meshcore.domain import CORNER_ANGLE, Domain, Flags, Points
-from meshcore.errors import MeshError
+from meshwright_core.domains.domain import CORNER_ANGLE, Domain, Flags, Points
+from meshwright_core.errors import MeshError
+from meshwright_core.io.drawings.curves import Piece
 
 MAX_POINTS = 100_000
 """Points in one drawing beyond which it is refused."""

@@ -17,11 +17,11 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from meshcore import curves, svg_paths
-from meshcore.curves import Piece
-from meshcore.domain import Points
-from meshcore.errors import MeshError
-from meshcore.svg_paths import Subpath
+from meshwright_core.domains.domain import Points
+from meshwright_core.errors import MeshError
+from meshwright_core.io.drawings import curves, svg_paths
+from meshwright_core.io.drawings.curves import Piece
+from meshwright_core.io.drawings.svg_paths import Subpath
 
 Matrix = NDArray[np.float64]
 

@@ -10,10 +10,10 @@ import re
 
 import numpy as np
 
-from meshcore import curves
-from meshcore.curves import Piece
-from meshcore.domain import Points
-from meshcore.errors import MeshError
+from meshwright_core.domains.domain import Points
+from meshwright_core.errors import MeshError
+from meshwright_core.io.drawings import curves
+from meshwright_core.io.drawings.curves import Piece
 
 _BLANK = re.compile(r"[\s,]*")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")

@@ -8,8 +8,8 @@ import numpy as np
 from qtpy.QtCore import QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QPainter, QPen
 
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
 
 
 class Layer:

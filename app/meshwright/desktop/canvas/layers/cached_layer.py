@@ -5,9 +5,9 @@ from __future__ import annotations
 from qtpy.QtCore import QRect, QRectF, Qt
 from qtpy.QtGui import QImage, QPainter
 
-from app.desktop.layers.layer import Layer
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.desktop.canvas.layers.base import Layer
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
 
 
 class PictureLayer(Layer):

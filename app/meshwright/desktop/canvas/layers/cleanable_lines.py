@@ -4,9 +4,9 @@ import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QPainter, QPen, QPolygonF
 
-from app.desktop.layers.layer import pen
-from app.desktop.layers.picture import PictureLayer
-from app.theme import Theme
+from meshwright.desktop.canvas.layers.base import pen
+from meshwright.desktop.canvas.layers.cached_layer import PictureLayer
+from meshwright.graphics.theme import Theme
 
 STEP = 6.0
 """Pixels between the points that a line is drawn by: finer ones are left out."""

@@ -6,10 +6,10 @@ import numpy as np
 from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, QSizeF, Qt
 from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
-from app.desktop.layers.layer import Layer, pen
-from app.markers import label
-from app.preview import Ghost
-from app.theme import Theme
+from meshwright.desktop.canvas.layers.base import Layer, pen
+from meshwright.document.operation_preview import Ghost
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import Theme
 
 DASHES = [4.0, 2.5]
 SLACK = 48.0

@@ -4,8 +4,8 @@ import numpy as np
 from qtpy.QtCore import QObject, QPointF, QRect, QRectF, Qt, QTimer
 from qtpy.QtGui import QPainter, QPolygonF
 
-from app.desktop.layers.layer import Layer, pen
-from app.theme import Theme
+from meshwright.desktop.canvas.layers.base import Layer, pen
+from meshwright.graphics.theme import Theme
 
 SECONDS = 4.0
 _RING = 20.0

@@ -8,12 +8,12 @@ import numpy as np
 from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
-from app.desktop.layers.ghost import DASHES, change_colour
-from app.desktop.layers.layer import Layer, inside, pen
-from app.markers import label
-from app.preview import Ghost
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.desktop.canvas.layers.base import Layer, inside, pen
+from meshwright.desktop.canvas.layers.ghost import DASHES, change_colour
+from meshwright.document.operation_preview import Ghost
+from meshwright.graphics.markers import label
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
 
 HEIGHT = 22.0
 GAP = 4.0

@@ -4,8 +4,8 @@ import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QPainter, QPainterPath, QPolygonF
 
-from app.desktop.layers.layer import Layer, pen
-from app.theme import Theme
+from meshwright.desktop.canvas.layers.base import Layer, pen
+from meshwright.graphics.theme import Theme
 
 SLACK = 14
 """Pixels around the hovered element that its arrow may touch."""

@@ -4,9 +4,9 @@ import numpy as np
 from qtpy.QtCore import QPointF, QRect, Qt
 from qtpy.QtGui import QBrush, QColor, QPainter, QPolygonF
 
-from app.desktop.layers.layer import Layer, inside, pen
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.desktop.canvas.layers.base import Layer, inside, pen
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
 
 SMALLEST = 9.0
 """Elements narrower than this in pixels get a sign of warning beside the hatching."""

@@ -4,17 +4,17 @@ import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QFont, QPainter, QPainterPath, QPen, QPolygonF
 
-from app.desktop.layers.layer import Layer, inside, pen
-from app.markers import READABLE, Markers, label
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.desktop.canvas.layers.base import Layer, inside, pen
+from meshwright.graphics.markers import READABLE, Markers, label
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
 
 MOST_CORNERS = 5000
 """More visible corners than this are not drawn: they would be all that is seen."""
 
 
 class MarkersLayer(Layer):
-    """Paints :class:`app.markers.Markers`."""
+    """Paints :class:`meshwright.graphics.markers.Markers`."""
 
     def __init__(self, theme: Theme, font: QFont) -> None:
         super().__init__(theme)

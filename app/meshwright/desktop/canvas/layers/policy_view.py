@@ -9,14 +9,14 @@ import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen
 
-from app.desktop.layers.hints import percent
-from app.desktop.layers.hover import arrow, polygon
-from app.desktop.layers.layer import Layer, pen
-from app.theme import Theme
-from meshcore import HalfEdgeMesh
+from meshwright.desktop.canvas.layers.base import Layer, pen
+from meshwright.desktop.canvas.layers.hints import percent
+from meshwright.desktop.canvas.layers.hover import arrow, polygon
+from meshwright.graphics.theme import Theme
+from meshwright_core import HalfEdgeMesh
 
 if TYPE_CHECKING:
-    from agent.choices import Insight
+    from meshwright_agent.policy.explanation_types import Insight
 
 READ = 0.05
 """Probabilities from here on are written beside their half-edge."""

@@ -6,10 +6,10 @@ import numpy as np
 from qtpy.QtCore import QPointF, Qt
 from qtpy.QtGui import QColor, QImage, QPainter, QPainterPath, QPolygonF
 
-from app.desktop.layers.layer import inside, pen
-from app.desktop.layers.picture import PictureLayer
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.desktop.canvas.layers.base import inside, pen
+from meshwright.desktop.canvas.layers.cached_layer import PictureLayer
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
 
 MANY = 1500
 """More visible vertices than this are dots of three pixels; fewer are rings."""

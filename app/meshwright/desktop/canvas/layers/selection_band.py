@@ -3,8 +3,8 @@
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QPainter, QPen, QPolygonF
 
-from app.desktop.layers.layer import Layer
-from app.theme import Theme
+from meshwright.desktop.canvas.layers.base import Layer
+from meshwright.graphics.theme import Theme
 
 
 class BandLayer(Layer):

@@ -3,8 +3,8 @@
 from qtpy.QtCore import QObject, QPoint, QRect, QRectF, Qt, QTimer
 from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
-from app.desktop.layers.layer import Layer
-from app.theme import Theme
+from meshwright.desktop.canvas.layers.base import Layer
+from meshwright.graphics.theme import Theme
 
 CARD_SECONDS = 4.0
 WIDEST = 300

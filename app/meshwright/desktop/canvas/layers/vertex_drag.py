@@ -4,9 +4,9 @@ import numpy as np
 from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QPainter, QPen
 
-from app.desktop.layers.hatch import paint_hatched
-from app.desktop.layers.layer import Layer, pen
-from app.theme import Theme
+from meshwright.desktop.canvas.layers.base import Layer, pen
+from meshwright.desktop.canvas.layers.inverted_elements import paint_hatched
+from meshwright.graphics.theme import Theme
 
 SLACK = 24.0
 COVER = 13.0

@@ -1,5 +1,5 @@
 """The dialog for new meshes: gallery, random shapes, drawing, files; with a live preview."""
 
-from app.desktop.new_mesh.dialog import NewMeshDialog
+from meshwright.desktop.files.new_mesh.dialog import NewMeshDialog
 
 __all__ = ["NewMeshDialog"]

@@ -18,9 +18,9 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop.number_box import DecimalBox
-from app.desktop.widgets import named
-from app.theme import GRID
+from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.number_box import DecimalBox
+from meshwright.graphics.theme import GRID
 
 _SMALLEST, _LARGEST = 1e-9, 1e9
 """Lengths that can be typed."""

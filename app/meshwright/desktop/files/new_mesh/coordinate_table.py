@@ -5,10 +5,10 @@ from __future__ import annotations
 from qtpy.QtCore import QSignalBlocker, Qt, Signal
 from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
 
-from app.desktop.widgets import tabular
-from app.loops import Place
-from app.sketch import Sketch
-from app.theme import GRID
+from meshwright.desktop.widgets.basic import tabular
+from meshwright.graphics.theme import GRID
+from meshwright.sources.polygon_checks import Place
+from meshwright.sources.polygon_sketch import Sketch
 
 WIDTH = 27 * GRID
 NEW = "New"
@@ -16,7 +16,8 @@ NOT_A_NUMBER = "{text!r} is not a number."
 
 
 class Coordinates(QTableWidget):
-    """A view on a :class:`app.sketch.Sketch`: one row for each corner, one more while a loop is
+    """A view on a :class:`meshwright.sources.polygon_sketch.Sketch`: one row for each corner, one
+    more while a loop is
     open, to type the next corner in. ``picked(loop, corner)``; ``told(sentence)``.
     """
 

@@ -19,18 +19,18 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop import icons
-from app.desktop.new_mesh.controls import Choice
-from app.desktop.new_mesh.draw_page import DrawPage
-from app.desktop.new_mesh.file_page import FilePage
-from app.desktop.new_mesh.gallery_page import GalleryPage
-from app.desktop.new_mesh.maker import Maker
-from app.desktop.new_mesh.options import Options
-from app.desktop.new_mesh.page import Page
-from app.desktop.new_mesh.random_page import RandomPage
-from app.desktop.widgets import named, sentence
-from app.making import Made
-from app.theme import GRID, Theme
+from meshwright.desktop.files.new_mesh.controls import Choice
+from meshwright.desktop.files.new_mesh.draw_page import DrawPage
+from meshwright.desktop.files.new_mesh.file_page import FilePage
+from meshwright.desktop.files.new_mesh.gallery_page import GalleryPage
+from meshwright.desktop.files.new_mesh.mesh_process import Maker
+from meshwright.desktop.files.new_mesh.options import Options
+from meshwright.desktop.files.new_mesh.page_base import Page
+from meshwright.desktop.files.new_mesh.random_page import RandomPage
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import named, sentence
+from meshwright.graphics.theme import GRID, Theme
+from meshwright.sources.mesh_worker import Made
 
 PAGES = (("gallery", "Gallery"), ("random", "Random"), ("draw", "Draw"), ("file", "File"))
 WOULD_BE_LOST = "The drawing would be lost: press Cancel to close without it."

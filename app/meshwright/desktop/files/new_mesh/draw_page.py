@@ -8,15 +8,15 @@ from qtpy.QtCore import Qt
 from qtpy.QtGui import QKeySequence, QShortcut
 from qtpy.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QVBoxLayout
 
-from app.desktop import icons
-from app.desktop.new_mesh.coordinates import Coordinates
-from app.desktop.new_mesh.drawing_area import DrawingArea
-from app.desktop.new_mesh.page import Page
-from app.desktop.number_box import DecimalBox
-from app.desktop.widgets import named
-from app.sketch import Sketch
-from app.snapping import Snapper
-from app.theme import GRID, Theme
+from meshwright.desktop.files.new_mesh.coordinate_table import Coordinates
+from meshwright.desktop.files.new_mesh.drawing_area import DrawingArea
+from meshwright.desktop.files.new_mesh.page_base import Page
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.number_box import DecimalBox
+from meshwright.graphics.theme import GRID, Theme
+from meshwright.sources.polygon_sketch import Sketch
+from meshwright.sources.snapping import Snapper
 
 
 class DrawPage(Page):

@@ -21,13 +21,13 @@ from qtpy.QtGui import (
 )
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
-from app.desktop.new_mesh.painting import polygon
-from app.desktop.widgets import tabular
-from app.loops import Place
-from app.sketch import Sketch
-from app.snapping import Snap, Snapper
-from app.theme import GRID, Theme
-from app.viewport import Viewport
+from meshwright.desktop.files.new_mesh.painting import polygon
+from meshwright.desktop.widgets.basic import tabular
+from meshwright.graphics.theme import GRID, Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright.sources.polygon_checks import Place
+from meshwright.sources.polygon_sketch import Sketch
+from meshwright.sources.snapping import Snap, Snapper
 
 REACH = 9.0
 """Pixels within which corners and lines attract the mouse."""
@@ -40,7 +40,8 @@ _DRAG = 4.0
 
 
 class DrawingArea(QWidget):
-    """A view on a :class:`app.sketch.Sketch`. ``pointed(x, y)`` where the mouse is, snapped;
+    """A view on a :class:`meshwright.sources.polygon_sketch.Sketch`. ``pointed(x, y)`` where the
+    mouse is, snapped;
     ``told(sentence)`` what is in the way of what the mouse would do; ``picked(loop, corner)``.
     """
 

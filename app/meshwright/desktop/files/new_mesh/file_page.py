@@ -19,13 +19,13 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from app.desktop.new_mesh.page import Page
-from app.desktop.number_box import DecimalBox
-from app.desktop.widgets import named
-from app.theme import GRID, Theme
-from meshcore import geometry_files, io
-from meshcore.curves import CURVE_STEP
-from meshcore.domain import CORNER_ANGLE
+from meshwright.desktop.files.new_mesh.page_base import Page
+from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.number_box import DecimalBox
+from meshwright.graphics.theme import GRID, Theme
+from meshwright_core.domains.domain import CORNER_ANGLE
+from meshwright_core.io import drawings, mesh_files
+from meshwright_core.io.drawings.curves import CURVE_STEP
 
 NO_FILE = "Choose a file, or drop one here."
 MESH_WORDS = "A mesh is opened as it is: its elements are neither made anew nor moved."
@@ -67,7 +67,7 @@ class FilePage(Page):
         line.addWidget(self.choose)
         inner.addLayout(line)
         inner.addWidget(self.words_label)
-        shapes, meshes = geometry_files.endings(), io.endings()
+        shapes, meshes = drawings.endings(), mesh_files.endings()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(3 * GRID)
@@ -123,7 +123,7 @@ class FilePage(Page):
     @property
     def takes_settings(self) -> bool:
         """A mesh file has its elements already."""
-        return not self._asked or geometry_files.is_geometry(self._asked)
+        return not self._asked or drawings.is_geometry(self._asked)
 
     def take(self, path: str) -> None:
         """Read this file."""
@@ -148,8 +148,8 @@ class FilePage(Page):
         self.corner_angle.setEnabled(bool(self._asked))
 
     def _ask(self) -> None:
-        shapes = " ".join(f"*{ending}" for ending in geometry_files.endings())
-        meshes = " ".join(f"*{ending}" for ending in io.endings())
+        shapes = " ".join(f"*{ending}" for ending in drawings.endings())
+        meshes = " ".join(f"*{ending}" for ending in mesh_files.endings())
         kinds = f"Shapes and meshes ({shapes} {meshes});;Shapes ({shapes});;Meshes ({meshes})"
         folder = str(Path(self._asked).parent) if self._asked else ""
         path, _ = QFileDialog.getOpenFileName(

@@ -6,9 +6,9 @@ from typing import Any
 
 from qtpy.QtWidgets import QVBoxLayout
 
-from app.desktop.new_mesh.page import Page, Pictures, words_of
-from app.theme import Theme
-from meshcore import shapes
+from meshwright.desktop.files.new_mesh.page_base import Page, Pictures, words_of
+from meshwright.graphics.theme import Theme
+from meshwright_core.domains import gallery
 
 
 class GalleryPage(Page):
@@ -31,7 +31,7 @@ class GalleryPage(Page):
     def fill(self) -> None:
         """Draw the pictures."""
         if self.shapes.count() == 0:
-            for name, domain in shapes.gallery().items():
+            for name, domain in gallery.gallery().items():
                 self.shapes.add(words_of(name), name, domain, self._theme)
             self.shapes.setCurrentRow(0)
         self.shapes.setFocus()

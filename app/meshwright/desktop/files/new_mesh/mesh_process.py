@@ -10,7 +10,7 @@ from typing import Any
 
 from qtpy.QtCore import QByteArray, QObject, QProcess, QProcessEnvironment, QTimer, Signal
 
-from app import making
+from meshwright.sources import mesh_worker
 
 PAUSE = 120
 """Milliseconds without a further change after which a request is sent."""
@@ -23,7 +23,8 @@ GONE = "The mesh could not be made: the process at work ended, perhaps for want 
 class Maker(QObject):
     """Answers the last request only: ``made(Made)`` or ``failed(sentence)``.
 
-    Requests are as :func:`app.making.make` takes them. A new one drops the one before.
+    Requests are as :func:`meshwright.sources.mesh_worker.make` takes them. A new one drops the one
+    before.
     """
 
     made = Signal(object)
@@ -60,7 +61,7 @@ class Maker(QObject):
         process.finished.connect(self._on_ended)
         process.errorOccurred.connect(self._on_ended)
         self._process, self._received = process, bytearray()
-        process.start(sys.executable, ["-m", making.__name__])
+        process.start(sys.executable, ["-m", mesh_worker.__name__])
 
     def ask(self, request: Mapping[str, Any], at_once: bool = False) -> None:
         """Ask for a mesh; what was asked before is no longer wanted."""
@@ -118,9 +119,9 @@ class Maker(QObject):
         if self._process is None:
             return
         self._received += self._process.readAllStandardOutput().data()
-        if len(self._received) < making.length(self._received):
+        if len(self._received) < mesh_worker.length(self._received):
             return
-        result, self._received = making.unframed(self._received), bytearray()
+        result, self._received = mesh_worker.unframed(self._received), bytearray()
         asked, self._asked = self._asked, None
         self._patience.stop()
         if asked is not self._wanted:

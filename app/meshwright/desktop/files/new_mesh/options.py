@@ -7,11 +7,11 @@ from typing import Any
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
-from app.desktop.new_mesh.controls import Choice, Measure, heading
-from app.desktop.new_mesh.preview import Preview
-from app.desktop.widgets import named, tabular
-from app.making import Made
-from app.theme import GRID, Theme
+from meshwright.desktop.files.new_mesh.controls import Choice, Measure, heading
+from meshwright.desktop.files.new_mesh.preview import Preview
+from meshwright.desktop.widgets.basic import named, tabular
+from meshwright.graphics.theme import GRID, Theme
+from meshwright.sources.mesh_worker import Made
 
 WIDTH = 352
 KINDS = (("quad", "Quads"), ("tri", "Triangles"))
@@ -100,7 +100,9 @@ class Options(QWidget):
 
     @property
     def request(self) -> dict[str, Any]:
-        """What there is to ask for besides the source; see :func:`app.making.make`."""
+        """What there is to ask for besides the source; see
+        :func:`meshwright.sources.mesh_worker.make`.
+        """
         return {
             "kind": self.kind.key,
             "max_edge": self.size_of.value,

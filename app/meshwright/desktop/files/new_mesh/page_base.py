@@ -8,10 +8,10 @@ from qtpy.QtCore import QSize, Qt, Signal
 from qtpy.QtGui import QIcon, QPainter, QPixmap
 from qtpy.QtWidgets import QListView, QListWidget, QListWidgetItem, QWidget
 
-from app.desktop.new_mesh.painting import paint_shape, squares
-from app.theme import GRID, Theme
-from app.viewport import Viewport
-from meshcore.domain import Domain
+from meshwright.desktop.files.new_mesh.painting import paint_shape, squares
+from meshwright.graphics.theme import GRID, Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright_core.domains.domain import Domain
 
 PICTURE = QSize(112, 88)
 
@@ -30,7 +30,9 @@ class Page(QWidget):
 
     @property
     def source(self) -> dict[str, Any] | None:
-        """As :func:`app.making.make` takes it; None while there is nothing to mesh."""
+        """As :func:`meshwright.sources.mesh_worker.make` takes it; None while there is nothing to
+        mesh.
+        """
         raise NotImplementedError
 
     @property

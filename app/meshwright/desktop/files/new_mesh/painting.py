@@ -8,11 +8,19 @@ import numpy as np
 from qtpy.QtCore import QLineF, QPointF, QRectF, Qt
 from qtpy.QtGui import QColor, QFont, QPainter, QPainterPath, QPen, QPolygonF
 
-from app.desktop.widgets import tabular
-from app.making import Made
-from app.markers import BASE_RADIUS, CROWDED, GROWTH, LARGEST, READABLE, SMALLEST, label
-from app.theme import Theme
-from app.viewport import Viewport
+from meshwright.desktop.widgets.basic import tabular
+from meshwright.graphics.markers import (
+    BASE_RADIUS,
+    CROWDED,
+    GROWTH,
+    LARGEST,
+    READABLE,
+    SMALLEST,
+    label,
+)
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright.sources.mesh_worker import Made
 
 LINES = 40_000
 """Edges that are drawn as lines; where more are in sight the area is tinted instead."""

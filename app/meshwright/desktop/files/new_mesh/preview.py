@@ -17,10 +17,10 @@ from qtpy.QtGui import (
 )
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
-from app.desktop.new_mesh.painting import paint_mesh
-from app.making import Made
-from app.theme import GRID, Theme
-from app.viewport import Viewport
+from meshwright.desktop.files.new_mesh.painting import paint_mesh
+from meshwright.graphics.theme import GRID, Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright.sources.mesh_worker import Made
 
 MARGIN = 20.0
 ROUND = 8.0
@@ -28,7 +28,9 @@ TOO_FINE = "Too fine to draw: zoom in to see it"
 
 
 class Preview(QWidget):
-    """Shows a :class:`app.making.Made`, or nothing; an old one is paler while a new one is made."""
+    """Shows a :class:`meshwright.sources.mesh_worker.Made`, or nothing; an old one is paler while a
+    new one is made.
+    """
 
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)

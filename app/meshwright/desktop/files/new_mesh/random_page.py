@@ -8,14 +8,14 @@ import numpy as np
 from qtpy.QtCore import QSignalBlocker, Qt, QTimer
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
-from app.desktop import icons
-from app.desktop.new_mesh.controls import Choice
-from app.desktop.new_mesh.page import Page, Pictures
-from app.desktop.number_box import IntegerBox
-from app.desktop.widgets import named
-from app.theme import GRID, Theme
-from meshcore import parts, shapes
-from meshcore.domain import Domain
+from meshwright.desktop.files.new_mesh.controls import Choice
+from meshwright.desktop.files.new_mesh.page_base import Page, Pictures
+from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.number_box import IntegerBox
+from meshwright.graphics.theme import GRID, Theme
+from meshwright_core.domains import gallery, random_parts
+from meshwright_core.domains.domain import Domain
 
 SHOWN = 20
 """Seeds that are shown at a time."""
@@ -124,8 +124,8 @@ class RandomPage(Page):
     def _shape(self, seed: int) -> Domain:
         rng = np.random.default_rng(seed)
         if self.kind.key == "part":
-            return parts.random_part(self.sides.value(), rng)
-        return shapes.random_polygon(self.sides.value(), rng)
+            return random_parts.random_part(self.sides.value(), rng)
+        return gallery.random_polygon(self.sides.value(), rng)
 
     def _on_kind_changed(self) -> None:
         self.sides.setMinimum(FEWEST_OF_PART if self.kind.key == "part" else FEWEST)

@@ -1,0 +1,1 @@
+"""The Markov decision process: task, candidate half-edges, observations, environments."""

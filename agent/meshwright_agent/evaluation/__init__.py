@@ -1,0 +1,1 @@
+"""Evaluation: rollouts, rows of the paper's tables, baselines, figures."""

@@ -1,0 +1,1 @@
+"""The policy: network, inference, files, rollouts, and what it sees."""

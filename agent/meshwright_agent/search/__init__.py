@@ -1,0 +1,1 @@
+"""Search for better connectivity: the anytime solver, annealing, patches, shortening."""

@@ -1,0 +1,1 @@
+"""Training with PPO: configuration, trainer, checkpoints, several processes."""

@@ -1,1 +1,0 @@
-"""Document, desktop window, command line."""

@@ -1,0 +1,1 @@
+"""What the window shares with the system: settings, threads, signals, compilation."""

@@ -1,0 +1,1 @@
+"""The canvas: mouse, gestures, and the overlay painted on the picture."""

@@ -1,0 +1,1 @@
+"""Editing by mouse, keys and menus."""

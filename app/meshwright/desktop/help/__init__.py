@@ -1,0 +1,1 @@
+"""Command palette, shortcuts, tour, licences."""

@@ -1,0 +1,1 @@
+"""History list, timeline, score curve, playback and export."""

@@ -1,0 +1,1 @@
+"""Score, irregularities and element quality."""

@@ -1,0 +1,1 @@
+"""The document: a mesh with history, branches and selection; no Qt, no drawing, no agent."""

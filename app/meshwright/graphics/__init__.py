@@ -1,0 +1,1 @@
+"""Theme, viewport, markers and figures, shared by window, notebook and files."""

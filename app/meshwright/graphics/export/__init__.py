@@ -1,0 +1,1 @@
+"""Pictures, film strips and videos of a document."""

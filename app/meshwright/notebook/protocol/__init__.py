@@ -1,0 +1,1 @@
+"""Messages between the widget in Python and its page."""

@@ -1,0 +1,1 @@
+"""What can be read off a mesh: blocks, removable lines, submeshes, drawability."""

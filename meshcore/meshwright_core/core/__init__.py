@@ -1,0 +1,1 @@
+"""The arrays of a half-edge mesh: layout, invariants, construction, circulation, validation."""

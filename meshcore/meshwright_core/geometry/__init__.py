@@ -1,0 +1,1 @@
+"""Positions: outline, sides, element quality, smoothing and untangling."""

@@ -1,0 +1,1 @@
+"""The undo journal, and steps packed for long histories."""

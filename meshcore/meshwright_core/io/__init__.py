@@ -1,0 +1,5 @@
+"""Mesh files, snapshots and drawings."""
+
+from meshwright_core.io.mesh_files import endings, read, write
+
+__all__ = ["endings", "read", "write"]
