@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshwright.assistant.policy_catalogue import shipped
-from meshwright.experiments.axes import LETTERS, Axes
 from meshwright.experiments.best_of import BestOf
+from meshwright.experiments.chart import FONT_SIZE, add_axes, add_level, chart
 from meshwright.experiments.evaluation_table import grid
 from meshwright.experiments.mesh_thumbnail import given_mesh, still
 from meshwright.experiments.picture import Picture, shifted
@@ -28,6 +28,9 @@ from meshwright.graphics.theme import LIGHT, Theme
 from meshwright_core import HalfEdgeMesh, MeshError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from meshwright.document.document import Document
     from meshwright.graphics.export.film import Film
     from meshwright_agent.policy.policy_files import Policy
@@ -298,26 +301,17 @@ class Comparison(Picture):
         meshes = self.meshes
         count = len(self.policies)
         tall = max(_height(mesh) for mesh in meshes.values())
-        width = LEFT + count * COLUMN + (count - 1) * GAP + 16.0
-        height = HEAD + tall + 40.0 + CURVE + 48.0
-        said = "; ".join(f"{row['policy']}: best s {row['best_score']}" for row in self.rows)
-        title = f"s {self.start} at the start, optimum {self.optimum}; {said}"
-        drawing = Drawing((round(width), round(height)), theme.background, title)
-        longest = max(len(run.steps) for runs in self.rollouts.values() for run in runs)
-        highest = max(int(run.scores.max()) for runs in self.rollouts.values() for run in runs)
+        width = round(LEFT + count * COLUMN + (count - 1) * GAP + 16.0)
+        foot = round(40.0 + CURVE + 48.0)
+        best = "; ".join(f"{row['policy']}: best s {row['best_score']}" for row in self.rows)
+        title = f"s {self.start} at the start, optimum {self.optimum}; {best}"
+        drawing = Drawing((width, round(HEAD + tall) + foot), theme.background, title)
         for column, name in enumerate(self.policies):
-            left = LEFT + column * (COLUMN + GAP)
+            left = _left_of(column)
             self._add_head(drawing, theme, name, left)
             picture = still(meshes[name], (round(COLUMN), round(tall)), theme)
             drawing.add(*(shifted(shape, left, HEAD) for shape in picture.shapes))
-            axes = Axes(
-                left, HEAD + tall + 40.0, COLUMN, CURVE,
-                (0.0, float(max(longest, 1))), (0.0, 1.06 * max(highest, 1)),
-            )  # fmt: skip
-            axes.frame(drawing, theme, "decisions", labels=column == 0, whole_y=True)
-            self._add_curves(drawing, theme, name, axes)
-        top = HEAD + tall + 20.0
-        drawing.add(Text("s", (LEFT - 8.0, top), LETTERS + 1.0, theme.muted, "right"))
+        drawing.add(chart(self._draw_chart, (width, foot), theme, (0.0, HEAD + tall)))
         return drawing
 
     def _add_head(self, drawing: Drawing, theme: Theme, name: str, left: float) -> None:
@@ -333,16 +327,49 @@ class Comparison(Picture):
                  solved),
         )  # fmt: skip
 
-    def _add_curves(self, drawing: Drawing, theme: Theme, name: str, axes: Axes) -> None:
-        best = self.best(name)
-        for run in self.rollouts[name]:
-            axes.steps(drawing, run.scores, theme.faint, 0.9)
-        axes.steps(drawing, best.scores[: best.decisions + 1], theme.accent, 2.4)
-        axes.level(drawing, self.optimum, theme.text, f"s* = {self.optimum}")
-        if len(self.rollouts[name]) > 1:
-            at = (axes.left + axes.width, axes.top - 2.0)
-            words = f"thick: the best of {len(self.rollouts[name])}"
-            drawing.add(Text(words, at, LETTERS, theme.muted, "right"))
+    def _draw_chart(self, figure: Figure, theme: Theme) -> None:
+        """The scores of all runs of each policy against decisions, on axes of equal ranges."""
+        runs = [run for runs in self.rollouts.values() for run in runs]
+        longest = max(len(run.steps) for run in runs)
+        highest = max(int(run.scores.max()) for run in runs)
+        for column, name in enumerate(self.policies):
+            axes = add_axes(
+                figure, theme, (_left_of(column), 40.0, COLUMN, CURVE),
+                (0.0, float(max(longest, 1))), (0.0, 1.06 * max(highest, 1)), "decisions",
+                y_labels=column == 0, whole_y=True,
+            )  # fmt: skip
+            best = self.best(name)
+            for run in self.rollouts[name]:
+                _add_scores(axes, run.scores, theme.faint, 0.9)
+            _add_scores(axes, best.scores[: best.decisions + 1], theme.accent, 2.4)
+            add_level(axes, theme, self.optimum, f"s* = {self.optimum}")
+            if column == 0:
+                _add_note(axes, theme, "s", (0.0, 1.0), (-8.0, 14.0))
+            if len(self.rollouts[name]) > 1:
+                words = f"thick: the best of {len(self.rollouts[name])}"
+                _add_note(axes, theme, words, (1.0, 1.0), (0.0, -3.0))
+
+
+def _left_of(column: int) -> float:
+    """Pixels from the left of the picture to a column."""
+    return LEFT + column * (COLUMN + GAP)
+
+
+def _add_scores(axes: Axes, scores: np.ndarray, colour: str, width: float) -> None:
+    """Scores after 0, 1, 2, ... decisions, each kept until the next decision."""
+    axes.step(
+        np.arange(len(scores)), scores, where="post", color=colour, linewidth=width, clip_on=False
+    )
+
+
+def _add_note(
+    axes: Axes, theme: Theme, text: str, corner: tuple[float, float], offset: tuple[float, float]
+) -> None:
+    """Text that ends so many pixels right of and above a corner of the axes."""
+    axes.annotate(
+        text, corner, xycoords="axes fraction", xytext=offset, textcoords="offset points",
+        ha="right", color=theme.muted, fontsize=FONT_SIZE,
+    )  # fmt: skip
 
 
 def _height(mesh: HalfEdgeMesh) -> float:

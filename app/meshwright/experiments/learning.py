@@ -6,16 +6,20 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from meshwright.experiments import training_log
-from meshwright.experiments.axes import DASHES, Axes, legend, series_colours
+from meshwright.experiments.chart import add_axes, add_legend, add_title, chart, series_style
 from meshwright.experiments.picture import Picture
-from meshwright.graphics.drawing import Drawing, Text
+from meshwright.graphics.drawing import Drawing
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright_core import MeshError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 TITLES = {
     "mean": "normalised return of single rollouts, unseen polygons",
@@ -147,19 +151,27 @@ class Curves(Picture):
         if len(self.trainings) > MOST:
             raise MeshError(f"One figure shows up to {MOST} trainings, not {len(self.trainings)}.")
         count = len(self.quantities)
-        many = len(self.trainings) > 1
-        top = 72.0 if many else 40.0
-        size = (round(LEFT + count * WIDTH + (count - 1) * GAP + 24.0), round(top + HEIGHT + 56.0))
-        drawing = Drawing(size, theme.background, repr(self))
-        if many:
-            legend(drawing, theme, [one.name for one in self.trainings], LEFT, 20.0)
-        for panel, name in enumerate(self.quantities):
-            self._add_panel(drawing, theme, name, LEFT + panel * (WIDTH + GAP), top)
-        return drawing
+        size = (
+            round(LEFT + count * WIDTH + (count - 1) * GAP + 24.0),
+            round(self._top + HEIGHT + 56.0),
+        )
+        inset = chart(self._draw_chart, size, theme)
+        return Drawing(size, theme.background, repr(self), [inset])
 
-    def _add_panel(
-        self, drawing: Drawing, theme: Theme, name: str, left: float, top: float
-    ) -> None:
+    @property
+    def _top(self) -> float:
+        """Pixels above the panels: their titles, and the legend of several trainings."""
+        return 72.0 if len(self.trainings) > 1 else 40.0
+
+    def _draw_chart(self, figure: Figure, theme: Theme) -> None:
+        panels = [
+            self._add_panel(figure, theme, name, LEFT + panel * (WIDTH + GAP))
+            for panel, name in enumerate(self.quantities)
+        ]
+        if len(self.trainings) > 1:
+            add_legend(figure, panels[0], theme, LEFT, 12.0)
+
+    def _add_panel(self, figure: Figure, theme: Theme, name: str, left: float) -> Axes:
         series = [one.series(name) for one in self.trainings]
         share = name in ("mean", "at_optimum", "played")
         values = np.concatenate([y[np.isfinite(y)] for _, y in series] or [np.zeros(1)])
@@ -167,14 +179,16 @@ class Curves(Picture):
         span = max(high - low, 1e-9 + 0.02 * abs(high))
         y_range = (min(0.0, low), 1.02) if share else (low - 0.06 * span, high + 0.06 * span)
         last = max((float(x[-1]) for x, _ in series if len(x)), default=1.0)
-        axes = Axes(left, top, WIDTH, HEIGHT, (0.0, max(last, 1.0)), y_range)
-        colours = series_colours(theme)
+        by_update = any(name not in one.points for one in self.trainings)
+        axes = add_axes(
+            figure, theme, (left, self._top, WIDTH, HEIGHT), (0.0, max(last, 1.0)), y_range,
+            "updates" if by_update else "decisions",
+        )  # fmt: skip
+        add_title(axes, theme, TITLES.get(name, name.replace("_", " ")))
         if name == "mean" and len(series) == 1:
             mean, std = self.trainings[0].points["mean"], self.trainings[0].points["std"]
-            axes.band(drawing, series[0][0], mean - std, mean + std, theme.accent_soft)
-        by_update = any(name not in one.points for one in self.trainings)
-        axes.frame(drawing, theme, "updates" if by_update else "decisions")
-        for i, (x, y) in enumerate(series):
-            axes.line(drawing, x, y, colours[i % len(colours)], 2.2, DASHES[i % len(DASHES)])
-        title = TITLES.get(name, name.replace("_", " "))
-        drawing.add(Text(title, (left, top - 16.0), 12.5, theme.text, "left", True))
+            band = axes.fill_between(series[0][0], mean - std, mean + std, linewidth=0.0)
+            band.set(facecolor=theme.accent_soft, zorder=0.5)  # below the lines of the grid
+        for i, (training, (x, y)) in enumerate(zip(self.trainings, series, strict=True)):
+            axes.plot(x, y, label=training.name, clip_on=False, **series_style(theme, i))
+        return axes

@@ -13,6 +13,7 @@ from meshwright.graphics.drawing import (
     Area,
     Disc,
     Drawing,
+    Inset,
     Line,
     Polygon,
     Segments,
@@ -164,6 +165,9 @@ def _moved(shape: Shape, factor: float, by: tuple[float, float]) -> Shape:
     if isinstance(shape, Text):
         x, y = place(shape.at).tolist()
         return replace(shape, at=(x, y), size=shape.size * factor)
+    if isinstance(shape, Inset):
+        x, y = place(shape.at).tolist()
+        return replace(shape, at=(x, y), scale=shape.scale * factor)
     x, y = place(shape.centre).tolist()
     if isinstance(shape, Disc):
         return replace(

@@ -11,7 +11,6 @@ from functools import cache
 
 import numpy as np
 
-from meshwright.experiments.axes import dashes
 from meshwright.experiments.halfedge_arrow import arrow
 from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Segments, Text
 from meshwright.graphics.markers import label
@@ -105,12 +104,12 @@ def _there(k: int, vertices: np.ndarray, element: int) -> bool:
 def _add_element(
     drawing: Drawing, theme: Theme, corners: np.ndarray, ring: int, there: bool
 ) -> None:
-    closed = np.concatenate([corners, corners[:1]])
+    sides = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
     if there:
         drawing.add(Polygon(corners, theme.accent_soft if ring == 0 else theme.fill))
-        drawing.add(Line(closed, theme.boundary if ring == 0 else theme.edge, 1.2))
+        drawing.add(Segments(sides, theme.boundary if ring == 0 else theme.edge, 1.2))
     else:
-        drawing.add(Segments(dashes(closed, 3.0), theme.faint, 1.0))
+        drawing.add(Segments(sides, theme.faint, 1.0, 3.0))
 
 
 def _add_vertex(

@@ -6,7 +6,7 @@ corner; colours are six hexadecimal digits after ``#``.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -89,7 +89,22 @@ class Text:
     bold: bool = False
 
 
-Shape = Area | Segments | Line | Polygon | Disc | Square | Text
+@dataclass(frozen=True)
+class Inset:
+    """A part that another library draws: ``size`` pixels with the upper left corner ``at``.
+
+    ``svg()`` returns SVG elements in pixels of the inset; ``image(scale)`` returns a Pillow image
+    with ``scale`` pixels for each of them. ``scale`` enlarges both.
+    """
+
+    at: tuple[float, float]
+    size: tuple[int, int]
+    svg: Callable[[], str]
+    image: Callable[[float], Any]
+    scale: float = 1.0
+
+
+Shape = Area | Segments | Line | Polygon | Disc | Square | Text | Inset
 
 
 @dataclass
@@ -171,6 +186,9 @@ def _paint(image: Any, painter: Any, shape: Shape, scale: int) -> None:
         font = _font(shape.size * scale, shape.bold)
         anchor = _ANCHORS[shape.anchor][0] + "s"
         painter.text(at, shape.text, fill=shape.colour, font=font, anchor=anchor)
+    elif isinstance(shape, Inset):
+        x, y = shape.at
+        image.paste(shape.image(scale * shape.scale), (round(x * scale), round(y * scale)))
     else:
         _fill(image, painter, shape, scale)
 
@@ -254,6 +272,10 @@ def _element(shape: Shape) -> str:
         x, y = _number(shape.centre[0] - shape.half), _number(shape.centre[1] - shape.half)
         side = _number(2.0 * shape.half)
         return f'<rect x="{x}" y="{y}" width="{side}" height="{side}" fill="{shape.colour}"/>'
+    if isinstance(shape, Inset):
+        place = f"translate({_number(shape.at[0])},{_number(shape.at[1])})"
+        size = f" scale({_number(shape.scale)})" if shape.scale != 1.0 else ""
+        return f'<g transform="{place}{size}" stroke-linejoin="round">{shape.svg()}</g>'
     x, y = _number(shape.at[0]), _number(shape.at[1] + MIDDLE * shape.size)
     weight = ' font-weight="bold"' if shape.bold else ""
     return (
