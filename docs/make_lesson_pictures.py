@@ -32,7 +32,7 @@ from meshwright.graphics.drawing import (
     text_width,
 )
 from meshwright.graphics.export.filmstrip import side_by_side
-from meshwright.graphics.mesh_figure import Look, edges, figure
+from meshwright.graphics.mesh_figure import FigureOptions, edges, figure
 from meshwright.graphics.theme import LIGHT
 from meshwright.graphics.viewport import Viewport
 from meshwright.teaching import patch
@@ -58,7 +58,7 @@ def view_of(mesh: HalfEdgeMesh, size: tuple[int, int], margin: float = 56.0) -> 
 def picture(mesh: HalfEdgeMesh, size: tuple[int, int], view: Viewport | None = None) -> Drawing:
     """The mesh with its irregular vertices, without words."""
     view = view or view_of(mesh, size)
-    return figure(mesh, Look(size, score=False, unit=UNIT), viewport=view)
+    return figure(mesh, FigureOptions(size, score=False, unit=UNIT), viewport=view)
 
 
 def arrow(

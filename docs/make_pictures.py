@@ -20,7 +20,7 @@ from PIL import Image, ImageDraw
 
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export.filmstrip import side_by_side
-from meshwright.graphics.mesh_figure import Look, figure, fitted
+from meshwright.graphics.mesh_figure import FigureOptions, figure, fitted
 from meshwright.graphics.theme import LIGHT
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, Operation
@@ -98,7 +98,7 @@ def most_central(mesh: HalfEdgeMesh, operation: Operation) -> int:
 
 def plain(mesh: HalfEdgeMesh, size: tuple[int, int], view: Viewport | None = None) -> Any:
     """Return the picture of a mesh without words."""
-    return raster(figure(mesh, Look(size, score=False), viewport=view))
+    return raster(figure(mesh, FigureOptions(size, score=False), viewport=view))
 
 
 def panel(mesh: HalfEdgeMesh, view: Viewport, arrow: int | None = None) -> Any:
@@ -201,7 +201,7 @@ def with_blocks(mesh: HalfEdgeMesh, size: tuple[int, int]) -> Any:
     """Return the picture of a quad mesh with the lines between its blocks drawn stronger."""
     drawn = plain(mesh, size)
     fine = 4
-    view = fitted(mesh, Look(size, score=False))
+    view = fitted(mesh, FigureOptions(size, score=False))
     overlay = Image.new("RGBA", (fine * size[0], fine * size[1]), LIGHT.boundary + "00")
     draw = ImageDraw.Draw(overlay)
     for h in np.flatnonzero(blocks.separatrices(mesh)).tolist():

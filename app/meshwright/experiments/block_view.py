@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh
-from meshwright.experiments.picture import Picture, ThemedLook
+from meshwright.experiments.picture import Picture, ThemedFigureOptions
 from meshwright.graphics.drawing import Disc, Drawing, Polygon, Segments, Text, text_width
 from meshwright.graphics.mesh_figure import figure
 from meshwright.graphics.theme import LIGHT, Theme
@@ -75,9 +75,9 @@ class BlockView(Picture):
         extent = np.ptp(mesh.points[mesh.vertices(), :2], axis=0)
         tall = round(SIZE * float(np.clip(extent[1] / max(extent[0], 1e-12), 0.35, 1.0)))
         size = (SIZE, tall)
-        look = ThemedLook(size=size, score=False, curve=False, unit=1.0, given=theme)
+        options = ThemedFigureOptions(size=size, score=False, curve=False, unit=1.0, given=theme)
         view = Viewport(size=size).fitted(mesh.points[mesh.vertices()], MARGIN)
-        picture = figure(mesh, look, None, view)
+        picture = figure(mesh, options, None, view)
         drawing = Drawing((SIZE, round(tall + FOOT)), theme.background, repr(self))
         drawing.add(*self._tints(theme, view), *picture.shapes[1:2], self._lines(theme, view))
         drawing.add(*picture.shapes[2:])

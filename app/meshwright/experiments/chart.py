@@ -154,17 +154,17 @@ def short_number(value: float) -> str:
 @contextmanager
 def _own_settings() -> Iterator[None]:
     """matplotlib's defaults for the time of a drawing, whatever settings a notebook has made."""
-    from matplotlib import rc_context, rcParamsDefault
+    from matplotlib import rc_context, rcParams, rcParamsDefault
 
-    settings = {name: value for name, value in rcParamsDefault.items() if name != "backend"}
-    own = {
-        "font.family": [FONT],
-        "lines.solid_capstyle": "round",
-        "lines.solid_joinstyle": "round",
-        "svg.fonttype": "none",
-        "svg.hashsalt": "meshwright",
-    }
-    with rc_context({**settings, **own}):
+    with rc_context():
+        rcParams.update(
+            {name: rcParamsDefault[name] for name in rcParamsDefault if name != "backend"}
+        )
+        rcParams["font.family"] = [FONT]
+        rcParams["lines.solid_capstyle"] = "round"
+        rcParams["lines.solid_joinstyle"] = "round"
+        rcParams["svg.fonttype"] = "none"
+        rcParams["svg.hashsalt"] = "meshwright"
         yield
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
@@ -13,7 +14,7 @@ from meshwright.assistant.policy_catalogue import shipped
 from meshwright.experiments.best_of import BestOf
 from meshwright.experiments.chart import FONT_SIZE, add_axes, add_level, chart
 from meshwright.experiments.evaluation_table import grid
-from meshwright.experiments.mesh_thumbnail import given_mesh, still
+from meshwright.experiments.mesh_thumbnail import given_mesh, thumbnail
 from meshwright.experiments.picture import Picture, shifted
 from meshwright.experiments.rollouts import (
     Rollout,
@@ -66,8 +67,9 @@ def compare(
     start = given_mesh(mesh)
     if policies is None:
         policies = shipped(start.kind)[:2]
-    several = isinstance(policies, Iterable) and not isinstance(policies, str)
-    given = list(policies) if several else [policies]
+    if isinstance(policies, str | os.PathLike) or not isinstance(policies, Iterable):
+        policies = [policies]
+    given = list(policies)
     if not given:
         raise MeshError("There is no policy to compare: name one or more.")
     known = [known_policy(name) for name in given]
@@ -309,7 +311,7 @@ class Comparison(Picture):
         for column, name in enumerate(self.policies):
             left = _left_of(column)
             self._add_head(drawing, theme, name, left)
-            picture = still(meshes[name], (round(COLUMN), round(tall)), theme)
+            picture = thumbnail(meshes[name], (round(COLUMN), round(tall)), theme)
             drawing.add(*(shifted(shape, left, HEAD) for shape in picture.shapes))
         drawing.add(chart(self._draw_chart, (width, foot), theme, (0.0, HEAD + tall)))
         return drawing

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.experiments.picture import ThemedLook
+from meshwright.experiments.picture import ThemedFigureOptions
 from meshwright.graphics.drawing import Drawing, Text
 from meshwright.graphics.markers import READABLE, label, markers
 from meshwright.graphics.mesh_figure import figure
@@ -34,17 +34,17 @@ def given_mesh(source: Any) -> HalfEdgeMesh:
     return mesh
 
 
-def still(
+def thumbnail(
     mesh: HalfEdgeMesh, size: tuple[int, int], theme: Theme, window: np.ndarray | None = None
 ) -> Drawing:
     """A small figure of the mesh, lines and letters as large as in the window.
 
     window (n, 2): points that are to fill it, in place of the whole mesh.
     """
-    look = ThemedLook(size=size, score=False, curve=False, unit=1.0, given=theme)
+    options = ThemedFigureOptions(size=size, score=False, curve=False, unit=1.0, given=theme)
     shown = mesh.points[mesh.vertices()] if window is None else window
     view = Viewport(size=size).fitted(shown, MARGIN)
-    drawing = figure(mesh, look, None, view)
+    drawing = figure(mesh, options, None, view)
     _add_numbers(drawing, mesh, view, theme)
     return drawing
 

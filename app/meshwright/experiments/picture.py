@@ -22,7 +22,7 @@ from meshwright.graphics.drawing import (
     raster,
     svg,
 )
-from meshwright.graphics.mesh_figure import Look
+from meshwright.graphics.mesh_figure import FigureOptions
 from meshwright.graphics.theme import DARK, LIGHT, THEMES, Theme
 from meshwright_core import MeshError
 from meshwright_core.io import atomic_write
@@ -125,8 +125,8 @@ def _style() -> str:
 
 
 @dataclass(frozen=True)
-class ThemedLook(Look):
-    """A look in given colours, be they named in :mod:`meshwright.graphics.theme` or not."""
+class ThemedFigureOptions(FigureOptions):
+    """A options in given colours, be they named in :mod:`meshwright.graphics.theme` or not."""
 
     given: Theme = LIGHT
 

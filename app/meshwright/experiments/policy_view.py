@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshwright.experiments.halfedge_arrow import arrow
-from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh, still
+from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh, thumbnail
 from meshwright.experiments.picture import Picture, shifted
 from meshwright.experiments.rollouts import known_policy, one_thread, require_kind
 from meshwright.experiments.template_figure import template_figure
@@ -205,7 +205,7 @@ class PolicyView(Picture):
         seen = mesh.points[self.template[:, 0], :2]
         window = np.concatenate([corners.reshape(-1, 2), seen])
         view = Viewport(size=MESH).fitted(window, MARGIN + 16.0)
-        drawing = still(mesh, MESH, theme, _box(view))
+        drawing = thumbnail(mesh, MESH, theme, _box(view))
         screen = view.to_screen(corners)
         tints = [Polygon(one, theme.accent_soft) for one in screen]
         drawing.shapes[1:1] = tints
@@ -254,7 +254,7 @@ class PolicyView(Picture):
 
 
 def _box(view: Viewport) -> np.ndarray:
-    """Two corners of what the view shows, less the margin that a still keeps."""
+    """Two corners of what the view shows, less the margin of a thumbnail."""
     width, height = view.size
     low = view.to_plane(MARGIN, height - MARGIN)
     high = view.to_plane(width - MARGIN, MARGIN)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from meshwright_agent.env.task import Task
     from meshwright_agent.policy.policy_files import Policy
 
-Step = tuple[tuple[Operation, int], ...]
+RolloutStep = tuple[tuple[Operation, int], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class Rollout:
     """Among the runs of its policy, from 0."""
     scores: np.ndarray
     """(T + 1,) int64: s at the start and after each decision."""
-    steps: tuple[Step, ...]
+    steps: tuple[RolloutStep, ...]
     """T decisions: the operation with its half-edge, and the clean-ups that followed it. They
     replay on the mesh that the run started from."""
     optimum: int
@@ -115,8 +115,8 @@ def play(
         _warm_up(policy.task)
     began = time.perf_counter()
     if mesh.score == mesh.optimum:
-        still = np.array([mesh.score], np.int64)
-        rows = [Rollout(policy.name, k, still, (), mesh.optimum) for k in range(rollouts)]
+        start = np.array([mesh.score], np.int64)
+        rows = [Rollout(policy.name, k, start, (), mesh.optimum) for k in range(rollouts)]
         return tuple(rows), time.perf_counter() - began
     with one_thread():
         rolled = roll_out(_limited(policy, mesh, steps), [mesh] * rollouts, 1, seed)
@@ -181,4 +181,5 @@ def best_of(values: np.ndarray, k: int) -> tuple[float, float]:
     # the i-th smallest is the largest in as many choices as there are of k - 1 below it
     weights = np.array([math.comb(i, k - 1) for i in range(n)], float) / math.comb(n, k)
     mean = float(weights @ ordered)
-    return mean, float(np.sqrt(max(weights @ (ordered - mean) ** 2, 0.0)))
+    variance = float(weights @ (ordered - mean) ** 2)
+    return mean, math.sqrt(max(variance, 0.0))

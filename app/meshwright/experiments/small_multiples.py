@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.experiments.mesh_thumbnail import given_mesh, still
+from meshwright.experiments.mesh_thumbnail import given_mesh, thumbnail
 from meshwright.experiments.picture import Picture, shifted
 from meshwright.experiments.rollouts import whole_number
 from meshwright.graphics.drawing import Drawing, Text, text_width
@@ -121,7 +121,7 @@ class Multiples(Picture):
             x, y = GAP + column * (CELL + GAP), GAP + row * (tall + GAP)
             if title:
                 drawing.add(Text(title, (x + 8.0, y + 12.0), 12.0, theme.text, "left", True))
-            picture = still(mesh, (CELL, CELL), theme)
+            picture = thumbnail(mesh, (CELL, CELL), theme)
             drawing.add(*(shifted(shape, x, y + head) for shape in picture.shapes))
             _add_score(drawing, theme, mesh, x + 8.0, y + head + CELL + 12.0)
         return drawing

@@ -28,7 +28,7 @@ MOST_INVERTED = 500
 
 
 @dataclass(frozen=True)
-class Look:
+class FigureOptions:
     """What a figure shows. ``size`` in pixels; ``numbers`` inside the discs of irregular vertices;
     ``score`` above the mesh; ``curve`` below it; ``changes`` since the moment before. ``theme`` and
     ``colours`` are what :func:`meshwright.graphics.theme.theme` takes. ``unit`` scales lines and
@@ -51,7 +51,7 @@ class Look:
 
 
 @dataclass(frozen=True)
-class Moment:
+class HistoryMoment:
     """Where a mesh stands in its history.
 
     ``title`` and ``detail`` are words; ``added`` and ``removed`` (n, 2, 2) are the edges, in the
@@ -77,12 +77,14 @@ def edges(mesh: HalfEdgeMesh) -> np.ndarray:
     return np.column_stack([origin[once], target[once]])
 
 
-def fitted(mesh: HalfEdgeMesh, look: Look, moment: Moment | None = None) -> Viewport:
+def fitted(
+    mesh: HalfEdgeMesh, options: FigureOptions, moment: HistoryMoment | None = None
+) -> Viewport:
     """The view that shows the whole mesh in what the figure leaves for it."""
-    width, height = look.size
-    unit = _unit(look)
-    head = HEAD * unit if look.score else 0.0
-    foot = FOOT * unit if _has_curve(look, moment) else 0.0
+    width, height = options.size
+    unit = _unit(options)
+    head = HEAD * unit if options.score else 0.0
+    foot = FOOT * unit if _has_curve(options, moment) else 0.0
     room = (width, max(int(height - head - foot), 16))
     view = Viewport(size=room).fitted(
         mesh.points[mesh.vertices()], max(MARGIN * unit, 0.06 * min(room))
@@ -93,32 +95,32 @@ def fitted(mesh: HalfEdgeMesh, look: Look, moment: Moment | None = None) -> View
 
 def figure(
     mesh: HalfEdgeMesh,
-    look: Look | None = None,
-    moment: Moment | None = None,
+    options: FigureOptions | None = None,
+    moment: HistoryMoment | None = None,
     viewport: Viewport | None = None,
 ) -> Drawing:
     """Draw ``mesh`` as it is now; ``viewport`` as fitted if None."""
-    look = look or Look()
-    view = viewport or fitted(mesh, look, moment)
-    colours, unit = look.palette, _unit(look)
-    drawing = Drawing(look.size, colours.background, summary(mesh))
+    options = options or FigureOptions()
+    view = viewport or fitted(mesh, options, moment)
+    colours, unit = options.palette, _unit(options)
+    drawing = Drawing(options.size, colours.background, summary(mesh))
     marks = markers(mesh)
     pairs = edges(mesh)
     drawing.add(Area([view.to_screen(loop) for loop in marks.loops], colours.fill))
-    if look.changes and moment is not None and len(moment.removed):
+    if options.changes and moment is not None and len(moment.removed):
         gone = view.to_screen(moment.removed)
         drawing.add(Segments(gone, colours.faint, 1.3 * unit, dash=5.0 * unit))
     width = _edge_width(mesh, pairs, view, unit)
     drawing.add(Segments(view.to_screen(mesh.points[pairs]), colours.edge, width))
-    if look.changes and moment is not None and len(moment.added):
+    if options.changes and moment is not None and len(moment.added):
         drawing.add(Segments(view.to_screen(moment.added), colours.accent, 2.6 * unit))
     _add_inverted(drawing, mesh, view, colours, unit)
     for loop in marks.loops:
         drawing.add(Line(view.to_screen(loop), colours.boundary, max(2.0 * unit, 1.3 * width)))
-    _add_markers(drawing, marks, view, colours, unit, look.numbers)
-    if look.score:
+    _add_markers(drawing, marks, view, colours, unit, options.numbers)
+    if options.score:
         _add_head(drawing, mesh, moment, colours, unit)
-    if moment is not None and _has_curve(look, moment):
+    if moment is not None and _has_curve(options, moment):
         _add_curve(drawing, moment, colours, unit)
     return drawing
 
@@ -134,12 +136,12 @@ def elements(mesh: HalfEdgeMesh) -> str:
     return f"{mesh.n_elements:,} {noun}{'' if mesh.n_elements == 1 else 's'}"
 
 
-def _unit(look: Look) -> float:
-    return look.unit or min(max(min(look.size) / REFERENCE, 0.45), 6.0)
+def _unit(options: FigureOptions) -> float:
+    return options.unit or min(max(min(options.size) / REFERENCE, 0.45), 6.0)
 
 
-def _has_curve(look: Look, moment: Moment | None) -> bool:
-    return look.curve and moment is not None and len(moment.scores) > 1
+def _has_curve(options: FigureOptions, moment: HistoryMoment | None) -> bool:
+    return options.curve and moment is not None and len(moment.scores) > 1
 
 
 def _edge_width(mesh: HalfEdgeMesh, pairs: np.ndarray, view: Viewport, unit: float) -> float:
@@ -189,7 +191,7 @@ def _add_markers(
 
 
 def _add_head(
-    drawing: Drawing, mesh: HalfEdgeMesh, moment: Moment | None, colours: Theme, unit: float
+    drawing: Drawing, mesh: HalfEdgeMesh, moment: HistoryMoment | None, colours: Theme, unit: float
 ) -> None:
     """Two lines at the left, words; two at the right, the score, as in the paper's figures."""
     left, right = MARGIN * unit, drawing.size[0] - MARGIN * unit
@@ -208,7 +210,7 @@ def _add_head(
     drawing.add(Text(words, (right, second), 13.5 * unit, colour, "right", solved))
 
 
-def _add_curve(drawing: Drawing, moment: Moment, colours: Theme, unit: float) -> None:
+def _add_curve(drawing: Drawing, moment: HistoryMoment, colours: Theme, unit: float) -> None:
     """Score against states: what is done in the accent, what is to come pale."""
     width, height = drawing.size
     left, right = (MARGIN + 40.0) * unit, width - (MARGIN + 4.0) * unit

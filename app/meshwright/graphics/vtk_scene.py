@@ -21,7 +21,6 @@ LONG = 4000
 """A boundary of more vertices than this is VTK's to draw, also where the caller could."""
 CLASSES = 4
 """Discs of VTK come in one size for each |delta| from 1 to here; larger ones share the last."""
-_NOWHERE = np.zeros((0, 3))
 
 
 class Scene:
@@ -139,11 +138,12 @@ class Scene:
 
     def _mark_crowd(self, mesh: HalfEdgeMesh) -> None:
         """One actor of discs for each sign and size of delta; an actor once made is kept."""
-        size = np.zeros(0, int)
+        size = vertices = np.zeros(0, int)
         if self.crowd and self.markers is not None:
+            vertices = self.markers.vertices
             size = np.clip(self.markers.delta, -CLASSES, CLASSES)
         for value in {*np.unique(size).tolist(), *self._discs}:
-            places = mesh.points[self.markers.vertices[size == value]] if len(size) else _NOWHERE
+            places = mesh.points[vertices[size == value]]
             places = places * (1.0, 1.0, 0.0) + (0.0, 0.0, 2.0 * self._depth)
             if value not in self._discs:
                 self._discs[value] = self._add_discs(places, value)

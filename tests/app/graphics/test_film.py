@@ -15,14 +15,14 @@ from meshwright.document.document import Document
 from meshwright.document.score_series import Track
 from meshwright.graphics.drawing import Area, Drawing, Segments, hatching, raster, svg
 from meshwright.graphics.export import export_job, video
-from meshwright.graphics.export.export_job import Order
+from meshwright.graphics.export.export_job import ExportOptions
 from meshwright.graphics.export.film import Film
-from meshwright.graphics.mesh_figure import Look, edges, figure, summary
+from meshwright.graphics.mesh_figure import FigureOptions, edges, figure, summary
 from meshwright.graphics.theme import THEMES
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.geometry import smoothing
 
-SMALL = Look(size=(320, 240))
+SMALL = FigureOptions(size=(320, 240))
 
 
 @pytest.fixture
@@ -147,23 +147,24 @@ def test_a_moment_tells_what_its_step_has_changed(walked):
 
 def test_figure_in_pixels_shows_the_loud_things_and_no_others(walked):
     for name, colours in THEMES.items():
-        look = Look(size=(400, 300), theme=name)
+        look = FigureOptions(size=(400, 300), theme=name)
         moment = Film(walked).moment(4)
         image = np.asarray(raster(figure(walked.mesh, look, moment))).reshape(-1, 3).astype(int)
         for colour in (colours.plus, colours.minus, colours.background, colours.fill):
             wanted = [int(colour[i : i + 2], 16) for i in (1, 3, 5)]
             assert np.abs(image - wanted).max(axis=1).min() <= 6
-    plain = figure(walked.mesh, Look(size=(400, 300), score=False, numbers=False))
+    plain = figure(walked.mesh, FigureOptions(size=(400, 300), score=False, numbers=False))
     assert not [shape for shape in plain.shapes if type(shape).__name__ == "Text"]
 
 
 def test_a_picture_needs_neither_display_nor_vtk(tmp_path):
     code = (
         "import sys; from meshwright.graphics.export import export_job; "
-        "from meshwright.graphics.mesh_figure import Look; "
+        "from meshwright.graphics.mesh_figure import FigureOptions; "
         "from meshwright_core.domains import gallery, meshing; "
         "m = meshing.mesh_domain(gallery.shape('star'), 'quad'); "
-        f"export_job.save_mesh_picture(m, r'{tmp_path / 'star.png'}', Look((300, 200), 'dark')); "
+        "options = FigureOptions((300, 200), 'dark'); "
+        f"export_job.save_mesh_picture(m, r'{tmp_path / 'star.png'}', options); "
         "assert not {'vtkmodules', 'pyvista', 'qtpy', 'torch'} & set(sys.modules)"
     )
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
@@ -240,7 +241,7 @@ def test_an_mp4_plays_as_long_as_it_should(walked, tmp_path):
     import av
 
     film, path = Film(walked), tmp_path / "star.mp4"
-    frames = film.save(path, Look(size=(321, 241), theme="dark"), 0.25, every=2)
+    frames = film.save(path, FigureOptions(size=(321, 241), theme="dark"), 0.25, every=2)
     wanted = 1.0 + 0.25 * (frames - 2) + 2.5
     with av.open(str(path)) as file:
         stream = file.streams.video[0]
@@ -252,7 +253,7 @@ def test_an_mp4_plays_as_long_as_it_should(walked, tmp_path):
 @pytest.mark.parametrize("ending", [".gif", ".mp4", ".png", ".svg"])
 def test_a_cancelled_or_refused_export_leaves_nothing(walked, tmp_path, ending):
     film, path = Film(walked), tmp_path / f"star{ending}"
-    order = Order(ending=ending, size=(320, 240))
+    order = ExportOptions(ending=ending, size=(320, 240))
 
     def stop(done, total):
         raise KeyboardInterrupt
@@ -260,19 +261,19 @@ def test_a_cancelled_or_refused_export_leaves_nothing(walked, tmp_path, ending):
     if order.moving:
         path.write_bytes(b"before")
         with pytest.raises(KeyboardInterrupt):
-            export_job.write_order(film, order, path, stop)
+            export_job.write_export(film, order, path, stop)
         assert path.read_bytes() == b"before"
-    assert export_job.write_order(film, order, path) == (len(film) if order.moving else 1)
+    assert export_job.write_export(film, order, path) == (len(film) if order.moving else 1)
     assert path.stat().st_size > 500
     assert [found.name for found in tmp_path.iterdir()] == [path.name]
     with pytest.raises(MeshError, match="does not exist"):
-        export_job.write_order(film, order, tmp_path / "none" / path.name)
+        export_job.write_export(film, order, tmp_path / "none" / path.name)
 
 
 def test_a_still_is_of_the_state_where_the_film_stands(walked, tmp_path):
     film = Film(walked)
     state = film.state
-    export_job.write_order(film, Order(ending=".svg"), tmp_path / "a.svg")
+    export_job.write_export(film, ExportOptions(ending=".svg"), tmp_path / "a.svg")
     assert film.state == state
     assert f">s {walked.mesh.score}<" in (tmp_path / "a.svg").read_text()
 
@@ -289,9 +290,9 @@ def test_other_endings_are_refused_in_one_sentence(walked, tmp_path):
 
 def test_a_long_history_leaves_out_steps(walked):
     film = Film(walked)
-    assert Order().stride(film) == 1
+    assert ExportOptions().stride(film) == 1
     film.rows = film.rows * 1000
-    assert len(film.stops(Order().stride(film))) <= export_job.MOST_FRAMES + 1
+    assert len(film.stops(ExportOptions().stride(film))) <= export_job.MOST_FRAMES + 1
 
 
 def test_the_palette_of_a_gif_holds_the_theme():

@@ -1,4 +1,4 @@
-"""Pictures and films to order: what to write, how large, how long, and the writing of it."""
+"""Pictures and films to options: what to write, how large, how long, and the writing of it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 from meshwright.graphics.drawing import Drawing, raster, svg
 from meshwright.graphics.export import video
 from meshwright.graphics.export.film import Film
-from meshwright.graphics.export.video import Progress
-from meshwright.graphics.mesh_figure import Look, figure
+from meshwright.graphics.export.video import ReportProgress
+from meshwright.graphics.mesh_figure import FigureOptions, figure
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.errors import MeshError
 from meshwright_core.io import atomic_write
@@ -23,7 +23,7 @@ MOST_FRAMES = 600
 
 
 @dataclass(frozen=True)
-class Order:
+class ExportOptions:
     """What a person wants written. ``seconds`` each frame stays; ``every`` how many steps a frame
     stands for, 0 for as many as keep the film below :data:`MOST_FRAMES`.
     """
@@ -45,9 +45,9 @@ class Order:
         return self.ending in FILMS
 
     @property
-    def look(self) -> Look:
+    def figure_options(self) -> FigureOptions:
         """What its figures show."""
-        return Look(
+        return FigureOptions(
             size=self.size,
             theme=self.theme,
             numbers=self.numbers,
@@ -62,34 +62,40 @@ class Order:
         return self.every or max(1, -(-len(film) // MOST_FRAMES))
 
 
-def write_order(
-    film: Film, order: Order, path: str | Path, progress: Progress | None = None
+def write_export(
+    film: Film, options: ExportOptions, path: str | Path, progress: ReportProgress | None = None
 ) -> int:
-    """Write as :func:`save_order` does, but whole or not at all: an old file stays as it was.
+    """Write as :func:`save_export` does, but whole or not at all: an old file stays as it was.
 
     Raises MeshError, which names ``path``, where the file cannot be written.
     """
     with atomic_write.replacing(path) as temporary:
-        return save_order(film, order, temporary, progress)
+        return save_export(film, options, temporary, progress)
 
 
-def save_order(film: Film, order: Order, path: Path, progress: Progress | None = None) -> int:
+def save_export(
+    film: Film, options: ExportOptions, path: Path, progress: ReportProgress | None = None
+) -> int:
     """Write a film, or a picture of the state where ``film`` stands; returns the frames written.
 
     ``progress(done, total)`` is called after each frame; what it raises ends the work. Raises
     OSError where the file cannot be written, MeshError for an ending that no picture has.
     """
-    if order.moving:
-        return film.save(path, order.look, order.seconds, order.stride(film), progress)
-    save_picture(figure(film.mesh, order.look, film.moment(film.state)), path)
+    if options.moving:
+        return film.save(
+            path, options.figure_options, options.seconds, options.stride(film), progress
+        )
+    save_picture(figure(film.mesh, options.figure_options, film.moment(film.state)), path)
     if progress is not None:
         progress(1, 1)
     return 1
 
 
-def save_mesh_picture(mesh: HalfEdgeMesh, path: str | Path, look: Look | None = None) -> None:
+def save_mesh_picture(
+    mesh: HalfEdgeMesh, path: str | Path, options: FigureOptions | None = None
+) -> None:
     """Write one picture of ``mesh``; raises as :func:`save_picture` does."""
-    save_picture(figure(mesh, look), path)
+    save_picture(figure(mesh, options), path)
 
 
 def save_picture(drawing: Drawing, path: str | Path) -> None:

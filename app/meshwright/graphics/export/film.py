@@ -17,7 +17,7 @@ from meshwright.document.score_series import Track
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export import video
 from meshwright.graphics.markers import label
-from meshwright.graphics.mesh_figure import Look, Moment, edges, figure, fitted
+from meshwright.graphics.mesh_figure import FigureOptions, HistoryMoment, edges, figure, fitted
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
@@ -90,7 +90,7 @@ class Film:
             states.append(len(self.rows))
         return states
 
-    def moment(self, state: int, since: int | None = None) -> Moment:
+    def moment(self, state: int, since: int | None = None) -> HistoryMoment:
         """Go to ``state`` and tell what differs from state ``since`` (by default the one before).
 
         The edges of a state are found anew: in a row of frames use :meth:`moments`.
@@ -101,7 +101,7 @@ class Film:
         self.go_to(state)
         return self._moment(former, places, before)[0]
 
-    def moments(self, stops: Sequence[int]) -> Iterator[Moment]:
+    def moments(self, stops: Sequence[int]) -> Iterator[HistoryMoment]:
         """Go to each of ``stops`` in turn and tell what differs from the one before."""
         former, places, before = np.empty((0, 2), dtype=np.int64), np.empty((0, 3)), -1
         for state in stops:
@@ -112,7 +112,7 @@ class Film:
 
     def _moment(
         self, former: np.ndarray, places: np.ndarray, before: int
-    ) -> tuple[Moment, np.ndarray]:
+    ) -> tuple[HistoryMoment, np.ndarray]:
         """The present moment, and the edges of the mesh."""
         state, present = self._state, edges(self._mesh)
         points = self._mesh.points
@@ -126,7 +126,7 @@ class Film:
             alive &= gone < len(points)
             here = points[np.where(alive, gone, 0)]
             removed = np.where(alive[:, :, None], here, places[gone])[:, :, :2]
-        moment = Moment(
+        moment = HistoryMoment(
             title=self.title(state),
             detail=self._detail(state),
             added=added,
@@ -151,37 +151,37 @@ class Film:
 
     # Pictures and files
 
-    def viewport(self, look: Look) -> Viewport:
+    def viewport(self, options: FigureOptions) -> Viewport:
         """One view for all frames: that of the first state."""
         self.go_to(0)
-        return fitted(self._mesh, look, Moment(scores=self.scores, optima=self.optima))
+        return fitted(self._mesh, options, HistoryMoment(scores=self.scores, optima=self.optima))
 
-    def images(self, stops: Sequence[int], look: Look) -> Iterator[object]:
+    def images(self, stops: Sequence[int], options: FigureOptions) -> Iterator[object]:
         """A Pillow image for each of ``stops``."""
-        view = self.viewport(look)
+        view = self.viewport(options)
         for moment in self.moments(stops):
-            yield raster(figure(self._mesh, look, moment, view), SAMPLES)
+            yield raster(figure(self._mesh, options, moment, view), SAMPLES)
 
     def save(
         self,
         path: Path,
-        look: Look | None = None,
+        options: FigureOptions | None = None,
         seconds: float = 0.25,
         every: int = 1,
-        progress: video.Progress | None = None,
+        progress: video.ReportProgress | None = None,
     ) -> int:
         """Write the film as GIF or MP4, as the ending says; returns the number of frames.
 
         ``seconds`` is how long one frame stays, ``every`` how many steps it stands for. Raises,
         and calls ``progress``, as :func:`meshwright.graphics.export.video.save` does.
         """
-        look = look or Look()
+        options = options or FigureOptions()
         stops = self.stops(every)
         times = [seconds] * len(stops)
         times[0] = max(seconds, FIRST if len(stops) > 1 else LAST)
         times[-1] = max(seconds, LAST)
-        frames = zip(self.images(stops, look), times, strict=True)
-        video.save(path, frames, len(stops), look, progress)
+        frames = zip(self.images(stops, options), times, strict=True)
+        video.save(path, frames, len(stops), options, progress)
         return len(stops)
 
 

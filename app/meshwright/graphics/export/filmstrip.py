@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshwright.cli.output_files import replacing
 from meshwright.graphics.drawing import raster
-from meshwright.graphics.mesh_figure import Look, Moment, elements, figure
+from meshwright.graphics.mesh_figure import FigureOptions, HistoryMoment, elements, figure
 
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh, Operation
@@ -25,12 +24,12 @@ def write(
 ) -> None:
     """Write the three states side by side as a PNG of ``3 * size``; the mesh is not changed.
 
-    Raises UserError if the file cannot be written.
+    Raises OSError where the file cannot be written.
     """
     from meshwright_core.geometry import smoothing
 
     work = mesh.copy()
-    look = Look(size, theme)
+    options = FigureOptions(size, theme)
     frames = []
     done = 0
     for stop in (0, len(operations) // 2, len(operations)):
@@ -39,9 +38,8 @@ def write(
         done = stop
         smoothing.relax(work)
         words = f"{done:,} of {len(operations):,} operations" if operations else ""
-        frames.append(raster(figure(work, look, Moment(elements(work), words))))
-    with replacing(path) as temporary:
-        side_by_side(frames).save(temporary, format="PNG")
+        frames.append(raster(figure(work, options, HistoryMoment(elements(work), words))))
+    side_by_side(frames).save(path, format="PNG")
 
 
 def side_by_side(images: Sequence[Any]) -> Any:

@@ -12,8 +12,8 @@ from html import escape
 from urllib.parse import quote
 
 from meshwright.graphics.drawing import raster, svg
-from meshwright.graphics.export.video import flat
-from meshwright.graphics.mesh_figure import Look, elements, figure
+from meshwright.graphics.export.video import quantised
+from meshwright.graphics.mesh_figure import FigureOptions, elements, figure
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.notebook_display import Bundle
 
@@ -56,14 +56,14 @@ def caption(mesh: HalfEdgeMesh) -> str:
 def address(mesh: HalfEdgeMesh) -> str:
     """The picture as a ``data:`` address: vectors of a small mesh, pixels of a large one."""
     if mesh.n_elements <= MOST_SHAPES:
-        drawing = figure(mesh, Look(SIZE, score=False, unit=UNIT))
+        drawing = figure(mesh, FigureOptions(SIZE, score=False, unit=UNIT))
         return "data:image/svg+xml," + quote(svg(drawing), safe=" /:;=,.()-'!*?")
     return "data:image/png;base64," + b64encode(png(mesh)).decode("ascii")
 
 
 def png(mesh: HalfEdgeMesh) -> bytes:
     """The picture as a PNG of :data:`SHARP` times its size, in the few colours that it has."""
-    look = Look((SIZE[0] * SHARP, SIZE[1] * SHARP), score=False, unit=UNIT * SHARP)
+    options = FigureOptions((SIZE[0] * SHARP, SIZE[1] * SHARP), score=False, unit=UNIT * SHARP)
     file = io.BytesIO()
-    flat(raster(figure(mesh, look), SHARP), look.palette).save(file, format="PNG")
+    quantised(raster(figure(mesh, options), SHARP), options.palette).save(file, format="PNG")
     return file.getvalue()

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.graphics.mesh_figure import Look
+from meshwright.graphics.mesh_figure import FigureOptions
 from meshwright.graphics.theme import Theme
 from meshwright_core.errors import MeshError
 
@@ -26,7 +26,7 @@ SHORTEST = 0.02
 """Seconds: viewers of GIF slow down what is shorter."""
 
 Frames = Iterable[tuple[Any, float]]
-Progress = Callable[[int, int], None]
+ReportProgress = Callable[[int, int], None]
 
 
 def checked_ending(path: str | Path) -> str:
@@ -39,23 +39,29 @@ def checked_ending(path: str | Path) -> str:
 
 
 def save(
-    path: Path, frames: Frames, count: int, look: Look, progress: Progress | None = None
+    path: Path,
+    frames: Frames,
+    count: int,
+    options: FigureOptions,
+    progress: ReportProgress | None = None,
 ) -> None:
-    """Write ``count`` frames, each a Pillow image of ``look.size`` and its seconds, to ``path``.
+    """Write ``count`` frames, each a Pillow image of ``options.size`` and its seconds, to ``path``.
 
     ``progress(done, count)`` is called after each; what it raises ends the work, with a file that
-    is not whole: :func:`meshwright.graphics.export.export_job.write_order` sees to that. Raises
+    is not whole: :func:`meshwright.graphics.export.export_job.write_export` sees to that. Raises
     MeshError for another ending
     or a size that cannot be encoded, OSError where the file cannot be written.
     """
     followed = _followed(frames, count, progress)
     if checked_ending(path) == ".gif":
-        _save_gif(path, followed, look)
+        _save_gif(path, followed, options)
     else:
-        _save_mp4(path, followed, look)
+        _save_mp4(path, followed, options)
 
 
-def _followed(frames: Frames, count: int, progress: Progress | None) -> Iterator[tuple[Any, float]]:
+def _followed(
+    frames: Frames, count: int, progress: ReportProgress | None
+) -> Iterator[tuple[Any, float]]:
     for done, frame in enumerate(frames, start=1):
         yield frame
         if progress is not None:
@@ -65,14 +71,14 @@ def _followed(frames: Frames, count: int, progress: Progress | None) -> Iterator
 # GIF
 
 
-def _save_gif(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
+def _save_gif(path: Path, frames: Iterator[tuple[Any, float]], options: FigureOptions) -> None:
     """Frames of one palette, each cut down to what differs from the one before it."""
     from PIL.GifImagePlugin import getdata
 
     before: Any = None
     with path.open("wb") as file:
         for image, seconds in frames:
-            small = flat(image, look.palette)
+            small = quantised(image, options.palette)
             place, shown = (0, 0), small
             if before is None:
                 file.write(_gif_header(small))
@@ -95,7 +101,7 @@ def _differing(image: Any, before: Any) -> tuple[int, int, int, int]:
     return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
 
 
-def flat(image: Any, colours: Theme) -> Any:
+def quantised(image: Any, colours: Theme) -> Any:
     """A Pillow image in the 256 colours of a theme's :func:`palette`."""
     from PIL import Image
 
@@ -158,7 +164,7 @@ def _gif_header(image: Any) -> bytes:
 # MP4
 
 
-def _save_mp4(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
+def _save_mp4(path: Path, frames: Iterator[tuple[Any, float]], options: FigureOptions) -> None:
     """H.264 in colours that every player knows; sides are made even, as it asks."""
     import av
     from av.error import FFmpegError
@@ -166,7 +172,7 @@ def _save_mp4(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> No
     try:
         with av.open(str(path), "w", format="mp4", options={"movflags": "faststart"}) as file:
             stream = file.add_stream("libx264", rate=RATE)
-            stream.width, stream.height = (side - side % 2 for side in look.size)
+            stream.width, stream.height = (side - side % 2 for side in options.size)
             stream.pix_fmt = "yuv420p"
             stream.options = {"crf": QUALITY, "preset": "veryfast", "tune": "animation"}
             for image, times in _repeated(frames):

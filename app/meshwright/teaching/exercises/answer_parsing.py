@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 from meshwright.teaching.exercises.exercise import Blank, Wrong
@@ -54,7 +54,7 @@ def choice(given: Any, offers: Iterable[str]) -> str:
     return word
 
 
-def called(function: Callable[..., Any], *arguments: Any) -> Any:
+def called(function: object, *arguments: Any) -> Any:
     """What a student's function returns; not answered where that is nothing or ``...``."""
     if not callable(function):
         raise Wrong(f"A function is wanted here, not {quoted(function)}.")
