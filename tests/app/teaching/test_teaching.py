@@ -122,12 +122,6 @@ def test_every_exercise_has_a_solution_that_is_code():
         assert "<pre" in solution._repr_html_()
 
 
-def test_nudges_do_not_shout():
-    for name in NAMES:
-        assert 20 <= len(exercise(name).nudge) <= 160
-        assert exercise(name).nudge[-1] in ".?"
-
-
 def test_declared_checks_are_found_by_name():
     @declare("9.9", "Try it.")
     def judge(answer):
