@@ -1,4 +1,4 @@
-"""The best of k rollouts against k, for each policy of a comparison."""
+"""The expected best of k rollouts as a function of k, for each policy of a comparison."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ WIDTH, HEIGHT, LEFT, TOP = 560.0, 232.0, 64.0, 72.0
 
 
 class BestOf(Picture):
-    """Normalised returns of the best among k rollouts, for every k that there are."""
+    """Normalised return of the best of k rollouts, for k from 1 to the number of rollouts."""
 
     def __init__(self, returns: dict[str, np.ndarray]) -> None:
-        """returns: for each policy those of its single rollouts (n,)."""
+        """returns: for each policy the normalised returns (n,) of its rollouts."""
         count = min(len(values) for values in returns.values())
         self.k: np.ndarray = np.arange(1, count + 1)
         """(n,) 1, 2, ..., n."""
@@ -31,9 +31,9 @@ class BestOf(Picture):
             for name, values in returns.items()
         }
         self.means = {name: table[:, 0] for name, table in found.items()}
-        """For each policy (n,): the mean over all ways to choose k of its rollouts."""
+        """For each policy (n,): the mean over all subsets of k rollouts."""
         self.deviations = {name: table[:, 1] for name, table in found.items()}
-        """For each policy (n,): the standard deviation over them."""
+        """For each policy (n,): the standard deviation over all subsets of k rollouts."""
 
     def __repr__(self) -> str:
         last = len(self.k)
@@ -44,7 +44,7 @@ class BestOf(Picture):
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each policy and each k."""
+        """One dictionary for each policy and each k."""
         return [
             {
                 "policy": name,
@@ -57,7 +57,7 @@ class BestOf(Picture):
         ]
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
-        """A line for each policy."""
+        """One curve for each policy."""
         size = (round(LEFT + WIDTH + 24.0), round(TOP + HEIGHT + 48.0))
         inset = chart(self._draw_chart, size, theme)
         return Drawing(size, theme.background, repr(self), [inset])

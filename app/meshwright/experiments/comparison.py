@@ -1,4 +1,4 @@
-"""Policies compared on one mesh: every rollout as data, and the best of each side by side."""
+"""Comparison of policies on one mesh: all rollouts as data, the best ones as a picture."""
 
 from __future__ import annotations
 
@@ -47,19 +47,19 @@ def compare(
     steps: int | None = None,
     seed: int = 0,
 ) -> Comparison:
-    """Let each policy run so often from the mesh, and keep everything.
+    """Roll out each policy several times from one mesh, and keep every rollout.
 
     Args:
         mesh: a mesh, a document, a widget, or what :func:`meshwright.mesh` makes a mesh of; it is
             not changed.
-        policies: names of shipped policies, files, or policies that are there, or one of these;
-            None: the best that is shipped for this kind of mesh, and that of the paper.
-        rollouts: of each policy, side by side.
-        steps: decisions that a run may take; None: as many as its policy was trained with.
-        seed: the same seed brings the same runs.
+        policies: names of shipped policies, policy files or loaded policies, or a single one of
+            these; None: the best shipped policy for this kind of mesh, and the paper's method.
+        rollouts: the number of rollouts of each policy, computed as one batch.
+        steps: the most decisions in a rollout; None: as many as in the policy's training.
+        seed: of the random numbers; equal seeds give equal rollouts.
 
-    Raises MeshError with one sentence where a policy is unknown or for the other kind of mesh, or
-    the mesh has no elements.
+    Raises MeshError for an unknown policy, a policy for the other kind of mesh, or a mesh without
+    elements.
     """
     count = whole_number(rollouts, 1, "rollouts")
     limit = None if steps is None else whole_number(steps, 1, "steps")
@@ -91,19 +91,19 @@ def compare(
     return found
 
 
-class Table(str):
-    """Text that a notebook shows as it is, line by line."""
+class TextTable(str):
+    """Preformatted text, shown in notebooks in a monospaced font."""
 
     def __repr__(self) -> str:
         return str(self)
 
     def _repr_html_(self) -> str:
-        """The same; in a narrow cell it is scrolled, not broken."""
+        """The text as HTML; a narrow cell scrolls it and does not wrap its lines."""
         return f'<pre style="white-space:pre;overflow-x:auto">{escape(self)}</pre>'
 
 
 class Comparison(Picture):
-    """What some policies made of one mesh."""
+    """The rollouts of several policies from one mesh."""
 
     def __init__(
         self,
@@ -112,13 +112,13 @@ class Comparison(Picture):
         seconds: dict[str, float],
     ) -> None:
         self.mesh = mesh
-        """The mesh that every run started from."""
+        """The start of every rollout."""
         self.rollouts = rollouts
-        """The runs of each policy, by its name."""
+        """The rollouts of each policy, by its name."""
         self.seconds = seconds
-        """What all runs of a policy took."""
+        """The time that all rollouts of a policy took together."""
         self.sources: dict[str, str] = {}
-        """By which name, or from which file, each policy was had, unless it was there already."""
+        """The name or file of each policy; those that were given loaded are left out."""
         self._films: dict[tuple[str, int], Film] = {}
 
     def __repr__(self) -> str:
@@ -128,7 +128,7 @@ class Comparison(Picture):
 
     @property
     def policies(self) -> tuple[str, ...]:
-        """The names, in the order in which they were given."""
+        """The names of the policies, in the order given."""
         return tuple(self.rollouts)
 
     @property
@@ -143,30 +143,30 @@ class Comparison(Picture):
 
     @property
     def scores(self) -> dict[str, list[np.ndarray]]:
-        """For each policy the scores (T + 1,) of each of its runs, start and every decision."""
+        """For each policy the scores (T + 1,) of each rollout, at the start and after decisions."""
         return {name: [run.scores for run in runs] for name, runs in self.rollouts.items()}
 
     def returns(self, policy: str) -> np.ndarray:
-        """(rollouts,) the normalised return of each run, by its best state."""
+        """(rollouts,) the normalised return of each rollout, at its best state."""
         return np.array([run.normalised for run in self._runs(policy)])
 
     def best(self, policy: str) -> Rollout:
-        """The run with the lowest s, the one with the fewest decisions to it among equals."""
+        """The rollout with the lowest s; among equals the one that needs the fewest decisions."""
         return min(self._runs(policy), key=lambda run: (run.best, run.decisions))
 
     def best_of(self, policy: str, k: int) -> tuple[float, float]:
-        """Mean and deviation of the normalised return of the best among k of the runs, over all
-        ways to choose k of them: what the best of k rollouts would bring.
+        """Mean and standard deviation of the best normalised return among k rollouts, over all
+        subsets of k of the rollouts.
         """
         return best_of(self.returns(policy), whole_number(k, 1, "k"))
 
     def best_of_curve(self) -> BestOf:
-        """The best of k against k, for all policies: data, and a figure."""
+        """The expected best of k rollouts as a function of k, for all policies."""
         return BestOf({name: self.returns(name) for name in self.policies})
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each policy; ``pandas.DataFrame(rows)`` makes a table of them."""
+        """One dictionary for each policy; ``pandas.DataFrame(rows)`` makes a table of them."""
         rows = []
         for name, runs in self.rollouts.items():
             returns, best = self.returns(name), self.best(name)
@@ -190,7 +190,7 @@ class Comparison(Picture):
 
     @property
     def rollout_rows(self) -> list[dict[str, Any]]:
-        """A plain row for each run of each policy."""
+        """One dictionary for each rollout of each policy."""
         return [
             {
                 "policy": name,
@@ -207,8 +207,8 @@ class Comparison(Picture):
             for run in runs
         ]
 
-    def table(self) -> Table:
-        """The rows as text, as the paper's tables have them: mean and standard deviation."""
+    def table(self) -> TextTable:
+        """The rows as a text table of means and standard deviations, as in the paper."""
         count = len(next(iter(self.rollouts.values())))
         names = ["policy", "single", f"best of {count}", "best s", "runs at s*", "operations",
                  "seconds"]  # fmt: skip
@@ -229,12 +229,12 @@ class Comparison(Picture):
             f"s = {self.start}, s* = {self.optimum}; {count} {noun} each; normalised return,"
             " mean ± standard deviation"
         )
-        return Table(f"{head}\n\n{grid(names, cells)}")
+        return TextTable(f"{head}\n\n{grid(names, cells)}")
 
     # Meshes and films
 
     def document(self, policy: str, rollout: int | None = None) -> Document:
-        """A document that has the run in its history, up to its best state, smoothed on the way.
+        """A document whose history is the rollout up to its best state and a smoothing.
 
         rollout: its number; None: the best one.
         """
@@ -248,7 +248,7 @@ class Comparison(Picture):
         return document
 
     def film(self, policy: str, rollout: int | None = None) -> Film:
-        """The film of a run, up to its best state; rollout: its number; None: the best one."""
+        """The film of a rollout up to its best state; rollout: its number, None for the best."""
         from meshwright.graphics.export.film import Film
 
         run = self._run(policy, rollout)
@@ -268,8 +268,8 @@ class Comparison(Picture):
         return found
 
     def widget(self, policy: str, rollout: int | None = None, **options: Any) -> Any:
-        """A :class:`meshwright.notebook.MeshWidget` on such a document, to scrub and to go on
-        editing; its agent follows the same policy where that has a name or a file.
+        """A :class:`meshwright.notebook.MeshWidget` on the document of a rollout, for stepping
+        through it and for editing. Its agent uses the same policy if that has a name or a file.
         """
         from meshwright.notebook import MeshWidget
 
@@ -297,8 +297,8 @@ class Comparison(Picture):
     # The picture
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
-        """The best mesh of each policy, and below it the scores of all its runs, on axes that the
-        policies share.
+        """For each policy its best mesh, above a chart of the scores of all its rollouts; the axes
+        of all policies have the same ranges.
         """
         meshes = self.meshes
         count = len(self.policies)
@@ -375,7 +375,7 @@ def _add_note(
 
 
 def _height(mesh: HalfEdgeMesh) -> float:
-    """Pixels for a mesh in a column: wide ones are low."""
+    """The height in pixels of a mesh that fills the width of a column, within limits."""
     extent = np.ptp(mesh.points[mesh.vertices(), :2], axis=0)
     share = float(extent[1] / max(float(extent[0]), 1e-12))
     return float(np.clip(share * COLUMN, 160.0, 352.0))

@@ -1,4 +1,4 @@
-"""Learning curves: trainings side by side, as data and in one figure."""
+"""Learning curves of one or more trainings, as data and as a chart."""
 
 from __future__ import annotations
 
@@ -30,22 +30,23 @@ TITLES = {
 }
 WIDTH, HEIGHT, LEFT, GAP = 400.0, 216.0, 56.0, 72.0
 MOST = 4
-"""Trainings in one figure: there are no more kinds of line."""
+"""The most trainings in one chart: one for each line style."""
 
 
 @dataclass(frozen=True, eq=False)
 class Training:
-    """What one training has written."""
+    """The recorded measurements of one training."""
 
     name: str
     points: dict[str, np.ndarray]
-    """iteration, decisions, seconds, mean, std, at_optimum: (n,) at each evaluation."""
+    """iteration, decisions, seconds, mean, std, at_optimum: an array (n,) of each, one entry for
+    each evaluation."""
     updates: dict[str, tuple[np.ndarray, np.ndarray]]
-    """Numbers of every update, where events were written: updates (m,) and values (m,)."""
+    """For each quantity that TensorBoard events hold: updates (m,) and values (m,)."""
 
     def series(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Decisions (n,) and the values (n,) of a quantity; updates in place of decisions for
-        those that are known of every update only. MeshError where it was not written.
+        """Decisions (n,) and values (n,) of a quantity. For quantities that are recorded with
+        every update only, updates in place of decisions. MeshError for an unknown quantity.
         """
         if name in self.points:
             return self.points["decisions"], self.points[name]
@@ -56,17 +57,17 @@ class Training:
 
 
 def learning_curves(*paths: str | os.PathLike[str], names: Sequence[str] | None = None) -> Curves:
-    """Read what ``meshwright train`` has written, and go on writing.
+    """Read the learning curves of trainings by ``meshwright train``, finished or still running.
 
     Args:
         paths: folders of trainings, or files in them: ``checkpoint.safetensors``, ``curve.json``,
-            ``policy.safetensors``. A shipped policy's name will do too.
-        names: what to call them; None: the folders' or policies' own.
+            ``policy.safetensors``; or names of shipped policies.
+        names: labels of the trainings; None: the names of the folders or policies.
 
-    Raises MeshError with one sentence for a file that is torn, or something else.
+    Raises MeshError for a file that is damaged or holds no learning curve.
     """
     if not paths:
-        raise MeshError("There is nothing to read: name the folder of a training, or more.")
+        raise MeshError("There is nothing to read: name the folder of at least one training.")
     if not all(isinstance(path, str | os.PathLike) for path in paths):
         raise MeshError("The folder of a training is named by text or by a path.")
     found = [_located(path) for path in paths]
@@ -81,7 +82,7 @@ def learning_curves(*paths: str | os.PathLike[str], names: Sequence[str] | None 
 
 
 def _located(path: str | os.PathLike[str]) -> Path:
-    """Where it is: a path, or the file of a shipped policy."""
+    """The path itself, or the file of the shipped policy of this name."""
     from importlib.resources import files
 
     place = Path(path)
@@ -98,7 +99,7 @@ def _name_of(path: Path) -> str:
 
 
 class Curves(Picture):
-    """Trainings in one figure."""
+    """Learning curves of several trainings in one chart."""
 
     def __init__(self, trainings: list[Training], quantities: Sequence[str] = ()) -> None:
         self.trainings = trainings
@@ -108,7 +109,7 @@ class Curves(Picture):
         return len(self.trainings)
 
     def __getitem__(self, key: int | str) -> Training:
-        """A training by its place or its name."""
+        """A training by its index or its name."""
         if isinstance(key, str):
             found = [one for one in self.trainings if one.name == key]
             if not found:
@@ -129,7 +130,7 @@ class Curves(Picture):
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each evaluation of each training."""
+        """One dictionary for each evaluation of each training."""
         return [
             {"training": one.name, **{name: float(v[i]) for name, v in one.points.items()}}
             for one in self.trainings
@@ -137,9 +138,11 @@ class Curves(Picture):
         ]
 
     def plot(self, *quantities: str) -> Curves:
-        """The same trainings with other quantities in the figure, a panel for each: any of
-        :data:`meshwright.experiments.training_log.POINT`, and of the updates where there are
-        events: "played", "entropy", "policy", "value", "learning_rate", ...
+        """A chart of other quantities of the same trainings, with one panel for each.
+
+        quantities: those of each evaluation, :data:`meshwright.experiments.training_log.POINT`;
+        and, if TensorBoard events were written, those of each update: "played", "entropy",
+        "policy", "value", "learning_rate", ... MeshError for an unknown one.
         """
         for name in quantities:
             for training in self.trainings:
@@ -147,7 +150,7 @@ class Curves(Picture):
         return Curves(self.trainings, quantities)
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
-        """A panel for each quantity, a line for each training."""
+        """One panel for each quantity, one curve for each training."""
         if len(self.trainings) > MOST:
             raise MeshError(f"One figure shows up to {MOST} trainings, not {len(self.trainings)}.")
         count = len(self.quantities)

@@ -1,4 +1,4 @@
-"""A run of operations as one picture: the mesh at the start, half-way and at the end."""
+"""A sequence of operations as one picture: the mesh at the start, half-way and at the end."""
 
 from __future__ import annotations
 
