@@ -11,15 +11,15 @@ from meshwright import cli
 from meshwright.cli.commands import lessons as command
 from meshwright.teaching import Answer, exercise, lessons, patch
 from meshwright.teaching.exercises.answer_parsing import (
-    called,
     choice,
     mesh_of,
-    whole,
-    wholes,
+    result_of,
+    whole_number,
+    whole_numbers,
     yes_or_no,
 )
 from meshwright.teaching.exercises.example_meshes import PATCHES
-from meshwright.teaching.exercises.exercise import TOPICS, Blank, Wrong, declare
+from meshwright.teaching.exercises.exercise import MODULES, NoAnswer, WrongAnswer, declare
 from meshwright.teaching.exercises.result import MIME
 from meshwright.teaching.lessons import ExerciseCell
 from meshwright_core import MeshError
@@ -126,9 +126,9 @@ def test_declared_checks_are_found_by_name():
     @declare("9.9", "Try it.")
     def judge(answer):
         if answer == 1:
-            raise Wrong("Not that.")
+            raise WrongAnswer("Not that.")
         if answer == 2:
-            raise Blank
+            raise NoAnswer
         return "So it is."
 
     states = [exercise("9.9").check(n).state for n in (1, 2, 3)]
@@ -136,17 +136,22 @@ def test_declared_checks_are_found_by_name():
 
 
 def test_reading_what_is_given():
-    assert whole(np.int64(3)) == whole(3.0) == 3
-    assert wholes(np.array([1, 2]), 2) == [1, 2]
+    assert whole_number(np.int64(3)) == whole_number(3.0) == 3
+    assert whole_numbers(np.array([1, 2]), 2) == [1, 2]
     assert yes_or_no(" No ") is False
     assert yes_or_no(np.True_) is True
     assert choice("B", "ab") == "b"
     assert mesh_of(patch("fan")).k == 3
-    for wrong in (lambda: whole(True), lambda: whole("1"), lambda: wholes(3), lambda: called(3)):
-        with pytest.raises(Wrong):
+    for wrong in (
+        lambda: whole_number(True),
+        lambda: whole_number("1"),
+        lambda: whole_numbers(3),
+        lambda: result_of(3),
+    ):
+        with pytest.raises(WrongAnswer):
             wrong()
-    with pytest.raises(Wrong, match="ZeroDivisionError"):
-        called(lambda: 1 / 0)
+    with pytest.raises(WrongAnswer, match="ZeroDivisionError"):
+        result_of(lambda: 1 / 0)
 
 
 @pytest.mark.parametrize("name", PATCHES)
@@ -173,7 +178,7 @@ def test_a_solution_takes_the_place_of_the_blank():
 def test_teaching_needs_neither_torch_nor_qt():
     code = "import meshwright.teaching, meshwright.teaching.lessons, sys; print(*sys.modules)"
     topics = "".join(
-        f"; import meshwright.teaching.exercises.{topic}" for topic in list(TOPICS.values())[:4]
+        f"; import meshwright.teaching.exercises.{topic}" for topic in list(MODULES.values())[:4]
     )
     done = subprocess.run(
         [sys.executable, "-c", code.replace("; print", f"{topics}; print")],
