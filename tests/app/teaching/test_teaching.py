@@ -1,4 +1,4 @@
-"""Exercises judge what students write: blank, wrong in many ways, right; lessons are copied out."""
+"""Checks of blank, wrong and right answers; listing and copying of lessons."""
 
 import json
 import subprocess
@@ -49,7 +49,7 @@ JUNK = (
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_whatever_is_given_is_an_answer(name):
+def test_check_never_raises(name):
     found = exercise(name)
     code = found.judge.__code__
     for junk in JUNK:
@@ -60,14 +60,14 @@ def test_whatever_is_given_is_an_answer(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_wrong_number_of_answers_is_said(name):
+def test_wrong_number_of_answers(name):
     answer = exercise(name).check(*[1] * 7)
     assert answer.state == "wrong"
     assert "7" in answer.sentence
 
 
 @pytest.mark.parametrize("blank", [..., None, "", "  ", [..., 1], {"a": ...}, (1, [None])])
-def test_dots_are_no_answer(blank):
+def test_blank_answers(blank):
     answer = exercise("1.1").check(blank)
     assert answer.state == "blank"
     assert not answer
@@ -75,16 +75,16 @@ def test_dots_are_no_answer(blank):
     assert exercise("1.1").check().state == "blank"
 
 
-def test_a_function_without_a_body_is_no_answer():
+def test_function_without_a_body_is_blank():
     assert exercise("1.4").check(lambda mesh, h: ...).state == "blank"
     assert exercise("1.4").check(lambda mesh, h: None).state == "blank"
 
 
-def test_an_untouched_mesh_is_no_answer():
+def test_unedited_mesh_is_blank():
     assert exercise("1.6").check(patch("flipped grid")).state == "blank"
 
 
-def test_an_answer_shows_itself():
+def test_display_of_an_answer():
     answer = exercise("1.2").check(4)
     assert answer.passed
     bundle = answer._repr_mimebundle_()
@@ -94,17 +94,17 @@ def test_an_answer_shows_itself():
     json.dumps(bundle)
 
 
-def test_what_a_student_writes_is_not_markup():
+def test_answers_are_escaped_in_html():
     answer = exercise("1.1").check("<script>alert(1)</script>")
     assert "<script" not in answer._repr_html_()
 
 
-def test_numbers_in_sentences_get_a_true_minus():
+def test_minus_signs_in_sentences():
     assert "\u22124" in Answer("2.1", "wrong", "It was -4, not non-negative.")._repr_html_()
     assert "non-negative" in Answer("2.1", "wrong", "It was -4, not non-negative.")._repr_html_()
 
 
-def test_an_unknown_exercise_is_said():
+def test_unknown_exercise():
     exercise("1.1")
     with pytest.raises(LookupError, match=r"no exercise '1\.77'"):
         exercise("1.77")
@@ -114,7 +114,7 @@ def test_an_unknown_exercise_is_said():
         exercise(3)
 
 
-def test_every_exercise_has_a_solution_that_is_code():
+def test_solutions_compile():
     for name in NAMES:
         solution = exercise(name).solution()
         compile(solution.code, name, "exec")
@@ -135,7 +135,7 @@ def test_declared_checks_are_found_by_name():
     assert states == ["wrong", "blank", "right"]
 
 
-def test_reading_what_is_given():
+def test_answer_parsing():
     assert whole_number(np.int64(3)) == whole_number(3.0) == 3
     assert whole_numbers(np.array([1, 2]), 2) == [1, 2]
     assert yes_or_no(" No ") is False
@@ -155,7 +155,7 @@ def test_reading_what_is_given():
 
 
 @pytest.mark.parametrize("name", PATCHES)
-def test_patches_are_sound(name):
+def test_patches_are_valid(name):
     mesh = patch(name)
     mesh.validate()
     assert mesh.optimum == 0
@@ -165,12 +165,12 @@ def test_patches_are_sound(name):
         assert len(quality.inverted(mesh)) == 0
 
 
-def test_an_unknown_patch_is_said():
+def test_unknown_patch():
     with pytest.raises(MeshError, match="did you mean hexagon"):
         patch("hexagn")
 
 
-def test_a_solution_takes_the_place_of_the_blank():
+def test_solution_replaces_the_blank_answer():
     cell = ExerciseCell("1.1", 'answer = ...\nmw.exercise("1.1").check(answer)', "", ())
     assert cell.answered("answer = 96") == 'answer = 96\nmw.exercise("1.1").check(answer)'
 
@@ -226,7 +226,7 @@ def test_lessons_are_copied_and_not_overwritten(tmp_path, capsys):
     assert {path.name for path in folder.iterdir()} == names
 
 
-def test_a_missing_jupyterlab_is_said(tmp_path, monkeypatch, capsys):
+def test_missing_jupyterlab_is_reported(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "find_spec", lambda name: None)
     _, out, _ = run(tmp_path, capsys=capsys)
     assert out.endswith(f"not installed here: {command.INSTALL}\n")
@@ -236,7 +236,7 @@ def test_a_missing_jupyterlab_is_said(tmp_path, monkeypatch, capsys):
     ("words", "reason"),
     [(["a-file"], "not a folder"), (["a-file/below"], "cannot be made"), ([""], "is empty")],
 )
-def test_bad_folders_are_one_sentence(words, reason, tmp_path, monkeypatch, capsys):
+def test_bad_folders_are_refused_in_one_sentence(words, reason, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a-file").write_text("x")
     code, out, err = run(*words, capsys=capsys)
