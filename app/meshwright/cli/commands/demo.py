@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from meshwright.cli import arguments as inputs
 from meshwright.cli import display_check
-from meshwright.cli.output_files import checked_output, replacing
+from meshwright.cli.output_files import checked_output
 from meshwright.console import Report
 
 if TYPE_CHECKING:
@@ -79,8 +79,7 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
             progress=lambda done, best: update(done, f"s = {best}, s* = {mesh.optimum}"),
         )
     start = mesh.score
-    with replacing(output) as temporary:
-        filmstrip.write(temporary, mesh, solution.operations)
+    filmstrip.write(output, mesh, solution.operations)
     values = {
         "command": "demo",
         "shape": name,

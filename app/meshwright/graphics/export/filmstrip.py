@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.mesh_figure import FigureOptions, HistoryMoment, elements, figure
+from meshwright_core.io.atomic_write import replacing
 
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh, Operation
@@ -24,7 +25,7 @@ def write(
 ) -> None:
     """Write the three states side by side as a PNG of ``3 * size``; the mesh is not changed.
 
-    Raises OSError where the file cannot be written.
+    Raises MeshError, one sentence that begins with the path, if the file cannot be written.
     """
     from meshwright_core.geometry import smoothing
 
@@ -39,7 +40,8 @@ def write(
         smoothing.relax(work)
         words = f"{done:,} of {len(operations):,} operations" if operations else ""
         frames.append(raster(figure(work, options, HistoryMoment(elements(work), words))))
-    side_by_side(frames).save(path, format="PNG")
+    with replacing(path) as temporary:
+        side_by_side(frames).save(temporary, format="PNG")
 
 
 def side_by_side(images: Sequence[Any]) -> Any:
