@@ -86,7 +86,7 @@ def known_policy(name: object) -> Policy:
 
 
 def require_kind(policy: Policy, mesh: HalfEdgeMesh) -> None:
-    """Raise MeshError for a policy that is for the other kind of mesh."""
+    """Refuse a policy for the other kind of mesh, by MeshError."""
     if policy.kind != mesh.kind:
         noun = {"tri": "triangles", "quad": "quads"}
         raise MeshError(
@@ -96,7 +96,7 @@ def require_kind(policy: Policy, mesh: HalfEdgeMesh) -> None:
 
 
 def whole_number(value: object, least: int, name: str) -> int:
-    """``value`` as an int; MeshError unless it is a whole number of at least ``least``."""
+    """The number if it is a whole one that is large enough; MeshError else."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         raise MeshError(f"{name} is a whole number of at least {least}, not {value!r}.")
     return int(value)
@@ -159,7 +159,7 @@ def _limited(policy: Policy, mesh: HalfEdgeMesh, steps: int | None) -> Policy:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Let torch use one thread: the matrices of a decision are too small for more."""
+    """Let torch use one thread meanwhile: the matrices of a decision are small."""
     import torch
 
     before = torch.get_num_threads()

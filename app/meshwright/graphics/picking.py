@@ -62,7 +62,7 @@ class Picker:
 
 
 def _contain(polygons: np.ndarray, x: float, y: float) -> np.ndarray:
-    """Whether each of ``polygons`` (m, k, 2) contains (x, y): even-odd rule, any orientation."""
+    """For ``polygons`` (m, k, 2): does each contain (x, y)? By crossings; any orientation."""
     ax, ay = polygons[..., 0], polygons[..., 1]
     bx, by = np.roll(ax, -1, axis=1), np.roll(ay, -1, axis=1)
     straddles = (ay > y) != (by > y)
