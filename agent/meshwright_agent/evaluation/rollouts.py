@@ -14,9 +14,9 @@ import torch
 from meshwright_agent.env.task import MOST_CLEANUPS, Task, transition
 from meshwright_agent.env.vector_env import Batch, start_meshes
 from meshwright_agent.evaluation import paper_results
+from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy, load, shipped
 from meshwright_agent.policy.rollout import Step
-from meshwright_agent.training.ppo import decide
 from meshwright_core.core.arrays import ELEMENTS, JOURNALLING
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation

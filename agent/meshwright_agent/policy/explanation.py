@@ -14,9 +14,9 @@ import torch
 from meshwright_agent.env.candidates import LOOKED_AT
 from meshwright_agent.env.task import Observation, Scratch, Task, observe
 from meshwright_agent.policy.explanation_types import Choice, Insight
+from meshwright_agent.policy.inference import tensors
 from meshwright_agent.policy.network import PolicyNetwork
 from meshwright_agent.policy.policy_files import Policy, PolicyError
-from meshwright_agent.training.ppo import tensors
 from meshwright_core.core.arrays import IRREGULAR, ORIGIN, TWIN, MeshArrays, preceding
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation

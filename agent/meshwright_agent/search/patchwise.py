@@ -24,6 +24,7 @@ import torch
 from meshwright_agent.env.candidates import LOOKED_AT
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy, PolicyError
 from meshwright_agent.search.patch_extraction import (
     MOST_TAKEN,
@@ -41,7 +42,6 @@ from meshwright_agent.search.repair_queue import (
     enlist,
     settle,
 )
-from meshwright_agent.training.ppo import decide
 from meshwright_core.core.arrays import JOURNALLING, ORIGIN, STEP_COLUMNS, allocate
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation

@@ -16,6 +16,7 @@ import torch
 
 from meshwright_agent.env.task import MOST_CLEANUPS, transition
 from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy, PolicyError
 from meshwright_agent.search.annealing import WEIGHTS, Annealer, Operations, with_room
 from meshwright_agent.search.patch_extraction import MOST_TAKEN, cut_out, mask_rim
@@ -23,7 +24,6 @@ from meshwright_agent.search.patchwise import improve_large
 from meshwright_agent.search.repair_queue import agenda
 from meshwright_agent.search.shortening import shorten
 from meshwright_agent.search.solver import prepare
-from meshwright_agent.training.ppo import decide
 from meshwright_core.analysis.submesh import enclose
 from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
