@@ -18,7 +18,7 @@ import numpy as np
 
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
-from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_agent.search.annealing import Operations, anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
@@ -101,10 +101,7 @@ def solve(
 
     Raises PolicyError if the policy is for the other kind of mesh.
     """
-    if mesh.kind != policy.kind:
-        raise PolicyError(
-            f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
-        )
+    require_kind(policy, mesh.kind)
     prepare(policy)
     mesh = _anchored(mesh)
     if is_large(mesh):

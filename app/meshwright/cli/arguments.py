@@ -106,10 +106,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
         _require_file(name)
     with _bad_input(name, policy_files.PolicyError):
         policy = policy_files.load(name)
-    if policy.kind != kind:
-        raise UserError(
-            f"{name}: this policy is for {KIND_NOUN[policy.kind]}, the mesh is of {KIND_NOUN[kind]}"
-        )
+        policy_files.require_kind(policy, kind, name)
     return policy
 
 

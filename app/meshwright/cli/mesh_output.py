@@ -17,9 +17,10 @@ SHOWN_IDS = 20
 
 def checked_mesh_output(path: str, kind: str | None = None) -> Path:
     """Return the path if a mesh of this kind, or of any, can be written there; else UserError."""
+    from meshwright_core.core.kinds import ELEMENT_NOUN
     from meshwright_core.io import formats
 
-    noun = {"tri": "triangle", "quad": "quad"}.get(kind or "")
+    noun = ELEMENT_NOUN.get(kind or "")
     fit = [ending for ending, form in formats.FORMATS.items() if not noun or noun in form.kinds]
     return checked_output(path, tuple(fit))
 

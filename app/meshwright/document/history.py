@@ -207,8 +207,3 @@ class History:
         scores = [self._rows[first].before] if first < self._cursor else []
         scores += [row.after for row in self._rows[first : self._cursor]]
         return first + scores.index(min(scores)) if scores else self._cursor
-
-
-def normalised_return(start: int, best: int, optimum: int) -> float:
-    """Share of the way from ``start`` to ``optimum`` that ``best`` has gone; 1 if no way to go."""
-    return 1.0 if start == optimum else (start - best) / (start - optimum)

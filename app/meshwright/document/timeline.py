@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from typing import TypeVar
 
-from meshwright.document.history import History, Row, normalised_return
+from meshwright.document.history import History, Row
 from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.core.score import normalised_return
 from meshwright_core.history.packed_steps import Steps
 
 Result = TypeVar("Result")

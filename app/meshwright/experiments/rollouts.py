@@ -87,19 +87,12 @@ def known_policy(name: object) -> Policy:
 
 def require_kind(policy: Policy, mesh: HalfEdgeMesh) -> None:
     """Refuse a policy for the other kind of mesh, by MeshError."""
-    if policy.kind != mesh.kind:
-        noun = {"tri": "triangles", "quad": "quads"}
-        raise MeshError(
-            f"{policy.name}: this policy is for {noun[policy.kind]}, and the mesh is of"
-            f" {noun[mesh.kind]}."
-        )
+    from meshwright_agent.policy import policy_files
 
-
-def whole_number(value: object, least: int, name: str) -> int:
-    """The number if it is a whole one that is large enough; MeshError else."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise MeshError(f"{name} is a whole number of at least {least}, not {value!r}.")
-    return int(value)
+    try:
+        policy_files.require_kind(policy, mesh.kind)
+    except policy_files.PolicyError as error:
+        raise MeshError(f"{error}.") from None
 
 
 def play(

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from meshwright.cli.arguments import KIND_NOUN
 from meshwright.document.document import Document
 from meshwright.document.storage.project_file import is_project
 from meshwright.sources import resolve
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.core.kinds import KIND_NOUN
 
 
 def document_of(source: Any, kind: str | None = None, name: str = "") -> Document:

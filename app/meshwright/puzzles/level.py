@@ -19,6 +19,7 @@ import numpy as np
 
 import meshwright_assets
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
+from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.operations.catalogue import CODES
 
 FOLDER = Path(meshwright_assets.__file__).parent / "levels"
@@ -73,15 +74,13 @@ class Level:
     @property
     def story(self) -> str:
         """How large it is, and its par."""
-        noun = "triangles" if self.kind == "tri" else "quads"
-        return f"{len(self.elements)} {noun}, par {self.par}"
+        return f"{len(self.elements)} {KIND_NOUN[self.kind]}, par {self.par}"
 
     @property
     def aim(self) -> str:
         """The goal in words."""
         if self.most:
-            noun = "triangles" if self.kind == "tri" else "quads"
-            return f"s = {self.goal} with at most {self.most} {noun}"
+            return f"s = {self.goal} with at most {self.most} {KIND_NOUN[self.kind]}"
         return f"s = {self.goal}"
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from meshwright.document.document import NO_MESH, Document
-from meshwright.document.history import History, normalised_return
+from meshwright.document.history import History
 from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
+from meshwright_core.core.score import normalised_return
 from meshwright_core.operations.catalogue import of_kind
 
 

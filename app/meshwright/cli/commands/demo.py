@@ -63,9 +63,10 @@ def _checked(path: str) -> Path:
 
 
 def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: Report) -> None:
-    from meshwright.cli.commands.improve import ROLLOUTS, normalised_return
+    from meshwright.cli.commands.improve import ROLLOUTS
     from meshwright.console import one_line
     from meshwright.graphics.export import filmstrip
+    from meshwright_core.core.score import normalised_return
 
     policy = inputs.read_policy(None, mesh.kind)
     from meshwright_agent.search import solver

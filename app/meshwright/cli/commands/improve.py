@@ -69,6 +69,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Check everything that can be checked, then search, replay, settle and write."""
+    from meshwright_core.core.score import normalised_return
+
     mesh_output.checked_mesh_output(arguments.output)
     png = checked_output(arguments.png, (".png",), "--png") if arguments.png else None
     film = checked_output(arguments.film, (".gif", ".mp4"), "--film") if arguments.film else None
@@ -145,11 +147,6 @@ def replay(mesh: HalfEdgeMesh, solution: Solution) -> None:
         mesh.apply(operation, halfedge)
     if mesh.score != solution.score:
         raise RuntimeError(f"the replay ends at s = {mesh.score}, the search at {solution.score}")
-
-
-def normalised_return(start: int, end: int, optimum: int) -> float:
-    """Return (start - end) / (start - optimum), and 1 where there was nothing to gain."""
-    return (start - end) / (start - optimum) if start != optimum else 1.0
 
 
 def _search(

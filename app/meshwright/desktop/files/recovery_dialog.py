@@ -19,6 +19,7 @@ from qtpy.QtWidgets import (
 from meshwright.desktop.widgets.basic import named
 from meshwright.document.storage.recovery import Lost
 from meshwright.graphics.theme import GRID
+from meshwright_core.core.kinds import KIND_NOUN
 
 STORY = (
     "Meshwright ended before this was saved. Every step up to then has been kept: it can be taken"
@@ -153,7 +154,7 @@ def progress(work: Lost) -> str:
     if "score" in now and "optimum" in now:
         parts.append(f"s {now['score']:,} (optimum {now['optimum']:,})")
     if "elements" in now:
-        noun = {"tri": "triangles", "quad": "quads"}.get(str(now.get("kind")), "elements")
+        noun = KIND_NOUN.get(str(now.get("kind")), "elements")
         parts.append(f"{now['elements']:,} {noun}")
     return ", ".join(parts)
 
