@@ -66,6 +66,16 @@ class Solution:
         elements = self.elements if self.coarse else 0
         return self.score, self.inverted, elements, len(self.operations)
 
+    def replay(self, mesh: HalfEdgeMesh) -> None:
+        """Apply the operations to `mesh`, the mesh that they were found for.
+
+        Raises RuntimeError if the score reached is not :attr:`score`.
+        """
+        for operation, halfedge in self.operations:
+            mesh.apply(operation, halfedge)
+        if mesh.score != self.score:
+            raise RuntimeError(f"the replay ends at s = {mesh.score}, the search at {self.score}")
+
     @property
     def perfect(self) -> bool:
         """At the optimum, which is a proof that s cannot be lower, and drawn without a fold."""

@@ -11,9 +11,8 @@ from statistics import median
 from typing import Any
 
 from meshwright.benchmarks.gallery import corners
-from meshwright.cli import mesh_output
-from meshwright.cli.commands.improve import replay
 from meshwright.console import Update
+from meshwright.document.position_repair import settle
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
@@ -59,8 +58,8 @@ def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[st
     began = time.perf_counter()
     solution = solver.solve(mesh, policy, seconds=seconds, seed=seed)
     took = time.perf_counter() - began
-    replay(mesh, solution)
-    mesh_output.settle(mesh)
+    solution.replay(mesh)
+    settle(mesh)
     mesh.validate()
     return {
         "corners": sum(int(flags.sum()) for flags in domain.loop_corners),

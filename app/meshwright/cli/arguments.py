@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from meshwright.console import Report, UserError
+from meshwright.sources.naming import looks_like_path
 
 if TYPE_CHECKING:
     from meshwright.document.document import Document
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from meshwright_agent.training.trainer import Training
     from meshwright_core import HalfEdgeMesh
     from meshwright_core.domains.domain import Domain
-
-KIND_NOUN = {"tri": "triangles", "quad": "quads"}
 
 
 def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
@@ -95,6 +94,7 @@ def prepare_agent(report: Report) -> None:
 def read_policy(name: str | None, kind: str) -> Policy:
     """Return a policy for meshes of this kind: by name, from a file, or the one we ship."""
     from meshwright_agent.policy import policy_files
+    from meshwright_core.core.kinds import KIND_NOUN
 
     policy_files.decide_on_one_thread()
     if name is None:
@@ -130,11 +130,6 @@ def one_of(word: str, known: Sequence[str], option: str) -> str:
     if word not in known:
         raise UserError(f"{option} {word}: there is no such one; choose from {', '.join(known)}")
     return word
-
-
-def looks_like_path(text: str) -> bool:
-    """Tell whether the user meant a file: it has an ending or a folder."""
-    return bool(Path(text).suffix) or "/" in text or "\\" in text
 
 
 def positive_int(text: str) -> int:

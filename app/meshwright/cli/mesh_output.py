@@ -25,20 +25,6 @@ def checked_mesh_output(path: str, kind: str | None = None) -> Path:
     return checked_output(path, tuple(fit))
 
 
-def settle(mesh: HalfEdgeMesh) -> list[int]:
-    """Smooth and untangle the whole mesh; return the elements that stay inverted.
-
-    An element is named by its row in ``mesh.elements()``, which is its place in the written file,
-    counted from 0.
-    """
-    import numpy as np
-
-    from meshwright_core.geometry import smoothing
-
-    inverted = smoothing.relax(mesh)
-    return [int(row) for row in np.flatnonzero(np.isin(mesh.element_ids(), inverted))]
-
-
 def write_mesh(path: Path, mesh: HalfEdgeMesh) -> None:
     """Write the mesh whole or not at all; what the system refuses becomes a UserError."""
     import meshwright_core

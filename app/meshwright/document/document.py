@@ -19,7 +19,7 @@ from meshwright.document.timeline import NO_MESH as NO_MESH
 from meshwright.document.timeline import Timeline
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 from meshwright_core.analysis.submesh import holding
-from meshwright_core.core.notebook_display import Bundle
+from meshwright_core.core.notebook_display import Bundle, bundle
 from meshwright_core.io import mesh_files
 from meshwright_core.io.formats import SHAPES
 from meshwright_core.operations.catalogue import CATALOGUE
@@ -173,12 +173,7 @@ class Document(Timeline):
         """A still picture at the end of a notebook's cell."""
         if self._mesh is None:
             return {"text/plain": NO_MESH}, {}
-        from meshwright.graphics.export.mimebundle import (
-            mimebundle,  # imported late: who shows no document needs none
-        )
-
-        data, metadata = mimebundle(self._mesh, self._name)
-        return {"text/plain": repr(self._mesh), **data}, metadata
+        return bundle(self._mesh, self._name)
 
     def _adopt(self, mesh: HalfEdgeMesh | None, name: str, path: str | Path | None) -> None:
         self._mesh = mesh

@@ -47,6 +47,16 @@ def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
     return count, len(inverted(mesh)) if count else 0
 
 
+def settle(mesh: HalfEdgeMesh) -> list[int]:
+    """Smooth and untangle the whole mesh; return the elements that stay inverted.
+
+    An element is named by its row in ``mesh.elements()``, which is its place in a written file,
+    counted from 0.
+    """
+    still_inverted = relax(mesh)
+    return [int(row) for row in np.flatnonzero(np.isin(mesh.element_ids(), still_inverted))]
+
+
 def _move(mesh: HalfEdgeMesh, vertices: np.ndarray, positions: np.ndarray) -> None:
     if len(vertices):
         mesh.move(vertices, positions)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from meshwright.cli import arguments as inputs
 from meshwright.cli import display_check
 from meshwright.cli.output_files import checked_output
-from meshwright.console import Report
+from meshwright.console import Report, UserError
 
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh
@@ -66,10 +66,12 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
     from meshwright.cli.commands.improve import ROLLOUTS
     from meshwright.console import one_line
     from meshwright.graphics.export import filmstrip
+    from meshwright_core.core.kinds import KIND_NOUN
     from meshwright_core.core.score import normalised_return
 
     policy = inputs.read_policy(None, mesh.kind)
     from meshwright_agent.search import solver
+    from meshwright_core.errors import MeshError
 
     inputs.prepare_agent(report)
     with report.progress("the policy is at work", ROLLOUTS) as update:
@@ -80,7 +82,10 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
             progress=lambda done, best: update(done, f"s = {best}, s* = {mesh.optimum}"),
         )
     start = mesh.score
-    filmstrip.write(output, mesh, solution.operations)
+    try:
+        filmstrip.write(output, mesh, solution.operations)
+    except MeshError as error:
+        raise UserError(str(error)) from error
     values = {
         "command": "demo",
         "shape": name,
@@ -100,7 +105,7 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
         ", the optimum" if solution.score == mesh.optimum else f" (the optimum is {mesh.optimum})"
     )
     text = (
-        f"the policy took the {name}, {mesh.n_elements} {inputs.KIND_NOUN[mesh.kind]}, from "
+        f"the policy took the {name}, {mesh.n_elements} {KIND_NOUN[mesh.kind]}, from "
         f"s = {start} to s = {solution.score}{optimum}, in {len(solution.operations)} operations; "
         f"the picture of it is {output.resolve()}"
     )

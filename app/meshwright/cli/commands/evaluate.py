@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from meshwright.cli import arguments as inputs
 from meshwright.cli.output_files import checked_folder, checked_output
 from meshwright.console import Report, UserError
-from meshwright.experiments import evaluation_table
+from meshwright.sources.naming import looks_like_path
 
 if TYPE_CHECKING:
     from meshwright_agent.evaluation.table_row import Assessment
@@ -96,6 +96,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     folder = checked_folder(arguments.figure, "--figure") if arguments.figure else None
     noted = _checked_note(arguments) if arguments.note else None
     policy = inputs.read_policy(arguments.policy, arguments.kind)
+    from meshwright.experiments import evaluation_table
     from meshwright_agent.evaluation import paper_results, rollouts, table_row
 
     table = [row.sides for row in paper_results.ROWS[arguments.kind]]
@@ -144,7 +145,9 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path) -> list[Path]:
     """Draw all figures; returns their paths."""
+    from meshwright.experiments import evaluation_table
     from meshwright_agent.evaluation import figures, paper_results, rollout_strip, rollouts
+    from meshwright_core.core.kinds import KIND_NOUN
 
     folder.mkdir(exist_ok=True)
     kind, written = policy.kind, []
@@ -155,7 +158,7 @@ def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path)
 
     curve = policy.header.get("progress", {}).get("curve", [])
     if len(curve) > 1:
-        noun = inputs.KIND_NOUN[kind].capitalize()
+        noun = KIND_NOUN[kind].capitalize()
         low, high = policy.header["training"]["sides"]
         title = f"{noun}, polygons of {low} to {high} sides"
         figures.learning_curve(curve, kind, title, path("learning"))
@@ -195,7 +198,7 @@ def _checked_note(arguments: argparse.Namespace) -> Path:
     """The file to write the table into."""
     if not arguments.table or arguments.steps != 1.0:
         raise UserError("--note goes with --table, and not with --steps")
-    if arguments.policy is None or not inputs.looks_like_path(arguments.policy):
+    if arguments.policy is None or not looks_like_path(arguments.policy):
         raise UserError("--note writes into a policy file: name it by --policy")
     return checked_output(arguments.policy, option="--policy")
 

@@ -69,6 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Check everything that can be checked, then search, replay, settle and write."""
+    from meshwright.document.position_repair import settle
     from meshwright_core.core.score import normalised_return
 
     mesh_output.checked_mesh_output(arguments.output)
@@ -83,8 +84,8 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     before = {"score": mesh.score, "elements": mesh.n_elements, "optimum": mesh.optimum}
     solution = _search(arguments, report, mesh, policy)
     first = mesh.copy() if film else mesh
-    replay(mesh, solution)
-    inverted = mesh_output.settle(mesh)
+    solution.replay(mesh)
+    inverted = settle(mesh)
     mesh.validate()
     if mesh.optimum != before["optimum"]:
         raise RuntimeError(f"s* changed from {before['optimum']} to {mesh.optimum}")
@@ -141,14 +142,6 @@ def _write_film(
         export_job.save_order(film, order, path, lambda done, total: update(done))
 
 
-def replay(mesh: HalfEdgeMesh, solution: Solution) -> None:
-    """Apply the operations of a solution to the mesh that it was found for."""
-    for operation, halfedge in solution.operations:
-        mesh.apply(operation, halfedge)
-    if mesh.score != solution.score:
-        raise RuntimeError(f"the replay ends at s = {mesh.score}, the search at {solution.score}")
-
-
 def _search(
     arguments: argparse.Namespace, report: Report, mesh: HalfEdgeMesh, policy: Any
 ) -> Solution:
@@ -168,13 +161,15 @@ def _search(
 
 
 def _text(values: dict[str, Any]) -> str:
+    from meshwright_core.core.kinds import KIND_NOUN
+
     s = f"{values['score_before']} -> {values['score_after']}, s* = {values['optimum']}"
     if values["at_optimum"]:
         s += ", at the optimum"
     elements = f"{values['elements_before']} -> {values['elements']}"
     rows = [
         ("s", s),
-        ("elements", f"{elements} {inputs.KIND_NOUN[values['kind']]}"),
+        ("elements", f"{elements} {KIND_NOUN[values['kind']]}"),
         ("inverted", mesh_output.inverted_words(values["inverted_ids"]) or "none"),
         ("operations", f"{values['operations']} (best of {values['rollouts']})"),
         ("seconds", f"{values['seconds']:.1f}"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from typing import Any
 
 from meshwright.cli import arguments as inputs
 from meshwright.cli import mesh_output
@@ -44,12 +45,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Make the mesh, settle its positions, write it."""
+    from meshwright.document.position_repair import settle
+
     output = mesh_output.checked_mesh_output(arguments.output, arguments.kind)
     domain = inputs.read_domain(arguments.shape, arguments.corner_angle)
     start = time.perf_counter()
     with report.progress(f"meshing {domain.name or arguments.shape}"):
         mesh = inputs.make_mesh(domain, arguments.kind, arguments.max_edge, arguments.seed)
-        inverted = mesh_output.settle(mesh)
+        inverted = settle(mesh)
         mesh.validate()
     mesh_output.write_mesh(output, mesh)
     values = {
@@ -69,8 +72,10 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     report.result(values, _text(values))
 
 
-def _text(values: dict[str, object]) -> str:
-    noun = inputs.KIND_NOUN[str(values["kind"])]
+def _text(values: dict[str, Any]) -> str:
+    from meshwright_core.core.kinds import KIND_NOUN
+
+    noun = KIND_NOUN[str(values["kind"])]
     text = (
         f"{values['output']}: {values['elements']} {noun}, {values['vertices']} vertices, "
         f"s = {values['score']}, s* = {values['optimum']}"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from meshwright.cli import arguments as inputs
 from meshwright.cli import display_check
 from meshwright.console import Report, UserError
+from meshwright.sources.naming import looks_like_path
 
 if TYPE_CHECKING:
     from meshwright.document.document import Document
@@ -61,7 +62,7 @@ def _document(arguments: argparse.Namespace) -> Document | None:
     from meshwright.document.storage.project_file import is_project
 
     path = Path(name)
-    is_file = path.exists() or inputs.looks_like_path(name)
+    is_file = path.exists() or looks_like_path(name)
     if is_file and is_project(path):
         return inputs.read_project(name)
     if is_file and not _holds_shape(path):
