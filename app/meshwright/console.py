@@ -11,17 +11,20 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any, TextIO
+from typing import Any, Protocol, TextIO
 
 
 class UserError(Exception):
     """Wrong use or bad input: ends the command with one line on stderr and exit code 2."""
 
 
-Update = Callable[[int, str], None]
-"""Called as ``update(done, remark)`` while a long piece of work goes on."""
+class Update(Protocol):
+    """Called while a long piece of work goes on, to move its progress bar."""
+
+    def __call__(self, done: int, remark: str = "") -> None:
+        """``done`` pieces of work are done; ``remark`` is shown beside the bar."""
 
 
 class Report:

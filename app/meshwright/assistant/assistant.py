@@ -430,15 +430,15 @@ class Assistant:
             self.said.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
 
     def _tidy(self, run: Run) -> None:
-        """What smoothing around each operation has folded on the way, the whole unfolds."""
-        from meshwright.document.position_repair import after_run
+        """Smooth or untangle what the operations of the run have left inverted."""
+        from meshwright.assistant.run_cleanup import clean_up
 
         if not run.decisions:
             return
         seen = self._sight.last
         self._applying = True
         try:
-            after_run(self._document, label(run.policy), run.held, run.effort is not None)
+            clean_up(self._document, label(run.policy), run.held, run.effort is not None)
         finally:
             self._applying = False
         self._runner_at = self._document.revision  # vertices have moved, no edge has

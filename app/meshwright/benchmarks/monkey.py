@@ -79,7 +79,7 @@ class Monkey:
         self.steps = 0
         self.over = 0  # events that went to a dialog or a menu
         self.busy: list[Any] = []  # the dialog or menu that was open when each event was sent
-        window.document.noted.connect(self._count)
+        window.document.recorded.connect(self._count)
         self.shortcuts = [
             keys for action in ACTIONS for keys in action.shortcuts if action.id != "quit"
         ]

@@ -26,50 +26,54 @@ if TYPE_CHECKING:
 
 
 def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
-    """Return the mesh in a file, or raise UserError that says what is wrong with it.
+    """Return the mesh in a mesh file or a project, or raise UserError with the reason.
 
     ``corner_angle`` in degrees: a boundary vertex where the boundary turns by more is a corner. A
-    project knows its corners.
+    project stores its corners.
     """
     _require_file(path)
-    import meshwright_core
-    from meshwright.document.storage import project_file
-
-    with _bad_input(path):
-        if project_file.is_project(path):
-            return project_file.read(path).mesh.copy()
-        if corner_angle is None:
-            return meshwright_core.read(path)
-        return meshwright_core.read(path, corner_angle=corner_angle)
-
-
-def read_project(path: str) -> Document:
-    """Return the document in a project file, its history with it, or raise UserError."""
-    _require_file(path)
     from meshwright.document.document import Document
+    from meshwright.sources import resolve
+    from meshwright_core.io import file_checks, formats
 
-    document = Document()
     with _bad_input(path):
-        document.open(path)
-    return document
+        found = resolve.resolve(Path(path), corner_angle=corner_angle)
+        if not isinstance(found, Document) or found.mesh is None:
+            with file_checks.naming(Path(path)):
+                formats.of(path)  # refuses a drawing
+            raise AssertionError(path)
+        return found.mesh.copy()
+
+
+def read_document(word: str, kind: str, corner_angle: float | None = None) -> Document:
+    """Return the document for a file or the name of a shape, or raise UserError with the reason.
+
+    A shape is meshed with elements of ``kind``; a project brings its history. ``corner_angle`` as
+    for :func:`read_mesh`.
+    """
+    from meshwright.document.document import Document
+    from meshwright.sources import resolve
+
+    if resolve.names_file(word):
+        _require_file(word)
+    with _bad_input(word):
+        found = resolve.resolve(word, corner_angle=corner_angle)
+    if isinstance(found, Document):
+        return found
+    return Document(make_mesh(found, kind), found.name or Path(word).stem)
 
 
 def read_domain(shape: str, corner_angle: float | None = None) -> Domain:
-    """Return the domain with this name in the gallery, or in this geometry file.
+    """Return the domain with this name in the gallery, or in this drawing.
 
     ``corner_angle`` in degrees: a point where the boundary turns by more is a corner.
     """
-    from meshwright_core.domains import gallery
-    from meshwright_core.io import drawings
+    from meshwright.sources import resolve
 
-    if looks_like_path(shape) or Path(shape).exists():
+    if resolve.names_file(shape):
         _require_file(shape)
-        with _bad_input(shape):
-            if corner_angle is None:
-                return drawings.read_domain(shape)
-            return drawings.read_domain(shape, corner_angle)
     with _bad_input(shape):
-        return gallery.shape(shape)
+        return resolve.domain(shape, corner_angle=corner_angle)
 
 
 def make_mesh(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from meshwright.document.history import Row
+    from meshwright.document.history import HistoryStep
     from meshwright_core.history.packed_steps import Steps
 
 MOST_BRANCHES = 50
@@ -24,7 +24,7 @@ class Branch:
     """
 
     at: int
-    rows: "tuple[Row, ...]"
+    rows: "tuple[HistoryStep, ...]"
     steps: "tuple[Steps, ...]"
     branches: "tuple[Branch, ...]"
     made: int

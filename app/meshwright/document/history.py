@@ -11,7 +11,7 @@ YOU = "you"
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class HistoryStep:
     """One step of the mesh.
 
     ``action`` is an operation's value ("flip_left") or a document action ("clean_all", "smooth",
@@ -46,7 +46,7 @@ class History:
 
     def __init__(self, score: int, optimum: int) -> None:
         """`score` and `optimum` are those of the mesh before its first row."""
-        self._rows: list[Row] = []
+        self._rows: list[HistoryStep] = []
         self._branches: Branches = ()
         self._cursor = 0
         self._serial = 0
@@ -59,7 +59,7 @@ class History:
         cls,
         score: int,
         optimum: int,
-        rows: Sequence[Row],
+        rows: Sequence[HistoryStep],
         cursor: int,
         branches: Branches = (),
         serial: int = 0,
@@ -74,10 +74,10 @@ class History:
     def __len__(self) -> int:
         return len(self._rows)
 
-    def __getitem__(self, index: int) -> Row:
+    def __getitem__(self, index: int) -> HistoryStep:
         return self._rows[index]
 
-    def __iter__(self) -> Iterator[Row]:
+    def __iter__(self) -> Iterator[HistoryStep]:
         return iter(self._rows)
 
     @property
@@ -86,7 +86,7 @@ class History:
         return self._cursor
 
     @property
-    def last(self) -> Row | None:
+    def last(self) -> HistoryStep | None:
         """The last row that is done, None at the start."""
         return self._rows[self._cursor - 1] if self._cursor else None
 
@@ -140,7 +140,7 @@ class History:
         after: int,
         optimum: int,
         undone: tuple[Steps, ...] = (),
-    ) -> Row:
+    ) -> HistoryStep:
         """Add a done row at the cursor; rows that were undone become a branch.
 
         ``undone`` are the mesh's steps of these rows.
@@ -148,7 +148,7 @@ class History:
         last = self.last
         same_task = optimum == (last.optimum if last else self._optimum) and action != "desired"
         self._serial += 1
-        row = Row(
+        row = HistoryStep(
             serial=self._serial,
             action=action,
             title=title,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwright.document.history import History, Row
+from meshwright.document.history import History, HistoryStep
 
 FIRST_ROOM = 256
 FAR = 4.0
@@ -22,7 +22,7 @@ class Track:
     def __init__(self) -> None:
         self._values = np.zeros((FIRST_ROOM, 2), dtype=np.int64)
         self._count = 0
-        self._last: Row | None = None
+        self._last: HistoryStep | None = None
 
     @property
     def scores(self) -> np.ndarray:

@@ -104,19 +104,23 @@ def make(request: Mapping[str, Any]) -> Made:
     Raises:
         MeshError: one sentence.
     """
-    from meshwright_core import read
+    from meshwright.sources.resolve import resolve
     from meshwright_core.domains import meshing
-    from meshwright_core.io import drawings
+    from meshwright_core.domains.domain import Domain
 
     source = request["source"]
     path = source.get("file", "")
     if is_project(path):
         raise MeshError(f"{path}: a project is opened by Open, not here.")
-    if path and not drawings.is_geometry(path):
-        mesh = read(path, source["corner_angle"])
-        _refuse_many(mesh.n_elements, "has")
-        return _made(mesh, Path(path).stem, path)
-    domain = _domain(source)
+    if path:
+        angles = {"corner_angle": source["corner_angle"], "curve_step": source["curve_step"]}
+        domain = resolve(Path(path), **angles)
+    else:
+        domain = _domain(source)
+    if not isinstance(domain, Domain):
+        assert domain.mesh is not None
+        _refuse_many(domain.mesh.n_elements, "has")
+        return _made(domain.mesh, domain.name, path)
     kind, max_edge = request["kind"], request["max_edge"]
     quads = request["quads"] or "catmull-clark"
     if max_edge:
@@ -181,14 +185,11 @@ def _answer(requests: BinaryIO, answers: BinaryIO) -> None:
 def _domain(source: Mapping[str, Any]) -> Domain:
     from meshwright_core.domains import gallery, random_parts
     from meshwright_core.domains.domain import Domain
-    from meshwright_core.io import drawings
 
     if "shape" in source:
         return gallery.shape(source["shape"])
     if "domain" in source:
         return Domain.from_json(source["domain"])
-    if "file" in source:
-        return drawings.read_domain(source["file"], source["corner_angle"], source["curve_step"])
     rng = np.random.default_rng(source["seed"])
     if "part" in source:
         return random_parts.random_part(source["part"], rng)

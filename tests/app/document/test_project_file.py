@@ -197,13 +197,14 @@ def test_a_save_that_fails_leaves_the_old_file(document, tmp_path, monkeypatch):
 def test_commands_take_projects_too(document, tmp_path):
     path = tmp_path / "a.meshwright"
     document.save(path)
-    opened = arguments.read_project(str(path))
+    opened = arguments.read_document(str(path), "quad")
     assert bits(opened) == bits(document)
     assert opened.path == path
     mesh = arguments.read_mesh(str(path))
     assert np.array_equal(mesh.points, document.mesh.points)
     assert mesh.steps == 0
     path.write_text("nothing of the kind")
-    for read in (arguments.read_project, arguments.read_mesh):
-        with pytest.raises(UserError, match="not a Meshwright project"):
-            read(str(path))
+    with pytest.raises(UserError, match="not a Meshwright project"):
+        arguments.read_document(str(path), "quad")
+    with pytest.raises(UserError, match="not a Meshwright project"):
+        arguments.read_mesh(str(path))

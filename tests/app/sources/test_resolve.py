@@ -52,7 +52,7 @@ def test_what_is_no_source_is_refused_in_a_sentence(source, kind, sentence):
 
 
 def test_a_mesh_of_the_other_kind_is_refused():
-    with pytest.raises(MeshError, match="of kind 'quad', not 'tri'"):
+    with pytest.raises(MeshError, match="mesh of quads, not of triangles"):
         mesh(mesh("star"), "tri")
 
 

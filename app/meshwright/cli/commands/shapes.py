@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from meshwright.console import Report, table
 
@@ -18,7 +19,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     """List each shape with its corners and holes."""
     from meshwright_core.domains import gallery
 
-    rows = []
+    rows: list[dict[str, Any]] = []
     for name, domain in gallery.gallery().items():
         corners = sum(int(flags.sum()) for flags in domain.loop_corners)
         rows.append({"name": name, "corners": corners, "holes": len(domain.holes)})

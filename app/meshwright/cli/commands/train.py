@@ -16,7 +16,8 @@ DESCRIPTION = (
     "Train a policy by self-play on random polygons of the benchmark (PPO). The folder gets the "
     "policy (policy.safetensors: the best by evaluation), its configuration, its learning curve, "
     "events for TensorBoard, and a checkpoint: the same command goes on where it was stopped. "
-    "On N processes, each with its share of the runs: torchrun --nproc-per-node N -m app train ..."
+    "On N processes, each with its share of the runs: "
+    "torchrun --nproc-per-node N -m meshwright train ..."
 )
 NO_EVENTS = (
     "no events for TensorBoard are written: they need tensorboardX "

@@ -58,25 +58,9 @@ def _document(arguments: argparse.Namespace) -> Document | None:
     name = arguments.file
     if name is None:
         return None
-    from meshwright.document.document import Document
-    from meshwright.document.storage.project_file import is_project
-
-    path = Path(name)
-    is_file = path.exists() or looks_like_path(name)
-    if is_file and is_project(path):
-        return inputs.read_project(name)
-    if is_file and not _holds_shape(path):
-        return Document(inputs.read_mesh(name, arguments.corner_angle), path.name, path)
-    if not is_file:
+    if not looks_like_path(name) and not Path(name).exists():
         _refuse_near_command(name)
-    domain = inputs.read_domain(name, arguments.corner_angle)
-    return Document(inputs.make_mesh(domain, arguments.kind), domain.name or path.stem)
-
-
-def _holds_shape(path: Path) -> bool:
-    from meshwright_core.io import drawings
-
-    return drawings.is_geometry(path)
+    return inputs.read_document(name, arguments.kind, arguments.corner_angle)
 
 
 def _refuse_near_command(word: str) -> None:

@@ -56,7 +56,7 @@ class Autosave:
         self._waiting: list[Buffers] = []
         self._failing = False
         self._not_before = 0.0
-        document.noted.connect(self._on_noted)
+        document.recorded.connect(self._on_recorded)
         document.replaced.connect(self._remove)
 
     @property
@@ -93,7 +93,7 @@ class Autosave:
 
     # Events
 
-    def _on_noted(self, event: str, number: int) -> None:
+    def _on_recorded(self, event: str, number: int) -> None:
         if event == "saved" or self._document.passing:
             self._remove()
         elif self._enabled and self._path is None:
@@ -128,7 +128,7 @@ class Autosave:
         begun = time.monotonic()
         if begun < self._not_before:
             return False
-        header, arrays = document_state.taken(self._document.kept())
+        header, arrays = document_state.taken(self._document.state())
         path = self._folder / f"{os.getpid()}-{secrets.token_hex(6)}{ENDING}"
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -202,7 +202,7 @@ class Autosave:
             remove(path)
 
     def _disconnect(self) -> None:
-        self._document.noted.disconnect(self._on_noted)
+        self._document.recorded.disconnect(self._on_recorded)
         self._document.replaced.disconnect(self._remove)
 
 

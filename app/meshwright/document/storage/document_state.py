@@ -4,13 +4,13 @@ The project file and the autosave both keep this; they differ in how they put it
 comes back from a file may hold anything: :func:`restored` checks all of it.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 from meshwright.document.branches import Branch, Branches
-from meshwright.document.history import History, Row
+from meshwright.document.history import History, HistoryStep
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.history.packed_steps import Steps
 from meshwright_core.io import snapshot
@@ -21,13 +21,13 @@ VERSION = 1
 
 Header = dict[str, Any]
 
-_FIELDS = tuple((part.name, part.type) for part in fields(Row))
+_FIELDS = tuple((part.name, part.type) for part in fields(HistoryStep))
 _LARGEST = 1 << 53
 _DEEPEST = 60
 
 
 @dataclass(frozen=True)
-class Kept:
+class DocumentState:
     """What is kept of a document.
 
     ``path`` is the file that *Save* writes; ``saved`` what the document was when it was written,
@@ -43,7 +43,7 @@ class Kept:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
 
-def taken(kept: Kept) -> tuple[Header, Arrays]:
+def taken(kept: DocumentState) -> tuple[Header, Arrays]:
     """The header and the arrays; those of the mesh itself are not copied."""
     arrays = snapshot.taken(kept.mesh)
     history = kept.history
@@ -66,7 +66,7 @@ def taken(kept: Kept) -> tuple[Header, Arrays]:
     return header, arrays
 
 
-def restored(header: Any, arrays: Mapping[str, Any]) -> Kept:
+def restored(header: Any, arrays: Mapping[str, Any]) -> DocumentState:
     """What was taken. MeshError, in words without the file's name, if it is not whole."""
     if not isinstance(header, dict):
         raise MeshError("its header is none")
@@ -91,22 +91,22 @@ def restored(header: Any, arrays: Mapping[str, Any]) -> Kept:
     name = header.get("name")
     if not isinstance(name, str):
         raise MeshError("its name is none")
-    return Kept(mesh, history, name, Path(path) if path else None, saved, settings)
+    return DocumentState(mesh, history, name, Path(path) if path else None, saved, settings)
 
 
-def row_record(row: Row) -> list[Any]:
+def row_record(row: HistoryStep) -> list[Any]:
     """A row as a list for JSON."""
     return [getattr(row, name) for name, _ in _FIELDS]
 
 
-def row_of(record: Any) -> Row:
+def row_of(record: Any) -> HistoryStep:
     """The row of such a list; MeshError if it is none."""
     if not isinstance(record, list) or len(record) != len(_FIELDS):
         raise MeshError("a row of its history is cut off")
     for (_, kind), value in zip(_FIELDS, record, strict=True):
         if type(value) is not kind or (kind is int and abs(value) > _LARGEST):
             raise MeshError("a row of its history is none")
-    return Row(*record)
+    return HistoryStep(*record)
 
 
 def _branch_record(branch: Branch, name: str, arrays: Arrays) -> Header:
@@ -149,7 +149,7 @@ def _branches(
     return tuple(made)
 
 
-def _every_row(rows: list[Row] | tuple[Row, ...], branches: Branches) -> Iterator[Row]:
+def _every_row(rows: Iterable[HistoryStep], branches: Branches) -> Iterator[HistoryStep]:
     yield from rows
     for branch in branches:
         yield from _every_row(branch.rows, branch.branches)

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from meshwright.document.storage import document_state
-from meshwright.document.storage.document_state import Kept
+from meshwright.document.storage.document_state import DocumentState
 from meshwright_core import MeshError
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.io.file_checks import naming
@@ -48,7 +48,7 @@ def is_project(path: str | os.PathLike[str]) -> bool:
     return Path(path).suffix.lower() == ENDING
 
 
-def write(path: str | os.PathLike[str], kept: Kept) -> None:
+def write(path: str | os.PathLike[str], kept: DocumentState) -> None:
     """Write a project, whole or not at all.
 
     Raises MeshError, one sentence that begins with the path, where the system refuses; an old file
@@ -67,7 +67,7 @@ def write(path: str | os.PathLike[str], kept: Kept) -> None:
                 np.lib.format.write_array(member, plain, (1, 0), allow_pickle=False)
 
 
-def read(path: str | os.PathLike[str]) -> Kept:
+def read(path: str | os.PathLike[str]) -> DocumentState:
     """Read a project; its `path` is where it was read from.
 
     Raises MeshError, one sentence that begins with the path: the file is missing, no project, cut
@@ -84,7 +84,7 @@ def read(path: str | os.PathLike[str]) -> Kept:
             raise
         except _BROKEN as error:
             raise MeshError("it is not a Meshwright project, or not a whole one") from error
-    return Kept(
+    return DocumentState(
         kept.mesh,
         kept.history,
         place.stem,

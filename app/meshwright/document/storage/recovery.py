@@ -9,7 +9,7 @@ from typing import Any
 from meshwright.document.document import Document
 from meshwright.document.storage import autosave, document_state, file_lock
 from meshwright.document.storage.autosave_log import Record, records
-from meshwright.document.storage.document_state import Kept
+from meshwright.document.storage.document_state import DocumentState
 from meshwright_core import MeshError
 from meshwright_core.io import snapshot
 
@@ -32,7 +32,7 @@ class Lost:
     """
     _descriptor: int | None = None
 
-    def read(self) -> Kept:
+    def read(self) -> DocumentState:
         """The document as it was after the last whole record; MeshError if it is not sound."""
         try:
             return _replayed(self.path)
@@ -96,7 +96,7 @@ def _look(path: Path, descriptor: int) -> Lost | None:
     )
 
 
-def _replayed(path: Path) -> Kept:
+def _replayed(path: Path) -> DocumentState:
     """Read the whole document, then do again what came after it."""
     document = Document()
     for record in records(path):
@@ -109,7 +109,7 @@ def _replayed(path: Path) -> Kept:
                 break  # what came before is sound
     if document.empty:
         raise MeshError("there is no whole document in it")
-    return document.kept()
+    return document.state()
 
 
 def _again(document: Document, record: Record) -> None:
@@ -124,7 +124,7 @@ def _again(document: Document, record: Record) -> None:
         _make_room(document, record.header.get("room"))
         mesh = document.mesh
         steps = snapshot.restored_steps(record.arrays, "step", mesh) if mesh else ()
-        document.again(document_state.row_of(record.header.get("row")), steps)
+        document.replay(document_state.row_of(record.header.get("row")), steps)
     else:
         raise MeshError("an event of the record is unknown")
 

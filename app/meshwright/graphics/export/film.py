@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from meshwright.document.document import NO_MESH, Document
-from meshwright.document.history import YOU, Row
+from meshwright.document.history import YOU, HistoryStep
 from meshwright.document.score_series import Track
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export import video
@@ -38,7 +38,7 @@ class Film:
         if mesh is None:
             raise MeshError(NO_MESH)
         self.name = document.name
-        self.rows: tuple[Row, ...] = tuple(document.history)
+        self.rows: tuple[HistoryStep, ...] = tuple(document.history)
         self._mesh = mesh.copy(history=True)
         self._state = document.history.cursor
         track = Track()
