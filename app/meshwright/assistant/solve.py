@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshwright.assistant.torch_threads import one_thread
 from meshwright.document.position_repair import settle
 from meshwright.sources import resolve
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
@@ -92,7 +93,6 @@ def solve(
     from meshwright_agent.policy import policy_files
     from meshwright_agent.search import solver
 
-    policy_files.decide_on_one_thread()
     try:
         chosen = policy_files.shipped(start.kind)[0] if policy is None else policy
         if not isinstance(chosen, policy_files.Policy):
@@ -101,7 +101,8 @@ def solve(
     except policy_files.PolicyError as error:
         raise MeshError(f"{str(error).rstrip('.')}.") from None
     before = start.score
-    found = solver.solve(start, chosen, seconds=float(seconds), seed=seed)
+    with one_thread():
+        found = solver.solve(start, chosen, seconds=float(seconds), seed=seed)
     found.replay(start)
     inverted = settle(start)
     return SolvedMesh(

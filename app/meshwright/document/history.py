@@ -1,36 +1,37 @@
 """The history: one row per undoable step, and the scores that follow from the rows."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from meshwright.document.branches import Branch, Branches, pruned
+from meshwright.document.json_records import WholeNumber
 from meshwright_core.history.packed_steps import Steps
 
 YOU = "you"
 """Author of the steps that a person takes; a policy's steps carry the policy's name."""
 
 
-@dataclass(frozen=True, slots=True)
-class HistoryStep:
+class HistoryStep(Struct, array_like=True, frozen=True, forbid_unknown_fields=True):
     """One step of the mesh.
 
     ``action`` is an operation's value ("flip_left") or a document action ("clean_all", "smooth",
     "desired", ...); ``halfedge`` is -1 where no half-edge was meant. ``before`` and ``after`` are
     scores s; ``optimum`` is s* after the step. ``start`` and ``best`` are the score that the
     normalised return counts from and the lowest score since: a step that changes desired degrees
-    changes the task, so both start again there.
+    changes the task, so both start again there. In files a step is an array of these values.
     """
 
-    serial: int
+    serial: WholeNumber
     action: str
     title: str
-    halfedge: int
+    halfedge: WholeNumber
     by: str
-    before: int
-    after: int
-    optimum: int
-    start: int
-    best: int
+    before: WholeNumber
+    after: WholeNumber
+    optimum: WholeNumber
+    start: WholeNumber
+    best: WholeNumber
 
     @property
     def change(self) -> int:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from meshwright.assistant.torch_threads import one_thread
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 if TYPE_CHECKING:
@@ -148,19 +147,6 @@ def _limited(policy: Policy, mesh: HalfEdgeMesh, steps: int | None) -> Policy:
         return policy
     wanted = (steps + 0.5) / mesh.n_elements
     return longer(policy, wanted / policy.task.steps)
-
-
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """Let torch use one thread meanwhile: the matrices of a decision are small."""
-    import torch
-
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
 
 
 def best_of(values: np.ndarray, k: int) -> tuple[float, float]:

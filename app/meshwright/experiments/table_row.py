@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshwright.experiments.rollouts import known_policy, one_thread
+from meshwright.assistant.torch_threads import one_thread
+from meshwright.experiments.rollouts import known_policy
 from meshwright_core import MeshError
 from meshwright_core.arguments import whole_number
 from meshwright_core.core.kinds import KIND_NOUN

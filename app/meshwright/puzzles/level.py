@@ -7,17 +7,18 @@ change of a mesher changes a level, and a solution: operations with the ends of 
 from __future__ import annotations
 
 import difflib
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from msgspec import Meta, Struct
 
 import meshwright_assets
+from meshwright.document.json_records import Count, WholeNumber, decoded
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.operations.catalogue import CODES
@@ -135,12 +136,12 @@ def read(path: Path, number: int = 1) -> Level:
     Its mesh is made once, to see that it is one, and its solution is done on it.
     """
     try:
-        level = _level(json.loads(path.read_text("utf-8")), _name(path), number)
+        level = _level(decoded(path.read_bytes(), _LevelFile), _name(path), number)
         _prove(level)
     except OSError as error:
         raise MeshError(f"{path}: cannot be read ({error.strerror}).") from error
-    except (ValueError, RecursionError) as error:
-        why = str(error).partition("\n")[0].rstrip(".") or type(error).__name__
+    except ValueError as error:
+        why = str(error).partition("\n")[0].rstrip(".")
         raise MeshError(f"{path}: this is no sound level: {why}.") from error
     return level
 
@@ -195,32 +196,55 @@ def _name(path: Path) -> str:
     return path.stem.partition("-")[2] or path.stem
 
 
-def _level(given: Any, name: str, number: int) -> Level:
-    """The level that a file's contents describe; MeshError or ValueError if they do not."""
-    if not isinstance(given, dict):
-        raise MeshError("it is not an object")
-    if given.get("version") != VERSION:
-        raise MeshError(f"its version is not {VERSION}")
-    kind = _text(given, "kind")
-    if kind not in SIDES:
-        raise MeshError(f"its kind is {kind!r}, neither 'tri' nor 'quad'")
-    points = _table(given, "points", 2, float)
-    elements = _table(given, "elements", SIDES[kind], int)
-    if len(elements) > LARGEST:
-        raise MeshError(f"it has more than {LARGEST} elements")
-    flags = np.zeros(len(points), bool)
-    for corner in _whole_numbers(given.get("corners"), "corners"):
-        if not 0 <= corner < len(points):
+class _LevelFile(Struct):
+    """The contents of a level file."""
+
+    version: Literal[1]
+    title: Annotated[str, Meta(min_length=1)]
+    kind: Literal["tri", "quad"]
+    text: Annotated[str, Meta(min_length=1)]
+    solution: list[tuple[str, Count, Count]]
+    points: Annotated[list[tuple[float, float]], Meta(min_length=1)]
+    elements: Annotated[list[list[Count]], Meta(min_length=1, max_length=LARGEST)]
+    desired: list[WholeNumber]
+    corners: list[Count]
+    goal: Count = 0
+    most: Count = 0
+    par: Count = 0
+    proved: bool = False
+
+
+def _level(file: _LevelFile, name: str, number: int) -> Level:
+    """The level that a file describes; MeshError if its parts do not fit together."""
+    sides, count = SIDES[file.kind], len(file.points)
+    if any(len(row) != sides for row in file.elements):
+        raise MeshError(f"its field 'elements' has not {sides} vertices in each row")
+    flags = np.zeros(count, bool)
+    for corner in file.corners:
+        if corner >= count:
             raise MeshError(f"there is no vertex {corner} to be a corner")
         flags[corner] = True
-    desired = np.array(_whole_numbers(given.get("desired"), "desired"), np.int64)
-    if desired.shape != (len(points),):
-        raise MeshError("'desired' has not one number for each point")
+    if len(file.desired) != count:
+        raise MeshError("its field 'desired' has not one number for each point")
+    for operation, _, _ in file.solution:
+        if operation not in CODES[sides]:
+            raise MeshError(f"its field 'solution' has no operation on a half-edge, {operation!r}")
     return Level(
-        name, number, _text(given, "title"), kind, _text(given, "text"), _count(given, "goal"),
-        _count(given, "most"), _count(given, "par"), given.get("proved") is True,
-        _way(given.get("solution"), kind), points, elements, flags, desired,
-    )  # fmt: skip
+        name=name,
+        number=number,
+        title=file.title,
+        kind=file.kind,
+        text=file.text,
+        goal=file.goal,
+        most=file.most,
+        par=file.par,
+        proved=file.proved,
+        solution=tuple((Operation(operation), (a, b)) for operation, a, b in file.solution),
+        points=np.array(file.points, float),
+        elements=np.array(file.elements, int),
+        corners=flags,
+        desired=np.array(file.desired, np.int64),
+    )
 
 
 def _prove(level: Level) -> None:
@@ -233,47 +257,3 @@ def _prove(level: Level) -> None:
         raise MeshError("its solution does not reach the goal")
     if len(level.solution) != level.par:
         raise MeshError("its solution is not as long as its par")
-
-
-def _way(given: Any, kind: str) -> Way:
-    if not isinstance(given, list):
-        raise MeshError("'solution' is no list")
-    way = []
-    for one in given:
-        if not isinstance(one, list) or len(one) != 3 or one[0] not in CODES[SIDES[kind]]:
-            raise MeshError("'solution' holds what is no operation on a half-edge")
-        a, b = _whole_numbers(one[1:], "solution")
-        way.append((Operation(one[0]), (a, b)))
-    return tuple(way)
-
-
-def _text(given: dict[str, Any], key: str) -> str:
-    found = given.get(key)
-    if not isinstance(found, str) or not found:
-        raise MeshError(f"'{key}' is no text")
-    return found
-
-
-def _count(given: dict[str, Any], key: str) -> int:
-    found = given.get(key, 0)
-    if type(found) is not int or found < 0:
-        raise MeshError(f"'{key}' is no number of things")
-    return found
-
-
-def _whole_numbers(given: Any, key: str) -> list[int]:
-    if not isinstance(given, list) or any(type(one) is not int for one in given):
-        raise MeshError(f"'{key}' is no list of whole numbers")
-    return given
-
-
-def _table(given: dict[str, Any], key: str, width: int, of: type) -> np.ndarray:
-    """(n, width) numbers."""
-    rows = given.get(key)
-    kinds = (int,) if of is int else (int, float)
-    if not isinstance(rows, list) or not rows:
-        raise MeshError(f"'{key}' is no list")
-    for row in rows:
-        if not isinstance(row, list) or len(row) != width or any(type(x) not in kinds for x in row):
-            raise MeshError(f"'{key}' has not {width} numbers in each row")
-    return np.array(rows, of)

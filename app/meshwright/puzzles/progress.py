@@ -9,10 +9,12 @@ import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Literal
 
 import platformdirs
+from msgspec import Meta, Struct
 
+from meshwright.document.json_records import Count, decoded
 from meshwright_core import MeshError
 from meshwright_core.io.atomic_write import replacing
 
@@ -29,6 +31,18 @@ class Best:
     stars: int = 0
     used: int = 0
     """The fewest operations."""
+
+
+class _BestRecord(Struct):
+    stars: Annotated[int, Meta(ge=1, le=MOST_STARS)]
+    used: Count
+
+
+class _ProgressFile(Struct):
+    """The contents of the file."""
+
+    version: Literal[1]
+    levels: dict[str, _BestRecord]
 
 
 def usual_path() -> Path:
@@ -79,13 +93,13 @@ class Progress:
         try:
             if self.path.stat().st_size > LARGEST_FILE:
                 raise ValueError("too large")
-            given = json.loads(self.path.read_text("utf-8"))
-            return _parsed(given)
+            file = decoded(self.path.read_bytes(), _ProgressFile)
+            return {name: Best(best.stars, best.used) for name, best in file.levels.items()}
         except FileNotFoundError:
             return {}
         except OSError as error:
             self.notice = f"The stars of the levels cannot be read ({error.strerror}): {self.path}."
-        except (ValueError, RecursionError):
+        except ValueError:
             self.notice = f"The file with the stars of the levels was broken: {self._put_aside()}"
         return {}
 
@@ -112,19 +126,3 @@ def _better(one: Best, other: Best) -> Best:
     """More stars, and the fewer operations of those that were done at all."""
     used = [best.used for best in (one, other) if best.stars]
     return Best(max(one.stars, other.stars), min(used, default=0))
-
-
-def _parsed(given: Any) -> dict[str, Best]:
-    """ValueError for what this program has not written."""
-    rows = given.get("levels") if isinstance(given, dict) else None
-    if not isinstance(rows, dict) or given.get("version") != VERSION:
-        raise ValueError("not ours")
-    found = {}
-    for name, best in rows.items():
-        stars, used = (best.get("stars"), best.get("used")) if isinstance(best, dict) else (0, 0)
-        if type(stars) is not int or type(used) is not int or used < 0:
-            raise ValueError("no stars")
-        if not 1 <= stars <= MOST_STARS:
-            raise ValueError("no such number of stars")
-        found[str(name)] = Best(stars, used)
-    return found

@@ -139,12 +139,17 @@ def array_of(name: str, array: np.ndarray):
         (header_with(format="something else"), "not a Meshwright project"),
         (header_with(version=99), "later version"),
         (header_with(rows=[]), "rows"),
-        (header_with(rows=[[1, 2]]), "cut off"),
+        (header_with(rows=[[1, 2]]), r"rows\[0\]"),
         (header_with(cursor=-1), "cursor"),
         (header_with(cursor="five"), "cursor"),
         (header_with(given=[2, 1]), "counts its rows"),
         (header_with(branches=[{"at": 0}]), "branch"),
-        (header_with(branches=[{"at": 0, "rows": [], "steps": "done", "branches": []}]), "nowhere"),
+        (
+            header_with(
+                branches=[{"at": 0, "rows": [], "steps": "done", "made": 1, "branches": []}]
+            ),
+            "nowhere",
+        ),
         (header_with(branches=7), "branches"),
         (header_with(settings=[]), "settings"),
         (header_with(name=3), "name"),

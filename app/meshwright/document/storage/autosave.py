@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import platformdirs
+from msgspec import to_builtins
 
 from meshwright.document.document import Document
 from meshwright.document.storage import document_state, file_lock
@@ -106,7 +107,7 @@ class Autosave:
         mesh, row = self._document.mesh, self._document.history.last
         if event != "step" or mesh is None or row is None:
             return header, {}
-        header["row"] = document_state.row_record(row)
+        header["row"] = to_builtins(row)
         header["room"] = [len(mesh.arrays.vertex), len(mesh.arrays.element_mark)]
         return header, snapshot.steps_arrays([mesh.last_step()], "step")
 
@@ -128,7 +129,7 @@ class Autosave:
         begun = time.monotonic()
         if begun < self._not_before:
             return False
-        header, arrays = document_state.taken(self._document.state())
+        header, arrays = document_state.packed(self._document.state())
         path = self._folder / f"{os.getpid()}-{secrets.token_hex(6)}{ENDING}"
         try:
             self._folder.mkdir(parents=True, exist_ok=True)

@@ -54,7 +54,7 @@ def write(path: str | os.PathLike[str], kept: DocumentState) -> None:
     Raises MeshError, one sentence that begins with the path, where the system refuses; an old file
     is then as it was.
     """
-    header, arrays = document_state.taken(kept)
+    header, arrays = document_state.packed(kept)
     text = json.dumps({"format": _FORMAT, **header}, ensure_ascii=False)
     with (
         replacing(path) as temporary,
@@ -79,7 +79,7 @@ def read(path: str | os.PathLike[str]) -> DocumentState:
             header, arrays = _members(place)
             if not isinstance(header, dict) or header.get("format") != _FORMAT:
                 raise MeshError("it is not a Meshwright project")
-            kept = document_state.restored(header, arrays)
+            kept = document_state.unpacked(header, arrays)
         except MeshError:
             raise
         except _BROKEN as error:

@@ -6,7 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from msgspec import Struct
+
 from meshwright.document.document import Document
+from meshwright.document.history import HistoryStep
+from meshwright.document.json_records import Count, WholeNumber, converted
 from meshwright.document.storage import autosave, document_state, file_lock
 from meshwright.document.storage.autosave_log import Record, records
 from meshwright.document.storage.document_state import DocumentState
@@ -101,10 +105,10 @@ def _replayed(path: Path) -> DocumentState:
     document = Document()
     for record in records(path):
         if document.empty:
-            document.adopt(document_state.restored(record.header, record.arrays))
+            document.adopt(document_state.unpacked(record.header, record.arrays))
         else:
             try:
-                _again(document, record)
+                _repeat(document, record)
             except MeshError:
                 break  # what came before is sound
     if document.empty:
@@ -112,37 +116,42 @@ def _replayed(path: Path) -> DocumentState:
     return document.state()
 
 
-def _again(document: Document, record: Record) -> None:
-    event, number = record.header.get("event"), record.header.get("number")
-    if type(number) is not int:
-        raise MeshError("an event of the record is none")
-    if event == "go":
-        document.go_to(number)
-    elif event == "branch":
-        document.take_branch(number)
-    elif event == "step":
-        _make_room(document, record.header.get("room"))
+class _Event(Struct):
+    """What autosave appends after each change of the document."""
+
+    event: str
+    number: WholeNumber
+    row: HistoryStep | None = None
+    """The step, for the event "step"."""
+    room: tuple[Count, Count] | None = None
+    """Vertices and elements that the mesh had room for after the step."""
+
+
+def _repeat(document: Document, record: Record) -> None:
+    """Do what a record of autosave says; MeshError if it does not follow from here."""
+    event = converted(record.header, _Event)
+    if event.event == "go":
+        document.go_to(event.number)
+    elif event.event == "branch":
+        document.take_branch(event.number)
+    elif event.event == "step" and event.row is not None:
+        _make_room(document, event.room)
         mesh = document.mesh
         steps = snapshot.restored_steps(record.arrays, "step", mesh) if mesh else ()
-        document.replay(document_state.row_of(record.header.get("row")), steps)
+        document.replay(event.row, steps)
     else:
         raise MeshError("an event of the record is unknown")
 
 
-def _make_room(document: Document, room: object) -> None:
-    """Have as much room as the mesh had then; MeshError for what is no room."""
+def _make_room(document: Document, room: tuple[int, int] | None) -> None:
+    """Reserve room for vertices and elements as the mesh had it when the step was recorded."""
     mesh = document.mesh
     if mesh is None:
         return
-    if not isinstance(room, list) or len(room) != 2 or any(type(one) is not int for one in room):
+    if room is None:
         raise MeshError("a step of the record lacks its room")
-    vertices, elements = (
-        wanted - have
-        for wanted, have in zip(
-            room, (len(mesh.arrays.vertex), len(mesh.arrays.element_mark)), strict=True
-        )
-    )
-    if max(vertices, elements) > snapshot.MOST:
+    missing = (room[0] - len(mesh.arrays.vertex), room[1] - len(mesh.arrays.element_mark))
+    if max(missing) > snapshot.MOST:
         raise MeshError("a step of the record wants too much room")
-    if max(vertices, elements) > 0:
+    if max(missing) > 0:
         mesh.room_for(*room)
