@@ -27,6 +27,10 @@ class Update(Protocol):
         """``done`` pieces of work are done; ``remark`` is shown beside the bar."""
 
 
+def no_update(done: int, remark: str = "") -> None:
+    """Show no progress; an :class:`Update`."""
+
+
 class Report:
     """The two streams that a command writes to.
 

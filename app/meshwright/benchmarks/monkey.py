@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from meshwright.benchmarks.desktop.display import display
-from meshwright.console import Update
+from meshwright.console import Update, no_update
 
 SUMMARY = "random mouse and key events at the window: exceptions, threads, timers, the mesh"
 EVENTS, QUICK_EVENTS = 20_000, 400
@@ -34,9 +34,7 @@ ENDING = 30.0
 """Seconds that threads get to end after the window was closed."""
 
 
-def run(
-    seed: int = 0, quick: bool = False, update: Update = lambda done, remark: None
-) -> dict[str, Any]:
+def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[str, Any]:
     """Send 20,000 events (``quick``: 400) to a window on the star and report what went wrong.
 
     Keys: ``events``, ``exceptions`` (their last lines), ``steps`` (of the history, by hand or
@@ -237,7 +235,7 @@ class Monkey:
         from qtpy.QtGui import QKeySequence
         from qtpy.QtTest import QTest
 
-        combination = QKeySequence(name)[0]
+        combination: Any = QKeySequence(name)[0]  # type: ignore[index]
         self.doing = f"key {name}, {self.window.document.mesh.n_elements} elements"
         widget = target.focusWidget() or target
         if widget.isVisible():

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from meshwright.console import Update
+from meshwright.console import Update, no_update
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality, smoothing, untangling
@@ -36,9 +36,7 @@ def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
     return compare(QUICK if quick else MESHES, seed, update)
 
 
-def compare(
-    meshes: int = MESHES, seed: int = 0, update: Update = lambda done, remark: None
-) -> dict[str, Any]:
+def compare(meshes: int = MESHES, seed: int = 0, update: Update = no_update) -> dict[str, Any]:
     """Shares of meshes without inverted elements and times, by walk and kind of mesh."""
     walks: dict[str, Any] = {}
     for walk in ("drawable", "any"):

@@ -206,8 +206,9 @@ def _bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
     """Turn a MeshError, or one of ``more``, into a UserError whose sentence names the input."""
     from meshwright_core.errors import MeshError
 
+    refused: tuple[type[Exception], ...] = (MeshError, *more)
     try:
         yield
-    except (MeshError, *more) as error:
+    except refused as error:
         sentence = str(error)
         raise UserError(sentence if name in sentence else f"{name}: {sentence}") from error

@@ -66,7 +66,8 @@ def summarise(
         if cancelled():
             return None
         part = slice(first, first + CHUNK)
-        reference = curved[part] if curved is not None else normal
+        reference = normal if curved is None else curved[part]
+        assert reference is not None
         sine, cosine = _corners(points[elements[part]], reference)
         jacobian[part] = sine.min(axis=1)
         angle[part] = np.degrees(np.arctan2(sine, cosine)).min(axis=1)
@@ -86,7 +87,7 @@ def summarise(
     )
 
 
-def _corners(p: np.ndarray, reference: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+def _corners(p: np.ndarray, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Sine and cosine (m, k) at the corners of elements with corners ``p`` (m, k, 3).
 
     The sine is negative where a corner turns clockwise seen against ``reference`` (3,) or (m, 3);
@@ -94,7 +95,7 @@ def _corners(p: np.ndarray, reference: np.ndarray | None) -> tuple[np.ndarray, n
     """
     forward = np.roll(p, -1, axis=1) - p
     backward = np.roll(p, 1, axis=1) - p
-    if reference is not None and reference.ndim == 1 and not reference[:2].any():
+    if reference.ndim == 1 and not reference[:2].any():
         area = forward[..., 0] * backward[..., 1] - forward[..., 1] * backward[..., 0]
         area *= reference[2]
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import overload
 
 import numpy as np
 
@@ -73,10 +74,18 @@ class Frame:
     high: float
     broken: bool = False
 
+    @overload
+    def x(self, state: float) -> float: ...
+    @overload
+    def x(self, state: np.ndarray) -> np.ndarray: ...
     def x(self, state: np.ndarray | float) -> np.ndarray | float:
         """Pixels from the left of a state, or of many."""
         return self.left + np.asarray(state) * (self.width / max(self.states - 1, 1))
 
+    @overload
+    def y(self, score: float) -> float: ...
+    @overload
+    def y(self, score: np.ndarray) -> np.ndarray: ...
     def y(self, score: np.ndarray | float) -> np.ndarray | float:
         """Pixels from the top of a score, or of many."""
         share = np.maximum(np.asarray(score) - self.low, 0.0) / max(self.high - self.low, 1e-9)

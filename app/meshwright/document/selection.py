@@ -162,17 +162,3 @@ def in_box(places: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndar
     low, high = np.minimum(first, second), np.maximum(first, second)
     inside: np.ndarray = ((places >= low) & (places <= high)).all(axis=1)
     return inside
-
-
-def in_lasso(places: np.ndarray, loop: np.ndarray) -> np.ndarray:
-    """(n,) which of the places (n, 2) lie in the polygon (m, 2), by the even-odd rule."""
-    inside = np.zeros(len(places), bool)
-    rows = np.flatnonzero(in_box(places, loop.min(axis=0), loop.max(axis=0)))
-    x, y = places[rows, 0], places[rows, 1]
-    odd = np.zeros(len(rows), bool)
-    for (ax, ay), (bx, by) in zip(loop.tolist(), np.roll(loop, -1, axis=0).tolist(), strict=True):
-        if ay != by:
-            crosses = (ay > y) != (by > y)
-            odd ^= crosses & (x < ax + (y - ay) * (bx - ax) / (by - ay))
-    inside[rows] = odd
-    return inside

@@ -25,6 +25,7 @@ from meshwright_core.errors import MeshError
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh
     from meshwright_core.domains.domain import Domain
+    from meshwright_core.domains.meshing import Quads
 
 MOST = 2_000_000
 """Elements that a new mesh may have."""
@@ -122,7 +123,7 @@ def make(request: Mapping[str, Any]) -> Made:
         _refuse_many(domain.mesh.n_elements, "has")
         return _made(domain.mesh, domain.name, path)
     kind, max_edge = request["kind"], request["max_edge"]
-    quads = request["quads"] or "catmull-clark"
+    quads: Quads = request["quads"] or "catmull-clark"
     if max_edge:
         rule = "pairing" if kind == "quad" and quads == "pairing" else kind
         _refuse_many(int(_PER_AREA[rule] * domain.area / max_edge**2), "would need about")

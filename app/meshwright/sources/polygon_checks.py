@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwright_core.errors import capitalised
+from meshwright_core.geometry.polygons import contains
+
 Place = tuple[float, float]
 
 _NEAR = 1e-9
@@ -49,15 +52,15 @@ def problem_of(loops: tuple[Loop, ...]) -> Problem:
         if not loop.corners:
             continue
         edges = tuple((i, j) for j in range(len(loop.corners)))
-        if not _inside(loop.corners[0], outline.corners):
+        if not contains(np.array(outline.corners), *loop.corners[0]):
             return Problem(f"Hole {i} lies outside the outline.", edges, loop.corners)
         for j, other in enumerate(loops[1:], start=1):
-            if i != j and other.closed and _inside(loop.corners[0], other.corners):
+            if i != j and other.closed and contains(np.array(other.corners), *loop.corners[0]):
                 return Problem(f"Hole {i} lies inside hole {j}.", edges, loop.corners)
     for i, loop in enumerate(loops):
         if loop.closed and _flat(loop.corners):
             edges = tuple((i, j) for j in range(len(loop.corners)))
-            return Problem(f"{capital(name_of(i))} encloses no area.", edges)
+            return Problem(f"{capitalised(name_of(i))} encloses no area.", edges)
     return Problem("")
 
 
@@ -91,11 +94,10 @@ def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
     spot = f"({place[0]:.4g}, {place[1]:.4g})"
     i, j = owner[e][0], owner[f][0]
     if i == j:
-        words = f"{capital(name_of(i))} crosses or touches itself near {spot}."
+        words = f"{capitalised(name_of(i))} crosses or touches itself near {spot}."
     else:
-        words = (
-            f"{capital(name_of(max(i, j)))} crosses or touches {name_of(min(i, j))} near {spot}."
-        )
+        one_loop, other_loop = capitalised(name_of(max(i, j))), name_of(min(i, j))
+        words = f"{one_loop} crosses or touches {other_loop} near {spot}."
     return Problem(words, (owner[e], owner[f]), (place,))
 
 
@@ -147,22 +149,8 @@ def _place(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Place:
     return float(middle[0]), float(middle[1])
 
 
-def _inside(place: Place, corners: tuple[Place, ...]) -> bool:
-    x, y = place
-    inside = False
-    for (x1, y1), (x2, y2) in zip(corners, (*corners[1:], *corners[:1]), strict=True):
-        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
-            inside = not inside
-    return inside
-
-
 def _flat(corners: tuple[Place, ...]) -> bool:
     p = np.array(corners)
     x, y = (p - p[0]).T
     area = abs(float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)))
     return area <= _NEAR * float(np.ptp(p, axis=0).max()) ** 2
-
-
-def capital(text: str) -> str:
-    """With a capital letter at its beginning."""
-    return text[:1].upper() + text[1:]

@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import Any
 
 from meshwright.signals import Signal
-from meshwright.sources.polygon_checks import Loop, Place, Problem, capital, name_of, problem_of
-from meshwright_core.errors import MeshError
+from meshwright.sources.polygon_checks import Loop, Place, Problem, name_of, problem_of
+from meshwright_core.errors import MeshError, capitalised
 
 _NEAR = 1e-9
 """Share of the sketch's size below which two places are one."""
@@ -178,7 +178,7 @@ class Sketch:
         missing = 3 - len(last.corners)
         if missing > 0:
             more = "one corner" if missing == 1 else f"{missing} corners"
-            return f"{capital(what)} needs at least {more} more."
+            return f"{capitalised(what)} needs at least {more} more."
         return f"Click the first corner to close {what}, or go on."
 
     def domain(self) -> dict[str, Any]:

@@ -14,7 +14,7 @@ import time
 from typing import Any
 
 from meshwright.benchmarks.desktop.display import display
-from meshwright.console import Update
+from meshwright.console import Update, no_update
 
 SUMMARY = "start of the window, and its answers to mouse and keys"
 SIZES = (1_000, 10_000, 100_000)
@@ -25,9 +25,7 @@ LARGEST = 1_000_000
 LONGEST = 400.0
 
 
-def run(
-    seed: int = 0, quick: bool = False, update: Update = lambda done, remark: None
-) -> dict[str, Any]:
+def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[str, Any]:
     """Seconds from the start of a process to the first paint and to the mesh on the screen, and
     milliseconds from an event to what is drawn for it.
 

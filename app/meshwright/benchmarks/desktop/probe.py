@@ -5,10 +5,12 @@ Prints one JSON object.
 
 from __future__ import annotations
 
+import itertools
 import json
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -162,16 +164,21 @@ def _hover(app: Any, window: Any, count: int) -> list[float]:
         before, halfedge, at = painted[0], window.document.hover, time.perf_counter()
         while window.document.hover == halfedge:  # a move within one half-edge paints nothing
             at = time.perf_counter()
-            _hover.step += 1
-            x = 200 + 17 * _hover.step % 300
-            QTest.mouseMove(plotter, QPoint(x, 200 + 11 * _hover.step % 200))
-        _spin(app, lambda before=before: painted[0] > before)
+            step = next(_steps)
+            x = 200 + 17 * step % 300
+            QTest.mouseMove(plotter, QPoint(x, 200 + 11 * step % 200))
+        _spin(app, partial(_above, painted, before))
         times.append(1000.0 * (time.perf_counter() - at))
     overlay.removeEventFilter(watch)
     return times
 
 
-_hover.step = 0
+def _above(counter: list[int], before: int) -> bool:
+    return counter[0] > before
+
+
+_steps = itertools.count(1)
+"""Positions of the mouse go on from one measurement to the next."""
 
 
 def _operate(app: Any, window: Any) -> dict[str, float]:
@@ -243,7 +250,7 @@ def _spin(app: Any, condition: Callable[[], bool], seconds: float = 60.0) -> Non
 
 
 if __name__ == "__main__":
-    _measurement = {"start": start, "answer": answer, "play": play}[sys.argv[1]]
+    _measurement: Any = {"start": start, "answer": answer, "play": play}[sys.argv[1]]
     sys.stdout.write(
         json.dumps(_measurement(float(sys.argv[2]), *(int(n) for n in sys.argv[3:]))) + "\n"
     )

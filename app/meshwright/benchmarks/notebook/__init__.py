@@ -15,7 +15,7 @@ from meshwright.benchmarks.notebook.chromium import browser
 from meshwright.benchmarks.notebook.jupyterlab import LabNotebook
 from meshwright.benchmarks.notebook.probe import NOTING, Probe
 from meshwright.benchmarks.notebook.servers import jupyterlab
-from meshwright.console import Update
+from meshwright.console import Update, no_update
 
 SUMMARY = "the notebook's widget in JupyterLab: click to redrawn, panning, bytes sent"
 SIZES = (100, 1_000, 10_000)
@@ -23,12 +23,10 @@ SIZES = (100, 1_000, 10_000)
 CLICKS = 40
 QUICK = 3
 SECONDS_OF_PANNING = 3.0
-WINDOW = {"width": 1280, "height": 1000}
+WINDOW: Any = {"width": 1280, "height": 1000}
 
 
-def run(
-    seed: int = 0, quick: bool = False, update: Update = lambda done, remark: None
-) -> dict[str, Any]:
+def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[str, Any]:
     """Medians by number of elements; ``quick`` takes the smaller meshes and a few clicks.
 
     Keys of each size: ``click_to_redrawn_ms`` from the mouse button to the frame, with its parts

@@ -166,6 +166,7 @@ class Probe:
     def pan(self, seconds: float) -> dict[str, Any]:
         """Drag the picture round and round; painted frames per second, and the slowest of them."""
         box = self.card.root.locator(".mw-stage").bounding_box()
+        assert box is not None
         x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
         self.page.mouse.move(x, y)
         self.page.mouse.down()

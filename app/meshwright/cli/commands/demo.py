@@ -71,7 +71,7 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
 
     policy = inputs.read_policy(None, mesh.kind)
     from meshwright_agent.search import solver
-    from meshwright_core.errors import MeshError
+    from meshwright_core.errors import MeshError, sentence
 
     inputs.prepare_agent(report)
     with report.progress("the policy is at work", ROLLOUTS) as update:
@@ -111,4 +111,4 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
     )
     if problem:
         text = f"{problem}, so in place of the window: {text}"
-    report.result(values, one_line(text[:1].upper() + text[1:] + "."))
+    report.result(values, sentence(one_line(text)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshwright.cli import arguments as inputs
 from meshwright.cli.output_files import checked_folder, checked_output
-from meshwright.console import Report, UserError
+from meshwright.console import Report, Update, UserError
 from meshwright.sources.naming import looks_like_path
 
 if TYPE_CHECKING:
@@ -113,10 +113,12 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     for sides in table if arguments.table else [arguments.sides]:
         title = evaluation_table.sides(sides)
         with report.progress(title, arguments.meshes) as update:
+
+            def show(what: str, done: int, update: Update = update) -> None:
+                update(done, what)
+
             try:
-                row = table_row.assess(
-                    played, sides, wanted, lambda what, done, update=update: update(done, what)
-                )
+                row = table_row.assess(played, sides, wanted, show)
             except rollouts.NothingToDo as error:
                 raise UserError(f"{title}, {arguments.meshes} meshes: {error}") from error
         found.append(row)

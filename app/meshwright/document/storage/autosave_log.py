@@ -39,7 +39,7 @@ def encoded(header: dict[str, Any], arrays: Arrays) -> list[bytes | memoryview]:
     table = [(name, array.dtype.str, array.shape) for name, array in plain.items()]
     text = json.dumps([header, table]).encode()
     body: list[bytes | memoryview] = [_LENGTH.pack(len(text)), text]
-    body += [memoryview(array.reshape(-1).view(np.uint8)) for array in plain.values() if array.size]
+    body += [array.reshape(-1).view(np.uint8).data for array in plain.values() if array.size]
     checksum = 0
     for part in body:
         checksum = zlib.crc32(part, checksum)
