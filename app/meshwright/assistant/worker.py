@@ -1,8 +1,8 @@
-"""The assistant's worker: a thread on which policies are loaded, played and asked.
+"""The thread on which policies are loaded and run.
 
-It never touches the document. What it finds is handed over by ``dispatch``, which makes the calls
-in the document's thread; after a decision it waits until that has been applied, so that decisions
-never pile up and a cancelled run leaves nothing behind.
+It never accesses the document. Results are passed to a listener by ``dispatch``, which makes the
+calls in the document's thread. After each decision the thread waits until the decision has been
+applied, so that decisions do not queue up and a cancelled run leaves none behind.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Choice, Insight
 
 LEAVE_SECONDS = 10.0
-"""Seconds that the end of the program waits for the thread, at most."""
+"""Time limit, in seconds, for which the exiting program waits for the thread."""
 CATCH_UP = 0.2
-"""Seconds by which a played decision may be late without putting off those after it."""
+"""Seconds by which a played decision may be late without delaying later ones."""
 BATCH_SECONDS = 0.03
-"""Seconds for which a search gathers its operations before it hands them over."""
+"""Seconds for which operations of a search are collected before they are passed on."""
 
 Dispatch = Callable[[Callable[[], None]], None]
 Load = Callable[[str], Any]
@@ -44,14 +44,14 @@ _log = logging.getLogger(__name__)
 
 
 class Listener(Protocol):
-    """What the worker has to say; called in the document's thread."""
+    """Receives the results of the worker, in the document's thread."""
 
     def loaded(self, name: str) -> None:
-        """A policy is there."""
+        """A policy has been loaded."""
         ...
 
     def broke(self, cause: Run | Question | None, sentence: str) -> None:
-        """A run, a question, or the loading of a policy (None) came to nothing."""
+        """A run, a request, or the loading of a policy (None) has failed."""
         ...
 
     def looked_at(self, run: Run, insight: Insight | None) -> None:
@@ -63,20 +63,21 @@ class Listener(Protocol):
         ...
 
     def progressed(self, run: Run, done: int, best: int) -> None:
-        """So many rollouts are done, and this is the lowest s so far."""
+        """A search has done ``done`` rollouts, and its lowest score is ``best``."""
         ...
 
     def answered(self, question: Question, choices: tuple[Choice, ...]) -> None:
-        """The policy's best few operations."""
+        """A request for hints has been answered with the policy's best operations."""
         ...
 
 
 class Worker:
-    """One thread, begun when it is first needed.
+    """Loads and runs policies on one thread, which starts with the first task.
 
     ``load(name)`` returns a policy, ``make_runner(mesh, policy, seed)`` a runner that works on its
-    own copy, ``make_search`` one as :class:`meshwright.assistant.search_runner.SearchRunner` is,
-    ``ask(mesh, policy, near)`` the policy's best few operations; all are called on the thread.
+    own copy, ``ask(mesh, policy, near)`` the policy's best operations. ``make_search`` takes the
+    arguments of :class:`meshwright.assistant.search_runner.SearchRunner`. All are called on the
+    thread.
     """
 
     def __init__(
@@ -115,24 +116,24 @@ class Worker:
         self._submit(partial(self._work, run), run)
 
     def answer(self, question: Question) -> None:
-        """Answer a question."""
+        """Request hints."""
         self._submit(partial(self._answer, question), question)
 
     def close(self) -> None:
-        """Let the thread end, without waiting for it; what has not been begun is left undone."""
+        """End the thread, without waiting for it; tasks that have not started are dropped."""
         self._closed.set()
         self._tasks.put(None)
 
     def _submit(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
         if self._thread is None:
-            # a daemon: a program that breaks off does not wait for decisions that nobody applies
+            # a daemon thread: an exiting program must not wait for decisions to be applied
             self._thread = threading.Thread(target=self._serve, name="assistant", daemon=True)
             self._thread.start()
             atexit.register(self._leave)
         self._tasks.put(partial(self._guarded, task, cause))
 
     def _leave(self) -> None:
-        """The program ends: a thread in compiled code must not outlive the interpreter."""
+        """Stop the thread at exit: compiled code must not run after the interpreter has ended."""
         self.close()
         if self._run is not None:
             self._run.end()
@@ -149,7 +150,7 @@ class Worker:
     def _guarded(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
         try:
             task()
-        except Exception as error:  # a thread's boundary: whatever broke is told to the person
+        except Exception as error:  # the outermost frame of the thread: every error is reported
             self._dispatch(partial(self._listener.broke, cause, _sentence(error)))
 
     def _policy_of(self, name: str) -> Any:
@@ -215,8 +216,8 @@ class Worker:
     def _wait(self, run: Run) -> None:
         """While playing, wait until it is time for the next decision.
 
-        Decisions are due at equal distances. Those after one that comes late catch up, unless it
-        is so late that they would come all at once.
+        Decisions are due at equal intervals. After a late decision the following ones catch up,
+        unless it was more than CATCH_UP late.
         """
         before, now = run.due, time.monotonic()
         while run.state is State.PLAYING and not run.stop.is_set():

@@ -1,8 +1,8 @@
-"""What a command is given: meshes, shapes, policies, numbers.
+"""Reads and checks the inputs of commands: meshes, shapes, policies, numbers.
 
-Everything that can be wrong with an input is found here and raised as UserError or, for a number
-on the command line, as argparse's own error. A MeshError that comes later, while a command works,
-is therefore a bug of ours and is reported as one.
+Every problem of an input is raised here as UserError or, for a number on the command line, as
+argparse's own error. A MeshError raised later, while a command works, is therefore reported as an
+internal error.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def make_mesh(
 
 
 def prepare_agent(report: Report) -> None:
-    """Compile what an agent needs where that was never done, and say so: it takes a while."""
+    """Compile the kernels of the agent if they are not in the cache yet, with a message."""
     from meshwright_agent import warm_up
 
     if not warm_up.is_warm_on_disk():
@@ -96,7 +96,7 @@ def prepare_agent(report: Report) -> None:
 
 
 def read_policy(name: str | None, kind: str) -> Policy:
-    """Return a policy for meshes of this kind: by name, from a file, or the one we ship."""
+    """Return a policy for meshes of this kind: by name, from a file, or the shipped one."""
     from meshwright_agent.policy import policy_files
     from meshwright_core.core.kinds import KIND_NOUN
 
@@ -130,9 +130,9 @@ def read_configuration(path: str | None, kind: str) -> Training:
 
 
 def one_of(word: str, known: Sequence[str], option: str) -> str:
-    """Return the word if it is a known one, or raise UserError with those that are."""
+    """Return the word if it is a known one, or raise UserError with the list of known ones."""
     if word not in known:
-        raise UserError(f"{option} {word}: there is no such one; choose from {', '.join(known)}")
+        raise UserError(f"{option} {word}: unknown; choose from {', '.join(known)}")
     return word
 
 

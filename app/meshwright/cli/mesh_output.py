@@ -1,4 +1,4 @@
-"""The mesh file that a command writes: its ending, the last care for positions, the writing."""
+"""Checks and writes the mesh file of a command, and names inverted elements in its report."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def checked_mesh_output(path: str, kind: str | None = None) -> Path:
 
 
 def write_mesh(path: Path, mesh: HalfEdgeMesh) -> None:
-    """Write the mesh whole or not at all; what the system refuses becomes a UserError."""
+    """Write the mesh atomically; raise UserError if the system refuses."""
     import meshwright_core
     from meshwright_core.errors import MeshError
 

@@ -144,25 +144,25 @@ class Document:
 
     @property
     def name(self) -> str:
-        """What the window's title says."""
+        """The name in the window's title."""
         return self._name
 
     @property
     def path(self) -> Path | None:
-        """The file that *Save* writes, None if never saved."""
+        """The file that *Save* writes, None if there is none yet."""
         return self._path
 
     @property
     def passing(self) -> bool:
-        """True while nothing of it is worth keeping, as in a level; saving it ends that."""
+        """True while changes need not be saved, as in a level; saving ends that."""
         return self._passing
 
     @property
     def modified(self) -> bool:
-        """True if the mesh differs from the file, or from the shape it began as.
+        """True if the mesh differs from its file, or from the state it began in.
 
-        A project keeps the history too: there a step counts even when it has been undone. A mesh
-        that is :attr:`passing` never counts as modified.
+        A project stores the history too: there an undone step counts as a change. A document that
+        is :attr:`passing` never counts as modified.
         """
         if self._passing:
             return False
@@ -172,11 +172,11 @@ class Document:
 
     @property
     def saved_state(self) -> tuple[int, int]:
-        """Two numbers that tell the present state from others: where it is, and all there is."""
+        """Serials of the last step done and of the last step made: identify the present state."""
         return self.history.mark, self.history.given[0]
 
     def keep(self) -> None:
-        """A mesh that was passing is worth keeping from now on; as it is, it counts as saved."""
+        """End :attr:`passing`; the present state counts as saved."""
         if self._passing:
             self._passing, self._saved = False, self.saved_state
             self.saved_changed.emit()
@@ -190,9 +190,9 @@ class Document:
         path: str | Path | None = None,
         passing: bool = False,
     ) -> None:
-        """Put ``mesh`` in the place of the present one; the history starts again.
+        """Replace the mesh; the history starts again.
 
-        ``passing``: nobody needs to be asked before it is dropped, and no step of it is kept.
+        passing: changes need not be saved, and autosave does not record them.
         """
         self._take(UndoTimeline(mesh), name, path)
         self._passing = passing
@@ -343,7 +343,7 @@ class Document:
     ) -> Edit:
         """Apply one operation and smooth around it, as one step; OperationRefused if refused.
 
-        held (n,): vertices that count as locked meanwhile, and so stay where they are. Smoothing
+        held (n,): vertices that are locked during the step, and so keep their positions. Smoothing
         takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then.
         """
         mesh = self._need()
@@ -376,13 +376,17 @@ class Document:
         if vertices is None:
             self._do("smooth", "Smooth", -1, by, lambda: _relax(mesh, None))
         else:
+            from meshwright.document.position_repair import tidy  # imports scipy
+
             chosen = vertices
-            self._do("smooth", "Smooth here", -1, by, lambda: _tidy(mesh, chosen))
+            self._do("smooth", "Smooth here", -1, by, lambda: tidy(mesh, chosen))
 
     def untangle(self, by: str = YOU) -> tuple[int, int]:
-        """Mend inverted elements as one step; returns how many there were, and how many stay."""
+        """Untangle inverted elements as one step; returns their number before and after."""
+        from meshwright.document.position_repair import mend  # imports scipy
+
         mesh = self._need()
-        return self._do("untangle", "Untangle", -1, by, lambda: _mend(mesh))
+        return self._do("untangle", "Untangle", -1, by, lambda: mend(mesh))
 
     def move(self, vertices: np.ndarray, positions: np.ndarray, by: str = YOU) -> None:
         """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step."""
@@ -390,9 +394,9 @@ class Document:
         self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions))
 
     def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
-        """Ask for another degree at one vertex or several (n,), as one step.
+        """Set the desired degree of one vertex or several (n,), as one step.
 
-        s* and the normalised return start again.
+        s* changes, and the normalised return starts again.
         """
         mesh = self._need()
         now = mesh.desired()
@@ -401,7 +405,7 @@ class Document:
         self._do("desired", title, -1, YOU, lambda: _each(wanted, mesh.set_desired, degree))
 
     def set_geometric(self, vertices: int | np.ndarray, flag: bool) -> None:
-        """Mark one vertex or several (n,) as corners that stay, or no longer, as one step."""
+        """Set or clear the corner flag of one vertex or several (n,), as one step."""
         mesh = self._need()
         now = mesh.geometric()
         wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
@@ -418,24 +422,10 @@ class Document:
 
 
 def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None, thorough: bool = True) -> None:
-    """Smooth near ``around`` (vertex ids) or everywhere; imported late, for it pulls in scipy."""
+    """Smooth near ``around`` (vertex ids) or everywhere; imports scipy, so imported late."""
     from meshwright_core.geometry.smoothing import relax
 
     relax(mesh, around, thorough)
-
-
-def _tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
-    """As :func:`_relax` for exactly these vertices; imported late, too."""
-    from meshwright.document.position_repair import tidy
-
-    tidy(mesh, vertices)
-
-
-def _mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
-    """Untangle what is inverted; imported late, too."""
-    from meshwright.document.position_repair import mend
-
-    return mend(mesh)
 
 
 def _ids(vertices: int | np.ndarray) -> list[int]:

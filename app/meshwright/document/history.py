@@ -1,4 +1,4 @@
-"""The history: one row per undoable step, and the scores that follow from the rows."""
+"""The history: the undoable steps of a document, and the scores that follow from them."""
 
 from collections.abc import Iterator, Sequence
 
@@ -9,17 +9,17 @@ from meshwright.document.json_records import WholeNumber
 from meshwright_core.history.packed_steps import Steps
 
 YOU = "you"
-"""Author of the steps that a person takes; a policy's steps carry the policy's name."""
+"""Author of the user's own steps; the steps of a policy carry the policy's name."""
 
 
 class HistoryStep(Struct, array_like=True, frozen=True, forbid_unknown_fields=True):
     """One step of the mesh.
 
     ``action`` is an operation's value ("flip_left") or a document action ("clean_all", "smooth",
-    "desired", ...); ``halfedge`` is -1 where no half-edge was meant. ``before`` and ``after`` are
-    scores s; ``optimum`` is s* after the step. ``start`` and ``best`` are the score that the
-    normalised return counts from and the lowest score since: a step that changes desired degrees
-    changes the task, so both start again there. In files a step is an array of these values.
+    "desired", ...); ``halfedge`` is -1 if there is none. ``before`` and ``after`` are scores s;
+    ``optimum`` is s* after the step. ``start`` is the score from which the normalised return is
+    measured, ``best`` the lowest score since: a step that changes desired degrees changes the
+    task, so both start again there. In files a step is an array of these values.
     """
 
     serial: WholeNumber
@@ -40,13 +40,13 @@ class HistoryStep(Struct, array_like=True, frozen=True, forbid_unknown_fields=Tr
 
 
 class History:
-    """Rows with a cursor: rows before it are done, rows from it on are undone.
+    """Steps with a cursor: those before it are done, those from it on are undone.
 
-    Rows that were undone when another one was appended are kept as a branch.
+    Steps that were undone when another one was appended are kept as a branch.
     """
 
     def __init__(self, score: int, optimum: int) -> None:
-        """`score` and `optimum` are those of the mesh before its first row."""
+        """`score` and `optimum` are those of the mesh before its first step."""
         self._rows: list[HistoryStep] = []
         self._branches: Branches = ()
         self._cursor = 0
@@ -66,7 +66,7 @@ class History:
         serial: int = 0,
         made: int = 0,
     ) -> "History":
-        """A history as it was kept: ``serial`` and ``made`` are the last ones given away."""
+        """A stored history: ``serial`` and ``made`` are the last numbers that it has used."""
         history = cls(score, optimum)
         history._rows, history._cursor, history._branches = list(rows), cursor, branches
         history._serial, history._made = serial, made
@@ -83,37 +83,37 @@ class History:
 
     @property
     def cursor(self) -> int:
-        """Number of rows that are done."""
+        """Number of steps that are done."""
         return self._cursor
 
     @property
     def last(self) -> HistoryStep | None:
-        """The last row that is done, None at the start."""
+        """The last step that is done, None at the start."""
         return self._rows[self._cursor - 1] if self._cursor else None
 
     @property
     def mark(self) -> int:
-        """A number that names the present state: the last done row's serial, 0 at the start."""
+        """Serial of the last step that is done, 0 at the start: identifies the state."""
         return self.last.serial if self.last else 0
 
     @property
     def first(self) -> tuple[int, int]:
-        """s and s* before the first row."""
+        """s and s* before the first step."""
         return self._score, self._optimum
 
     @property
     def given(self) -> tuple[int, int]:
-        """The last serial and the last branch's number that were given away."""
+        """The last serial and the last branch number that were used."""
         return self._serial, self._made
 
     @property
     def branches(self) -> Branches:
-        """What was undone and left: rows that fork from the present line."""
+        """Undone steps that were replaced by others."""
         return self._branches
 
     @property
     def start_score(self) -> int:
-        """The score that the normalised return counts from."""
+        """The score from which the normalised return is measured."""
         return self.last.start if self.last else self._score
 
     @property
@@ -123,12 +123,12 @@ class History:
 
     @property
     def can_undo(self) -> bool:
-        """True if a row is done."""
+        """True if a step is done."""
         return self._cursor > 0
 
     @property
     def can_redo(self) -> bool:
-        """True if a row is undone."""
+        """True if a step is undone."""
         return self._cursor < len(self._rows)
 
     def append(
@@ -142,9 +142,9 @@ class History:
         optimum: int,
         undone: tuple[Steps, ...] = (),
     ) -> HistoryStep:
-        """Add a done row at the cursor; rows that were undone become a branch.
+        """Add a done step at the cursor; steps that were undone become a branch.
 
-        ``undone`` are the mesh's steps of these rows.
+        ``undone`` is the mesh's own record of the undone steps.
         """
         last = self.last
         same_task = optimum == (last.optimum if last else self._optimum) and action != "desired"
@@ -169,9 +169,9 @@ class History:
         return row
 
     def take(self, index: int, undone: tuple[Steps, ...]) -> tuple[Steps, ...]:
-        """Change the rows from the cursor on for those of a branch that forks there.
+        """Replace the steps after the cursor by those of a branch that starts there.
 
-        ``undone`` are the mesh's steps of the former, the answer those of the latter.
+        ``undone`` is the mesh's own record of the former; returns that of the latter.
         """
         taken = self._branches[index]
         if taken.at != self._cursor:
@@ -186,21 +186,21 @@ class History:
         return taken.steps
 
     def _branches_here(self) -> list[Branch]:
-        """Those that fork at the cursor or before it."""
+        """The branches that start at the cursor or before it."""
         return [branch for branch in self._branches if branch.at <= self._cursor]
 
     def _tail(self, undone: tuple[Steps, ...]) -> Branch:
-        """The undone rows as a branch, with all that fork on them."""
+        """The undone steps as a branch, with the branches that start on them."""
         self._made += 1
         on_it = tuple(branch for branch in self._branches if branch.at > self._cursor)
         return Branch(self._cursor, tuple(self._rows[self._cursor :]), undone, on_it, self._made)
 
     def step_back(self) -> None:
-        """Move the cursor over one row towards the start; the caller has undone the mesh."""
+        """Move the cursor back by one step; the caller has undone it on the mesh."""
         self._cursor -= 1
 
     def step_forward(self) -> None:
-        """Move the cursor over one row towards the end; the caller has redone the mesh."""
+        """Move the cursor forward by one step; the caller has redone it on the mesh."""
         self._cursor += 1
 
     def best_index(self, first: int) -> int:

@@ -1,4 +1,4 @@
-"""The score curve: s and s* of every state of a history, and lines to draw them with."""
+"""The score curve: s and s* of every state of a history, and the lines that draw them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from meshwright.document.history import History, HistoryStep
 
 FIRST_ROOM = 256
 FAR = 4.0
-"""Times the span of a curve beyond which what is left to the optimum is left out of it."""
+"""A gap to the optimum of more than this many times the span of the curve is cut out."""
 
 
 class Track:
-    """Scores s and optima s* of all states of a history, followed at the cost of what is new.
+    """Scores s and optima s* of all states of a history, updated incrementally.
 
-    State 0 is the start, state i the one after row i - 1; undone rows count too.
+    State 0 is the start, state i the one after step i - 1; undone steps are included.
     """
 
     def __init__(self) -> None:
@@ -36,12 +36,12 @@ class Track:
         return self._values[: self._count, 1]
 
     def follow(self, history: History) -> int:
-        """Take over what ``history`` holds now; returns the first state that may be new.
+        """Update from ``history``; returns the first state that may be new.
 
-        A row is never changed, and it comes after the same rows always: where the last known row
-        is still in its place, so is everything before it.
+        Steps never change, and a step always follows the same steps: if the last known step is
+        still in its place, so are all before it.
         """
-        known = self._count - 1  # rows
+        known = self._count - 1  # steps
         same = 0 < known <= len(history) and history[known - 1] is self._last
         first = known if same else 0
         rows = [history[i] for i in range(first, len(history))]
@@ -60,7 +60,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a curve is drawn: a rectangle in pixels, the states and scores at its edges.
+    """Maps states and scores to pixels of a rectangle in which a curve is drawn.
 
     In a ``broken`` frame the optimum lies far below ``low``, and is drawn at the lower edge.
     """
@@ -79,7 +79,7 @@ class Frame:
     @overload
     def x(self, state: np.ndarray) -> np.ndarray: ...
     def x(self, state: np.ndarray | float) -> np.ndarray | float:
-        """Pixels from the left of a state, or of many."""
+        """x in pixels of a state, or of many."""
         return self.left + np.asarray(state) * (self.width / max(self.states - 1, 1))
 
     @overload
@@ -87,7 +87,7 @@ class Frame:
     @overload
     def y(self, score: np.ndarray) -> np.ndarray: ...
     def y(self, score: np.ndarray | float) -> np.ndarray | float:
-        """Pixels from the top of a score, or of many."""
+        """y in pixels of a score, or of many."""
         share = np.maximum(np.asarray(score) - self.low, 0.0) / max(self.high - self.low, 1e-9)
         return self.top + self.height * (1.0 - share)
 
@@ -103,8 +103,8 @@ def frame(
 ) -> Frame:
     """The frame that holds all scores and optima (n,) in this rectangle.
 
-    It is broken where the way that is left is far longer than all that has happened: else a large
-    mesh would show a level line only.
+    It is broken if the gap to the optimum is far larger than the range of the scores: otherwise
+    the curve of a large mesh would look like a level line.
     """
     low = float(optima.min()) if len(optima) else 0.0
     high = max(float(scores.max()) if len(scores) else 1.0, low + 1.0)

@@ -1,4 +1,4 @@
-"""The agent as one's rival: it solves the start of a level on a mesh of its own."""
+"""Lets the agent solve a level on a separate copy of its mesh."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from meshwright.signals import Signal
 from meshwright_core import Operation
 
 SECONDS = 2.0
-"""How long it searches at most."""
+"""Time limit of the search, in seconds."""
 
 MakeAssistant = Callable[[Document], Assistant]
 
@@ -23,7 +23,7 @@ _OPERATIONS = frozenset(operation.value for operation in Operation)
 
 
 class Standing(StrEnum):
-    """How far it is."""
+    """State of the agent's search."""
 
     ASKED = "asked"
     DONE = "done"
@@ -31,7 +31,7 @@ class Standing(StrEnum):
 
 
 class Rival:
-    """Solves ``level`` once, with an assistant of its own. ``changed()`` comes at the end."""
+    """Solves ``level`` once, with a separate assistant. ``changed()`` is emitted at the end."""
 
     def __init__(self, level: Level, make: MakeAssistant) -> None:
         self.changed = Signal()
@@ -47,11 +47,11 @@ class Rival:
         if not self._assistant.policy:
             self._assistant.policy = policies[0] if policies else ""
         self._assistant.failed.connect(self._on_failed)
-        self._assistant.said.connect(self._on_said)  # the last that a run says, however it ends
+        self._assistant.said.connect(self._on_said)  # every run ends with such a message
         self._assistant.search(Effort(seconds=SECONDS, coarsen=False))
 
     def close(self) -> None:
-        """End it, whether it has come to an end or not."""
+        """Cancel the search if it still runs, and disconnect."""
         assistant, self._assistant = self._assistant, None
         if assistant is not None:
             assistant.failed.disconnect(self._on_failed)
@@ -75,6 +75,6 @@ class Rival:
 
 
 def done_in(history: History) -> list[tuple[Operation, int]]:
-    """The operations on the way to the cursor; what moves vertices only is left out."""
+    """The operations up to the cursor; steps that only move vertices are left out."""
     rows = [history[i] for i in range(history.cursor)]
     return [(Operation(row.action), row.halfedge) for row in rows if row.action in _OPERATIONS]

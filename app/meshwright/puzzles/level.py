@@ -1,7 +1,8 @@
-"""Levels: a mesh with a goal and a par, to be played in the window and in the notebook.
+"""Levels: meshes with a goal and a par, to be played in the window and in the notebook.
 
-Each is a file ``assets/levels/NN-name.json`` that holds its mesh to the last digit, so that no
-change of a mesher changes a level, and a solution: operations with the ends of their half-edges.
+Each is a file ``levels/NN-name.json`` of ``meshwright_assets``. It holds the mesh in full
+precision, so that changes of the mesh generator do not change levels, and a solution: operations
+with the ends of their half-edges.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from meshwright_core.operations.catalogue import CODES
 FOLDER = Path(meshwright_assets.__file__).parent / "levels"
 VERSION = 1
 LARGEST = 1000
-"""Elements that a level may have."""
+"""Limit on the elements of a level."""
 SIDES = {"tri": 3, "quad": 4}
 
 Way = tuple[tuple[Operation, tuple[int, int]], ...]
@@ -35,7 +36,7 @@ Way = tuple[tuple[Operation, tuple[int, int]], ...]
 
 @dataclass(frozen=True)
 class Level:
-    """One level. Where arrays are concerned, vertex i of ``points`` is vertex id i of the mesh."""
+    """One level. Row i of the arrays by vertex belongs to vertex id i of the mesh."""
 
     name: str
     number: int
@@ -44,17 +45,17 @@ class Level:
     kind: str
     """``"tri"`` or ``"quad"``."""
     text: str
-    """What one learns, in one or two sentences."""
+    """What the level teaches, in one or two sentences."""
     goal: int
-    """The score to reach: s*, the lowest that is possible."""
+    """The score to reach, s*, the lowest possible."""
     most: int
-    """Elements that the mesh may have at the goal; 0 for any number."""
+    """Limit on the elements at the goal; 0 for none."""
     par: int
     """The fewest operations known."""
     proved: bool
-    """Whether an exhaustive search has shown that no fewer will do."""
+    """Whether an exhaustive search has proved that no fewer suffice."""
     solution: Way
-    """A way with ``par`` operations."""
+    """A solution with ``par`` operations."""
     points: np.ndarray = field(compare=False, repr=False)
     """(n, 2)"""
     elements: np.ndarray = field(compare=False, repr=False)
@@ -65,16 +66,16 @@ class Level:
     """(n,) desired degrees."""
 
     def mesh(self) -> HalfEdgeMesh:
-        """A fresh mesh, as the level begins."""
+        """A new mesh in the state where the level begins."""
         return HalfEdgeMesh.from_elements(self.points, self.elements, self.corners, self.desired)
 
     def reached(self, mesh: HalfEdgeMesh) -> bool:
-        """Whether ``mesh`` is at the goal."""
+        """Whether ``mesh`` has reached the goal."""
         return mesh.score <= self.goal and not (self.most and mesh.n_elements > self.most)
 
     @property
     def story(self) -> str:
-        """How large it is, and its par."""
+        """Its number of elements, and its par."""
         return f"{len(self.elements)} {KIND_NOUN[self.kind]}, par {self.par}"
 
     @property
@@ -91,15 +92,15 @@ def names() -> tuple[str, ...]:
 
 
 class Shelf(tuple[Level, ...]):
-    """Levels side by side, which show themselves as a table."""
+    """A tuple of levels that shows itself as a table."""
 
     def __repr__(self) -> str:
-        """One line for each level: its name, its title, what it is, its par."""
+        """One line for each level: name, title, number of elements, par."""
         width = max((len(level.name) for level in self), default=0)
         return "\n".join(f"{level.name:<{width}}  {level.title}: {level.story}" for level in self)
 
     def _repr_html_(self) -> str:
-        """The same as a table, for notebooks."""
+        """The table as HTML, for notebooks."""
         cells = "".join(
             f"<tr><td>{level.number}</td><td><code>{escape(level.name)}</code></td>"
             f"<td>{escape(level.title)}</td><td>{level.story}</td></tr>"
@@ -115,7 +116,7 @@ def all() -> Shelf:
 
 @cache
 def load(name: str) -> Level:
-    """The level of this name; MeshError if there is none, or if its file is not sound."""
+    """The level of this name; MeshError if there is none, or if its file is not valid."""
     for number, path in enumerate(_files(), 1):
         if _name(path) == name:
             return read(path, number)
@@ -131,9 +132,9 @@ def after(name: str) -> str | None:
 
 
 def read(path: Path, number: int = 1) -> Level:
-    """The level in a file; MeshError, in one sentence that begins with the path, if there is none.
+    """The level in a file; MeshError, one sentence that begins with the path, if it is not valid.
 
-    Its mesh is made once, to see that it is one, and its solution is done on it.
+    The check builds the mesh and applies the solution to it.
     """
     try:
         level = _level(decoded(path.read_bytes(), _LevelFile), _name(path), number)
@@ -142,12 +143,12 @@ def read(path: Path, number: int = 1) -> Level:
         raise MeshError(f"{path}: cannot be read ({error.strerror}).") from error
     except ValueError as error:
         why = str(error).partition("\n")[0].rstrip(".")
-        raise MeshError(f"{path}: this is no sound level: {why}.") from error
+        raise MeshError(f"{path}: this is no valid level: {why}.") from error
     return level
 
 
 def record(level: Level) -> dict[str, Any]:
-    """What :func:`read` reads, for JSON."""
+    """The level as plain values for JSON, as :func:`read` reads them."""
     return {
         "version": VERSION,
         "title": level.title,
@@ -166,7 +167,7 @@ def record(level: Level) -> dict[str, Any]:
 
 
 def play(mesh: HalfEdgeMesh, way: Way) -> None:
-    """Do the operations on ``mesh``; MeshError at the first that is not possible."""
+    """Apply the operations to ``mesh``; MeshError at the first that is refused."""
     for operation, (a, b) in way:
         mesh.apply(operation, halfedge_of(mesh, a, b))
 
@@ -180,7 +181,7 @@ def halfedge_of(mesh: HalfEdgeMesh, a: int, b: int) -> int:
 
 
 def way_of(mesh: HalfEdgeMesh, operations: Iterable[tuple[Operation, int]]) -> Way:
-    """Operations on half-edges as a way on ``mesh``, which is not changed."""
+    """Operations with the vertices of their half-edges; ``mesh`` is not changed."""
     work, way = mesh.copy(), []
     for operation, halfedge in operations:
         way.append((Operation(operation), (work.origin(halfedge), work.target(halfedge))))

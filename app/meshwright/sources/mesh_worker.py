@@ -1,9 +1,8 @@
-"""New meshes from requests, so that they can be made and looked at in a process of their own.
+"""Makes new meshes in a separate process, on request of the window.
 
-Triangle and the readers of foreign files hold the interpreter until they are done; a window that
-made meshes in a thread would stand still meanwhile. `serve` is what such a process runs: it reads
-requests on stdin, one JSON object a line, and writes a frame for each on stdout (`frame`,
-`unframed`).
+Triangle and the readers of foreign files hold the interpreter lock until they are done, so that a
+thread would block the window. The process runs `serve`: it reads requests from stdin, one JSON
+object a line, and writes a frame for each to stdout (`frame`, `unframed`).
 """
 
 from __future__ import annotations
@@ -28,32 +27,32 @@ if TYPE_CHECKING:
     from meshwright_core.domains.meshing import Quads
 
 MOST = 2_000_000
-"""Elements that a new mesh may have."""
+"""Limit on the elements of a new mesh."""
 
 _PER_AREA = {"tri": 4.9, "quad": 3.7, "pairing": 2.6}
-"""Elements for each square of the longest edge, measured on shapes of the gallery."""
+"""Elements per area of max_edge squared, measured on shapes of the gallery."""
 
 _LENGTH = 8
-"""Bytes that say how long a frame is."""
+"""Bytes at the start of a frame that give its length."""
 
 
 @dataclass(frozen=True)
 class Made:
-    """A mesh as arrays, and what there is to say and to draw about it.
+    """A new mesh as arrays, with what the dialog shows and draws of it.
 
     Attributes:
-        name: what to call the mesh.
+        name: name of the mesh.
         path: the mesh file that it was read from, empty for a mesh that was made.
         kind: "tri" or "quad".
         score, optimum: s and s*.
-        low, high: (2,) the corners of its box, seen from above.
+        low, high: (2,) the corners of its bounding box, in the plane.
         points: (n, 3).
         elements: (m, 3 or 4).
         geometric: (n,) whether a vertex is a corner.
         desired: (n,) desired degrees.
         delta: (n,) degree less desired degree.
-        reach: (n,) length of the shortest edge at a vertex, seen from above.
-        edges: (e, 2) inner edges by vertex.
+        reach: (n,) length of the shortest edge at a vertex, in the plane.
+        edges: (e, 2) vertices of the inner edges.
         rim: (b,) boundary vertices, loop after loop.
         sizes: (l,) how many of them each loop has.
     """
@@ -77,7 +76,7 @@ class Made:
 
     @property
     def extent(self) -> float:
-        """The longer side of its box."""
+        """The longer side of its bounding box."""
         return float((self.high - self.low).max())
 
     @property
@@ -86,7 +85,7 @@ class Made:
         return np.split(self.rim, np.cumsum(self.sizes)[:-1])
 
     def mesh(self) -> HalfEdgeMesh:
-        """The mesh itself, built anew."""
+        """Build the mesh from the arrays."""
         from meshwright_core import HalfEdgeMesh
 
         return HalfEdgeMesh.from_elements(self.points, self.elements, self.geometric, self.desired)
@@ -99,7 +98,7 @@ def make(request: Mapping[str, Any]) -> Made:
         request: ``"source"`` is one of ``{"shape": name}``, ``{"polygon": sides, "seed": n}``,
             ``{"part": corners, "seed": n}``, ``{"domain": as in Domain.to_json}`` and
             ``{"file": path, "corner_angle": degrees, "curve_step": degrees}``; besides there are
-            ``"kind"``, and, each null for what suits the shape, ``"max_edge"``, ``"min_angle"``
+            ``"kind"``, and, each null for the default, ``"max_edge"``, ``"min_angle"``
             (degrees) and ``"quads"`` ("catmull-clark" or "pairing"). A mesh file is read as it is.
 
     Raises:
@@ -133,7 +132,7 @@ def make(request: Mapping[str, Any]) -> Made:
 
 
 def frame(result: Made | str) -> bytes:
-    """Return a mesh, or the sentence that says why there is none, as bytes with their length."""
+    """Return a mesh, or the sentence of a refusal, as bytes with their length."""
     arrays: dict[str, Any] = {}
     if isinstance(result, str):
         arrays["refusal"] = np.array(result)
@@ -146,12 +145,12 @@ def frame(result: Made | str) -> bytes:
 
 
 def length(content: bytes | bytearray) -> int:
-    """Return the bytes that a frame has in all, by its beginning."""
+    """Return the length of a frame in bytes, read from its beginning."""
     return _LENGTH + int.from_bytes(content[:_LENGTH], "little")
 
 
 def unframed(content: bytes | bytearray) -> Made | str:
-    """Return the mesh, or the refusal, in a whole frame."""
+    """Return the mesh, or the refusal, in a complete frame."""
     with np.load(io.BytesIO(memoryview(content)[_LENGTH:]), allow_pickle=False) as arrays:
         if "refusal" in arrays:
             return str(arrays["refusal"])
@@ -164,9 +163,9 @@ def unframed(content: bytes | bytearray) -> Made | str:
 
 
 def serve() -> None:
-    """Answer requests until stdin ends: when the window is gone, so is this process."""
+    """Answer requests until stdin ends, which also happens when the window's process ends."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    # what a library prints must not come between the frames
+    # output that a library prints must not mix with the frames
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     _answer(sys.stdin.buffer, answers)
 

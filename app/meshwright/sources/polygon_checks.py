@@ -1,8 +1,7 @@
-"""What may be wrong with loops of corners: crossings, holes outside, loops without area.
+"""Checks of polygons while they are drawn: crossings, misplaced holes, loops without area.
 
-In words for the person who draws, with the edges and places to mark.
-`meshwright_core.domains.domain` checks again
-what comes out; this here is quick enough to follow the mouse.
+Each problem has a sentence, and the edges and points to mark. `meshwright_core.domains.domain`
+checks the finished polygon again; these checks are fast enough to run at every mouse move.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from meshwright_core.geometry.polygons import contains
 Place = tuple[float, float]
 
 _NEAR = 1e-9
-"""Share of the sketch's size below which two places are one."""
+"""Tolerance, relative to the size of the sketch, below which two points coincide."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,7 @@ class Loop:
 
 @dataclass(frozen=True)
 class Problem:
-    """A sentence, and the edges to mark: (loop, corner at which the edge begins), and places."""
+    """A sentence, the edges to mark as (loop, corner where the edge begins), and points."""
 
     words: str
     edges: tuple[tuple[int, int], ...] = ()
@@ -43,7 +42,7 @@ def name_of(loop: int) -> str:
 
 
 def problem_of(loops: tuple[Loop, ...]) -> Problem:
-    """What is wrong with loops so far; no words if nothing is."""
+    """The first problem of the loops; its sentence is empty if there is none."""
     crossing = _crossing(loops)
     if crossing is not None:
         return crossing
@@ -65,7 +64,7 @@ def problem_of(loops: tuple[Loop, ...]) -> Problem:
 
 
 def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
-    """The first two edges that meet where they should not, and where."""
+    """The first two edges that cross or touch, and where."""
     owner = [(i, j) for i, loop in enumerate(loops) for j in range(len(loop.corners) - 1)]
     owner += [(i, len(loop.corners) - 1) for i, loop in enumerate(loops) if loop.closed]
     if len(owner) < 2:
@@ -85,7 +84,7 @@ def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
     beside = (ring[one] == ring[other]) & ((gap == 1) | (gap == count[one] - 1))
     beside &= closed[one] | (np.abs(index[other] - index[one]) == 1)
     ends = a[one], b[one], a[other], b[other]
-    # neighbours share a corner; only one that runs back over the other is wrong
+    # neighbours share a corner: they only must not fold back on each other
     wrong = np.flatnonzero(np.where(beside, _folds(*ends), _meet(*ends)))
     if len(wrong) == 0:
         return None
@@ -102,7 +101,7 @@ def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
 
 
 def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """Sign of where p lies beside the line from a to b; 0 within rounding of it."""
+    """Side of the line from a to b on which p lies: 1 left, -1 right, 0 within rounding."""
     u, v = b - a, p - a
     across = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
     size = np.abs(u).sum(axis=-1) * np.abs(v).sum(axis=-1)
@@ -111,7 +110,7 @@ def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
 
 
 def _meet(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """(k,) whether the edge from p to q and that from r to s have a point in common."""
+    """(k,) whether the edges p-q and r-s have a point in common."""
     one, other = _side(p, q, r), _side(p, q, s)
     third, fourth = _side(r, s, p), _side(r, s, q)
     proper = (one * other < 0) & (third * fourth < 0)
@@ -133,7 +132,7 @@ def _between(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
 
 
 def _folds(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """(k,) whether the edge from r to s runs back along that from p to q."""
+    """(k,) whether the edge r-s folds back along the edge p-q."""
     ahead = ((q - p) * (s - r)).sum(axis=-1)
     result: np.ndarray = (_side(p, q, q + (s - r)) == 0) & (ahead < 0)
     return result

@@ -1,6 +1,6 @@
-"""A polygon being drawn: loops of corners, taken back and done again, and what is wrong with it.
+"""A polygon being drawn: loops of corners, with undo and redo, and the checks of the polygon.
 
-Knows no window: the drawing page and its table of coordinates are two views on one sketch.
+Imports no Qt: the drawing page and its table of coordinates are two views of one sketch.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from meshwright.sources.polygon_checks import Loop, Place, Problem, name_of, pro
 from meshwright_core.errors import MeshError, capitalised
 
 _NEAR = 1e-9
-"""Share of the sketch's size below which two places are one."""
+"""Tolerance, relative to the size of the sketch, below which two points coincide."""
 
 
 class Sketch:
     """Loops of corners. ``changed()`` after every edit.
 
-    The last loop may be open: corners are added to it. All edits can be taken back; one that
-    goes on, such as a drag, is one edit (`begin`).
+    The last loop may be open: corners are added to it. All edits can be undone; a drag is one
+    edit (`begin`).
     """
 
     def __init__(self) -> None:
@@ -36,7 +36,7 @@ class Sketch:
 
     @property
     def open(self) -> bool:
-        """True while the last loop takes corners."""
+        """True while the last loop is open."""
         return not self._loops[-1].closed
 
     @property
@@ -46,17 +46,17 @@ class Sketch:
 
     @property
     def complete(self) -> bool:
-        """True if every loop is closed and nothing is wrong."""
+        """True if every loop is closed and there is no problem."""
         return not self.open and self.problem is None
 
     def corners(self) -> list[tuple[int, int, Place]]:
-        """Every corner with its loop and its place in the loop."""
+        """Every corner as (loop, index in the loop, position)."""
         return [(i, j, p) for i, loop in enumerate(self._loops) for j, p in enumerate(loop.corners)]
 
     # Edits
 
     def add(self, place: Place) -> None:
-        """Add a corner to the open loop; a place that the last corner has already adds none."""
+        """Add a corner to the open loop, unless it coincides with the last corner."""
         last = self._loops[-1]
         if last.closed or (last.corners and _same(last.corners[-1], place)):
             return
@@ -79,7 +79,7 @@ class Sketch:
         return True
 
     def take_back(self) -> None:
-        """Open the last loop, or take its last corner away, or the hole that has none."""
+        """Open the last loop, or remove its last corner, or remove an empty hole."""
         last = self._loops[-1]
         if last.closed:
             self._put(Loop(last.corners))
@@ -94,27 +94,27 @@ class Sketch:
         self._record()
 
     def move(self, loop: int, corner: int, place: Place) -> None:
-        """Put a corner elsewhere, as part of the edit that began last."""
+        """Move a corner, as part of the edit that began last."""
         corners = list(self._loops[loop].corners)
         if corners[corner] != place:
             corners[corner] = place
             self._replace(loop, corners)
 
     def set(self, loop: int, corner: int, place: Place) -> None:
-        """Put a corner elsewhere, as an edit of its own."""
+        """Move a corner, as a separate edit."""
         if self._loops[loop].corners[corner] != place:
             self._record()
             self.move(loop, corner, place)
 
     def insert(self, loop: int, corner: int, place: Place) -> None:
-        """Put a new corner before another one."""
+        """Insert a corner before another one."""
         self._record()
         corners = list(self._loops[loop].corners)
         corners.insert(corner, place)
         self._replace(loop, corners)
 
     def remove(self, loop: int, corner: int) -> None:
-        """Take a corner away; a loop of fewer than three is open again, or goes if it is not the
+        """Remove a corner; a loop of fewer than three becomes open, or is removed if it is not the
         last.
         """
         corners = list(self._loops[loop].corners)
@@ -128,45 +128,45 @@ class Sketch:
         self._set((*self._loops[:loop], kept, *self._loops[loop + 1 :]))
 
     def clear(self) -> None:
-        """Begin anew."""
+        """Remove all loops."""
         if not self.empty:
             self._record()
             self._set((Loop(),))
 
     @property
     def can_undo(self) -> bool:
-        """True if there is an edit to take back."""
+        """True if there is an edit to undo."""
         return bool(self._done)
 
     @property
     def can_redo(self) -> bool:
-        """True if an edit was taken back."""
+        """True if there is an edit to redo."""
         return bool(self._undone)
 
     def undo(self) -> None:
-        """Take back the last edit."""
+        """Undo the last edit."""
         if self._done:
             self._undone.append(self._loops)
             self._set(self._done.pop())
 
     def redo(self) -> None:
-        """Do again what was taken back last."""
+        """Redo the edit that was undone last."""
         if self._undone:
             self._done.append(self._loops)
             self._set(self._undone.pop())
 
-    # What is wrong, and what comes out
+    # Checks and result
 
     @property
     def problem(self) -> Problem | None:
-        """What would keep the sketch from being a polygon; too few corners are not yet wrong."""
+        """The first problem, None if there is none; too few corners do not count as one."""
         if self._problem is None:
             self._problem = problem_of(self._loops)
         return self._problem if self._problem.words else None
 
     @property
     def words(self) -> str:
-        """What is wrong, or what to do next."""
+        """The sentence of the problem, or a hint on the next corner."""
         if self.problem is not None:
             return self.problem.words
         last, what = self._loops[-1], name_of(len(self._loops) - 1)
@@ -197,7 +197,7 @@ class Sketch:
         }
 
     def trial(self, place: Place) -> Problem | None:
-        """What would be wrong with one more corner in the open loop, if nothing else is."""
+        """The problem that one more corner in the open loop would cause, None if none."""
         last = self._loops[-1]
         if last.closed or not last.corners or self.problem is not None:
             return None

@@ -194,7 +194,7 @@ def test_better_than_par_is_praised(playing, monkeypatch):
     play = playing.play
     play.open(dataclasses.replace(levels.load("quarter-turn"), par=2))
     playing.solve()
-    assert (play.stars, play.headline) == (3, "Better than the best we know")
+    assert (play.stars, play.headline) == (3, "Better than the best known")
 
 
 def test_the_agent_plays_on_a_mesh_of_its_own(playing, desk):

@@ -112,9 +112,9 @@ def broken(**changes):
 @pytest.mark.parametrize(
     ("contents", "why"),
     [
-        ("", "no sound level"),
+        ("", "no valid level"),
         ("[]", "expected object, got array"),
-        ("[" * 100_000, "no sound level"),
+        ("[" * 100_000, "no valid level"),
         (broken(version=9), "version"),
         (broken(kind="hex"), "'kind' is wrong"),
         (broken(title=""), "'title' is wrong"),

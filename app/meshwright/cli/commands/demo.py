@@ -24,7 +24,7 @@ PICTURE = "meshwright-demo.png"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the shape and where a picture goes."""
+    """Add the arguments."""
     parser.add_argument("--shape", metavar="SHAPE", default="star", help="shape or file (star)")
     parser.add_argument(
         "--kind", choices=("tri", "quad"), default="quad", help="triangles or quads (quad)"
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """Open the window where that is possible and wanted, else write the picture."""
+    """Open the window, or write the picture."""
     output = _checked(arguments.output) if arguments.output else None
     probe = None if output else display_check.Probe()
     domain = inputs.read_domain(arguments.shape)

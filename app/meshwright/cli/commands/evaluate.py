@@ -23,13 +23,13 @@ DESCRIPTION = (
     "paper's tables, or all of them."
 )
 STRIPS = {"tri": (20,), "quad": (10, 20)}
-"""Sides of the polygons whose rollouts are drawn, those of the paper's figures."""
+"""Sides of the polygons whose rollouts are drawn, as in the paper's figures."""
 BRIEF = 1.0
-"""Seconds of the race that a figure needs, where none is asked for."""
+"""Default time, in seconds, of the race that a figure needs."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the row, or the table: kind, sides, how many meshes and rollouts."""
+    """Add the arguments."""
     parser.add_argument("--kind", choices=("tri", "quad"), required=True, help="triangles or quads")
     rows = parser.add_mutually_exclusive_group()
     rows.add_argument(
@@ -46,9 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rollouts", metavar="K", type=inputs.positive_int, default=10, help="runs on each (10)"
     )
-    parser.add_argument(
-        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
-    )
+    parser.add_argument("--seed", metavar="N", type=inputs.seed, default=0, help="random seed (0)")
     parser.add_argument(
         "--policy", metavar="P", help="name of a shipped policy, or a policy file (the shipped one)"
     )
@@ -185,7 +183,7 @@ def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path)
 
 
 def note(policy: Policy, rows: Sequence[dict[str, Any]], path: Path) -> None:
-    """Write the table into the header of the policy's file, which stays whole if that fails."""
+    """Write the table into the header of the policy file, atomically."""
     from meshwright_agent.policy import policy_files
     from meshwright_core.errors import MeshError
 
@@ -197,7 +195,7 @@ def note(policy: Policy, rows: Sequence[dict[str, Any]], path: Path) -> None:
 
 
 def _checked_note(arguments: argparse.Namespace) -> Path:
-    """The file to write the table into."""
+    """The policy file to write the table into."""
     if not arguments.table or arguments.steps != 1.0:
         raise UserError("--note goes with --table, and not with --steps")
     if arguments.policy is None or not looks_like_path(arguments.policy):

@@ -19,7 +19,7 @@ DESCRIPTION = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the shape, the kind and the size of the elements."""
+    """Add the arguments."""
     parser.add_argument("shape", metavar="SHAPE-or-FILE", help="name of a shape, or file")
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="mesh file to write")
     parser.add_argument(
@@ -38,13 +38,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a point of a file's outline is a corner where it turns by more (0.01); raise it "
         "where curved sides are drawn as short straight pieces",
     )
-    parser.add_argument(
-        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
-    )
+    parser.add_argument("--seed", metavar="N", type=inputs.seed, default=0, help="random seed (0)")
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """Make the mesh, settle its positions, write it."""
+    """Make the mesh, smooth and untangle it, write it."""
     from meshwright.document.position_repair import settle
 
     output = mesh_output.checked_mesh_output(arguments.output, arguments.kind)

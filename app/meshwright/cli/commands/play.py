@@ -15,7 +15,7 @@ DESCRIPTION = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the level."""
+    """Add the arguments."""
     parser.add_argument("level", metavar="LEVEL", nargs="?", help="name of a level")
 
 

@@ -8,11 +8,11 @@ from typing import Any
 from meshwright.console import Report, table
 
 SUMMARY = "list the shapes of the gallery"
-DESCRIPTION = "List the shapes that mesh, view and demo know by name."
+DESCRIPTION = "List the gallery shapes, which mesh, view and demo take by name."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Take none of its own."""
+    """Add no arguments."""
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from meshwright.document.document import Document
 
 SUMMARY = "open the window, on a mesh file or a shape if one is named"
-DESCRIPTION = "Open the window. The words view FILE may be shortened to FILE."
+DESCRIPTION = "Open the window. meshwright FILE is short for meshwright view FILE."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe what to open."""
+    """Add the arguments."""
     parser.add_argument(
         "file",
         metavar="FILE-or-SHAPE",
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "or name of a shape",
     )
     parser.add_argument(
-        "--kind", choices=("tri", "quad"), default="quad", help="how to mesh a shape (quad)"
+        "--kind", choices=("tri", "quad"), default="quad", help="elements of a shape (quad)"
     )
     parser.add_argument(
         "--corner-angle",

@@ -1,7 +1,7 @@
 """The project file, ``.meshwright``: a mesh with its whole history, branches, and settings.
 
 It is a zip archive, as ``numpy.load`` reads it: ``project.json`` and one ``.npy`` for each array
-(:mod:`meshwright_core.io.snapshot` tells which). Nothing in it is ever run.
+(:mod:`meshwright_core.io.snapshot` lists them). Nothing in it is executed.
 """
 
 import io
@@ -27,7 +27,7 @@ _HEADER = "project.json"
 _FORMAT = "Meshwright project"
 _KINDS = (np.dtype(np.int32), np.dtype(np.int64), np.dtype(np.float64))
 _MOST_BYTES = 8 << 30
-_SWIFT = 1  # how hard to compress: the next levels take twice as long for a tenth less
+_SWIFT = 1  # compression level: higher ones take twice as long for files a tenth smaller
 _BROKEN = (
     zipfile.BadZipFile,
     zlib.error,
@@ -44,15 +44,15 @@ _BROKEN = (
 
 
 def is_project(path: str | os.PathLike[str]) -> bool:
-    """Whether the file's ending says that it is a project."""
+    """Whether the path has the ending of projects."""
     return Path(path).suffix.lower() == ENDING
 
 
 def write(path: str | os.PathLike[str], kept: DocumentState) -> None:
-    """Write a project, whole or not at all.
+    """Write a project atomically.
 
-    Raises MeshError, one sentence that begins with the path, where the system refuses; an old file
-    is then as it was.
+    Raises MeshError, one sentence that begins with the path, if the system refuses; an old file is
+    then unchanged.
     """
     header, arrays = document_state.packed(kept)
     text = json.dumps({"format": _FORMAT, **header}, ensure_ascii=False)
@@ -70,8 +70,8 @@ def write(path: str | os.PathLike[str], kept: DocumentState) -> None:
 def read(path: str | os.PathLike[str]) -> DocumentState:
     """Read a project; its `path` is where it was read from.
 
-    Raises MeshError, one sentence that begins with the path: the file is missing, no project, cut
-    off, or holds what is no mesh.
+    Raises MeshError, one sentence that begins with the path, if the file is missing, no project,
+    truncated, or does not hold a valid mesh.
     """
     place = Path(path)
     with naming(place):

@@ -1,5 +1,5 @@
-"""Work that a process left behind when it died, as :mod:`meshwright.document.storage.autosave`
-wrote it down.
+"""Finds and restores documents of processes that died, from the files of
+:mod:`meshwright.document.storage.autosave`.
 """
 
 from dataclasses import dataclass
@@ -20,8 +20,8 @@ from meshwright_core.io import snapshot
 
 @dataclass
 class Lost:
-    """One document that can be recovered. It is held for this process until one of
-    :meth:`discard` and :meth:`release` is called.
+    """A document that can be recovered. Its file is locked until :meth:`discard` or
+    :meth:`release` is called.
     """
 
     path: Path
@@ -31,13 +31,13 @@ class Lost:
     when: float
     """Time of the last step, in seconds since 1970."""
     now: dict[str, Any]
-    """What :meth:`meshwright.document.storage.autosave.Autosave` notes with every event: ``steps``,
-    ``score``, ``optimum``, ``elements``, ``kind``.
+    """The summary that autosave writes with every event: ``steps``, ``score``, ``optimum``,
+    ``elements``, ``kind``.
     """
     _descriptor: int | None = None
 
     def read(self) -> DocumentState:
-        """The document as it was after the last whole record; MeshError if it is not sound."""
+        """The document after the last complete record; MeshError if it cannot be restored."""
         try:
             return _replayed(self.path)
         except MeshError as error:
@@ -55,14 +55,14 @@ class Lost:
         autosave.remove(self.path)
 
     def release(self) -> None:
-        """Leave it for another start."""
+        """Unlock the file and leave it for another start."""
         if self._descriptor is not None:
             file_lock.let_go(self._descriptor)
         self._descriptor = None
 
 
 def lost(where: Path | None = None) -> list[Lost]:
-    """What processes that are no longer alive have left, the latest first; held from here on."""
+    """The documents of processes that have ended, the latest first; their files are locked."""
     found = []
     place = where if where is not None else autosave.folder()
     try:
@@ -74,14 +74,14 @@ def lost(where: Path | None = None) -> list[Lost]:
             descriptor = file_lock.hold(path)
             one = _look(path, descriptor) if descriptor is not None else None
         except OSError:
-            continue  # it may have gone meanwhile, or belong to somebody else
+            continue  # deleted in the meantime, or owned by another user
         if one is not None:
             found.append(one)
     return sorted(found, key=lambda one: one.when, reverse=True)
 
 
 def _look(path: Path, descriptor: int) -> Lost | None:
-    """Sum up a file from its headers; without a whole document in it there is nothing to offer."""
+    """Summary of a file from its headers; None, and the file deleted, if it holds no document."""
     when = path.stat().st_mtime
     headers = [record.header for record in records(path)]
     if not headers or headers[0].get("event") != "document":
@@ -101,7 +101,7 @@ def _look(path: Path, descriptor: int) -> Lost | None:
 
 
 def _replayed(path: Path) -> DocumentState:
-    """Read the whole document, then do again what came after it."""
+    """Read the document, then repeat the events recorded after it."""
     document = Document()
     for record in records(path):
         if document.empty:
@@ -110,7 +110,7 @@ def _replayed(path: Path) -> DocumentState:
             try:
                 _repeat(document, record)
             except MeshError:
-                break  # what came before is sound
+                break  # the records before it are valid
     if document.empty:
         raise MeshError("there is no whole document in it")
     return document.state()
