@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshwright.assistant.hints import Hinting
-from meshwright.assistant.insight import Sight
+from meshwright.assistant.insight import InsightStore
 from meshwright.assistant.policy_catalogue import label
-from meshwright.assistant.progress import Progress
-from meshwright.assistant.run import Decided, Question, Run, Runner, State
+from meshwright.assistant.progress import RunProgress
+from meshwright.assistant.run import AgentRun, Decision, HintRequest, RunnerProtocol, State
 from meshwright.assistant.search_runner import Effort, SearchRunner
-from meshwright.assistant.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, Worker
+from meshwright.assistant.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, PolicyWorker
 from meshwright.document.document import Document
 from meshwright.signals import Signal
 from meshwright_core import MeshError
@@ -40,7 +40,7 @@ class Assistant:
     """Runs a policy on ``document``, and requests hints from it.
 
     ``dispatch(call)`` must call ``call()`` in the document's thread, soon and in order; the other
-    parameters are those of :class:`meshwright.assistant.worker.Worker`.
+    parameters are those of :class:`meshwright.assistant.worker.PolicyWorker`.
 
     Events, emitted in the document's thread: ``changed()`` state, policy or progress changed;
     ``looked()`` :attr:`insight` changed; ``said(sentence)`` a message to show;
@@ -61,7 +61,7 @@ class Assistant:
         self.failed = Signal()
         self._document = document
         self._dispatch = dispatch
-        self._worker = Worker(self, dispatch, load, make_runner, make_search, ask)
+        self._worker = PolicyWorker(self, dispatch, load, make_runner, make_search, ask)
         self._state = State.IDLE
         self._policy = self._chosen = ""
         self._speed = 4.0
@@ -69,13 +69,13 @@ class Assistant:
         self._loading = False
         self._watch = False
         self._look_due = False
-        self._run: Run | None = None
-        self._runner: Runner | None = None
+        self._run: AgentRun | None = None
+        self._runner: RunnerProtocol | None = None
         self._runner_at = -1
         self._applying = False
-        self._sight = Sight(document)
+        self._sight = InsightStore(document)
         self.looked = self._sight.changed
-        self.progress = Progress()
+        self.progress = RunProgress()
         self.hinting = Hinting(document, self._worker)
         document.changed.connect(self._on_document_changed)
 
@@ -268,7 +268,7 @@ class Assistant:
         if self._runner is None or not synced or self._runner.finished or effort is not None:
             self._runner = None
             self._seed += 1
-        run = Run(
+        run = AgentRun(
             state=state,
             policy=self._policy,
             seed=self._seed,
@@ -340,22 +340,22 @@ class Assistant:
             self.policy = name
         self.changed.emit()
 
-    def broke(self, cause: Run | Question | None, sentence: str) -> None:
+    def broke(self, cause: AgentRun | HintRequest | None, sentence: str) -> None:
         """A run, a request, or the loading of a policy has failed."""
-        if isinstance(cause, Run):
+        if isinstance(cause, AgentRun):
             if cause is not self._run:
                 return
             self._end(State.IDLE)
             self._runner = None
         else:
-            if isinstance(cause, Question) and not self.hinting.close(cause):
+            if isinstance(cause, HintRequest) and not self.hinting.close(cause):
                 return
             self._chosen = ""
             self._loading = False
             self.changed.emit()
         self.failed.emit(sentence)
 
-    def looked_at(self, run: Run, insight: Insight | None) -> None:
+    def looked_at(self, run: AgentRun, insight: Insight | None) -> None:
         """The policy's view before its first decision."""
         if run is not self._run:
             return
@@ -364,12 +364,12 @@ class Assistant:
         if self._watch:
             self._sight.see(insight)
 
-    def progressed(self, run: Run, done: int, best: int) -> None:
+    def progressed(self, run: AgentRun, done: int, best: int) -> None:
         """A search has done ``done`` rollouts, and its lowest score is ``best``."""
         if run is self._run and self.progress.found(done, best):
             self.changed.emit()
 
-    def answered(self, question: Question, choices: tuple[Choice, ...]) -> None:
+    def answered(self, question: HintRequest, choices: tuple[Choice, ...]) -> None:
         """A request for hints has been answered."""
         if not self.hinting.close(question):
             return
@@ -378,7 +378,7 @@ class Assistant:
         if not choices:
             self.said.emit("The policy finds no operation that it may do here.")
 
-    def decided(self, run: Run, decided: Decided) -> None:
+    def decided(self, run: AgentRun, decided: Decision) -> None:
         """Apply the worker's decision; lets the event loop run in between."""
         if run is not self._run:
             return
@@ -416,7 +416,7 @@ class Assistant:
             run.applied.set()
             self.changed.emit()
 
-    def _finish(self, run: Run) -> None:
+    def _finish(self, run: AgentRun) -> None:
         document = self._document
         reason = run.runner.reason if run.runner is not None else ""
         self._end(State.IDLE)
@@ -429,7 +429,7 @@ class Assistant:
         else:
             self.said.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
 
-    def _tidy(self, run: Run) -> None:
+    def _tidy(self, run: AgentRun) -> None:
         """Smooth or untangle what the operations of the run have left inverted."""
         from meshwright.assistant.run_cleanup import clean_up
 

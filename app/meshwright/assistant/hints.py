@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright.assistant.run import Question
-from meshwright.assistant.worker import Worker
+from meshwright.assistant.run import HintRequest
+from meshwright.assistant.worker import PolicyWorker
 from meshwright.document.document import Document
 from meshwright.signals import Signal
 
@@ -21,10 +21,10 @@ class Hinting:
     ``changed()`` is emitted when :attr:`hints` change.
     """
 
-    def __init__(self, document: Document, worker: Worker) -> None:
+    def __init__(self, document: Document, worker: PolicyWorker) -> None:
         self.changed = Signal()
         self._document, self._worker = document, worker
-        self._question: Question | None = None
+        self._question: HintRequest | None = None
         self._hints: tuple[Choice, ...] = ()
 
     @property
@@ -42,7 +42,7 @@ class Hinting:
         self.forget()
         mesh = self._document.mesh
         if mesh is not None:
-            self._question = Question(policy, mesh.copy(), near, self._document.revision)
+            self._question = HintRequest(policy, mesh.copy(), near, self._document.revision)
             self._worker.answer(self._question)
 
     def forget(self) -> None:
@@ -52,7 +52,7 @@ class Hinting:
             self._hints = ()
             self.changed.emit()
 
-    def close(self, question: Question) -> bool:
+    def close(self, question: HintRequest) -> bool:
         """End a request; False if it is no longer the pending one."""
         if question is not self._question:
             return False

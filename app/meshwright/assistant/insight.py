@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
 
 
-class Sight:
+class InsightStore:
     """Stores an insight together with the revision of the document that it describes.
 
     ``changed()`` is emitted when it is set or cleared.

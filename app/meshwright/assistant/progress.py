@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 
-from meshwright.assistant.run import Run
+from meshwright.assistant.run import AgentRun
 from meshwright.assistant.search_runner import Effort
 
 
-class Progress:
+class RunProgress:
     """Progress of the current run, or of the last one; a paused run continues its counts."""
 
     def __init__(self) -> None:
@@ -19,9 +19,9 @@ class Progress:
         self.best: int | None = None
         """The lowest s found; None before anything is."""
         self._spent = 0.0
-        self._run: Run | None = None
+        self._run: AgentRun | None = None
 
-    def begin(self, run: Run, afresh: bool) -> None:
+    def begin(self, run: AgentRun, afresh: bool) -> None:
         """Start counting; `afresh` unless the run continues a paused one."""
         if afresh:
             self.decisions = self.rollouts = 0

@@ -16,7 +16,7 @@ from meshwright_core import HalfEdgeMesh, Operation
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
 
-Step = list[tuple[Operation, int]]
+DecisionStep = list[tuple[Operation, int]]
 
 
 class State(StrEnum):
@@ -30,7 +30,7 @@ class State(StrEnum):
     SEARCHING = "searching"
 
 
-class Runner(Protocol):
+class RunnerProtocol(Protocol):
     """The part of ``meshwright_agent.policy.rollout.Runner`` that the assistant uses."""
 
     @property
@@ -47,13 +47,13 @@ class Runner(Protocol):
         """The policy's view of the present state and its next step; None if there is none."""
         ...
 
-    def step(self) -> Step:
+    def step(self) -> DecisionStep:
         """The next operation and the clean-ups that follow it; empty when finished."""
         ...
 
 
 @dataclass
-class Run:
+class AgentRun:
     """One run, shared by the document's thread and the worker; ``lock`` guards ``in_step``."""
 
     state: State
@@ -65,7 +65,7 @@ class Run:
     """Decisions per second while playing."""
     watch: bool
     """Whether an insight is computed before each decision."""
-    runner: Runner | None = None
+    runner: RunnerProtocol | None = None
     effort: Effort | None = None
     held: np.ndarray | None = None
     """Vertices that keep their positions when only a region may change."""
@@ -94,10 +94,10 @@ class Run:
 
 
 @dataclass
-class Decided:
+class Decision:
     """The operations of one decision, or of several, from the worker."""
 
-    operations: Step
+    operations: DecisionStep
     decisions: int
     finished: bool
     insight: Insight | None
@@ -105,7 +105,7 @@ class Decided:
 
 
 @dataclass(frozen=True)
-class Question:
+class HintRequest:
     """A request for the policy's best operations in one state of the document."""
 
     policy: str

@@ -18,7 +18,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from meshwright.assistant.run import Decided, Question, Run, Runner, State, Step
+from meshwright.assistant.run import (
+    AgentRun,
+    Decision,
+    DecisionStep,
+    HintRequest,
+    RunnerProtocol,
+    State,
+)
 from meshwright.assistant.search_runner import Effort, SearchRunner
 from meshwright_core import HalfEdgeMesh
 
@@ -34,9 +41,9 @@ BATCH_SECONDS = 0.03
 
 Dispatch = Callable[[Callable[[], None]], None]
 Load = Callable[[str], Any]
-MakeRunner = Callable[[HalfEdgeMesh, Any, int], Runner]
+MakeRunner = Callable[[HalfEdgeMesh, Any, int], RunnerProtocol]
 MakeSearch = Callable[
-    [HalfEdgeMesh, Any, int, Effort, threading.Event, Callable[[int, int], None]], Runner
+    [HalfEdgeMesh, Any, int, Effort, threading.Event, Callable[[int, int], None]], RunnerProtocol
 ]
 Ask = Callable[[HalfEdgeMesh, Any, "np.ndarray | None"], "tuple[Choice, ...]"]
 
@@ -50,28 +57,28 @@ class Listener(Protocol):
         """A policy has been loaded."""
         ...
 
-    def broke(self, cause: Run | Question | None, sentence: str) -> None:
+    def broke(self, cause: AgentRun | HintRequest | None, sentence: str) -> None:
         """A run, a request, or the loading of a policy (None) has failed."""
         ...
 
-    def looked_at(self, run: Run, insight: Insight | None) -> None:
+    def looked_at(self, run: AgentRun, insight: Insight | None) -> None:
         """What the policy sees before its first decision."""
         ...
 
-    def decided(self, run: Run, decided: Decided) -> None:
+    def decided(self, run: AgentRun, decided: Decision) -> None:
         """Operations to apply; the worker waits until ``run.applied`` is set."""
         ...
 
-    def progressed(self, run: Run, done: int, best: int) -> None:
+    def progressed(self, run: AgentRun, done: int, best: int) -> None:
         """A search has done ``done`` rollouts, and its lowest score is ``best``."""
         ...
 
-    def answered(self, question: Question, choices: tuple[Choice, ...]) -> None:
+    def answered(self, question: HintRequest, choices: tuple[Choice, ...]) -> None:
         """A request for hints has been answered with the policy's best operations."""
         ...
 
 
-class Worker:
+class PolicyWorker:
     """Loads and runs policies on one thread, which starts with the first task.
 
     ``load(name)`` returns a policy, ``make_runner(mesh, policy, seed)`` a runner that works on its
@@ -98,7 +105,7 @@ class Worker:
         self._tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._thread: threading.Thread | None = None
         self._closed = threading.Event()
-        self._run: Run | None = None
+        self._run: AgentRun | None = None
 
     # In the document's thread
 
@@ -110,12 +117,12 @@ class Worker:
         """Load a policy."""
         self._submit(partial(self._policy_of, name), None)
 
-    def begin(self, run: Run) -> None:
+    def begin(self, run: AgentRun) -> None:
         """Work on a run until it is over or stopped."""
         self._run = run
         self._submit(partial(self._work, run), run)
 
-    def answer(self, question: Question) -> None:
+    def answer(self, question: HintRequest) -> None:
         """Request hints."""
         self._submit(partial(self._answer, question), question)
 
@@ -124,7 +131,7 @@ class Worker:
         self._closed.set()
         self._tasks.put(None)
 
-    def _submit(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
+    def _submit(self, task: Callable[[], Any], cause: AgentRun | HintRequest | None) -> None:
         if self._thread is None:
             # a daemon thread: an exiting program must not wait for decisions to be applied
             self._thread = threading.Thread(target=self._serve, name="assistant", daemon=True)
@@ -147,7 +154,7 @@ class Worker:
             task()
         atexit.unregister(self._leave)
 
-    def _guarded(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
+    def _guarded(self, task: Callable[[], Any], cause: AgentRun | HintRequest | None) -> None:
         try:
             task()
         except Exception as error:  # the outermost frame of the thread: every error is reported
@@ -159,12 +166,12 @@ class Worker:
             self._dispatch(partial(self._listener.loaded, name))
         return self._policies[name]
 
-    def _answer(self, question: Question) -> None:
+    def _answer(self, question: HintRequest) -> None:
         policy = self._policy_of(question.policy)
         choices = self._ask(question.mesh, policy, question.near)
         self._dispatch(partial(self._listener.answered, question, choices))
 
-    def _work(self, run: Run) -> None:
+    def _work(self, run: AgentRun) -> None:
         if run.stop.is_set():
             return
         policy = self._policy_of(run.policy)
@@ -180,7 +187,7 @@ class Worker:
         while run.state is not State.LOOKING and self._decide(run, runner):
             pass
 
-    def _runner_of(self, run: Run, mesh: HalfEdgeMesh, policy: Any) -> Runner:
+    def _runner_of(self, run: AgentRun, mesh: HalfEdgeMesh, policy: Any) -> RunnerProtocol:
         if run.effort is None:
             return self._make_runner(mesh, policy, run.seed)
 
@@ -189,7 +196,7 @@ class Worker:
 
         return self._make_search(mesh, policy, run.seed, run.effort, run.enough, progress)
 
-    def _decide(self, run: Run, runner: Runner) -> bool:
+    def _decide(self, run: AgentRun, runner: RunnerProtocol) -> bool:
         """Take one decision, or a batch of them, and wait until applied; False when over."""
         begun = time.monotonic()
         with run.lock:
@@ -197,7 +204,7 @@ class Worker:
                 return False
             run.in_step = True
             run.applied.clear()
-        operations: Step = []
+        operations: DecisionStep = []
         decisions = 0
         while not runner.finished and not run.stop.is_set():
             step = runner.step()
@@ -207,13 +214,13 @@ class Worker:
                 break
         finished = runner.finished
         insight = runner.look() if run.watch and not finished else None
-        decided = Decided(operations, decisions, finished, insight)
+        decided = Decision(operations, decisions, finished, insight)
         self._dispatch(partial(self._listener.decided, run, decided))
         run.applied.wait()
         self._wait(run)
         return not run.stop.is_set() and not finished
 
-    def _wait(self, run: Run) -> None:
+    def _wait(self, run: AgentRun) -> None:
         """While playing, wait until it is time for the next decision.
 
         Decisions are due at equal intervals. After a late decision the following ones catch up,
@@ -244,7 +251,7 @@ def _load_policy(name: str) -> Any:
     return policy_files.load(name)
 
 
-def _make_runner(mesh: HalfEdgeMesh, policy: Any, seed: int) -> Runner:
+def _make_runner(mesh: HalfEdgeMesh, policy: Any, seed: int) -> RunnerProtocol:
     from meshwright_agent.policy.rollout import Runner as PolicyRunner
 
     return PolicyRunner(mesh, policy, seed)

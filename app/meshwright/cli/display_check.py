@@ -15,7 +15,7 @@ PATIENCE = 30.0
 """Time limit, in seconds, for the display to answer."""
 
 
-class Probe:
+class DisplayProbe:
     """A child process that opens Qt while this process continues.
 
     Without a display named in the environment no child is started. On Windows and macOS a display

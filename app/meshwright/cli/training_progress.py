@@ -14,7 +14,7 @@ COLUMNS = ("update", "decisions", "a second", "self-play", "single", "at s*", "e
 _WIDTHS = (9, 13, 10, 11, 8, 7, 9, 9)
 
 
-class Line:
+class NumberRow:
     """Formats the numbers of a training as the cells of one table row."""
 
     def __init__(self, minutes: float | None = None) -> None:
@@ -59,12 +59,12 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{whole % 60:02}" if hours else f"{minutes}:{whole % 60:02}"
 
 
-class Display:
+class TrainingDisplay:
     """Receives the progress of a training and writes it."""
 
     def __init__(self, write: Write, minutes: float | None) -> None:
         """write: writes one row; minutes: time limit of the training, None for none."""
-        self._write, self._line, self._done = write, Line(minutes), 0
+        self._write, self._line, self._done = write, NumberRow(minutes), 0
 
     def update(self, done: int, total: int, numbers: Mapping[str, float]) -> None:
         """Show the numbers after an update."""
@@ -77,7 +77,7 @@ class Display:
 
 
 @contextmanager
-def shown(stream: TextIO, total: int, minutes: float | None = None) -> Iterator[Display]:
+def shown(stream: TextIO, total: int, minutes: float | None = None) -> Iterator[TrainingDisplay]:
     """Show a training on `stream` while the block runs; yield the object to report progress to.
 
     A terminal gets a bar with the present numbers, and above it a table with a line for each
@@ -85,7 +85,7 @@ def shown(stream: TextIO, total: int, minutes: float | None = None) -> Iterator[
     """
     form = _bar if stream.isatty() else _log
     with form(stream, total) as write:
-        yield Display(write, minutes)
+        yield TrainingDisplay(write, minutes)
 
 
 @contextmanager

@@ -22,7 +22,7 @@ BARRED = -1
 
 
 @dataclass(frozen=True)
-class Choice:
+class OperationOffer:
     """One operation of the mesh's kind at one half-edge."""
 
     info: OperationInfo
@@ -91,7 +91,7 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
 
 def choices(
     mesh: HalfEdgeMesh, halfedge: int, bar: Callable[[str], str] | None = None
-) -> tuple[Choice, ...]:
+) -> tuple[OperationOffer, ...]:
     """Verdict and change of s of every operation at a live half-edge, in the catalogue's order.
 
     ``bar`` is :attr:`meshwright.document.document.Document.bar`.
@@ -101,31 +101,33 @@ def choices(
 
 def _choice(
     mesh: HalfEdgeMesh, info: OperationInfo, halfedge: int, bar: Callable[[str], str] | None
-) -> Choice:
+) -> OperationOffer:
     why = bar(info.operation.value) if bar is not None else ""
     verdict = Verdict(BARRED, why.rstrip(".")) if why else mesh.check(info.operation, halfedge)
     if not verdict:
-        return Choice(info, verdict, None)
+        return OperationOffer(info, verdict, None)
     if info.operation == Operation.CHORD_COLLAPSE:  # there is no formula for a whole strip
-        return Choice(info, verdict, tried_change(mesh, info.operation, halfedge))
+        return OperationOffer(info, verdict, tried_change(mesh, info.operation, halfedge))
     code = CODES[mesh.k][info.operation]
-    return Choice(info, verdict, int(score_change(mesh.arrays, code, halfedge)))
+    return OperationOffer(info, verdict, int(score_change(mesh.arrays, code, halfedge)))
 
 
-def best(offered: tuple[Choice, ...]) -> Choice | None:
+def best(offered: tuple[OperationOffer, ...]) -> OperationOffer | None:
     """The allowed operation with the lowest change of s, the first of equals; None without any.
 
     An operation that changes the mesh from boundary to boundary is chosen only if no local one is
     allowed, since pointing at an edge suggests a local change.
     """
 
-    def rank(choice: Choice) -> tuple[bool, int]:
+    def rank(choice: OperationOffer) -> tuple[bool, int]:
         return choice.operation in GLOBAL, choice.change or 0
 
     return min((choice for choice in offered if choice.allowed), key=rank, default=None)
 
 
-def following(offered: tuple[Choice, ...], current: Operation | None, step: int) -> Choice | None:
+def following(
+    offered: tuple[OperationOffer, ...], current: Operation | None, step: int
+) -> OperationOffer | None:
     """The allowed operation ``step`` places after the current one, in cyclic order."""
     open_to = [choice for choice in offered if choice.allowed]
     if not open_to:

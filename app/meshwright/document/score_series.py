@@ -14,7 +14,7 @@ FAR = 4.0
 """A gap to the optimum of more than this many times the span of the curve is cut out."""
 
 
-class Track:
+class ScoreSeries:
     """Scores s and optima s* of all states of a history, updated incrementally.
 
     State 0 is the start, state i the one after step i - 1; undone steps are included.
@@ -59,7 +59,7 @@ class Track:
 
 
 @dataclass(frozen=True)
-class Frame:
+class CurveFrame:
     """Maps states and scores to pixels of a rectangle in which a curve is drawn.
 
     In a ``broken`` frame the optimum lies far below ``low``, and is drawn at the lower edge.
@@ -100,7 +100,7 @@ class Frame:
 
 def frame(
     scores: np.ndarray, optima: np.ndarray, left: float, top: float, width: float, height: float
-) -> Frame:
+) -> CurveFrame:
     """The frame that holds all scores and optima (n,) in this rectangle.
 
     It is broken if the gap to the optimum is far larger than the range of the scores: otherwise
@@ -113,17 +113,17 @@ def frame(
     broken = lowest - low > FAR * room
     if broken:
         low = lowest - 0.5 * room
-    return Frame(left, top, width, height, len(scores), low, high, broken)
+    return CurveFrame(left, top, width, height, len(scores), low, high, broken)
 
 
-def break_mark(into: Frame, unit: float = 1.0) -> np.ndarray:
+def break_mark(into: CurveFrame, unit: float = 1.0) -> np.ndarray:
     """Two short slanted lines (2, 2, 2) at the left edge of a broken frame, over the optimum."""
     x, y = into.left, into.top + into.height - 7.0 * unit
     stroke = np.array([(-4.0, 2.0), (4.0, -2.0)]) * unit
     return np.stack([stroke + (x, y - 1.75 * unit), stroke + (x, y + 1.75 * unit)])
 
 
-def steps(values: np.ndarray, into: Frame) -> np.ndarray:
+def steps(values: np.ndarray, into: CurveFrame) -> np.ndarray:
     """The values (n,) as a line of steps, (m, 2) pixels; m grows with the width, not with n.
 
     The line changes its height where a state is reached. With more states than pixels each column

@@ -22,7 +22,7 @@ MakeAssistant = Callable[[Document], Assistant]
 _OPERATIONS = frozenset(operation.value for operation in Operation)
 
 
-class Standing(StrEnum):
+class OpponentState(StrEnum):
     """State of the agent's search."""
 
     ASKED = "asked"
@@ -30,12 +30,12 @@ class Standing(StrEnum):
     FAILED = "failed"
 
 
-class Rival:
+class AgentOpponent:
     """Solves ``level`` once, with a separate assistant. ``changed()`` is emitted at the end."""
 
     def __init__(self, level: Level, make: MakeAssistant) -> None:
         self.changed = Signal()
-        self.standing = Standing.ASKED
+        self.standing = OpponentState.ASKED
         self.operations: list[tuple[Operation, int]] = []
         self.score = 0
         self.reason = ""
@@ -60,13 +60,13 @@ class Rival:
 
     def _on_said(self, sentence: str) -> None:
         if self._assistant is not None and not self._assistant.running:
-            self._end(Standing.DONE, sentence)
+            self._end(OpponentState.DONE, sentence)
 
     def _on_failed(self, sentence: str) -> None:
-        self._end(Standing.FAILED, sentence)
+        self._end(OpponentState.FAILED, sentence)
 
-    def _end(self, standing: Standing, reason: str) -> None:
-        if self._assistant is None or self.standing is not Standing.ASKED:
+    def _end(self, standing: OpponentState, reason: str) -> None:
+        if self._assistant is None or self.standing is not OpponentState.ASKED:
             return
         self.standing, self.reason = standing, reason
         self.operations = done_in(self._document.history)

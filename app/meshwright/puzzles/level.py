@@ -91,7 +91,7 @@ def names() -> tuple[str, ...]:
     return tuple(_name(path) for path in _files())
 
 
-class Shelf(tuple[Level, ...]):
+class LevelList(tuple[Level, ...]):
     """A tuple of levels that shows itself as a table."""
 
     def __repr__(self) -> str:
@@ -109,9 +109,9 @@ class Shelf(tuple[Level, ...]):
         return f"<table><tbody>{cells}</tbody></table>"
 
 
-def all() -> Shelf:
+def all() -> LevelList:
     """All levels, the easiest first."""
-    return Shelf(load(name) for name in names())
+    return LevelList(load(name) for name in names())
 
 
 @cache

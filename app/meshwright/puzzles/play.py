@@ -11,9 +11,9 @@ from meshwright.assistant.hints import Hinting
 from meshwright.document.document import Document
 from meshwright.document.history import YOU, History
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import MakeAssistant, Rival, Standing
+from meshwright.puzzles.agent_opponent import AgentOpponent, MakeAssistant, OpponentState
 from meshwright.puzzles.level import Level
-from meshwright.puzzles.progress import Progress
+from meshwright.puzzles.progress import LevelProgress
 from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
@@ -35,7 +35,7 @@ SLACK = 2
 
 
 @dataclass(frozen=True)
-class Tally:
+class StepSummary:
     """Summary of the steps from the start of a history to its cursor."""
 
     used: int = 0
@@ -46,7 +46,7 @@ class Tally:
     """The first step that is not allowed in levels; empty if there is none."""
 
 
-def tally(history: History) -> Tally:
+def tally(history: History) -> StepSummary:
     """Summarise the steps that are done."""
     used, helped, barred = 0, False, ""
     for index in range(history.cursor):
@@ -55,7 +55,7 @@ def tally(history: History) -> Tally:
         helped = helped or (row.by != YOU and row.action not in FREE)
         if row.action not in FREE and (row.action in BARRED or row.action not in COUNTED):
             barred = barred or row.action
-    return Tally(used, helped, barred)
+    return StepSummary(used, helped, barred)
 
 
 def spare(level: Level) -> int:
@@ -83,20 +83,20 @@ class LevelPlay:
         document: Document,
         hinting: Hinting,
         make_rival: MakeAssistant,
-        progress: Progress | None = None,
+        progress: LevelProgress | None = None,
     ) -> None:
         self.changed = Signal()
         self.won = Signal()
         self.level: Level | None = None
-        self.tally = Tally()
+        self.tally = StepSummary()
         self.done = False
         """Whether the goal is reached by allowed steps."""
         self.hinted = False
         """Whether a hint was requested since the start."""
-        self.rival: Rival | None = None
+        self.rival: AgentOpponent | None = None
         self.notice = ""
         """An error in storing the results, as one sentence."""
-        self.progress = progress or Progress()
+        self.progress = progress or LevelProgress()
         self._document, self._hinting, self._make_rival = document, hinting, make_rival
         self._showing = False
         document.bar = self.refusal
@@ -152,9 +152,9 @@ class LevelPlay:
         level = self._need()
         if level.most:
             raise MeshError("The agent minimises the score only: look at a solution instead.")
-        if self.rival is None or self.rival.standing is Standing.FAILED:
+        if self.rival is None or self.rival.standing is OpponentState.FAILED:
             self._drop_rival()
-            self.rival = Rival(level, self._make_rival)
+            self.rival = AgentOpponent(level, self._make_rival)
             self.rival.changed.connect(self.changed.emit)
             self.changed.emit()
 
@@ -164,7 +164,7 @@ class LevelPlay:
         """
         level = self._need()
         rival = self.rival
-        answered = rival is not None and rival.standing is Standing.DONE
+        answered = rival is not None and rival.standing is OpponentState.DONE
         by = rival.name if rival is not None and answered else "the best known"
         self._begin(level)
         self._showing = True
@@ -251,7 +251,7 @@ class LevelPlay:
     def _begin(self, level: Level) -> None:
         self.level = level
         self.done = self.hinted = False
-        self.tally = Tally()
+        self.tally = StepSummary()
         self._document.replace(level.mesh(), level.title, passing=True)
 
     def _drop_rival(self) -> None:

@@ -51,7 +51,7 @@ def usual_path() -> Path:
     return Path(chosen or platformdirs.user_state_path("meshwright")) / "levels.json"
 
 
-class Progress:
+class LevelProgress:
     """The file at ``path``, by default the user's; read at the first access."""
 
     def __init__(self, path: Path | None = None) -> None:

@@ -37,7 +37,7 @@ _LENGTH = 8
 
 
 @dataclass(frozen=True)
-class Made:
+class NewMesh:
     """A new mesh as arrays, with what the dialog shows and draws of it.
 
     Attributes:
@@ -91,7 +91,7 @@ class Made:
         return HalfEdgeMesh.from_elements(self.points, self.elements, self.geometric, self.desired)
 
 
-def make(request: Mapping[str, Any]) -> Made:
+def make(request: Mapping[str, Any]) -> NewMesh:
     """Return the mesh that a request asks for.
 
     Args:
@@ -131,13 +131,13 @@ def make(request: Mapping[str, Any]) -> Made:
     return _made(mesh, domain.name or "drawing", "")
 
 
-def frame(result: Made | str) -> bytes:
+def frame(result: NewMesh | str) -> bytes:
     """Return a mesh, or the sentence of a refusal, as bytes with their length."""
     arrays: dict[str, Any] = {}
     if isinstance(result, str):
         arrays["refusal"] = np.array(result)
     else:
-        arrays = {field.name: np.asarray(getattr(result, field.name)) for field in fields(Made)}
+        arrays = {field.name: np.asarray(getattr(result, field.name)) for field in fields(NewMesh)}
     content = io.BytesIO()
     np.savez(content, **arrays)
     whole = content.getvalue()
@@ -149,7 +149,7 @@ def length(content: bytes | bytearray) -> int:
     return _LENGTH + int.from_bytes(content[:_LENGTH], "little")
 
 
-def unframed(content: bytes | bytearray) -> Made | str:
+def unframed(content: bytes | bytearray) -> NewMesh | str:
     """Return the mesh, or the refusal, in a complete frame."""
     with np.load(io.BytesIO(memoryview(content)[_LENGTH:]), allow_pickle=False) as arrays:
         if "refusal" in arrays:
@@ -159,7 +159,7 @@ def unframed(content: bytes | bytearray) -> Made | str:
         values[name] = str(values[name])
     for name in ("score", "optimum"):
         values[name] = int(values[name])
-    return Made(**values)
+    return NewMesh(**values)
 
 
 def serve() -> None:
@@ -173,7 +173,7 @@ def serve() -> None:
 def _answer(requests: BinaryIO, answers: BinaryIO) -> None:
     for line in requests:
         try:
-            result: Made | str = make(json.loads(line))
+            result: NewMesh | str = make(json.loads(line))
         except MeshError as error:
             result = str(error)
         except MemoryError:
@@ -205,7 +205,7 @@ def _refuse_many(count: int, verb: str) -> None:
         )
 
 
-def _made(mesh: HalfEdgeMesh, name: str, path: str) -> Made:
+def _made(mesh: HalfEdgeMesh, name: str, path: str) -> NewMesh:
     elements = mesh.elements().astype(np.int32)
     ends = np.stack([elements, np.roll(elements, -1, axis=1)], axis=2).reshape(-1, 2)
     ends.sort(axis=1)
@@ -216,7 +216,7 @@ def _made(mesh: HalfEdgeMesh, name: str, path: str) -> Made:
     for side in (0, 1):
         np.minimum.at(reach, ends[first, side], np.hypot(*steps.T))
     loops = [np.asarray(loop, np.int64) for loop in mesh.boundary_loops()]
-    return Made(
+    return NewMesh(
         name=name,
         path=path,
         kind=mesh.kind,

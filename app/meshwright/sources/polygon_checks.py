@@ -20,7 +20,7 @@ _NEAR = 1e-9
 
 
 @dataclass(frozen=True)
-class Loop:
+class PolygonLoop:
     """Corners in order; the first loop is the outline, the others are holes."""
 
     corners: tuple[Place, ...] = ()
@@ -28,7 +28,7 @@ class Loop:
 
 
 @dataclass(frozen=True)
-class Problem:
+class PolygonProblem:
     """A sentence, the edges to mark as (loop, corner where the edge begins), and points."""
 
     words: str
@@ -41,7 +41,7 @@ def name_of(loop: int) -> str:
     return "the outline" if loop == 0 else f"hole {loop}"
 
 
-def problem_of(loops: tuple[Loop, ...]) -> Problem:
+def problem_of(loops: tuple[PolygonLoop, ...]) -> PolygonProblem:
     """The first problem of the loops; its sentence is empty if there is none."""
     crossing = _crossing(loops)
     if crossing is not None:
@@ -52,18 +52,18 @@ def problem_of(loops: tuple[Loop, ...]) -> Problem:
             continue
         edges = tuple((i, j) for j in range(len(loop.corners)))
         if not contains(np.array(outline.corners), *loop.corners[0]):
-            return Problem(f"Hole {i} lies outside the outline.", edges, loop.corners)
+            return PolygonProblem(f"Hole {i} lies outside the outline.", edges, loop.corners)
         for j, other in enumerate(loops[1:], start=1):
             if i != j and other.closed and contains(np.array(other.corners), *loop.corners[0]):
-                return Problem(f"Hole {i} lies inside hole {j}.", edges, loop.corners)
+                return PolygonProblem(f"Hole {i} lies inside hole {j}.", edges, loop.corners)
     for i, loop in enumerate(loops):
         if loop.closed and _flat(loop.corners):
             edges = tuple((i, j) for j in range(len(loop.corners)))
-            return Problem(f"{capitalised(name_of(i))} encloses no area.", edges)
-    return Problem("")
+            return PolygonProblem(f"{capitalised(name_of(i))} encloses no area.", edges)
+    return PolygonProblem("")
 
 
-def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
+def _crossing(loops: tuple[PolygonLoop, ...]) -> PolygonProblem | None:
     """The first two edges that cross or touch, and where."""
     owner = [(i, j) for i, loop in enumerate(loops) for j in range(len(loop.corners) - 1)]
     owner += [(i, len(loop.corners) - 1) for i, loop in enumerate(loops) if loop.closed]
@@ -97,7 +97,7 @@ def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
     else:
         one_loop, other_loop = capitalised(name_of(max(i, j))), name_of(min(i, j))
         words = f"{one_loop} crosses or touches {other_loop} near {spot}."
-    return Problem(words, (owner[e], owner[f]), (place,))
+    return PolygonProblem(words, (owner[e], owner[f]), (place,))
 
 
 def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:

@@ -8,7 +8,13 @@ from __future__ import annotations
 from typing import Any
 
 from meshwright.signals import Signal
-from meshwright.sources.polygon_checks import Loop, Place, Problem, name_of, problem_of
+from meshwright.sources.polygon_checks import (
+    Place,
+    PolygonLoop,
+    PolygonProblem,
+    name_of,
+    problem_of,
+)
 from meshwright_core.errors import MeshError, capitalised
 
 _NEAR = 1e-9
@@ -24,13 +30,13 @@ class Sketch:
 
     def __init__(self) -> None:
         self.changed = Signal()
-        self._loops: tuple[Loop, ...] = (Loop(),)
-        self._undone: list[tuple[Loop, ...]] = []
-        self._done: list[tuple[Loop, ...]] = []
-        self._problem: Problem | None = None
+        self._loops: tuple[PolygonLoop, ...] = (PolygonLoop(),)
+        self._undone: list[tuple[PolygonLoop, ...]] = []
+        self._done: list[tuple[PolygonLoop, ...]] = []
+        self._problem: PolygonProblem | None = None
 
     @property
-    def loops(self) -> tuple[Loop, ...]:
+    def loops(self) -> tuple[PolygonLoop, ...]:
         """The outline, then the holes."""
         return self._loops
 
@@ -42,7 +48,7 @@ class Sketch:
     @property
     def empty(self) -> bool:
         """True while nothing is drawn."""
-        return self._loops == (Loop(),)
+        return self._loops == (PolygonLoop(),)
 
     @property
     def complete(self) -> bool:
@@ -60,14 +66,14 @@ class Sketch:
         last = self._loops[-1]
         if last.closed or (last.corners and _same(last.corners[-1], place)):
             return
-        self._put(Loop((*last.corners, place)))
+        self._put(PolygonLoop((*last.corners, place)))
 
     def close(self) -> bool:
         """Close the open loop if it has three corners."""
         last = self._loops[-1]
         if last.closed or len(last.corners) < 3:
             return False
-        self._put(Loop(last.corners, True))
+        self._put(PolygonLoop(last.corners, True))
         return True
 
     def add_hole(self) -> bool:
@@ -75,16 +81,16 @@ class Sketch:
         if self.open:
             return False
         self._record()
-        self._set((*self._loops, Loop()))
+        self._set((*self._loops, PolygonLoop()))
         return True
 
     def take_back(self) -> None:
         """Open the last loop, or remove its last corner, or remove an empty hole."""
         last = self._loops[-1]
         if last.closed:
-            self._put(Loop(last.corners))
+            self._put(PolygonLoop(last.corners))
         elif last.corners:
-            self._put(Loop(last.corners[:-1]))
+            self._put(PolygonLoop(last.corners[:-1]))
         elif len(self._loops) > 1:
             self._record()
             self._set(self._loops[:-1])
@@ -124,14 +130,14 @@ class Sketch:
         if len(corners) < 3 and not last:
             self._set(tuple(one for i, one in enumerate(self._loops) if i != loop))
             return
-        kept = Loop(tuple(corners), self._loops[loop].closed and len(corners) >= 3)
+        kept = PolygonLoop(tuple(corners), self._loops[loop].closed and len(corners) >= 3)
         self._set((*self._loops[:loop], kept, *self._loops[loop + 1 :]))
 
     def clear(self) -> None:
         """Remove all loops."""
         if not self.empty:
             self._record()
-            self._set((Loop(),))
+            self._set((PolygonLoop(),))
 
     @property
     def can_undo(self) -> bool:
@@ -158,7 +164,7 @@ class Sketch:
     # Checks and result
 
     @property
-    def problem(self) -> Problem | None:
+    def problem(self) -> PolygonProblem | None:
         """The first problem, None if there is none; too few corners do not count as one."""
         if self._problem is None:
             self._problem = problem_of(self._loops)
@@ -196,29 +202,29 @@ class Sketch:
             "hole_corners": [[True] * len(hole) for hole in holes],
         }
 
-    def trial(self, place: Place) -> Problem | None:
+    def trial(self, place: Place) -> PolygonProblem | None:
         """The problem that one more corner in the open loop would cause, None if none."""
         last = self._loops[-1]
         if last.closed or not last.corners or self.problem is not None:
             return None
         if _same(last.corners[0], place) or _same(last.corners[-1], place):
             return None
-        found = problem_of((*self._loops[:-1], Loop((*last.corners, place))))
+        found = problem_of((*self._loops[:-1], PolygonLoop((*last.corners, place))))
         return found if found.words else None
 
-    def _put(self, last: Loop) -> None:
+    def _put(self, last: PolygonLoop) -> None:
         self._record()
         self._set((*self._loops[:-1], last))
 
     def _replace(self, loop: int, corners: list[Place]) -> None:
-        kept = Loop(tuple(corners), self._loops[loop].closed)
+        kept = PolygonLoop(tuple(corners), self._loops[loop].closed)
         self._set((*self._loops[:loop], kept, *self._loops[loop + 1 :]))
 
     def _record(self) -> None:
         self._done.append(self._loops)
         self._undone.clear()
 
-    def _set(self, loops: tuple[Loop, ...]) -> None:
+    def _set(self, loops: tuple[PolygonLoop, ...]) -> None:
         self._loops = loops
         self._problem = None
         self.changed.emit()

@@ -9,9 +9,9 @@ from meshwright.assistant.assistant import Assistant
 from meshwright.document.document import Document
 from meshwright.document.operation_preview import choices
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright.puzzles.play import LevelPlay, stars, tally
-from meshwright.puzzles.progress import Best, Progress, usual_path
+from meshwright.puzzles.progress import Best, LevelProgress, usual_path
 from meshwright_core import MeshError
 
 
@@ -23,7 +23,7 @@ class Playing:
         self.document = Document()
         self.assistant = self.assistant_on(self.document)
         self.play = LevelPlay(
-            self.document, self.assistant.hinting, self.assistant_on, Progress(path)
+            self.document, self.assistant.hinting, self.assistant_on, LevelProgress(path)
         )
         self.won = []
         self.play.won.connect(self.won.append)
@@ -203,9 +203,9 @@ def test_the_agent_plays_on_a_mesh_of_its_own(playing, desk):
     changes = []
     play.changed.connect(lambda: changes.append(play.rival))
     play.ask_agent()
-    assert play.rival.standing is Standing.ASKED
-    desk.until(lambda: play.rival.standing is not Standing.ASKED)
-    assert play.rival.standing is Standing.DONE
+    assert play.rival.standing is OpponentState.ASKED
+    desk.until(lambda: play.rival.standing is not OpponentState.ASKED)
+    assert play.rival.standing is OpponentState.DONE
     assert changes
     assert len(playing.document.history) == 0
     assert play.rival.operations
@@ -244,12 +244,12 @@ def test_the_agent_that_breaks_off_can_be_asked_again(playing, desk, monkeypatch
 
     monkeypatch.setattr(play, "_make_rival", failing)
     play.ask_agent()
-    desk.until(lambda: play.rival.standing is not Standing.ASKED)
-    assert (play.rival.standing, play.rival.reason) == (Standing.FAILED, "no such policy")
+    desk.until(lambda: play.rival.standing is not OpponentState.ASKED)
+    assert (play.rival.standing, play.rival.reason) == (OpponentState.FAILED, "no such policy")
     monkeypatch.setattr(play, "_make_rival", playing.assistant_on)
     play.ask_agent()
-    desk.until(lambda: play.rival.standing is not Standing.ASKED)
-    assert play.rival.standing is Standing.DONE
+    desk.until(lambda: play.rival.standing is not OpponentState.ASKED)
+    assert play.rival.standing is OpponentState.DONE
 
 
 def test_levels_follow_each_other_to_the_last(playing):
@@ -300,14 +300,14 @@ def test_no_step_of_a_level_is_autosaved(playing, tmp_path):
 
 def test_progress_is_shared_by_all_who_play(tmp_path):
     path = tmp_path / "deep" / "levels.json"
-    one, other = Progress(path), Progress(path)
+    one, other = LevelProgress(path), LevelProgress(path)
     assert other.best("ell") == Best()
     assert one.note("ell", 2, 8)
     assert other.note("star", 3, 4)
     assert one.note("ell", 1, 12) is False
-    assert Progress(path).best("ell") == Best(2, 8)
-    assert Progress(path).best("star") == Best(3, 4)
-    assert Progress(path).stars == 5
+    assert LevelProgress(path).best("ell") == Best(2, 8)
+    assert LevelProgress(path).best("star") == Best(3, 4)
+    assert LevelProgress(path).stars == 5
     assert [file.name for file in path.parent.iterdir()] == ["levels.json"]
 
 
@@ -328,7 +328,7 @@ def test_progress_is_shared_by_all_who_play(tmp_path):
 def test_a_broken_file_is_left_aside(tmp_path, contents):
     path = tmp_path / "levels.json"
     path.write_text(contents)
-    progress = Progress(path)
+    progress = LevelProgress(path)
     assert progress.best("ell") == Best()
     assert "begin again" in progress.notice
     assert (tmp_path / "levels.broken").read_text() == contents
@@ -339,7 +339,7 @@ def test_a_broken_file_is_left_aside(tmp_path, contents):
 def test_where_nothing_can_be_written_the_play_goes_on(playing, tmp_path):
     (tmp_path / "file").write_text("")
     play = playing.play
-    play.progress = Progress(tmp_path / "file" / "levels.json")
+    play.progress = LevelProgress(tmp_path / "file" / "levels.json")
     play.open("one-flip")
     playing.solve()
     assert play.stars == 3

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshwright.sources.polygon_checks import Loop
+from meshwright.sources.polygon_checks import PolygonLoop
 from meshwright.sources.polygon_sketch import Sketch
 from meshwright.sources.snapping import Snapper
 from meshwright_core import MeshError
@@ -118,7 +118,7 @@ def test_taking_back_opens_the_loop_then_takes_its_corners_then_the_hole():
     assert sketch.open and len(sketch.loops[1].corners) == 3
     for _ in range(4):
         sketch.take_back()
-    assert sketch.loops == (Loop(tuple(SQUARE), True),)
+    assert sketch.loops == (PolygonLoop(tuple(SQUARE), True),)
 
 
 def test_a_loop_that_loses_too_many_corners_opens_or_goes():

@@ -13,7 +13,7 @@ from typing import Any
 
 from meshwright.benchmarks.notebook.chromium import browser
 from meshwright.benchmarks.notebook.jupyterlab import LabNotebook
-from meshwright.benchmarks.notebook.probe import NOTING, Probe
+from meshwright.benchmarks.notebook.probe import NOTING, WidgetProbe
 from meshwright.benchmarks.notebook.servers import jupyterlab
 from meshwright.console import Update, no_update
 
@@ -45,7 +45,7 @@ def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[
         notebook = LabNotebook(page, server)
         for size in sizes:
             update(0, f"{size:,} elements")
-            probe = Probe(notebook, size, seed)
+            probe = WidgetProbe(notebook, size, seed)
             clicks = [probe.click() for _ in range((QUICK if quick else CLICKS) + 2)][2:]
             results[f"{size:,} elements"] = {
                 "click_to_redrawn_ms": shares([click.milliseconds for click in clicks]),

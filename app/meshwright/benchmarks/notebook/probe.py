@@ -121,7 +121,7 @@ class Click:
     all_bytes: int
 
 
-class Probe:
+class WidgetProbe:
     """A widget with a scrambled mesh of ``size`` quads, ready to be clicked at."""
 
     def __init__(self, notebook: LabNotebook, size: int, seed: int) -> None:

@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Open the window, or write the picture."""
     output = _checked(arguments.output) if arguments.output else None
-    probe = None if output else display_check.Probe()
+    probe = None if output else display_check.DisplayProbe()
     domain = inputs.read_domain(arguments.shape)
     mesh = inputs.make_mesh(domain, arguments.kind)
     name = domain.name or Path(arguments.shape).stem

@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Read what is to be opened, then open the window; return when it is closed."""
-    probe = display_check.Probe()
+    probe = display_check.DisplayProbe()
     document = _document(arguments)
     problem = probe.problem()
     if problem:

@@ -19,7 +19,7 @@ from meshwright_core.io import snapshot
 
 
 @dataclass
-class Lost:
+class LostWork:
     """A document that can be recovered. Its file is locked until :meth:`discard` or
     :meth:`release` is called.
     """
@@ -61,7 +61,7 @@ class Lost:
         self._descriptor = None
 
 
-def lost(where: Path | None = None) -> list[Lost]:
+def lost(where: Path | None = None) -> list[LostWork]:
     """The documents of processes that have ended, the latest first; their files are locked."""
     found = []
     place = where if where is not None else autosave.folder()
@@ -80,7 +80,7 @@ def lost(where: Path | None = None) -> list[Lost]:
     return sorted(found, key=lambda one: one.when, reverse=True)
 
 
-def _look(path: Path, descriptor: int) -> Lost | None:
+def _look(path: Path, descriptor: int) -> LostWork | None:
     """Summary of a file from its headers; None, and the file deleted, if it holds no document."""
     when = path.stat().st_mtime
     headers = [record.header for record in records(path)]
@@ -90,7 +90,7 @@ def _look(path: Path, descriptor: int) -> Lost | None:
         return None
     first, now = headers[0], headers[-1].get("now")
     file = first.get("path")
-    return Lost(
+    return LostWork(
         path,
         str(first.get("name") or ""),
         Path(file) if isinstance(file, str) else None,

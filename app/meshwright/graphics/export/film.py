@@ -13,7 +13,7 @@ import numpy as np
 
 from meshwright.document.document import NO_MESH, Document
 from meshwright.document.history import YOU, HistoryStep
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export import video
 from meshwright.graphics.markers import label
@@ -41,7 +41,7 @@ class Film:
         self.rows: tuple[HistoryStep, ...] = tuple(document.history)
         self._mesh = mesh.copy(history=True)
         self._state = document.history.cursor
-        track = Track()
+        track = ScoreSeries()
         track.follow(document.history)
         self.scores, self.optima = track.scores, track.optima
 
