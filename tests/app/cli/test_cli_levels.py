@@ -50,7 +50,7 @@ def test_play_opens_the_window_on_a_level(capsys, opened):
     assert json.loads(capsys.readouterr().out)["level"] == "quarter-turn"
 
 
-def test_a_level_that_is_none_is_refused_in_one_line(capsys, opened):
+def test_an_unknown_level_is_refused_in_one_line(capsys, opened):
     assert cli.main(["play", "two-flip"]) == 2
     said = capsys.readouterr().err
     assert "did you mean two-flips" in said
@@ -58,7 +58,7 @@ def test_a_level_that_is_none_is_refused_in_one_line(capsys, opened):
     assert opened == []
 
 
-def test_without_a_display_play_says_so(capsys, monkeypatch):
+def test_play_without_a_display_is_refused(capsys, monkeypatch):
     monkeypatch.setattr(display_check.DisplayProbe, "problem", lambda self: "There is no display")
     assert cli.main(["play"]) == 2
     assert "notebook" in capsys.readouterr().err

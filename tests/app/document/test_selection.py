@@ -17,7 +17,7 @@ def board() -> Document:
     return Document(HalfEdgeMesh.from_elements(points, quads))
 
 
-def test_choosing_and_what_it_spans(board):
+def test_selected_vertices_and_their_region(board):
     selection, heard = board.selection, []
     selection.changed.connect(lambda: heard.append(1))
     selection.set([6, 7, 11, 12, 99, -4])
@@ -57,7 +57,7 @@ def test_by_degree_and_irregular(board):
     assert selection.vertices.tolist() == [3, 12]
 
 
-def test_what_vanishes_leaves_the_selection(board):
+def test_deleted_vertices_leave_the_selection(board):
     mesh, selection = board.mesh, board.selection
     selection.everything()
     board.submit("collapse", mesh.halfedge(6, 7))
@@ -95,7 +95,7 @@ def test_smoothing_a_selection_moves_nothing_else(board):
     assert board.history.last.title == "Smooth here"
 
 
-def test_untangling_mends_what_is_folded_and_leaves_the_rest(board):
+def test_untangling_moves_only_vertices_at_inverted_elements(board):
     mesh = board.mesh
     assert board.untangle() == (0, 0)
     assert mesh.steps == 0

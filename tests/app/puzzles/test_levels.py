@@ -50,12 +50,12 @@ def test_a_level_is_a_valid_mesh_that_is_not_at_its_goal(level):
     assert level.text.endswith((".", "?"))
 
 
-def test_its_solution_reaches_the_goal_without_a_fold(level):
+def test_solutions_reach_the_goal_without_inverted_elements(level):
     assert played(level) == 0
     assert len(level.solution) == level.par
 
 
-def test_one_operation_fewer_does_not_do_where_that_is_shown_quickly(level):
+def test_par_is_proved_where_the_proof_is_quick(level):
     if not level.proved or level.par > 3:
         assert not fewest(level.mesh(), level.goal, level.most, deepest=2, slots=1 << 16).sequences
         return
@@ -70,7 +70,7 @@ def test_the_star_can_never_be_perfect():
     assert (star.par, star.proved) == (4, True)
 
 
-def test_the_shortest_way_is_found_whatever_the_score_does_on_it():
+def test_the_shortest_solution_is_found_even_if_the_score_rises():
     points = np.array([(i, j) for j in range(4) for i in range(5)], float)
     cells = np.array([(i, i + 1, i + 6, i + 5) for j in range(3) for i in range(5 * j, 5 * j + 4)])
     mesh = HalfEdgeMesh.from_elements(points, cells)
@@ -89,7 +89,7 @@ def test_the_shortest_way_is_found_whatever_the_score_does_on_it():
     assert (mesh.elements() == before).all()
 
 
-def test_a_search_that_is_cut_short_says_how_far_it_came():
+def test_a_stopped_search_reports_its_result():
     level = levels.load("notch")
     answer = fewest(level.mesh(), level.goal, nodes=100, slots=1 << 12)
     assert answer.sequences == ()
@@ -150,14 +150,14 @@ def test_a_bad_file_is_refused_with_one_sentence(tmp_path, contents, why):
     assert "\n" not in said
 
 
-def test_a_name_that_is_none_is_told_from_those_that_are():
+def test_an_unknown_name_is_refused_with_suggestions():
     with pytest.raises(MeshError, match="did you mean two-flips"):
         levels.load("two-flip")
     with pytest.raises(MeshError, match="there are one-flip"):
         levels.load("zzz")
 
 
-def test_a_goal_may_ask_for_few_elements_too():
+def test_a_goal_may_limit_the_elements():
     level = levels.load("three-blocks")
     mesh = level.mesh()
     assert mesh.score == level.goal

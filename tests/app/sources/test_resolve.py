@@ -46,7 +46,7 @@ def test_a_mesh_is_copied():
         ([[0, 0], [1]], None, "not a list of"),
     ],
 )
-def test_what_is_no_source_is_refused_in_a_sentence(source, kind, sentence):
+def test_unusable_sources_are_refused_in_one_sentence(source, kind, sentence):
     with pytest.raises(MeshError, match=sentence):
         mesh(source, kind)
 
@@ -62,7 +62,7 @@ def test_every_name_of_the_package_is_there(name):
     assert name in dir(meshwright)
 
 
-def test_a_name_that_is_not_there():
+def test_an_unknown_name_of_the_package_is_refused():
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = meshwright.nothing
 
