@@ -43,7 +43,7 @@ class Assistant:
     parameters are those of :class:`meshwright.assistant.worker.PolicyWorker`.
 
     Events, emitted in the document's thread: ``changed()`` state, policy or progress changed;
-    ``looked()`` :attr:`insight` changed; ``said(sentence)`` a message to show;
+    ``insight_changed()`` :attr:`insight` changed; ``message(sentence)`` a message to show;
     ``failed(sentence)`` a run has failed.
     """
 
@@ -57,7 +57,7 @@ class Assistant:
         ask: Ask | None = None,
     ) -> None:
         self.changed = Signal()
-        self.said = Signal()
+        self.message = Signal()
         self.failed = Signal()
         self._document = document
         self._dispatch = dispatch
@@ -74,7 +74,7 @@ class Assistant:
         self._runner_at = -1
         self._applying = False
         self._sight = InsightStore(document)
-        self.looked = self._sight.changed
+        self.insight_changed = self._sight.changed
         self.progress = RunProgress()
         self.hinting = Hinting(document, self._worker)
         document.changed.connect(self._on_document_changed)
@@ -238,11 +238,11 @@ class Assistant:
     def _can_work(self) -> bool:
         """Whether there are a mesh that can improve and a policy; emits a message if not."""
         if self._document.mesh is None:
-            self.said.emit("There is no mesh to work on.")
+            self.message.emit("There is no mesh to work on.")
         elif not self._policy:
-            self.said.emit("Choose a policy.")
+            self.message.emit("Choose a policy.")
         elif self._document.at_optimum:
-            self.said.emit("Already at the optimum: nothing is left to improve.")
+            self.message.emit("Already at the optimum: nothing is left to improve.")
         else:
             return True
         return False
@@ -262,7 +262,7 @@ class Assistant:
             held = self._held(effort)
         except MeshError as error:
             self._finish_state(State.IDLE)
-            self.said.emit(str(error))
+            self.message.emit(str(error))
             return
         synced = self._runner is not None and self._runner_at == self._document.revision
         if self._runner is None or not synced or self._runner.finished or effort is not None:
@@ -376,7 +376,7 @@ class Assistant:
         self.hinting.show(choices)
         self.changed.emit()
         if not choices:
-            self.said.emit("The policy finds no operation that it may do here.")
+            self.message.emit("The policy finds no allowed operation here.")
 
     def decided(self, run: AgentRun, decided: Decision) -> None:
         """Apply the worker's decision; lets the event loop run in between."""
@@ -423,11 +423,11 @@ class Assistant:
         self._tidy(run)
         where = "" if run.held is None else "The region is finished: "
         if document.at_optimum:
-            self.said.emit(f"At the optimum after {self.progress.counted}.")
+            self.message.emit(f"At the optimum after {self.progress.counted}.")
         elif where:
-            self.said.emit(f"{where}s {document.score}{'; ' + reason if reason else ''}.")
+            self.message.emit(f"{where}s {document.score}{'; ' + reason if reason else ''}.")
         else:
-            self.said.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
+            self.message.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
 
     def _tidy(self, run: AgentRun) -> None:
         """Smooth or untangle what the operations of the run have left inverted."""

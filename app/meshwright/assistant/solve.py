@@ -29,7 +29,7 @@ class SolvedMesh:
     """The result of :func:`solve`; shows itself as a picture in a notebook."""
 
     mesh: HalfEdgeMesh
-    """The solved mesh, smoothed and untangled; a mesh of its own."""
+    """The solved mesh, smoothed and untangled; not the source itself."""
     score_before: int
     """s, the sum of absolute irregularities (equation 1 of the paper), of the source."""
     score: int

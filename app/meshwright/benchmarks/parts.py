@@ -25,7 +25,7 @@ from meshwright_core.geometry import quality
 
 SUMMARY = "gallery and random parts as quads: s, s*, elements, blocks, shapes after so many seconds"
 SECONDS = 10.0
-"""Search time for each shape where nothing else is asked for."""
+"""Default search time for each shape, in seconds."""
 
 PARTS = 40
 ROWS = ((8, 24), (25, 50))
@@ -111,13 +111,13 @@ def text(results: dict[str, Any]) -> str:
     for group, found in results.items():
         rows = [["shape", *next(iter(found["shapes"].values()))]]
         rows += [[name, *map(_shown, row.values())] for name, row in found["shapes"].items()]
-        told = [
+        lines = [
             f"{name}: {value} of {found['meshes']}"
             for name, value in found.items()
             if isinstance(value, int) and name != "meshes"
         ]
-        told += [f"{name}: {value:.3g}" for name, value in found.items() if "," in name]
-        tables.append("\n".join([group, _aligned(rows), *told]))
+        lines += [f"{name}: {value:.3g}" for name, value in found.items() if "," in name]
+        tables.append("\n".join([group, _aligned(rows), *lines]))
     return "\n\n".join(tables)
 
 

@@ -43,12 +43,12 @@ class DisplayProbe:
         if self._child is None:
             return self._problem
         try:
-            _, said = self._child.communicate(timeout=PATIENCE)
+            _, errors = self._child.communicate(timeout=PATIENCE)
         except subprocess.TimeoutExpired:
             self._child.kill()
             self._child.communicate()
             return f"the display did not answer within {PATIENCE:.0f} seconds"
         if self._child.returncode == 0:
             return ""
-        lines = [line for line in said.splitlines() if line.strip()]
+        lines = [line for line in errors.splitlines() if line.strip()]
         return "Qt cannot open the display" + (f" ({lines[0].strip()})" if lines else "")

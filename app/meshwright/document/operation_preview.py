@@ -76,7 +76,7 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
     The mesh is not changed. Raises OperationRefused if the operation is not allowed.
     """
     seen = trial(mesh, operation, halfedge)
-    told = (seen.delta != 0) | ~np.isin(seen.vertices, seen.new_vertices)
+    shown = (seen.delta != 0) | ~np.isin(seen.vertices, seen.new_vertices)
     return Ghost(
         operation=seen.operation,
         halfedge=halfedge,
@@ -84,8 +84,8 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
         added=seen.added[:, :, :2],
         removed=seen.removed[:, :, :2],
         gone=seen.gone[:, :2],
-        places=seen.places[told, :2],
-        delta=seen.delta[told],
+        places=seen.places[shown, :2],
+        delta=seen.delta[shown],
     )
 
 

@@ -77,7 +77,7 @@ class Session:
         document.score_changed.connect(self._on_score_changed)
         self.assistant.changed.connect(self._on_agent_changed)
         self.assistant.hinting.changed.connect(self._on_agent_changed)
-        self.assistant.said.connect(self._on_said)
+        self.assistant.message.connect(self._on_said)
         self.assistant.failed.connect(self._on_failed)
 
     @classmethod

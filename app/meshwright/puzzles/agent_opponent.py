@@ -47,7 +47,7 @@ class AgentOpponent:
         if not self._assistant.policy:
             self._assistant.policy = policies[0] if policies else ""
         self._assistant.failed.connect(self._on_failed)
-        self._assistant.said.connect(self._on_said)  # every run ends with such a message
+        self._assistant.message.connect(self._on_message)  # every run ends with such a message
         self._assistant.search(Effort(seconds=SECONDS, coarsen=False))
 
     def close(self) -> None:
@@ -55,10 +55,10 @@ class AgentOpponent:
         assistant, self._assistant = self._assistant, None
         if assistant is not None:
             assistant.failed.disconnect(self._on_failed)
-            assistant.said.disconnect(self._on_said)
+            assistant.message.disconnect(self._on_message)
             assistant.close()
 
-    def _on_said(self, sentence: str) -> None:
+    def _on_message(self, sentence: str) -> None:
         if self._assistant is not None and not self._assistant.running:
             self._end(OpponentState.DONE, sentence)
 

@@ -201,7 +201,7 @@ def _refuse_many(count: int, verb: str) -> None:
         if verb == "would need about":
             count = int(float(f"{count:.2g}"))
         raise MeshError(
-            f"This mesh {verb} {count:,} elements, and {MOST:,} are the most: ask for longer edges."
+            f"This mesh {verb} {count:,} elements, and the limit is {MOST:,}: use longer edges."
         )
 
 

@@ -33,12 +33,13 @@ def names_file(source: object) -> bool:
     The name of a gallery shape always means the shape; any other text that has an ending or a
     folder in it, or that names something that exists, is a path.
     """
-    if isinstance(source, str):
-        from meshwright_core.domains import gallery
+    if not isinstance(source, str):
+        return isinstance(source, os.PathLike)
+    if looks_like_path(source):
+        return True
+    from meshwright_core.domains import gallery
 
-        known = source in gallery.names()
-        return not known and (looks_like_path(source) or Path(source).exists())
-    return isinstance(source, os.PathLike)
+    return source not in gallery.names() and Path(source).exists()
 
 
 def resolve(
@@ -68,19 +69,19 @@ def resolve(
         raise MeshError(NOTHING)
     if isinstance(source, Document):
         return source
+    if isinstance(source, HalfEdgeMesh):
+        return Document(source, name)
+    if names_file(source):
+        return _read(Path(source), name, corner_angle, curve_step)
     from meshwright_core.domains import gallery
     from meshwright_core.domains.domain import Domain
 
-    if isinstance(source, Domain):
-        return source
-    if isinstance(source, HalfEdgeMesh):
-        return Document(source, name)
-    if isinstance(source, np.ndarray | list | tuple):
-        return Domain(source)
-    if names_file(source):
-        return _read(Path(source), name, corner_angle, curve_step)
     if isinstance(source, str):
         return gallery.shape(source)
+    if isinstance(source, Domain):
+        return source
+    if isinstance(source, np.ndarray | list | tuple):
+        return Domain(source)
     if not hasattr(source, "mesh"):
         raise MeshError(f"A mesh cannot be made of {type(source).__name__}.")
     if not isinstance(source.mesh, HalfEdgeMesh):

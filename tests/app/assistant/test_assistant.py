@@ -36,7 +36,7 @@ def make(desk, greedy):
         )
         assistant.policy = "greedy"
         assistant.heard = []
-        assistant.said.connect(assistant.heard.append)
+        assistant.message.connect(assistant.heard.append)
         assistant.failed.connect(assistant.heard.append)
         made.append(assistant)
         return assistant
@@ -345,7 +345,7 @@ def test_the_insight_follows_edits(make, desk, star):
     assistant.watch = True
     desk.until(lambda: assistant.insight is not None)
     seen = []
-    assistant.looked.connect(lambda: seen.append(assistant.insight))
+    assistant.insight_changed.connect(lambda: seen.append(assistant.insight))
     choice = assistant.insight.choices[0]
     document.submit(choice.operation, choice.halfedge)
     assert assistant.insight is None

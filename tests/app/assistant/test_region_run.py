@@ -25,7 +25,7 @@ def assistant(document, desk):
     made = Assistant(document, desk.dispatch)
     made.policy = document.kind
     made.heard = []
-    made.said.connect(made.heard.append)
+    made.message.connect(made.heard.append)
     made.failed.connect(made.heard.append)
     yield made
     made.close()

@@ -201,7 +201,7 @@ def test_a_full_disk_is_reported_and_writing_resumes(document, tmp_path, monkeyp
     keeper = Autosave(document, tmp_path)
     told, said = [], []
     keeper.failed.connect(told.append)
-    keeper.said.connect(said.append)
+    keeper.resumed.connect(said.append)
     wander(document, 2, 1)
     two = bits(document)
     disk.left = 100

@@ -1,4 +1,4 @@
-"""Measurements of the window in a process of its own: ``python -m`` this, WHAT, BEGAN, numbers.
+"""Measurements of the window, run as ``python -m`` this module with WHAT, BEGAN and numbers.
 
 Prints one JSON object.
 """
@@ -19,14 +19,14 @@ import numpy as np
 HOVERS, OPERATIONS = 60, 15
 PLAY_SECONDS = 6.0
 PLAYED_SPEED = 20.0
-"""Operations a second that the agent is asked for."""
+"""Speed of the agent in operations per second."""
 KERNELS_S = 300.0
 SCRAMBLES = 50
-"""One in so many elements gets an operation before the window opens: meshes are never regular."""
+"""One in this many elements gets an operation first, so that the mesh is irregular."""
 
 
 def start(began: float, *numbers: int) -> dict[str, Any]:
-    """Open the window on the star and note when what is there."""
+    """Open the window on the star and record when each part is ready."""
     from qtpy.QtCore import QEvent, QObject
 
     from meshwright.desktop.main_window.startup import application, open_window
@@ -145,7 +145,7 @@ def _irregular(mesh: Any) -> int:
 
 
 def _hover(app: Any, window: Any, count: int) -> list[float]:
-    """Milliseconds from a mouse move until what it asks of the overlay has been painted."""
+    """Milliseconds from a mouse move until the overlay has been painted."""
     from qtpy.QtCore import QEvent, QObject, QPoint
     from qtpy.QtTest import QTest
 
@@ -182,7 +182,7 @@ _steps = itertools.count(1)
 
 
 def _operate(app: Any, window: Any) -> dict[str, float]:
-    """Medians in milliseconds from a key to the drawn operation, and what the time went into."""
+    """Medians in milliseconds from a key to the drawn operation, in total and by part."""
     from qtpy.QtCore import QPoint, Qt
     from qtpy.QtTest import QTest
 
@@ -236,7 +236,7 @@ def _count_frames(window: Any) -> list[int]:
 
 
 def _frame(app: Any, window: Any) -> None:
-    """Let the event loop run until the plotter has drawn what is there now."""
+    """Run the event loop until the plotter has drawn the present state."""
     frames = _count_frames(window)
     _spin(app, lambda: bool(frames[0]))
 

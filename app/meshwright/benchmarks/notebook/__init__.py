@@ -1,4 +1,4 @@
-"""The notebook's widget measured, in JupyterLab and a real Chromium.
+"""Benchmarks of the notebook widget, in JupyterLab and Chromium.
 
 A real mouse clicks at half-edges all over a scrambled mesh that is wholly in view, and the page
 notes when the click came, when the request went out, when the answer was there, and when a frame

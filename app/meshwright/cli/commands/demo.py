@@ -91,7 +91,7 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
         "shape": name,
         "window": False,
         "picture": str(output.resolve()),
-        "reason": problem or "a picture was asked for",
+        "reason": problem or "a picture was requested",
         "policy": policy.name,
         "kind": mesh.kind,
         "elements_before": mesh.n_elements,

@@ -45,8 +45,8 @@ class AgentControl:
         self.hints.connect()
         window.agent_panel.use(window.settings)
         assistant.changed.connect(self._on_changed)
-        assistant.looked.connect(self._on_looked)
-        assistant.said.connect(window.say)
+        assistant.insight_changed.connect(self._on_looked)
+        assistant.message.connect(window.say)
         assistant.failed.connect(window.notice.tell)
         window.document.selection.changed.connect(window.refresh)
 
@@ -56,8 +56,8 @@ class AgentControl:
         assistant.close()
         self.hints.release()
         assistant.changed.disconnect(self._on_changed)
-        assistant.looked.disconnect(self._on_looked)
-        assistant.said.disconnect(window.say)
+        assistant.insight_changed.disconnect(self._on_looked)
+        assistant.message.disconnect(window.say)
         assistant.failed.disconnect(window.notice.tell)
         window.document.selection.changed.disconnect(window.refresh)
 

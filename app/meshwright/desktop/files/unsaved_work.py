@@ -29,7 +29,7 @@ class Guard:
         self.autosave = Autosave(window.document, folder)
         self.autosave.enabled = window.settings.autosave
         self.autosave.failed.connect(window.notice.tell)
-        self.autosave.said.connect(window.say)
+        self.autosave.resumed.connect(window.say)
         window.settings.changed.connect(self._on_setting_changed)
 
     def release(self) -> None:

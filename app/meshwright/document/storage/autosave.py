@@ -42,12 +42,12 @@ class Autosave:
     """Records one document until :meth:`close` or :meth:`leave`.
 
     ``failed(sentence)`` is emitted when writing fails for the first time; it is tried again with
-    every later event. ``said(sentence)`` is emitted when writing works again.
+    every later event. ``resumed(sentence)`` is emitted when writing works again.
     """
 
     def __init__(self, document: Document, where: Path | None = None) -> None:
         self.failed = Signal()
-        self.said = Signal()
+        self.resumed = Signal()
         self._document = document
         self._folder = where if where is not None else folder()
         self._enabled = True
@@ -159,7 +159,7 @@ class Autosave:
         else:
             if self._failing:
                 self._failing = False
-                self.said.emit("Autosave works again.")
+                self.resumed.emit("Autosave works again.")
 
     def _write(self, buffers: Buffers) -> None:
         """Write one record; a small one by a single system call."""
