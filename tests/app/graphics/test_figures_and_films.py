@@ -12,7 +12,7 @@ from PIL import Image
 
 from meshwright.document import score_series
 from meshwright.document.document import Document
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.drawing import Area, Drawing, Segments, hatching, raster, svg
 from meshwright.graphics.export import export_job, video
 from meshwright.graphics.export.export_job import ExportOptions
@@ -39,7 +39,7 @@ def walked(star, greedy) -> Document:
 
 
 def test_score_track_follows_edits_undo_and_branches(walked):
-    history, track = walked.history, Track()
+    history, track = walked.history, ScoreSeries()
 
     def expected():
         first = history.first

@@ -12,6 +12,7 @@ from typing import Any
 
 from meshwright.teaching.exercises.exercise import NoAnswer, WrongAnswer
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.arguments import is_whole_number
 
 LONGEST = 80
 """The most characters of an answer that a sentence quotes."""
@@ -21,10 +22,9 @@ def whole_number(given: Any, what: str = "the answer") -> int:
     """A whole number: an int, a numpy integer, or a float without a fractional part."""
     if isinstance(given, float) and given.is_integer():
         return int(given)
-    try:
-        return operator.index(given) if not isinstance(given, bool) else int("no")
-    except (TypeError, ValueError):
-        raise WrongAnswer(f"{_begun(what)} is a whole number, not {quoted(given)}.") from None
+    if not is_whole_number(given):
+        raise WrongAnswer(f"{_begun(what)} is a whole number, not {quoted(given)}.")
+    return operator.index(given)
 
 
 def whole_numbers(given: Any, count: int | None = None, what: str = "the answer") -> list[int]:
