@@ -7,6 +7,12 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from meshwright_agent.env.candidates import best_template, masks, shortlist, template_plan
+from meshwright_agent.env.checked_settings import (
+    NonNegativeFloat,
+    NonNegativeInt,
+    PositiveFloat,
+    PositiveInt,
+)
 from meshwright_agent.env.local_patch import LARGEST, POTENTIALS, Patches, describe, list_patch
 from meshwright_agent.env.potential import field, forget, solve_potential
 from meshwright_core.core.arrays import HALF, NEW_COUNT, TOUCHED_COUNT, TRACE_IDS, MeshArrays
@@ -29,35 +35,35 @@ class Task:
     """"tri" or "quad"."""
     selection: str = "shortlist"
     """"shortlist" or "template", see :mod:`meshwright_agent.env.candidates`."""
-    candidates: int = 32
+    candidates: PositiveInt = 32
     """Half-edges in the shortlist."""
-    levels: int = 1
+    levels: NonNegativeInt = 1
     """Rings of elements in the template."""
-    noise: float = 1.0
+    noise: NonNegativeFloat = 1.0
     """Scale of the Gumbel noise in the shortlist."""
-    blocks: int = 4
+    blocks: PositiveInt = 4
     """Blocks of convolution, and with them the reach of the patch."""
     channels: int = 4
     """How many of meshwright_agent.env.local_patch.CHANNELS the policy sees; the paper: 2."""
-    degree_cap: int = 0
+    degree_cap: NonNegativeInt = 0
     """Highest degree that an operation may bring about; 0: 9 for triangles, 7 for quads."""
     extended: bool = False
     """Whether boundary edges of triangle meshes may be collapsed (beyond the paper)."""
-    element_floor: float = 0.0
+    element_floor: NonNegativeFloat = 0.0
     """Elements that a run must keep, relative to its start."""
-    element_ceiling: float = 2.0
+    element_ceiling: PositiveFloat = 2.0
     """Elements that a run may reach, relative to its start."""
-    steps: float = 1.5
+    steps: PositiveFloat = 1.5
     """Length of a run, relative to the number of elements at its start."""
 
     def __post_init__(self) -> None:
-        """Refuse settings that mean nothing."""
+        """Raise ValueError for a kind, selection or number of channels that does not exist."""
         if self.kind not in OPERATION_COUNT:
-            raise ValueError(f'a task is of kind "tri" or "quad", not "{self.kind}"')
+            raise ValueError(f'kind must be "tri" or "quad", not "{self.kind}"')
         if self.selection not in ("shortlist", "template"):
-            raise ValueError(f'selection is "shortlist" or "template", not "{self.selection}"')
+            raise ValueError(f'selection must be "shortlist" or "template", not "{self.selection}"')
         if self.channels not in (2, 4, 6):
-            raise ValueError(f"a policy sees 2, 4 or 6 channels, not {self.channels}")
+            raise ValueError(f"channels must be 2, 4 or 6, not {self.channels}")
 
     @property
     def k(self) -> int:

@@ -12,6 +12,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor, nn
 
+from meshwright_agent.env.checked_settings import PositiveInt
 from meshwright_agent.env.task import Task
 
 SCALES = (6.0, 1.0, 1.0, 1.0, 32.0, 32.0)
@@ -24,9 +25,9 @@ NEVER = -1e9
 class Architecture:
     """Size and form of the network; saved with the policy."""
 
-    width: int = 32
+    width: PositiveInt = 32
     """Features per half-edge."""
-    embedding: int = 16
+    embedding: PositiveInt = 16
     """Features per half-edge before the first block."""
     prior: bool = True
     """Whether exact one-step changes of s enter the logits."""
@@ -34,7 +35,7 @@ class Architecture:
     """Where beta starts."""
     global_split_bias: float = -3.0
     """Where the prior's constant for global splits starts."""
-    value_width: int = 64
+    value_width: PositiveInt = 64
     """Width of the value head."""
 
 

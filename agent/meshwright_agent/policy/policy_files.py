@@ -17,6 +17,7 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 
+from meshwright_agent.env.checked_settings import settings_from
 from meshwright_agent.env.task import Task
 from meshwright_agent.policy.network import Architecture, PolicyNetwork
 from meshwright_core.core.kinds import KIND_NOUN
@@ -115,7 +116,8 @@ def _rebuild(
             raise PolicyError(
                 f"{text}: policy format {header['format']}, this program reads {FORMAT}"
             )
-        task, architecture = Task(**header["task"]), Architecture(**header["architecture"])
+        task = settings_from(header["task"], Task)
+        architecture = settings_from(header["architecture"], Architecture)
     except PolicyError:
         raise
     except (KeyError, TypeError, ValueError) as error:

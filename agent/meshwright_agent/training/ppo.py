@@ -14,6 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
+from meshwright_agent.env.checked_settings import (
+    Fraction,
+    NonNegativeFloat,
+    PositiveFloat,
+    PositiveInt,
+)
 from meshwright_agent.env.local_patch import Patches, assemble
 from meshwright_agent.env.task import Observation
 from meshwright_agent.env.vector_env import Batch
@@ -23,36 +29,36 @@ from meshwright_agent.training.distributed import Processes
 
 
 @dataclass(frozen=True)
-class Settings:
+class PPOSettings:
     """Numbers of the algorithm."""
 
-    environments: int = 256
+    environments: PositiveInt = 256
     """Runs side by side."""
-    horizon: int = 32
+    horizon: PositiveInt = 32
     """Steps of every run between updates."""
-    epochs: int = 2
+    epochs: PositiveInt = 2
     """Passes over the collected decisions in one update."""
-    minibatch: int = 256
+    minibatch: PositiveInt = 256
     """Decisions per gradient step."""
-    learning_rate: float = 1.5e-3
+    learning_rate: PositiveFloat = 1.5e-3
     """Of Adam, at the beginning; it falls linearly to a tenth over the training."""
-    gamma: float = 0.99
+    gamma: Fraction = 0.99
     """Discount (equation 4)."""
-    lambda_: float = 0.95
+    lambda_: Fraction = 0.95
     """Of the lambda-return; 1 with no baseline."""
-    clip: float = 0.2
+    clip: PositiveFloat = 0.2
     """How far probabilities may move in one update, relatively."""
-    entropy: float = 0.003
+    entropy: NonNegativeFloat = 0.003
     """Weight of the entropy term."""
-    value: float = 0.5
+    value: NonNegativeFloat = 0.5
     """Weight of the baseline's error."""
     baseline: bool = True
     """Whether a learned value is subtracted."""
-    gradient_norm: float = 0.5
+    gradient_norm: PositiveFloat = 0.5
     """Gradients are cut to this length."""
-    operation_price: float = 0.0
+    operation_price: NonNegativeFloat = 0.0
     """What each operation costs, in units of s."""
-    element_price: float = 0.0
+    element_price: NonNegativeFloat = 0.0
     """What each new element costs, in units of s; one that goes pays as much back."""
 
 
@@ -99,7 +105,7 @@ def normalised_advantages(
 
 
 def collect(
-    batch: Batch, network: PolicyNetwork, settings: Settings, generator: torch.Generator
+    batch: Batch, network: PolicyNetwork, settings: PPOSettings, generator: torch.Generator
 ) -> Collected:
     """Play `horizon` steps of every run with the current policy."""
     shape = (settings.horizon, len(batch.active))
@@ -141,7 +147,7 @@ def update(
     network: PolicyNetwork,
     optimiser: torch.optim.Optimizer,
     collected: Collected,
-    settings: Settings,
+    settings: PPOSettings,
     rng: np.random.Generator,
     processes: Processes | None = None,
 ) -> dict[str, float]:
