@@ -11,7 +11,6 @@ from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.network import Architecture, PolicyNetwork
 from meshwright_agent.policy.policy_files import Policy, PolicyError
 from meshwright_agent.policy.rollout import Runner
-from meshwright_agent.training.ppo import normalised_advantages
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import JOURNALLING, MeshArrays
 from meshwright_core.domains.meshing import benchmark_mesh
@@ -117,31 +116,3 @@ def test_a_run_refuses_the_other_kind():
     mesh = benchmark_mesh("tri", 9, np.random.default_rng(3))
     with pytest.raises(PolicyError, match="quad"):
         Runner(mesh, _policy("quad"), seed=0)
-
-
-def test_advantages_agree_with_the_slow_sum():
-    rng = np.random.default_rng(0)
-    steps, runs, gamma = 9, 4, 0.9
-    rewards = rng.integers(-2, 3, (steps, runs)).astype(np.float32)
-    ended = rng.random((steps, runs)) < 0.2
-    gaps = rng.integers(1, 9, (steps + 1, runs)).astype(np.float32)
-    ended[-1] = True
-    advantages, targets = normalised_advantages(
-        rewards, gaps, np.zeros_like(gaps), ended.astype(np.float32), gamma, 1.0
-    )
-    for b in range(runs):
-        for t in range(steps):
-            total, factor = 0.0, 1.0
-            for later in range(t, steps):
-                total += factor * rewards[later, b]
-                factor *= gamma
-                if ended[later, b]:
-                    break
-            assert advantages[t, b] == pytest.approx(total / gaps[t, b], rel=1e-5)
-            assert targets[t, b] == pytest.approx(total / gaps[t, b], rel=1e-5)
-    # a baseline that knows the return leaves no advantage
-    values = np.concatenate([targets, np.zeros((1, runs), np.float32)])
-    advantages, _ = normalised_advantages(
-        rewards, gaps, values, ended.astype(np.float32), gamma, 0.7
-    )
-    assert np.abs(advantages).max() < 1e-5
