@@ -1,4 +1,4 @@
-"""What the paper reports (section 5), to stand beside our own numbers."""
+"""The results that the paper reports (sections 5.1 and 5.2), for comparison with ours."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ from meshwright.assistant.search_runner import Effort, SearchRunner
 from meshwright_core import HalfEdgeMesh
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Choice, Insight
+    from meshwright_agent.policy.explanation_types import Insight, PolicyAction
 
 LEAVE_SECONDS = 10.0
 """Seconds that the end of the program waits for the thread, at most."""
@@ -38,7 +38,7 @@ MakeRunner = Callable[[HalfEdgeMesh, Any, int], Runner]
 MakeSearch = Callable[
     [HalfEdgeMesh, Any, int, Effort, threading.Event, Callable[[int, int], None]], Runner
 ]
-Ask = Callable[[HalfEdgeMesh, Any, "np.ndarray | None"], "tuple[Choice, ...]"]
+Ask = Callable[[HalfEdgeMesh, Any, "np.ndarray | None"], "tuple[PolicyAction, ...]"]
 
 _log = logging.getLogger(__name__)
 
@@ -66,7 +66,7 @@ class Listener(Protocol):
         """So many rollouts are done, and this is the lowest s so far."""
         ...
 
-    def answered(self, question: Question, choices: tuple[Choice, ...]) -> None:
+    def answered(self, question: Question, choices: tuple[PolicyAction, ...]) -> None:
         """The policy's best few operations."""
         ...
 
@@ -249,7 +249,9 @@ def _make_runner(mesh: HalfEdgeMesh, policy: Any, seed: int) -> Runner:
     return PolicyRunner(mesh, policy, seed)
 
 
-def _ask_policy(mesh: HalfEdgeMesh, policy: Any, near: np.ndarray | None) -> tuple[Choice, ...]:
+def _ask_policy(
+    mesh: HalfEdgeMesh, policy: Any, near: np.ndarray | None
+) -> tuple[PolicyAction, ...]:
     from meshwright_agent.policy.explanation import hints
 
     return hints(mesh, policy, near=near)

@@ -6,7 +6,7 @@ import pytest
 from meshwright_agent.evaluation import figures, paper_results, rollout_strip
 from meshwright_agent.evaluation.baselines import BASELINES, RACERS, attempt, share_within
 from meshwright_agent.evaluation.rollouts import NothingToDo, longer, roll_out, unseen
-from meshwright_agent.evaluation.table_row import Wanted, assess
+from meshwright_agent.evaluation.table_row import RowSettings, assess
 from meshwright_agent.policy.policy_files import load
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -75,7 +75,7 @@ def test_a_share_counts_what_was_in_time():
 
 
 def test_an_assessment_and_its_figures(policy, tmp_path):
-    wanted = Wanted(2, 2, seed=4, race=0.05, polish=0.05)
+    wanted = RowSettings(2, 2, seed=4, race=0.05, polish=0.05)
     found = assess(policy, (8, 9), wanted)
     polished = found.numbers["polished"]
     assert polished["coarse_elements_mean"] <= polished["elements_mean"] + 1e-9

@@ -45,7 +45,7 @@ horizon = 6
 minibatch = 16
 """
 
-# runs in both processes: a training, and afterwards what each of them knows
+# run by both processes: a training, and afterwards a record of the state of each
 TOGETHER = """
 import json, sys
 from pathlib import Path
@@ -55,14 +55,14 @@ from meshwright_agent.training import trainer
 
 configuration, folder = sys.argv[1], Path(sys.argv[2])
 trainer.evaluate = lambda *_: {"single_mean": 0.0, "seconds": 1.0}
-loop = trainer._loop
+run_updates = trainer._run_updates
 
-def loop_and_tell(trainer, *rest):
-    loop(trainer, *rest)
+def run_and_record(trainer, *rest):
+    run_updates(trainer, *rest)
     known = trainer.processes
     numbers = np.arange(3.0 + known.rank)
     name = folder.parent / f"process-{known.rank}"
-    told = {
+    record = {
         "moments": known.mean_and_deviation(numbers),
         "least": known.least(len(numbers)),
         "from_first": known.from_first(known.rank),
@@ -70,10 +70,10 @@ def loop_and_tell(trainer, *rest):
         "decisions": trainer.progress.decisions,
         "curve": [point["mean"] for point in trainer.progress.curve],
     }
-    name.with_suffix(".json").write_text(json.dumps(told))
+    name.with_suffix(".json").write_text(json.dumps(record))
     save_file(trainer.network.state_dict(), name.with_suffix(".safetensors"))
 
-trainer._loop = loop_and_tell
+trainer._run_updates = run_and_record
 trainer.train(configuration, folder)
 """
 

@@ -13,7 +13,7 @@ from meshwright.console import Report, UserError
 from meshwright.experiments import evaluation_table
 
 if TYPE_CHECKING:
-    from meshwright_agent.evaluation.table_row import Assessment
+    from meshwright_agent.evaluation.table_row import TableRow
     from meshwright_agent.policy.policy_files import Policy
 
 SUMMARY = "measure a policy on random polygons: the paper's tables and figures"
@@ -99,7 +99,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     from meshwright_agent.evaluation import paper_results, rollouts, table_row
 
     table = [row.sides for row in paper_results.ROWS[arguments.kind]]
-    wanted = table_row.Wanted(
+    wanted = table_row.RowSettings(
         arguments.meshes,
         arguments.rollouts,
         arguments.seed,
@@ -142,7 +142,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         report.result({**given, **rows[0]}, _with_figures(text, given))
 
 
-def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path) -> list[Path]:
+def draw(policy: Policy, found: Sequence[TableRow], wanted: Any, folder: Path) -> list[Path]:
     """Draw all figures; returns their paths."""
     from meshwright_agent.evaluation import figures, paper_results, rollout_strip, rollouts
 
