@@ -110,7 +110,10 @@ def roll_out(
 
 
 def _play(batch: Batch, policy: Policy, generator: torch.Generator) -> tuple[np.ndarray, Trace]:
-    """Play all episodes to their end; returns the elements (M,) at the best states, and the trace."""
+    """Play all episodes to their end.
+
+    Returns the elements (M,) at the best states, and the trace.
+    """
     task = policy.task
     elements = batch.start_elements.copy()
     gaps, codes, halfedges = [batch.gaps], [], []

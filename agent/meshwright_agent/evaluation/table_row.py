@@ -38,7 +38,7 @@ class RowSettings:
 
 
 @dataclass
-class TableRow:
+class RowResult:
     """The measurements of one row."""
 
     sides: tuple[int, int]
@@ -56,7 +56,7 @@ def assess(
     sides: tuple[int, int],
     settings: RowSettings,
     progress: ProgressCallback | None = None,
-) -> TableRow:
+) -> RowResult:
     """Measure one row for polygons with so many sides (a closed range).
 
     The numbers are those of :func:`meshwright_agent.evaluation.rollouts.evaluate`, the paper's, and
@@ -81,7 +81,7 @@ def assess(
         "seconds_per_mesh": seconds / len(meshes),
         "paper": _paper(policy.kind, sides),
     }
-    found = TableRow(sides, numbers, meshes, rolled)
+    found = RowResult(sides, numbers, meshes, rolled)
     if settings.baselines:
         numbers["baselines"] = baselines(
             meshes, policy, numbers["seconds_per_mesh"], settings.seed, report

@@ -13,7 +13,7 @@ from meshwright.console import Report, UserError
 from meshwright.experiments import evaluation_table
 
 if TYPE_CHECKING:
-    from meshwright_agent.evaluation.table_row import TableRow
+    from meshwright_agent.evaluation.table_row import RowResult
     from meshwright_agent.policy.policy_files import Policy
 
 SUMMARY = "measure a policy on random polygons: the paper's tables and figures"
@@ -142,7 +142,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         report.result({**given, **rows[0]}, _with_figures(text, given))
 
 
-def draw(policy: Policy, found: Sequence[TableRow], wanted: Any, folder: Path) -> list[Path]:
+def draw(policy: Policy, found: Sequence[RowResult], wanted: Any, folder: Path) -> list[Path]:
     """Draw all figures; returns their paths."""
     from meshwright_agent.evaluation import figures, paper_results, rollout_strip, rollouts
 
