@@ -33,7 +33,7 @@ class ConfigurationError(ValueError):
 
 
 @dataclass(frozen=True)
-class Training:
+class TrainingConfiguration:
     """A whole training configuration."""
 
     task: Task
@@ -76,7 +76,7 @@ class Training:
         """Plain values, as they are saved in checkpoints and policy headers."""
         return asdict(self)
 
-    def resumes(self, earlier: Training) -> bool:
+    def resumes(self, earlier: TrainingConfiguration) -> bool:
         """Whether a training with this configuration can continue a checkpoint of `earlier`.
 
         They may differ in when to stop, in the device, and in what is measured at the end.
@@ -86,7 +86,7 @@ class Training:
         return all(mine[name] == theirs[name] for name in mine if name not in free)
 
 
-def read_configuration(source: str | Path | Mapping[str, Any]) -> Training:
+def read_configuration(source: str | Path | Mapping[str, Any]) -> TrainingConfiguration:
     """A configuration from a TOML file, or from the values of one. Raises ConfigurationError."""
     if isinstance(source, Mapping):
         return configuration_of(source, "the configuration")
@@ -97,7 +97,7 @@ def read_configuration(source: str | Path | Mapping[str, Any]) -> Training:
     return configuration_of(values, str(source))
 
 
-def configuration_of(given: Mapping[str, Any], name: str) -> Training:
+def configuration_of(given: Mapping[str, Any], name: str) -> TrainingConfiguration:
     """A configuration from plain values; error messages begin with `name`.
 
     The key ``lambda`` of a TOML file is the field ``lambda_``, as it is saved in checkpoints.
@@ -107,7 +107,7 @@ def configuration_of(given: Mapping[str, Any], name: str) -> Training:
     if isinstance(ppo, Mapping):
         values["ppo"] = {("lambda_" if key == "lambda" else key): ppo[key] for key in ppo}
     try:
-        return settings_from(values, Training)
+        return settings_from(values, TrainingConfiguration)
     except SettingsError as error:
         raise ConfigurationError(f"{name}: {error}".replace("lambda_", "lambda")) from None
 

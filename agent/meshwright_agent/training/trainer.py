@@ -20,7 +20,7 @@ from meshwright_agent.policy.policy_files import Policy, save_policy
 from meshwright_agent.training import checkpoint
 from meshwright_agent.training.configuration import (
     ConfigurationError,
-    Training,
+    TrainingConfiguration,
     configuration_of,
     read_configuration,
     shipped_configuration,
@@ -34,7 +34,7 @@ from meshwright_core.io.atomic_write import replacing
 __all__ = [
     "ConfigurationError",
     "Trainer",
-    "Training",
+    "TrainingConfiguration",
     "read_configuration",
     "shipped_configuration",
     "train",
@@ -64,7 +64,7 @@ class Trainer:
     """A training: network, optimiser, self-play and learning curve."""
 
     def __init__(
-        self, training: Training, folder: Path, processes: Processes | None = None
+        self, training: TrainingConfiguration, folder: Path, processes: Processes | None = None
     ) -> None:
         """Start a training that writes into `folder`, or resume the checkpoint there.
 

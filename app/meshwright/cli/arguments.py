@@ -19,7 +19,7 @@ from meshwright.console import Report, UserError
 if TYPE_CHECKING:
     from meshwright.document.document import Document
     from meshwright_agent.policy.policy_files import Policy
-    from meshwright_agent.training.trainer import Training
+    from meshwright_agent.training.trainer import TrainingConfiguration
     from meshwright_core import HalfEdgeMesh
     from meshwright_core.domains.domain import Domain
 
@@ -110,7 +110,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
     return policy
 
 
-def read_configuration(path: str | None, kind: str) -> Training:
+def read_configuration(path: str | None, kind: str) -> TrainingConfiguration:
     """Return a training configuration, the shipped one if no path is given."""
     from meshwright_agent.training import trainer
 
