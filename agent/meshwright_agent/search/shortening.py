@@ -57,7 +57,7 @@ def first_names(slots: int, capacity: int, count: int) -> Names:
 
 
 @bare_kernel
-def _christen(m, vertex_of, name_of, first, count):
+def _name_created(m, vertex_of, name_of, first, count):
     """Name the vertices that the last operation created, at most `count`."""
     made = m.trace[NEW_COUNT]
     for i in range(made):
@@ -150,7 +150,7 @@ def replay(m, vertex_of, name_of, entries, start, stop, cap, floor, goal, most, 
         kept[i] = True
         halfedges[i] = h
         rewrite(m, entries[i, 0], h)
-        _christen(m, vertex_of, name_of, entries[i, 3], entries[i, 4])
+        _name_created(m, vertex_of, name_of, entries[i, 3], entries[i, 4])
         if m.counters[ELEMENTS] < floor:
             return -1
     return stop if m.counters[SCORE] <= goal and m.counters[ELEMENTS] <= most else -1

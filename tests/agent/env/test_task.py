@@ -1,4 +1,4 @@
-"""Masks, one-step changes, runs in batches and alone."""
+"""Action masks, exact changes of s, and episodes in a vector environment and alone."""
 
 import numpy as np
 import pytest
@@ -33,9 +33,9 @@ def test_score_change_is_exact(kind):
             for code in range(task.first_operation, task.first_operation + task.operations):
                 if not permitted(mesh.arrays, code, h, 0, 0, 10**6, True):
                     continue
-                said = score_change(mesh.arrays, code, h)
-                assert mesh.apply(NAMES[code], h).score_change == said
-                seen.add((code, said))
+                expected = score_change(mesh.arrays, code, h)
+                assert mesh.apply(NAMES[code], h).score_change == expected
+                seen.add((code, expected))
                 mesh.undo()
     assert len(seen) > 8
 
@@ -57,7 +57,7 @@ def test_template_sizes(k, levels, size):
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 @pytest.mark.parametrize("selection", ["shortlist", "template"])
-def test_runs_in_a_batch_leave_valid_meshes(kind, selection):
+def test_episodes_in_a_batch_leave_valid_meshes(kind, selection):
     rng = np.random.default_rng(2)
     policy = _policy(kind, selection=selection, extended=True)
     meshes = [m for m in start_meshes(kind, (8, 14), 6, rng) if m.score > m.optimum]
@@ -77,7 +77,7 @@ def test_runs_in_a_batch_leave_valid_meshes(kind, selection):
         assert run.optimum == mesh.optimum and run.score == batch.scores[b]
 
 
-def test_an_endless_batch_begins_again():
+def test_an_endless_batch_starts_new_episodes():
     rng = np.random.default_rng(2)
     policy = _policy("quad")
     batch = Batch(policy.task, start_meshes("quad", (8, 10), 5, rng), 8, rng)
@@ -92,7 +92,7 @@ def test_an_endless_batch_begins_again():
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_a_run_replays_on_the_mesh_it_was_made_for(kind):
+def test_an_episode_replays_on_its_mesh(kind):
     mesh = benchmark_mesh(kind, 14, np.random.default_rng(3))
     replayed = mesh.copy()
     runner = Runner(mesh, _policy(kind, extended=True), seed=4)
@@ -112,7 +112,7 @@ def test_a_run_replays_on_the_mesh_it_was_made_for(kind):
     assert (again.mesh.elements() == runner.mesh.elements()).all()
 
 
-def test_a_run_refuses_the_other_kind():
+def test_a_policy_of_the_other_kind_is_refused():
     mesh = benchmark_mesh("tri", 9, np.random.default_rng(3))
     with pytest.raises(PolicyError, match="quad"):
         Runner(mesh, _policy("quad"), seed=0)

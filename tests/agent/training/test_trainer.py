@@ -1,4 +1,4 @@
-"""A tiny training: learns to save, resumes, and refuses what it cannot read."""
+"""A tiny training: results, checkpoints, early stopping, and wrong configurations."""
 
 import json
 from types import SimpleNamespace
@@ -87,7 +87,7 @@ def test_a_training_ends_early_and_its_best_policy_is_the_result(tmp_path, monke
     assert (again["iteration"], again["best_return"]) == (4, 0.9)
 
 
-def test_events_hold_what_has_a_tag_and_is_a_number(tmp_path):
+def test_events_hold_tagged_numbers_that_are_not_nan(tmp_path):
     events = Events(tmp_path, 0)
     for update in range(1, 6):
         events.write(update, {"entropy": 1.0, "mean": float("nan"), "unknown": 3.0})
@@ -99,7 +99,7 @@ def test_events_hold_what_has_a_tag_and_is_a_number(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["tri", "quad", "tri-paper", "quad-paper"])
-def test_the_configurations_that_travel_can_be_read(name):
+def test_shipped_configurations_can_be_read(name):
     training = read_configuration(shipped_configuration(name))
     assert training.task.kind == name.split("-")[0]
     assert (training.task.selection == "template") == name.endswith("paper")
@@ -155,7 +155,7 @@ def test_a_checkpoint_names_lambda_by_its_field():
     assert configuration_of(saved, "checkpoint") == read_configuration(_TINY)
 
 
-def test_a_configuration_that_is_no_toml_is_refused(tmp_path):
+def test_a_configuration_that_is_not_toml_is_refused(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text("sides = [10,")
     with pytest.raises(ConfigurationError, match=r"mine\.toml"):
