@@ -120,7 +120,7 @@ def test_no_hint_without_irregular_vertices():
     assert hints(meshing.grid("quad", 16), policy_files.load("quad")) == ()
 
 
-def test_operations_with_the_same_result_are_merged():
+def test_operations_have_the_same_result_at_equivalent_half_edges():
     mesh = meshing.grid("quad", 16)
     for h in range(4 * mesh.n_elements):
         for operation in (Operation.FLIP_LEFT, Operation.COLLAPSE, Operation.SPLIT):
