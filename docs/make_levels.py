@@ -29,8 +29,9 @@ from meshwright.document.document import Document
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.level import Level
 from meshwright_agent.policy.policy_files import load, shipped
+from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.exhaustive import Answer, Found, fewest
+from meshwright_agent.search.exhaustive import FewestResult, fewest
 from meshwright_agent.search.shortening import shorten
 from meshwright_agent.search.solver import solve
 from meshwright_core import HalfEdgeMesh
@@ -50,7 +51,7 @@ WIDTH, DEPTH = 150, 14
 # Ways
 
 
-def drawn(mesh: HalfEdgeMesh, way: Found) -> bool:
+def drawn(mesh: HalfEdgeMesh, way: Operations) -> bool:
     """Whether nothing is folded at the end, when it is played as a person plays it."""
     document = Document(mesh.copy())
     for operation, halfedge in way:
@@ -58,7 +59,7 @@ def drawn(mesh: HalfEdgeMesh, way: Found) -> bool:
     return not len(quality.inverted(document.mesh))
 
 
-def best(mesh: HalfEdgeMesh, recipe: Recipe) -> tuple[Found, int, Answer] | None:
+def best(mesh: HalfEdgeMesh, recipe: Recipe) -> tuple[Operations, int, FewestResult] | None:
     """A shortest way whose end can be drawn, how many operations will not do, all that is known."""
     goal = mesh.optimum
     answer = fewest(mesh, goal, recipe.most, nodes=recipe.nodes)
@@ -74,7 +75,7 @@ def best(mesh: HalfEdgeMesh, recipe: Recipe) -> tuple[Found, int, Answer] | None
     return (ways[0], answer.proved, answer) if ways else None
 
 
-def solved(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
+def solved(mesh: HalfEdgeMesh, goal: int) -> list[Operations]:
     """Ways of the agent."""
     policy = load(shipped(mesh.kind)[0])
     found = [
@@ -83,13 +84,13 @@ def solved(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
     return [s.operations for s in found if s.score <= goal and not s.inverted]
 
 
-def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
+def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Operations]:
     """Ways that go on from the best states only, depth by depth; those of the first depth that
     reaches the goal.
     """
-    beam: list[Found] = [[]]
+    beam: list[Operations] = [[]]
     for _ in range(DEPTH):
-        found: list[tuple[int, int, Found]] = []
+        found: list[tuple[int, int, Operations]] = []
         for way in beam:
             work = replayed(mesh, way)
             for operation, halfedge in allowed(work):
@@ -101,7 +102,7 @@ def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
         ends = [way for way in ends[:40] if drawn(mesh, way)]
         if ends:
             return ends
-        kept: dict[tuple[int, ...], Found] = {}
+        kept: dict[tuple[int, ...], Operations] = {}
         for score, irregular, way in found[: 20 * WIDTH]:
             kept.setdefault((score, irregular, *fingerprint(replayed(mesh, way))), way)
             if len(kept) == WIDTH:
@@ -127,7 +128,7 @@ def fingerprint(mesh: HalfEdgeMesh) -> tuple[int, ...]:
     return (hash(tuple(sorted(pairs))),)
 
 
-def shorter(mesh: HalfEdgeMesh, way: Found, goal: int) -> Found:
+def shorter(mesh: HalfEdgeMesh, way: Operations, goal: int) -> Operations:
     """The way with its end replaced by shorter ones, from every state on it, while that helps."""
     way = shorten(mesh, way, seconds=0.5)
     at = len(way)
@@ -154,7 +155,7 @@ def sound(mesh: HalfEdgeMesh) -> bool:
     return float(quality.scaled_jacobian(mesh).min()) > 0.25
 
 
-def fits(recipe: Recipe, mesh: HalfEdgeMesh, ways: Sequence[Found], length: int) -> bool:
+def fits(recipe: Recipe, mesh: HalfEdgeMesh, ways: Sequence[Operations], length: int) -> bool:
     """Whether it is what the recipe wants."""
     if not recipe.par[0] <= length <= recipe.par[1]:
         return False
