@@ -52,9 +52,9 @@ def _spoil_header(path, change):
 @pytest.mark.parametrize(
     ("spoil", "word"),
     [
-        (lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]), "part"),
-        (lambda path: path.write_bytes(b""), "part"),
-        (lambda path: path.write_text("a policy, honestly"), "no policy"),
+        (lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]), "incomplete"),
+        (lambda path: path.write_bytes(b""), "incomplete"),
+        (lambda path: path.write_text("a policy, honestly"), "not a policy"),
         (lambda path: _spoil_header(path, lambda h: h.update(format=99)), "format 99"),
         (lambda path: _spoil_header(path, lambda h: h["task"].update(kind="hex")), "hex"),
         (lambda path: _spoil_header(path, lambda h: h["task"].update(blocks=3)), "fit"),
@@ -76,5 +76,5 @@ def test_weights_that_are_not_finite_are_refused(tmp_path):
     with torch.no_grad():
         policy.network.beta.fill_(float("nan"))
     save_policy(policy, path)
-    with pytest.raises(PolicyError, match="no numbers"):
+    with pytest.raises(PolicyError, match="not finite"):
         load(path)

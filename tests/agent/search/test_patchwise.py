@@ -199,7 +199,7 @@ def test_a_run_stops_when_it_is_cancelled_or_out_of_time(quads, policy):
 
 
 def test_a_policy_of_the_other_kind_is_refused(quads):
-    with pytest.raises(PolicyError, match="not quad"):
+    with pytest.raises(PolicyError, match="the mesh is of quads"):
         improve_large(quads, policy_files.load("tri"))
 
 
