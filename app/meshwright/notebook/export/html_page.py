@@ -22,10 +22,6 @@ from meshwright_core.io import atomic_write
 
 LONGEST = 200
 """Characters of a title."""
-HEAD_AND_FOOT = 296
-"""Pixels of the page above and below the canvas."""
-LOWEST, HIGHEST = 240, 640
-"""Bounds of the canvas in pixels."""
 
 
 def page(document: Document, title: str = "", path: str | os.PathLike[str] | None = None) -> str:
@@ -98,16 +94,8 @@ def _embedded(film: dict[str, Any]) -> str:
 
 
 def _script() -> str:
-    """The front, and what puts the film into the page."""
-    return f"""(() => {{
-"use strict";
-{bundle.script()}
-const recording = JSON.parse(document.getElementById("recording").textContent);
-const place = document.getElementById("film");
-const room = Math.min(innerHeight - {HEAD_AND_FOOT}, place.clientWidth, {HIGHEST});
-mount(place, new FilmLink(recording), {{ height: Math.max(room, {LOWEST}), theme: "auto" }});
-}})();
-"""
+    """The bundle, and the call that shows the embedded recording."""
+    return f"{bundle.script()}{bundle.GLOBAL}.showRecording();\n"
 
 
 def _policy(script: str) -> str:

@@ -1,5 +1,23 @@
 // The card: one view of a document. It joins the parts, hears the link and speaks to it.
 
+import { Palette } from "./canvas/colours.js";
+import { Stage } from "./canvas/stage.js";
+import { node } from "./dom.js";
+import { Pointing } from "./input/hover.js";
+import { Walking } from "./input/keyboard_navigation.js";
+import { Pointer } from "./input/pointer.js";
+import { Keys } from "./input/shortcuts.js";
+import { hostTheme, watchHost } from "./link/host_theme.js";
+import { AgentPanel } from "./panels/agent_panel.js";
+import { canvasLabel, described, meshName, placed } from "./panels/labels.js";
+import { Levels } from "./panels/level_bar.js";
+import { Menus } from "./panels/menus.js";
+import { Notice } from "./panels/notice.js";
+import { OperationsPanel } from "./panels/operations_panel.js";
+import { ScorePanel } from "./panels/score_panel.js";
+import { Timeline } from "./panels/timeline.js";
+import { StageTools } from "./panels/zoom_buttons.js";
+
 const WHEEL_HINT = /Mac|iPhone|iPad/.test(navigator.platform)
   ? "Hold \u2318 and scroll to zoom, or click the mesh first."
   : "Hold Ctrl and scroll to zoom, or click the mesh first.";
@@ -372,4 +390,12 @@ class Card {
     this.root.dataset.revision = this.mirror.revision;
     this.root.dataset.painted = this._paints;
   }
+}
+
+/** Show what `link` tells in `element`; returns the Card. options: {height, theme}. */
+export function mount(element, link, options = {}) {
+  const card = new Card(link, options);
+  element.append(card.root);
+  card.retheme();
+  return card;
 }

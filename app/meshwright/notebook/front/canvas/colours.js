@@ -1,6 +1,8 @@
 // The colours of the card as it is now, read from its CSS variables once after each change.
 
-class Palette {
+import { COLOUR_NAMES } from "../generated/constants.js";
+
+export class Palette {
   constructor() {
     this.theme = ""; // none: the card is not on the page yet
   }
@@ -9,7 +11,7 @@ class Palette {
   read(element) {
     const style = getComputedStyle(element);
     this.theme = element.dataset.theme;
-    for (const name of PALETTE_NAMES) {
+    for (const name of COLOUR_NAMES) {
       this[name] = style.getPropertyValue(`--mw-${name.replace(/_/g, "-")}`).trim();
     }
     this.font = style.fontFamily;

@@ -1,5 +1,9 @@
 // The ghost of an operation: what would be there dashed, what would go faded, and its numbers.
 
+import { arrayOf } from "../mesh/mesh_replica.js";
+import { middleOf } from "../mesh/picking.js";
+import { clamp, signed } from "../numbers.js";
+
 const GHOST_DASHES = [7, 4.5];
 const MOST_NUMBERS = 24;
 const NUMBERS_ROOM = 26;
@@ -12,7 +16,7 @@ const TAG_HIDES = 60;
 /** What a ghost message says, in the plane: {halfedge, operation, change, added, removed, gone,
  * places, delta}; segments are flat [x, y, x, y, ...]; null if nothing is allowed.
  */
-function ghostOf(content, buffers) {
+export function ghostOf(content, buffers) {
   if (content.operation === null || content.operation === undefined) return null;
   return {
     halfedge: content.halfedge,
@@ -27,7 +31,7 @@ function ghostOf(content, buffers) {
 }
 
 /** {left, top, right, bottom} of a ghost and of the corners at its half-edge, on the screen. */
-function ghostBounds(view, ghost, corners) {
+export function ghostBounds(view, ghost, corners) {
   const box = { left: Infinity, top: Infinity, right: -Infinity, bottom: -Infinity };
   const take = ([x, y]) => {
     box.left = Math.min(box.left, x);
@@ -44,7 +48,7 @@ function ghostBounds(view, ghost, corners) {
   return box;
 }
 
-class GhostPainter {
+export class GhostPainter {
   constructor(palette) {
     this._palette = palette;
   }

@@ -1,16 +1,20 @@
 // Hints on the mesh: a line along each half-edge, and a numbered badge that can be clicked.
 
+import { middleOf } from "../mesh/picking.js";
+import { clamp, signed } from "../numbers.js";
+import { arrowOf, paintArrow } from "./arrow.js";
+
 const BADGE_HEIGHT = 22;
 const BADGE_GAP = 4;
-const MOST_HINTS = 5;
+export const MOST_HINTS = 5;
 const BADGE_TRIES = [[1, -1], [-1, -1], [1, 1], [-1, 1], [1, 0], [-1, 0], [0, -1], [0, 1]];
 
 /** "63 %"; very small ones are "< 1 %". */
-function percent(probability) {
+export function percent(probability) {
   return probability < 0.01 ? "< 1\u2009%" : `${Math.round(100 * probability)}\u2009%`;
 }
 
-class HintBadges {
+export class HintBadges {
   constructor(palette) {
     this._palette = palette;
     this._boxes = [];

@@ -1,11 +1,13 @@
 // Inverted elements in plain sight: hatched, tinted, and with a sign where they are small.
 
+import { middleOf } from "../mesh/picking.js";
+
 const HATCH_GAP = 6;
 const MOST_HATCHED = 1500;
 const SMALLEST_HATCHED = 9;
 const MOST_SIGNS = 24;
 
-class Hatching {
+export class Hatching {
   constructor(palette) {
     this._palette = palette;
     this._tile = null;

@@ -3,6 +3,9 @@
 // The sizes are those of app/markers.py. In a crowd a disc keeps its number as long as it does not
 // cover the next one; where it would, it is a plain dot until one looks closer.
 
+import { FLAG_CORNER } from "../mesh/mesh_replica.js";
+import { clamp, signed } from "../numbers.js";
+
 const BASE_RADIUS = 10;
 const RADIUS_GROWTH = 2.5;
 const LARGEST_RADIUS = 16;
@@ -16,13 +19,7 @@ const FEW_CORNERS = 64;
 const LOCK_RADIUS = 12.5;
 /** Pixels beside a vertex that its mark reaches; and those that make room for it. */
 const MARK_REACH = 20;
-const MARK_SLACK = 36;
-
-/** "+1", with a true minus sign for negative numbers. */
-function signed(number) {
-  if (number > 0) return `+${number.toLocaleString("en")}`;
-  return number < 0 ? `\u2212${(-number).toLocaleString("en")}` : "0";
-}
+export const MARK_SLACK = 36;
 
 /** Radius in pixels: larger with |delta|, smaller where the edges or the next disc are near. */
 function discRadius(delta, reach, apart) {
@@ -31,7 +28,7 @@ function discRadius(delta, reach, apart) {
   return Math.max(Math.min(wanted, room), SMALLEST_RADIUS);
 }
 
-class Marks {
+export class Marks {
   constructor(palette) {
     this._palette = palette;
     this._sprites = new Map();

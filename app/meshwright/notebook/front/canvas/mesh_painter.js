@@ -2,6 +2,9 @@
 // pixels and paints what comes into view, an edit paints the tiles it touches, and while one zooms in
 // a large mesh the pixels are stretched until the fingers rest.
 
+import { Hatching } from "./inverted_elements.js";
+import { MARK_SLACK } from "./markers.js";
+
 const TILE = 64;
 const CHUNK = 1500;
 const COSTLY = 9;
@@ -10,7 +13,7 @@ const FEW_RECTANGLES = 3;
 const EDGE_WIDTH = 1.1;
 const BOUNDARY_WIDTH = 1.75;
 
-class Picture {
+export class Picture {
   constructor(canvas, palette, marks, afterwards) {
     this.view = null; // what the canvas shows; at most half a pixel from what was asked for
     this.paints = 0;

@@ -1,10 +1,20 @@
 // The stage: two canvases, the view of the mesh, and when they are painted.
 
+import { node } from "../dom.js";
+import { MeshWork } from "../mesh/mesh_state.js";
+import { halfedgeAt, middleOf, vertexAt } from "../mesh/picking.js";
+import { clamp } from "../numbers.js";
+import { arrowOf } from "./arrow.js";
+import { Marks } from "./markers.js";
+import { Picture } from "./mesh_painter.js";
+import { Overlay } from "./overlay.js";
+import { Viewport } from "./viewport.js";
+
 const FIT_SHARE = 0.08;
 const FIT_MOST = 48;
 const FIT_LEAST = 22;
 
-class Stage {
+export class Stage {
   constructor(element, palette, painted) {
     this.element = element;
     this.work = new MeshWork();

@@ -1,10 +1,12 @@
 // Which part of the plane is seen, and where a point of it is on the screen; as app/viewport.py.
 
+import { clamp } from "../numbers.js";
+
 const NEAREST_PIXELS = 1e-3;
 const FARTHEST_PIXELS = 1e8;
 
 /** Centre of the view, pixels per unit of length, size in CSS pixels; y goes up in the plane. */
-class Viewport {
+export class Viewport {
   constructor(x = 0, y = 0, pixels = 100, width = 1, height = 1) {
     this.x = x;
     this.y = y;

@@ -3,10 +3,14 @@
 // The arrow follows the pointer at once; offers and ghost come from Python. One question is under way
 // at a time, and the latest wins: what was passed over meanwhile is never asked.
 
+import { ghostOf } from "../canvas/ghost.js";
+import { asSentence } from "../dom.js";
+import { halfedgeNear, middleOf } from "../mesh/picking.js";
+
 const HOVER_PATIENCE = 3000;
 const ANTICIPATE = { after: 14, times: 3 };
 
-class Pointing {
+export class Pointing {
   constructor(card) {
     this.halfedge = -1;
     this.pinned = false; // by the keyboard, a menu or a hint: the mouse is elsewhere

@@ -1,9 +1,12 @@
 // From half-edge to half-edge and from one irregular vertex to the next, by keyboard.
 
+import { edgeLength } from "../mesh/derived.js";
+import { halfedgeNear } from "../mesh/picking.js";
+
 const KEEP_IN_VIEW = 48;
 const WALKED_SIZE = 120;
 
-class Walking {
+export class Walking {
   constructor(card) {
     this._card = card;
     this._vertex = -1;

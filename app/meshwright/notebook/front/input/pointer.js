@@ -5,13 +5,16 @@
 // move and zoom. The wheel zooms with Ctrl (or Command), or once the widget has the focus; else the
 // page goes on scrolling.
 
+import { middleOf } from "../mesh/picking.js";
+import { clamp } from "../numbers.js";
+
 const CLICK_SLACK = { mouse: 4, pen: 7, touch: 12 };
 const OUTSIDE_REACH = { mouse: 8, pen: 12, touch: 22 };
 const VERTEX_REACH = { mouse: 14, pen: 18, touch: 28 };
 const HOLD = 500;
 const LINE_HEIGHT = 16;
 
-class Pointer {
+export class Pointer {
   constructor(card, surface) {
     this.place = null; // [x, y] of the mouse on the canvas, null while it is elsewhere
     this.dragging = false;

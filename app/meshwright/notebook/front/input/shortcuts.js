@@ -1,6 +1,6 @@
 // The keys of the canvas. All other controls are buttons, which have keys of their own.
 
-const KEY_HELP = [
+export const KEY_HELP = [
   ["\u2190 \u2192", "Half-edge before and after"],
   ["\u2191", "Other side of the edge"],
   ["\u2193", "Next irregular vertex"],
@@ -14,7 +14,7 @@ const KEY_HELP = [
   ["Space", "Play or pause the agent"],
   ["Esc", "Put down, close, stop"],
 ];
-const MOUSE_HELP = [
+export const MOUSE_HELP = [
   ["Click", "Operations of a half-edge"],
   ["Right click", "Desired degree, corner, lock"],
   ["Drag", "Move the picture"],
@@ -22,7 +22,7 @@ const MOUSE_HELP = [
   ["Double click", "See all"],
 ];
 
-class Keys {
+export class Keys {
   constructor(card) {
     this._card = card;
     const walking = card.walking;

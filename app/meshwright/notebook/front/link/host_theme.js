@@ -1,7 +1,7 @@
 // What the page around the widget says: light or dark.
 
 /** "light" or "dark", as JupyterLab, marimo, Colab or VS Code say, else as the system does. */
-function hostTheme() {
+export function hostTheme() {
   const body = document.body;
   if (body.dataset.jpThemeLight !== undefined) {
     return body.dataset.jpThemeLight === "false" ? "dark" : "light";
@@ -15,7 +15,7 @@ function hostTheme() {
 }
 
 /** Call back whenever the page's theme may be another; returns what ends that. */
-function watchHost(callback) {
+export function watchHost(callback) {
   const observer = new MutationObserver(callback);
   const wanted = { attributes: true, attributeFilter: ["class", "theme", "data-theme", "data-jp-theme-light"] };
   observer.observe(document.body, wanted);

@@ -6,7 +6,7 @@
 let viewsSoFar = 0;
 
 /** A name for one view of a model that no other has. */
-function viewName() {
+export function viewName() {
   viewsSoFar += 1;
   const random = Math.floor(Math.random() * 0x7fffffff).toString(36);
   return `v${viewsSoFar}-${Date.now().toString(36)}-${random}`;
@@ -15,7 +15,7 @@ function viewName() {
 const LONGER_WORDS = ["agent", "level"]; // what they bring about goes on after the answer
 const LOST = "The kernel that had this mesh is gone: run this cell again to go on.";
 
-class KernelLink {
+export class KernelLink {
   constructor(model) {
     this.readOnly = false;
     this.onmessage = () => {};

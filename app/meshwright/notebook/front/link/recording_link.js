@@ -3,7 +3,10 @@
 // The recording holds the first state and one message for each step. The steps back are made here,
 // on the way forward. A jump over many steps is one message of all that they change.
 
-class FilmLink {
+import { Mirror } from "../mesh/mesh_replica.js";
+import { viewName } from "./kernel_link.js";
+
+export class FilmLink {
   constructor(film) {
     this.readOnly = true;
     this.view = viewName();

@@ -3,11 +3,13 @@
 // All of it is found again after each change, in one pass over the arrays: well under a millisecond
 // for 10,000 elements, so that nothing has to be kept up.
 
+import { FLAG_ALIVE, FLAG_CORNER, FLAG_LOCKED } from "./mesh_replica.js";
+
 const FLAT_SINE = 1e-5;
 const SAMPLES = 1500;
 const NEAR_RINGS = 5;
 
-class Facts {
+export class Facts {
   constructor(mirror) {
     this.box = mirror.bounds();
     this.loops = boundaryLoops(mirror);
@@ -60,7 +62,7 @@ function typicalEdge(mirror) {
   return lengths.length ? lengths[lengths.length >> 1] : 1;
 }
 
-function edgeLength(mirror, h) {
+export function edgeLength(mirror, h) {
   const { places } = mirror;
   const a = 2 * mirror.origin[h];
   const b = 2 * mirror.target(h);

@@ -3,26 +3,26 @@
 // Element e owns the half-edges k*e .. k*e+k-1, counter-clockwise. origin -1: the slot is dead.
 // Places are in the normalised frame of the state message, y up.
 
-const FLAG_ALIVE = 1;
+export const FLAG_ALIVE = 1;
 const FLAG_BOUNDARY = 2;
-const FLAG_CORNER = 4;
-const FLAG_LOCKED = 8;
+export const FLAG_CORNER = 4;
+export const FLAG_LOCKED = 8;
 
 /** A typed array over a copy of a message's buffer (buffers may begin at odd addresses). */
-function arrayOf(Type, view) {
+export function arrayOf(Type, view) {
   const start = view.byteOffset;
   return new Type(view.buffer.slice(start, start + view.byteLength));
 }
 
 /** `array`, or a longer one with the same beginning where `length` does not fit. */
-function withRoom(array, length) {
+export function withRoom(array, length) {
   if (length <= array.length) return array;
   const longer = new array.constructor(Math.max(length, Math.ceil(1.5 * array.length)));
   longer.set(array);
   return longer;
 }
 
-class Mirror {
+export class Mirror {
   constructor() {
     this.revision = -1;
     this.k = 4;

@@ -1,8 +1,12 @@
 // A mesh and all that is derived from it, kept together while messages come in.
 
+import { Facts } from "./derived.js";
+import { Mirror } from "./mesh_replica.js";
+import { Grid } from "./spatial_grid.js";
+
 const DIRTY_SHARE = 0.4;
 
-class MeshWork {
+export class MeshWork {
   constructor() {
     this.mirror = new Mirror();
     this.facts = new Facts(this.mirror);

@@ -1,9 +1,11 @@
 // Which half-edge or vertex lies at a point of the plane.
 
+import { clamp } from "../numbers.js";
+
 /** The half-edge of the element at (x, y) whose edge is nearest; outside the mesh the one of the
  * boundary within `reach` lengths; -1 for none.
  */
-function halfedgeAt(mirror, grid, x, y, reach) {
+export function halfedgeAt(mirror, grid, x, y, reach) {
   for (const e of grid.near(x, y, x, y)) {
     if (contains(mirror, e, x, y)) return nearestSide(mirror, e, x, y).halfedge;
   }
@@ -19,7 +21,7 @@ function halfedgeAt(mirror, grid, x, y, reach) {
 }
 
 /** The vertex nearest to (x, y) within `reach` lengths, as a half-edge that starts there; or -1. */
-function vertexAt(mirror, grid, x, y, reach) {
+export function vertexAt(mirror, grid, x, y, reach) {
   let best = -1;
   let least = reach;
   for (const e of grid.near(x - reach, y - reach, x + reach, y + reach)) {
@@ -33,7 +35,7 @@ function vertexAt(mirror, grid, x, y, reach) {
 }
 
 /** The half-edge whose element is nearest to (x, y), wherever that is; -1 in an empty mesh. */
-function halfedgeNear(mirror, x, y) {
+export function halfedgeNear(mirror, x, y) {
   let best = -1;
   let least = Infinity;
   for (let e = 0; e < mirror.elements; e += 1) {
@@ -73,7 +75,7 @@ function distanceToEdge(mirror, h, x, y) {
 }
 
 /** The mean of some points. */
-function middleOf(points) {
+export function middleOf(points) {
   const sum = points.reduce(([x, y], [px, py]) => [x + px, y + py], [0, 0]);
   return [sum[0] / points.length, sum[1] / points.length];
 }

@@ -6,7 +6,7 @@
 const TRACK_FAR = 4;
 const TRACK_COLUMNS = ["scores", "optima", "titles", "by"];
 
-class Track {
+export class Track {
   constructor() {
     this.clear();
   }
@@ -85,7 +85,7 @@ function trackSigned(change) {
 }
 
 /** "12,345". */
-function trackNumber(value) {
+export function trackNumber(value) {
   return value.toLocaleString("en-US");
 }
 
@@ -94,7 +94,7 @@ function trackNumber(value) {
  * The frame is `broken` where the optimum lies so far below all that has happened that the curve
  * would be a level line; the optimum is drawn at the lower edge then.
  */
-class TrackFrame {
+export class TrackFrame {
   constructor(track, left, top, width, height) {
     this.left = left;
     this.top = top;

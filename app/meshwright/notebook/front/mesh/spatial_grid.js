@@ -1,6 +1,9 @@
 // A grid of cells that knows which elements are near a place; kept up cheaply after a patch.
 
-class Grid {
+import { clamp } from "../numbers.js";
+import { withRoom } from "./mesh_replica.js";
+
+export class Grid {
   /** All live elements of `mirror`, about one a cell. */
   constructor(mirror) {
     const box = mirror.bounds() || { left: 0, bottom: 0, right: 1, top: 1 };
@@ -75,8 +78,4 @@ class Grid {
       for (let i = left; i <= right; i += 1) visit(this._cells[j * this._columns + i]);
     }
   }
-}
-
-function clamp(value, low, high) {
-  return Math.min(Math.max(value, low), high);
 }

@@ -1,9 +1,13 @@
 // The agent beside the person: which policy, what it shall do, how far it is, and its hints.
 
+import { MOST_HINTS, percent } from "../canvas/hint_badges.js";
+import { button, icon, node, tell } from "../dom.js";
+import { counted, signed } from "../numbers.js";
+
 const AGENT_SPEEDS = [0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60];
 const AGENT_AT_REST = ["idle", "paused"];
 
-class AgentPanel {
+export class AgentPanel {
   constructor(card) {
     this.hints = [];
     this.state = "idle";

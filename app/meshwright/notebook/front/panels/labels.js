@@ -1,12 +1,15 @@
 // What is said of the mesh and of what is pointed at.
 
+import { asSentence } from "../dom.js";
+import { counted, signed } from "../numbers.js";
+
 /** What the mesh is called. */
-function meshName({ name }) {
+export function meshName({ name }) {
   return name ? `Mesh ${name}` : "Mesh";
 }
 
 /** What the canvas is, and how to use it, for those who cannot see it. */
-function canvasLabel(head) {
+export function canvasLabel(head) {
   const noun = head.kind === "quad" ? "quad" : "triangle";
   return `${meshName(head)}: ${counted(head.elements, noun)}, score ${head.score}, optimum `
     + `${head.optimum}. Arrow keys walk from half-edge to half-edge, Return does the operation `
@@ -14,7 +17,7 @@ function canvasLabel(head) {
 }
 
 /** What is pointed at, in a line; with the reason where the operation that is armed is refused. */
-function placed(mirror, { halfedge, offers, wanted }) {
+export function placed(mirror, { halfedge, offers, wanted }) {
   const ends = `${mirror.origin[halfedge]} \u2192 ${mirror.target(halfedge)}`;
   const offer = offers && wanted ? offers.get(wanted) : null;
   const refusal = offer && !offer.allowed ? `  \u00b7  Not here: ${asSentence(offer.reason)}` : "";
@@ -22,7 +25,7 @@ function placed(mirror, { halfedge, offers, wanted }) {
 }
 
 /** What is pointed at, in words: ends, degrees, and what the operation meant would do. */
-function described({ mirror, pointing }) {
+export function described({ mirror, pointing }) {
   const h = pointing.halfedge;
   if (!mirror.live(h)) return "No half-edge.";
   const end = (at) => {

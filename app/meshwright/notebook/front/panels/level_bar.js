@@ -1,10 +1,12 @@
 // The strip over canvas and panel while a level is played: what is to be done, with how many
 // operations, what is won, and the agent's answer.
 
+import { drawn, node, tell } from "../dom.js";
+
 const STARS = 3;
 const STAR_PATH = starPath(10, 10, 8.5, 3.9);
 
-class Levels {
+export class Levels {
   constructor(place, card) {
     this._card = card;
     this._all = [];

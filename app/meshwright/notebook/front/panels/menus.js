@@ -1,7 +1,12 @@
 // The menus at the pointer: the operations of a half-edge, and what there is to do with a vertex.
 
+import { asSentence, icon, node } from "../dom.js";
+import { FLAG_CORNER, FLAG_LOCKED } from "../mesh/mesh_replica.js";
+import { signed } from "../numbers.js";
+import { Popup } from "./popup.js";
+
 /** At most one menu of a card is open. */
-class Menus {
+export class Menus {
   constructor(card) {
     this._card = card;
     this._open = null;

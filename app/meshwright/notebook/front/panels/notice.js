@@ -1,12 +1,14 @@
 // Sentences for a person: refusals and news over the lower edge of the canvas, what is pointed at in
 // the corner, and the same for those who hear the page instead.
 
+import { button, icon, node, tell } from "../dom.js";
+
 const NOTICE_TIME = { refused: 5000, said: 3500, failed: 60000, hint: 2500 };
 const SPOKEN_AFTER = 250;
 const WAITING_AFTER = 700;
 const SILENT_AFTER = 6000;
 
-class Notice {
+export class Notice {
   constructor(stage) {
     this._timers = { hide: 0, speak: 0, wait: 0 };
     this._text = node("span", "mw-notice-text");

@@ -1,6 +1,9 @@
 // A row for each operation: its key, how it would change s where one points, and which is armed.
 
-class OperationsPanel {
+import { asSentence, node, tell } from "../dom.js";
+import { signed } from "../numbers.js";
+
+export class OperationsPanel {
   constructor(card) {
     this._card = card;
     this._rows = [];

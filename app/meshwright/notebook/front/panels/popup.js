@@ -1,9 +1,11 @@
 // A small menu inside the card: rows that arrows walk, keys and clicks choose, and Esc leaves.
 
+import { node } from "../dom.js";
+
 const POPUP_GAP = 24;
 const NARROW_CARD = 640;
 
-class Popup {
+export class Popup {
   /** `closed(focus)` is called once when it goes; focus: whether the canvas shall have it again. */
   constructor(card, title, { touch = false, closed = null } = {}) {
     this._card = card;

@@ -1,10 +1,12 @@
 // The score curve, painted.
 
+import { trackNumber } from "../mesh/score_series.js";
+
 /** Pixels between states above which every step has its own mark. */
 const TRACK_APART = 7;
 
 /** Paint the curve of `track` in `frame`. where: {shown, hovered}, states, -1 for none. */
-function paintTrack(pen, frame, track, card, where) {
+export function paintTrack(pen, frame, track, card, where) {
   const last = track.length - 1;
   const bottom = frame.top + frame.height;
   pen.textBaseline = "middle";

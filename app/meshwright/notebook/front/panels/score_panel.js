@@ -1,6 +1,9 @@
 // The score against the optimum, what the mesh consists of, and going back and forth.
 
-class ScorePanel {
+import { button, icon, node, tell } from "../dom.js";
+import { clamp, counted } from "../numbers.js";
+
+export class ScorePanel {
   constructor(card) {
     this._card = card;
     this._number = node("div", "mw-score-number");

@@ -4,6 +4,10 @@
 // What is asked of the link is `go_to` only, one at a time: while a hand moves faster than answers
 // come, the states between are left out. The mark follows the hand at once, the mesh comes after.
 
+import { button, drawn, icon, node } from "../dom.js";
+import { Track, TrackFrame, trackNumber } from "../mesh/score_series.js";
+import { paintTrack } from "./score_curve.js";
+
 const TIMELINE_HEIGHT = 72;
 const TIMELINE_ROOM = { left: 48, right: 16, top: 10, bottom: 20 };
 /** States a second on offer, and how many pictures a second are asked for at most. */
@@ -14,7 +18,7 @@ const TIMELINE_SLACK = 8;
 /** Milliseconds after which an answer is no longer waited for. */
 const TIMELINE_PATIENCE = 2000;
 
-class Timeline {
+export class Timeline {
   constructor(element, card) {
     this.card = card;
     this.track = new Track();

@@ -1,6 +1,9 @@
 // Buttons over the canvas: closer, farther, all of it, and what mouse and keys do.
 
-class StageTools {
+import { button, icon, node } from "../dom.js";
+import { KEY_HELP, MOUSE_HELP } from "../input/shortcuts.js";
+
+export class StageTools {
   constructor(card, stage) {
     this._card = card;
     this._help = null;
