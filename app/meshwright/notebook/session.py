@@ -16,12 +16,12 @@ from meshwright.notebook.protocol.broadcaster import Port, Telling
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.protocol.preview_messages import ghost_packet, no_ghost
 from meshwright.notebook.protocol.request_handlers import (
-    DEEDS,
-    Deed,
+    HANDLERS,
+    Handler,
     require_halfedge,
     require_operation,
 )
-from meshwright.notebook.protocol.requests import RefusedError, Request, parse
+from meshwright.notebook.protocol.requests import Hello, Hover, RefusedError, Request, parse
 from meshwright.notebook.thread_loop import Loop
 from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError
@@ -56,19 +56,17 @@ class Session:
         self.telling = Telling(document, self.agent, self.loop)
         self.agent_changed = Signal()
         self.level_changed = Signal()
-        self.words: dict[str, Deed] = dict(DEEDS)
-        """What is done for each word that a browser may say: others may add theirs, which get the
-        session and the request, may raise MeshError to refuse, and return a sentence or none.
-        """
+        self.handlers: dict[type[Request], Handler] = dict(HANDLERS)
+        """By type of request; other parts of the notebook may add theirs."""
         self.greetings: list[Callable[[], Packet]] = []
         """What else a view is told when it comes."""
-        self.bars: list[Callable[[Request], str]] = []
-        """Asked before anything is done: a sentence refuses it."""
+        self.guards: list[Callable[[Request], str]] = []
+        """Called before the handler of a request: a sentence refuses the request."""
         self.endings: list[Callable[[], None]] = []
         """Called once no widget is left."""
         self.level: Any = None
         """The level that is being played; None where none is."""
-        self._hovers: dict[str, tuple[Port, Request]] = {}
+        self._hovers: dict[str, tuple[Port, Hover]] = {}
         self._calling = self._ended = False
         self.agent.settle()
         document.replaced.connect(self._on_replaced)
@@ -189,9 +187,9 @@ class Session:
         try:
             request = parse(content, buffers)
         except RefusedError as error:
-            self.telling.answer(port, error.request, "refused", error.sentence)
+            self.telling.answer(port, error.sender, "refused", error.sentence)
             return
-        if request.do == "hover":
+        if isinstance(request, Hover):
             self._hovers[request.view] = port, request  # the latest of a view wins
         if self.loop.here:
             self._serve(port, request)
@@ -205,39 +203,39 @@ class Session:
         except MeshError as error:
             self.telling.answer(port, request, "refused", sentence(str(error)))
         except Exception as error:  # the kernel lives on: the person and the log are told
-            _log.error("'%s' broke off", request.do, exc_info=error)
+            _log.error("request '%s' failed", request.word, exc_info=error)
             self.telling.answer(port, request, "failed", broken(error))
         finally:
             self.telling.release()
 
     def _do(self, port: Port, request: Request) -> None:
-        if request.do == "hello":
+        if isinstance(request, Hello):
             self.telling.greet(port, request)
             for greeting in self.greetings:
                 self.telling.post(port, greeting(), request)
             self._prepare(port, request)
-        elif request.do == "hover":
+        elif isinstance(request, Hover):
             self._point(request)
         elif port.read_only:
             raise MeshError("this view is for looking only")
-        elif request.do not in self.words:
-            raise MeshError(f"there is nothing to '{request.do}' here")
-        elif request.do in NEEDS.get(kernel_warmup.PREPARATION.compiling, ()):
+        elif type(request) not in self.handlers:
+            raise MeshError(f"'{request.word}' is not available here")
+        elif request.word in NEEDS.get(kernel_warmup.PREPARATION.compiling, ()):
             raise MeshError(WAITS[kernel_warmup.PREPARATION.compiling])
         else:
-            why = next(filter(None, (bar(request) for bar in self.bars)), "")
+            why = next(filter(None, (guard(request) for guard in self.guards)), "")
             if why:
                 raise MeshError(why)
-            said = self.words[request.do](self, request)
+            said = self.handlers[type(request)](self, request)
             if said:
                 self.telling.answer(port, request, "said", said)
 
-    def _point(self, request: Request) -> None:
+    def _point(self, request: Hover) -> None:
         held = self._hovers.pop(request.view, None)
         if held is None:
             return  # a later one was served in its place
         port, request = held
-        halfedge, operation = request["halfedge"], request["operation"]
+        halfedge, operation = request.halfedge, request.operation
         if halfedge < 0 or kernel_warmup.PREPARATION.compiling is Stage.EDITING:
             self.document.hover = -1
             self.telling.post(port, no_ghost(), request)

@@ -11,7 +11,7 @@ from porting import Port, allowed, script_agent
 from meshwright.assistant.assistant import State
 from meshwright.document.document import Document
 from meshwright.notebook import thread_loop as loops
-from meshwright.notebook.protocol import broadcaster
+from meshwright.notebook.protocol import broadcaster, requests
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.session import Session
 from meshwright_core import MeshError
@@ -335,7 +335,7 @@ def test_a_mistake_of_ours_is_told_logged_and_survived(port, monkeypatch, caplog
     def broken(session, request):
         raise KeyError("oops")
 
-    port.session.words["smooth"] = broken
+    port.session.handlers[requests.Smooth] = broken
     port.ask("smooth")
     assert port.of("notice")[-1]["tone"] == "failed" and "KeyError" in port.sentence
     assert "Traceback" in caplog.text
@@ -359,23 +359,23 @@ def test_words_and_greetings_of_others(port):
     session = port.session
 
     def level(session, request):
-        if request["action"] == "open":
-            raise MeshError("there is no such level")
-        return f"{request['action']} {request.fields.get('name', '')}".strip() + "!"
+        if request.action == "open":
+            raise MeshError(f"there is no level {request.name}")
+        return f"{request.action}!"
 
-    session.words["level"] = level
+    session.handlers[requests.ChangeLevel] = level
     session.greetings.append(lambda: Packet({"say": "level", "level": None, "all": []}))
     port.ask("level", action="again")
     assert port.sentence == "again!"
     port.ask("level", action="open", name="x")
-    assert port.sentence == "There is no such level."
+    assert port.sentence == "There is no level x."
     assert port.ask("hello")[-1]["say"] == "level"
 
 
 def test_what_others_bar_is_refused_and_the_end_is_told_once(star):
     session, ended = Session.of(Document(star)), []
     port = Port(session)
-    session.bars.append(lambda request: "not in a level" if request.do == "clean_all" else "")
+    session.guards.append(lambda request: "not in a level" * isinstance(request, requests.CleanAll))
     session.endings.append(lambda: ended.append(1))
     port.ask("clean_all")
     assert port.sentence == "Not in a level." and not session.document.history

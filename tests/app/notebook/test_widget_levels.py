@@ -61,7 +61,7 @@ def test_without_a_level_nothing_is_told(monkeypatch, greedy, strip):
     port.ask("hello")
     assert port.of("level") == []
     port.ask("level", action="open", name="two-turns")
-    assert "There is nothing to 'level' here" in port.sentence
+    assert "'level' is not available here" in port.sentence
     assert (widget.level, widget.stars) == (None, 0)
     port.close()
     widget.close()
@@ -102,11 +102,11 @@ def test_again_next_and_open(port):
     ("fields", "why"),
     [
         ({"action": "open", "name": "no-such"}, "no level named"),
-        ({"action": "open", "name": 7}, "must be a string"),
-        ({"action": "open", "name": "x" * 500}, "at most"),
-        ({"action": "win"}, "must be one of"),
-        ({}, "needs the field"),
-        ({"action": "again", "stars": 3}, "no field"),
+        ({"action": "open", "name": 7}, "expected 'str'"),
+        ({"action": "open", "name": "x" * 500}, "length <= 200"),
+        ({"action": "win"}, "invalid enum value"),
+        ({}, "missing required field"),
+        ({"action": "again", "stars": 3}, "unknown field"),
     ],
 )
 def test_nonsense_is_refused(port, fields, why):

@@ -11,7 +11,7 @@ from meshwright.document.document import Document
 from meshwright.notebook.protocol.agent_bridge import Helper
 from meshwright.notebook.protocol.document_status import Head
 from meshwright.notebook.protocol.mesh_sync import Mirror, Packet
-from meshwright.notebook.protocol.requests import Request
+from meshwright.notebook.protocol.requests import Envelope, Request
 from meshwright.notebook.thread_loop import Loop
 from meshwright_core.operations.catalogue import of_kind
 
@@ -206,19 +206,18 @@ class Telling:
         """Tell all views a sentence; ``tone`` is "refused", "said" or "failed"."""
         self.tell(_notice(tone, words))
 
-    def answer(self, port: Port, request: Request | None, tone: str, words: str) -> None:
+    def answer(self, port: Port, request: Envelope | None, tone: str, words: str) -> None:
         """Tell the view that asked a sentence."""
         self.post(port, _notice(tone, words), request)
 
     def post(
-        self, port: Port, packet: Packet, request: Request | None = None, to_all: bool = False
+        self, port: Port, packet: Packet, request: Envelope | None = None, to_all: bool = False
     ) -> None:
         """Send a message, addressed to the view that asked unless all are meant. Never raises."""
         content = dict(packet.content)
         if request is not None:
             content["reply"] = request.id
-            if request.view:
-                content["asked" if to_all else "to"] = request.view
+            content["asked" if to_all else "to"] = request.view
         try:
             port.post(Packet(content, packet.buffers))
         except Exception as error:  # one broken way must not keep the others waiting

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from msgspec import UNSET
+
 from meshwright.assistant.assistant import Assistant
 from meshwright.document.document import Document
+from meshwright.notebook.protocol import requests
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.agent_opponent import Standing
@@ -14,11 +17,15 @@ from meshwright.puzzles.play import LevelPlay
 from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from meshwright.notebook.protocol.requests import Request
     from meshwright.notebook.session import Session
 
-BARRED = {"clean_all": "clean_all", "desired": "desired", "lock": "locked", "corner": "geometric"}
-"""Words of a browser, and the steps that they bring about."""
+ACTIONS: dict[type[requests.Request], str] = {
+    requests.CleanAll: "clean_all",
+    requests.Desired: "desired",
+    requests.Lock: "locked",
+    requests.Corner: "geometric",
+}
+"""Requests that a level may refuse, and the actions of the history that they cause."""
 
 
 class Playing:
@@ -32,15 +39,15 @@ class Playing:
         self._known: tuple[Level | None, bool] = (None, False)
         self.play = LevelPlay(session.document, session.assistant.hinting, self._rival)
         self.play.changed.connect(self._on_changed)
-        session.words["level"] = self._do
+        session.handlers[requests.ChangeLevel] = self._do
         session.greetings.append(lambda: Packet(self._content(everything=True)))
-        session.bars.append(self._bar)
+        session.guards.append(self._refusal)
         session.endings.append(self._end)
 
     @classmethod
     def of(cls, session: Session) -> Playing:
         """The levels of a session; new ones if none has been played there yet."""
-        found = session.words.get("level")
+        found = session.handlers.get(requests.ChangeLevel)
         owner = getattr(found, "__self__", None)
         return owner if isinstance(owner, cls) else cls(session)
 
@@ -57,17 +64,18 @@ class Playing:
 
     # What browsers ask
 
-    def _bar(self, request: Request) -> str:
-        """Why something is not played in a level; empty if it is."""
-        action = request["operation"] if request.do == "operate" else BARRED.get(request.do, "")
-        return self.play.refusal(action)
+    def _refusal(self, request: requests.Request) -> str:
+        """Why the level refuses a request; empty if it does not."""
+        if isinstance(request, requests.Operate):
+            return self.play.refusal(request.operation)
+        return self.play.refusal(ACTIONS.get(type(request), ""))
 
-    def _do(self, session: Session, request: Request) -> str:
-        play, action = self.play, request["action"]
+    def _do(self, session: Session, request: requests.ChangeLevel) -> str:
+        play, action = self.play, request.action
         if play.level is None:
             raise MeshError("No level is being played here.")
         if action == "open":
-            play.open(request.fields.get("name", play.level.name))
+            play.open(play.level.name if request.name is UNSET else request.name)
         elif action == "again":
             play.again()
         elif action == "next":
