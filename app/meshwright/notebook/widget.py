@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from reprlib import repr as shortened
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import anywidget
 import traitlets
@@ -14,6 +14,7 @@ from meshwright.assistant.assistant import Assistant
 from meshwright.assistant.search_runner import COMPLETE_SECONDS, Effort
 from meshwright.document.document import Document
 from meshwright.document.history import History, Row
+from meshwright.graphics.export import mimebundle
 from meshwright.notebook import bundle
 from meshwright.notebook.arguments import (
     degree_of,
@@ -24,7 +25,8 @@ from meshwright.notebook.arguments import (
     whole,
 )
 from meshwright.notebook.document_source import document_of
-from meshwright.notebook.export.export_mixin import Exports
+from meshwright.notebook.export import html_page, images
+from meshwright.notebook.export.images import SECONDS, SIZE, File
 from meshwright.notebook.protocol.level_bridge import Playing
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.session import Session
@@ -37,11 +39,13 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Choice
     from meshwright_core.domains.domain import Domain
 
+Result = TypeVar("Result")
+
 LOWEST, HIGHEST = 160, 4000
 """Bounds of a widget's height in pixels."""
 
 
-class MeshWidget(Exports, anywidget.AnyWidget):
+class MeshWidget(anywidget.AnyWidget):
     """A mesh in a cell that a person can edit, with the agent beside it.
 
     What is changed in the browser is changed here, and the other way round; several widgets on one
@@ -307,7 +311,49 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
         return disconnect
 
-    # Its place in the notebook
+    # Files. A file is written whole or not at all. All methods raise MeshError, in one sentence,
+    # where there is no mesh or the file cannot be written.
+
+    def to_html(self, path: File = None, *, title: str = "") -> str:
+        """The recording of the history as one HTML page that needs neither Python nor network."""
+        return self._do(lambda: html_page.page(self.document, str(title), path))
+
+    def to_png(self, path: File = None, size: tuple[int, int] = SIZE) -> bytes:
+        """An image of the mesh in its present state, ``size`` in pixels."""
+        return self._do(lambda: images.png(self.document, size, path, self._export_theme))
+
+    def to_svg(self, path: File = None, size: tuple[int, int] = SIZE) -> str:
+        """The same image as SVG."""
+        return self._do(lambda: images.svg(self.document, size, path, self._export_theme))
+
+    def to_gif(
+        self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
+    ) -> bytes:
+        """The history as an animated GIF; each frame lasts ``seconds``."""
+        return self._do(lambda: images.gif(self.document, seconds, size, path, self._export_theme))
+
+    def to_mp4(
+        self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
+    ) -> bytes:
+        """The history as MP4 (H.264); each frame lasts ``seconds``."""
+        return self._do(lambda: images.mp4(self.document, path, seconds, size, self._export_theme))
+
+    @property
+    def _export_theme(self) -> str:
+        """Light unless the widget is always dark: where an image is shown later is unknown."""
+        return "dark" if self.theme == "dark" else "light"
+
+    # The widget in the notebook
+
+    def _repr_mimebundle_(self, **options: Any) -> tuple[dict[str, Any], dict[str, Any]] | None:
+        """The widget, and a static image for viewers of the saved notebook without a kernel."""
+        bundle = super()._repr_mimebundle_(**options)
+        mesh = self.document.mesh
+        if bundle is None or mesh is None or not self.reachable:
+            return bundle
+        data, metadata = bundle
+        image, image_metadata = self._do(lambda: mimebundle.still(mesh))
+        return data | image, metadata | image_metadata
 
     def close(self) -> None:
         """Take the views away. The agent's thread ends with the document's last widget."""
@@ -346,14 +392,15 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         """Whatever comes from the browser; never raises."""
         content = message.get("content") if isinstance(message, dict) else None
         data = content.get("data") if isinstance(content, dict) else None
-        method = data.get("method") if isinstance(data, dict) else None
+        data = data if isinstance(data, dict) else {}
+        method = data.get("method")
         if method == "request_state":
             self.send_state()
         elif method != "update":
-            custom = isinstance(data, dict) and method == "custom"
+            custom = method == "custom"
             buffers = message.get("buffers") if custom else None
             self.session.receive(self, data.get("content") if custom else None, buffers)
 
-    def _do(self, call: Callable[[], Any]) -> Any:
-        """In the thread that owns the document."""
+    def _do(self, call: Callable[[], Result]) -> Result:
+        """The result of ``call()`` in the thread that owns the document."""
         return self.session.do(call)

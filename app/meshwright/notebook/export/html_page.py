@@ -31,8 +31,8 @@ def page(document: Document, title: str = "", path: str | os.PathLike[str] | Non
     is now. Raises MeshError, in one sentence, where there is no mesh or nothing can be written at
     ``path``; an old file stays as it was then.
     """
-    film = record(document)
-    heading = _heading(title or document.name or elements(document.mesh))
+    film, mesh = record(document), document.mesh
+    heading = _heading(title or document.name or (elements(mesh) if mesh is not None else ""))
     text = _html(heading, _note(film), film)
     if path is not None:
         with atomic_write.replacing(path) as temporary:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from meshwright.document.document import Document
 from meshwright.graphics.export.export_job import Order, save_order
@@ -95,13 +96,13 @@ def _made(
         raise MeshError(f"The picture cannot be made ({atomic_write.reason(error)}).") from error
 
 
-def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
-    sides = tuple(size) if isinstance(size, tuple | list) else ()
-    fit = len(sides) == 2 and all(
-        isinstance(side, int) and not isinstance(side, bool) and SMALLEST <= side <= LARGEST
-        for side in sides
-    )
-    if not fit:
+def _checked_size(size: Any) -> tuple[int, int]:
+    match size:
+        case (int(width), int(height)):
+            sides = width, height
+        case _:
+            sides = 0, 0
+    if any(isinstance(side, bool) or not SMALLEST <= side <= LARGEST for side in sides):
         raise MeshError(
             f"A size is two whole numbers of pixels from {SMALLEST} to {LARGEST:,}, not {size!r}."
         )

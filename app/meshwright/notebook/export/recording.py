@@ -5,11 +5,12 @@ from __future__ import annotations
 from base64 import b64encode
 from typing import Any
 
-from meshwright.document.document import Document
+from meshwright.document.document import NO_MESH, Document
 from meshwright.document.history import History
 from meshwright.document.storage.document_state import Kept
 from meshwright.notebook.protocol.document_status import Head
 from meshwright.notebook.protocol.mesh_sync import Mirror, Packet
+from meshwright_core import MeshError
 
 VERSION = 1
 
@@ -24,6 +25,8 @@ def record(document: Document) -> dict[str, Any]:
     shadow = _copied(document)
     shadow.go_to(0)
     mesh, mirror, head = shadow.mesh, Mirror(), Head(shadow)
+    if mesh is None:
+        raise MeshError(NO_MESH)
     mirror.reset(mesh)
     head.reset()
     told = head.whole()
