@@ -11,8 +11,8 @@ from meshwright.assistant.assistant import Assistant
 from meshwright.document.document import NO_MESH, Document
 from meshwright.notebook import kernel_warmup
 from meshwright.notebook.kernel_warmup import DONE, WAITS, Stage
-from meshwright.notebook.protocol.agent_bridge import Helper
-from meshwright.notebook.protocol.broadcaster import Port, Telling
+from meshwright.notebook.protocol.agent_bridge import AgentBridge
+from meshwright.notebook.protocol.broadcaster import Broadcaster, Port
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.protocol.preview_messages import ghost_packet, no_ghost
 from meshwright.notebook.protocol.request_handlers import (
@@ -22,7 +22,7 @@ from meshwright.notebook.protocol.request_handlers import (
     require_operation,
 )
 from meshwright.notebook.protocol.requests import Hello, Hover, RefusedError, Request, parse
-from meshwright.notebook.thread_loop import Loop
+from meshwright.notebook.thread_loop import ThreadLoop
 from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError
 
@@ -50,19 +50,19 @@ class Session:
     def __init__(self, document: Document) -> None:
         """For :meth:`of`."""
         self.document = document
-        self.loop = Loop(self._on_broken)
+        self.loop = ThreadLoop(self._on_broken)
         self.assistant = Assistant(document, self.loop)
-        self.agent = Helper(document, self.assistant, self.loop)
-        self.telling = Telling(document, self.agent, self.loop)
+        self.agent = AgentBridge(document, self.assistant, self.loop)
+        self.broadcaster = Broadcaster(document, self.agent, self.loop)
         self.agent_changed = Signal()
         self.level_changed = Signal()
         self.handlers: dict[type[Request], Handler] = dict(HANDLERS)
         """By type of request; other parts of the notebook may add theirs."""
-        self.greetings: list[Callable[[], Packet]] = []
+        self.welcome_messages: list[Callable[[], Packet]] = []
         """What else a view is told when it comes."""
         self.guards: list[Callable[[Request], str]] = []
         """Called before the handler of a request: a sentence refuses the request."""
-        self.endings: list[Callable[[], None]] = []
+        self.on_end: list[Callable[[], None]] = []
         """Called once no widget is left."""
         self.level: Any = None
         """The level that is being played; None where none is."""
@@ -70,7 +70,7 @@ class Session:
         self._calling = self._ended = False
         self.agent.settle()
         document.replaced.connect(self._on_replaced)
-        document.changed.connect(self.telling.follow)
+        document.changed.connect(self.broadcaster.follow)
         document.score_changed.connect(self._on_score_changed)
         self.assistant.changed.connect(self._on_agent_changed)
         self.assistant.hinting.changed.connect(self._on_agent_changed)
@@ -82,7 +82,7 @@ class Session:
         """The session of a document; a new one if no widget shows it yet."""
         for session in list(cls._all.values()):
             if session.loop.here:  # marimo's readers have a thread each
-                for port in session.telling.lost:
+                for port in session.broadcaster.lost:
                     port.close()
         found = cls._all.get(id(document))  # it holds the document, so the number is still its own
         if found is None:
@@ -100,27 +100,27 @@ class Session:
 
     def join(self, port: Port) -> None:
         """A widget begins to show the document."""
-        self.telling.add(port)
+        self.broadcaster.add(port)
         finalize(port, self.end_if_alone).atexit = False
 
     def leave(self, port: Port) -> None:
         """A widget is closed; after the last one the agent's thread ends."""
-        self.telling.remove(port)
+        self.broadcaster.remove(port)
         self._hovers = {view: held for view, held in self._hovers.items() if held[0] is not port}
         self.end_if_alone()
 
     def end_if_alone(self) -> None:
         """End, if no widget shows the document."""
-        if self._ended or not self.telling.alone:
+        if self._ended or not self.broadcaster.alone:
             return
         if self._all.get(id(self.document)) is self:
             del self._all[id(self.document)]
         self._ended = True
-        for end in self.endings:
+        for end in self.on_end:
             end()
         self.assistant.close()
         self.document.replaced.disconnect(self._on_replaced)
-        self.document.changed.disconnect(self.telling.follow)
+        self.document.changed.disconnect(self.broadcaster.follow)
         self.document.score_changed.disconnect(self._on_score_changed)
 
     # What Python asks for
@@ -155,7 +155,7 @@ class Session:
             raise
         finally:
             self.assistant.failed.disconnect(failures.append)
-        self.loop.do(self.telling.catch_up)
+        self.loop.do(self.broadcaster.catch_up)
         if failures:
             raise MeshError(failures[-1])
 
@@ -168,7 +168,7 @@ class Session:
             callback(*arguments)
         except Exception as error:  # not ours: the document must go on
             _log.error("a callback broke off", exc_info=error)
-            self.telling.notice("failed", broken(error))
+            self.broadcaster.notice("failed", broken(error))
         finally:
             self._calling = outer
 
@@ -187,7 +187,7 @@ class Session:
         try:
             request = parse(content, buffers)
         except RefusedError as error:
-            self.telling.answer(port, error.sender, "refused", error.sentence)
+            self.broadcaster.answer(port, error.sender, "refused", error.sentence)
             return
         if isinstance(request, Hover):
             self._hovers[request.view] = port, request  # the latest of a view wins
@@ -197,22 +197,22 @@ class Session:
             self.loop(lambda: self._serve(port, request))
 
     def _serve(self, port: Port, request: Request) -> None:
-        self.telling.hold(request)
+        self.broadcaster.hold(request)
         try:
             self._do(port, request)
         except MeshError as error:
-            self.telling.answer(port, request, "refused", sentence(str(error)))
+            self.broadcaster.answer(port, request, "refused", sentence(str(error)))
         except Exception as error:  # the kernel lives on: the person and the log are told
             _log.error("request '%s' failed", request.word, exc_info=error)
-            self.telling.answer(port, request, "failed", broken(error))
+            self.broadcaster.answer(port, request, "failed", broken(error))
         finally:
-            self.telling.release()
+            self.broadcaster.release()
 
     def _do(self, port: Port, request: Request) -> None:
         if isinstance(request, Hello):
-            self.telling.greet(port, request)
-            for greeting in self.greetings:
-                self.telling.post(port, greeting(), request)
+            self.broadcaster.greet(port, request)
+            for greeting in self.welcome_messages:
+                self.broadcaster.post(port, greeting(), request)
             self._prepare(port, request)
         elif isinstance(request, Hover):
             self._point(request)
@@ -228,7 +228,7 @@ class Session:
                 raise MeshError(why)
             said = self.handlers[type(request)](self, request)
             if said:
-                self.telling.answer(port, request, "said", said)
+                self.broadcaster.answer(port, request, "info", said)
 
     def _point(self, request: Hover) -> None:
         held = self._hovers.pop(request.view, None)
@@ -238,49 +238,49 @@ class Session:
         halfedge, operation = request.halfedge, request.operation
         if halfedge < 0 or kernel_warmup.PREPARATION.compiling is Stage.EDITING:
             self.document.hover = -1
-            self.telling.post(port, no_ghost(), request)
+            self.broadcaster.post(port, no_ghost(), request)
             return
         require_halfedge(self.mesh, halfedge)
         if operation is not None:
             require_operation(self.mesh.kind, operation)
         self.document.hover = halfedge
-        frame, bar = self.telling.mirror.frame, self.document.bar
+        frame, bar = self.broadcaster.mesh_sync.frame, self.document.bar
         packet = ghost_packet(self.mesh, frame, halfedge, operation, bar)
-        self.telling.post(port, packet, request)
+        self.broadcaster.post(port, packet, request)
 
     def _prepare(self, port: Port, request: Request) -> None:
         """Behind the first view everything is made ready, if it is not."""
         kernel_warmup.PREPARATION.begin(self.loop, self._on_prepared)
         stage = kernel_warmup.PREPARATION.compiling
         if stage is not Stage.READY:
-            self.telling.answer(port, request, "said", WAITS[stage])
+            self.broadcaster.answer(port, request, "info", WAITS[stage])
 
     def _on_prepared(self) -> None:
-        self.telling.notice("said", DONE[kernel_warmup.PREPARATION.compiling])
+        self.broadcaster.notice("info", DONE[kernel_warmup.PREPARATION.compiling])
 
     # What happens here
 
     def _on_replaced(self) -> None:
-        self.telling.start_over()
+        self.broadcaster.start_over()
         self.agent.settle()
 
     def _on_score_changed(self) -> None:
-        for port in self.telling.ports:
+        for port in self.broadcaster.ports:
             port.show_score()
 
     def _on_agent_changed(self) -> None:
-        self.telling.touch_agent()
+        self.broadcaster.touch_agent()
         self.agent_changed.emit()
 
     def _on_said(self, words: str) -> None:
-        self.telling.notice("said", sentence(words))
+        self.broadcaster.notice("info", sentence(words))
 
     def _on_failed(self, words: str) -> None:
-        self.telling.notice("failed", sentence(words))
+        self.broadcaster.notice("failed", sentence(words))
 
     def _on_broken(self, error: Exception) -> None:
         """A queued call has raised, and is in the log already."""
-        self.telling.notice("failed", broken(error))
+        self.broadcaster.notice("failed", broken(error))
 
 
 def sentence(text: str) -> str:

@@ -1,9 +1,10 @@
-"""Calls into the thread that owns a document, from whichever thread.
+"""Calls into the thread that owns a document, from any thread.
 
-Notebooks run their cells in a thread with an asyncio loop, which is blocked while a cell runs.
-Every call waits in one queue. The loop empties it when it has its turn; :meth:`Loop.pump` empties
-it meanwhile, and where there is no loop at all. Messages from a browser may arrive in another
-thread (JupyterLab sends them to a subshell), a policy's decisions always do.
+Notebooks run their cells in a thread with an asyncio event loop, which is blocked while a cell
+runs. Calls wait in one queue. The event loop processes it when it runs;
+:meth:`ThreadLoop.pump` processes it in the meantime, and where there is no event loop at all.
+Messages from a browser may arrive in another thread (JupyterLab uses a subshell); the decisions of
+a policy always do.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ Result = TypeVar("Result")
 Call = Callable[[], None]
 
 PATIENCE = 60.0
-"""Seconds that another thread waits for a call of :meth:`Loop.do`."""
+"""Seconds that another thread waits for a call of :meth:`ThreadLoop.do`."""
 _NAP = 0.05
 
 _log = logging.getLogger(__name__)
 
 
-class Loop:
+class ThreadLoop:
     """The thread that made it owns the document; calling the object queues a call into it."""
 
     def __init__(self, failed: Callable[[Exception], None] | None = None) -> None:

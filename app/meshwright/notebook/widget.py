@@ -27,7 +27,7 @@ from meshwright.notebook.arguments import (
 from meshwright.notebook.document_source import document_of
 from meshwright.notebook.export import html_page, images
 from meshwright.notebook.export.images import SECONDS, SIZE, File
-from meshwright.notebook.protocol.level_bridge import Playing
+from meshwright.notebook.protocol.level_bridge import LevelBridge
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.session import Session
 from meshwright.puzzles import level as levels
@@ -111,7 +111,7 @@ class MeshWidget(anywidget.AnyWidget):
         session = self.session = Session.of(document)
         try:
             if wanted is not None:
-                Playing.of(session).begin(wanted)
+                LevelBridge.of(session).begin(wanted)
             if policy is not None:
                 session.agent.choose(policy_of(policy))
             super().__init__(height=height, theme=theme, label=name or document.name)
@@ -164,7 +164,7 @@ class MeshWidget(anywidget.AnyWidget):
     @property
     def stars(self) -> int:
         """Stars for what is done in the level: 0 before the goal, and where none is played."""
-        return Playing.of(self.session).play.stars if self.session.level is not None else 0
+        return LevelBridge.of(self.session).play.stars if self.session.level is not None else 0
 
     # Changing the mesh
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from meshwright.notebook.kernel_warmup import Preparation, Stage
-from meshwright.notebook.protocol.mesh_sync import Frame, Packet, Slots
+from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet, SlotArrays
 from meshwright.notebook.session import Session
 from meshwright_core import HalfEdgeMesh
 
@@ -20,11 +20,11 @@ class Replica:
 
     def __init__(self) -> None:
         self.revision = -1
-        self.slots = Slots.none()
+        self.slots = SlotArrays.none()
         self.scores: list[int] = []
 
     def take(self, packet: Packet) -> None:
-        said = packet.content["say"]
+        said = packet.content["type"]
         if said == "state":
             self._state(packet)
         elif said == "patch":
@@ -35,7 +35,7 @@ class Replica:
 
     def _state(self, packet: Packet) -> None:
         arrays = [np.frombuffer(b, t) for b, t in zip(packet.buffers, TYPES, strict=True)]
-        self.slots = Slots(arrays[0].reshape(-1, 2).copy(), *(a.copy() for a in arrays[1:]))
+        self.slots = SlotArrays(arrays[0].reshape(-1, 2).copy(), *(a.copy() for a in arrays[1:]))
         self.revision = packet.content["revision"]
         assert len(self.slots.flags) == packet.content["vertices"]
         assert len(self.slots.origin) == packet.content["halfedges"]
@@ -56,11 +56,11 @@ class Replica:
             grown[: len(before)] = before
             grown[at] = value
             new.append(grown)
-        self.slots = Slots(*new)
+        self.slots = SlotArrays(*new)
 
-    def shows(self, mesh: HalfEdgeMesh, frame: Frame) -> bool:
+    def shows(self, mesh: HalfEdgeMesh, frame: CoordinateFrame) -> bool:
         """Whether it is this mesh, to the bit."""
-        real = Slots.of(mesh, frame, len(self.slots.flags), len(self.slots.origin))
+        real = SlotArrays.of(mesh, frame, len(self.slots.flags), len(self.slots.origin))
         return real.buffers == self.slots.buffers
 
 
@@ -102,7 +102,7 @@ class Port:
 
     def of(self, say: str) -> list[dict[str, Any]]:
         """The contents of all messages of one kind so far."""
-        return [packet.content for packet in self.packets if packet.content["say"] == say]
+        return [packet.content for packet in self.packets if packet.content["type"] == say]
 
     @property
     def sentence(self) -> str:

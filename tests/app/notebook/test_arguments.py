@@ -75,7 +75,7 @@ def test_a_widget_that_cannot_be_made_leaves_nothing_on_the_document(star, optio
         MeshWidget(document, **options)
     assert id(document) not in Session._all
     widget = MeshWidget(document)
-    assert widget.session.telling.ports == [widget]
+    assert widget.session.broadcaster.ports == [widget]
     widget.close()
 
 

@@ -131,7 +131,7 @@ def test_every_colour_that_is_used_exists() -> None:
     given = set(re.findall(r"^\s+(--mw-[\w-]+):", bundle.style(), flags=re.MULTILINE))
     used = set(re.findall(r"var\((--mw-[\w-]+)", bundle.style() + bundle.module()))
     assert used <= given
-    for name in re.findall(r"\bpalette\.([a-z_]+)\b(?!\()", without_comments(bundle.module())):
+    for name in re.findall(r"\bcolours\.([a-z_]+)\b(?!\()", without_comments(bundle.module())):
         if name not in ("font", "theme"):
             assert bundle.variable(name) in given
 

@@ -15,7 +15,7 @@ from meshwright.graphics.export.film import Film
 from meshwright.notebook import MeshWidget, bundle
 from meshwright.notebook.export.html_page import page
 from meshwright.notebook.export.recording import record
-from meshwright.notebook.protocol.mesh_sync import Frame, Slots
+from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, SlotArrays
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery, meshing
 
@@ -75,7 +75,7 @@ def replayed(film: dict):
     yield now
     for step in film["steps"]:
         content = step["content"]
-        if content["say"] == "state":
+        if content["type"] == "state":
             now = arrays(step, TYPES)
             yield now
             continue
@@ -99,15 +99,15 @@ def test_a_recording_holds_every_state_exactly(walked):
     assert told["start"] == cursor
     json.dumps(told, allow_nan=False)
     film.go_to(0)
-    frame, head, revision = Frame.of(film.mesh), {}, told["state"]["content"]["revision"]
+    frame, head, revision = CoordinateFrame.of(film.mesh), {}, told["state"]["content"]["revision"]
     messages = [told["state"], *told["steps"]]
     for state, (now, message) in enumerate(zip(replayed(told), messages, strict=True)):
         film.go_to(state)
-        wanted = Slots.of(film.mesh, frame, len(now[1]), len(now[3]))
+        wanted = SlotArrays.of(film.mesh, frame, len(now[1]), len(now[3]))
         for found, true in zip(now, (wanted.places.ravel(), *_others(wanted)), strict=True):
             np.testing.assert_array_equal(found, true)
         content = message["content"]
-        if content["say"] == "patch":
+        if content["type"] == "patch":
             assert content["from"] == revision
         revision = content.get("to", content.get("revision"))
         head |= content["head"]
@@ -118,7 +118,7 @@ def test_a_recording_holds_every_state_exactly(walked):
     assert told["track"]["by"][1:] == [row.by for row in film.rows]
 
 
-def _others(slots: Slots) -> tuple[np.ndarray, ...]:
+def _others(slots: SlotArrays) -> tuple[np.ndarray, ...]:
     return slots.delta, slots.flags, slots.origin, slots.twin
 
 

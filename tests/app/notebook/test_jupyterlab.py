@@ -35,12 +35,12 @@ def test_hover_shows_the_ghost_and_says_what_is_allowed(lab, star, tmp_path):
     empty = star.layer("upper")
     spot = lab.spot(TURNED)
     star.hover(spot)
-    star.until("root => root.meshwright.pointing.ghost && root.dataset.meant")
+    star.until("root => root.meshwright.hoverState.ghost && root.dataset.meant")
     shown = star.layer("upper")
     star.page.screenshot(path=tmp_path / "hover.png")
     assert differing(empty, shown) > 50
-    offers = star.look("root => Object.fromEntries(root.meshwright.pointing.offers)")
-    assert len(offers) == len(star.look("root => root.meshwright.mirror.catalogue"))
+    offers = star.look("root => Object.fromEntries(root.meshwright.hoverState.offers)")
+    assert len(offers) == len(star.look("root => root.meshwright.replica.catalogue"))
     for name, row in offers.items():
         assert row["allowed"] == lab.ask(f"bool(widget.check('{name}', {spot}))")
         assert row["allowed"] or row["reason"]
@@ -124,7 +124,7 @@ def test_what_python_does_is_painted(lab, star):
 def test_agent_plays_until_it_is_paused(lab, tmp_path):
     star = lab.card(SETUP + "widget = MeshWidget('star', kind='tri')\nwidget")
     star.agent("Play").click()
-    star.until("root => root.meshwright.mirror.head.cursor >= 2")
+    star.until("root => root.meshwright.replica.head.cursor >= 2")
     star.agent("Pause").click()
     star.agent("Go on").wait_for()
     at = lab.ask("widget.history.cursor")
@@ -157,7 +157,7 @@ def test_everything_goes_by_keys_alone(lab, star, tmp_path):
             star.until("(root, h) => Number(root.dataset.halfedge) === h", at)
     star.until("(root, h) => root.innerText.includes(`Half-edge ${h}`)", at)
     key = star.look(
-        "(root, name) => root.meshwright.mirror.catalogue.find(row => row.operation === name).key",
+        "(root, name) => root.meshwright.replica.catalogue.find(row => row.operation === name).key",
         TURNED,
     )
     star.page.screenshot(path=tmp_path / "keys.png")
@@ -278,7 +278,7 @@ def test_light_and_dark_follow_the_notebook(lab, star, tmp_path):
 def test_card_says_so_when_its_kernel_was_restarted(lab, star):
     lab.page.evaluate(RESTART)
     lab.wait()
-    spot = star.look("root => root.meshwright.mirror.catalogue.length")  # any half-edge will do
+    spot = star.look("root => root.meshwright.replica.catalogue.length")  # any half-edge will do
     star.page.mouse.move(*star.place(spot), steps=2)
     notice = star.root.locator(".mw-notice")
     notice.get_by_text("run this cell again").wait_for(timeout=MOMENT)

@@ -132,7 +132,7 @@ def kernel() -> Iterator[Kernel]:
             )
         )
         state = started.answer(started.say("hello"))
-        assert state["say"] in ("state", "agent")
+        assert state["type"] in ("state", "agent")
         yield started
     finally:
         client.stop_channels()
@@ -147,7 +147,7 @@ def test_a_run_goes_on_after_its_cell_has_ended(kernel):
     kernel.heard.clear()
     assert kernel.run("w.play(speed=30); print(w.history.cursor)") == "0"
     kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("state") == "idle")
-    patches = [heard for heard in kernel.heard if heard["say"] == "patch"]
+    patches = [heard for heard in kernel.heard if heard["type"] == "patch"]
     assert len(patches) > 1  # it was seen on its way
     assert position(kernel) == patches[-1]["head"]["cursor"]
     score = kernel.run("print(w.score)")
@@ -158,7 +158,7 @@ def test_waiting_inside_a_cell_lets_the_run_come_to_its_end(kernel):
     kernel.run("w.go_to(0)")
     kernel.heard.clear()
     assert int(kernel.run("w.play(wait=True); print(w.history.cursor)")) > 1
-    assert any(heard["say"] == "patch" for heard in kernel.heard)
+    assert any(heard["type"] == "patch" for heard in kernel.heard)
     kernel.run("w.go_to(0); w.step(); assert w.history.cursor >= 1")
 
 

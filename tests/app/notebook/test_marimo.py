@@ -56,7 +56,7 @@ def test_click_changes_the_kernel_and_undo_brings_it_back(marimo, tmp_path):
 def test_agent_plays_until_it_is_paused_and_cells_follow(marimo, tmp_path):
     card = marimo.card
     card.agent("Play").click()
-    card.until("root => root.meshwright.mirror.head.cursor >= 2")
+    card.until("root => root.meshwright.replica.head.cursor >= 2")
     card.agent("Pause").click()
     card.agent("Go on").wait_for()
     at = marimo.kernel()
@@ -101,7 +101,7 @@ def test_touch_on_a_narrow_screen(browser, warm, tmp_path):
             spot = before["allowed"][0]
             marimo.page.touchscreen.tap(*card.place(spot))
             card.until("(root, h) => Number(root.dataset.halfedge) === h", spot)
-            card.until("root => Boolean(root.meshwright.pointing.offers)")
+            card.until("root => Boolean(root.meshwright.hoverState.offers)")
             marimo.page.screenshot(path=tmp_path / "touch.png")
             card.choice(TURNED).tap()
             card.await_head(cursor=1)

@@ -194,7 +194,7 @@ def test_nonsense_leaves_the_mesh_as_it_is(port, data):
     if "refused" in tones:
         assert arrays(port.session.mesh) == before and document.history.given == steps
     else:
-        assert port.replica.shows(port.session.mesh, port.session.telling.mirror.frame)
+        assert port.replica.shows(port.session.mesh, port.session.broadcaster.mesh_sync.frame)
 
 
 def arrays(mesh) -> list[bytes]:
@@ -216,7 +216,7 @@ def test_any_value_at_all_is_survived(port, content, buffers):
     before = arrays(port.session.mesh)
     port.session.receive(port, content, buffers)
     assert arrays(port.session.mesh) == before
-    assert port.packets[-1].content["say"] == "notice"
+    assert port.packets[-1].content["type"] == "notice"
 
 
 def test_ids_that_are_dead_or_do_not_fit_are_refused(port):

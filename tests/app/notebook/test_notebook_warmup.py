@@ -65,7 +65,7 @@ def test_what_needs_it_waits_for_the_compiler(port, tmp_path, monkeypatch, code)
     gates = Gates(tmp_path, (Stage.EDITING, Stage.AGENT), code)
     monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", gates.preparation)
     state, *_, notice = port.ask("hello")
-    assert state["say"] == "state" and notice["tone"] == "said"
+    assert state["type"] == "state" and notice["tone"] == "info"
     assert notice["sentence"].startswith("Preparing the operations")
     [ghost] = port.ask("hover", halfedge=4, operation=None)
     assert ghost["halfedge"] == -1

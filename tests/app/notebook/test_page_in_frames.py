@@ -11,11 +11,11 @@ from meshwright.notebook.export.html_page import page as frozen
 
 HOSTILE = '</script><img src=x onerror="window.broken = 1"><script>window.broken = 1</script>'
 MESH = """root => {
-    const { mirror } = root.meshwright;
-    const { vertices: v, halfedges: h } = mirror;
-    return JSON.stringify([mirror.head.cursor, [...mirror.places.slice(0, 2 * v)],
-        [...mirror.delta.slice(0, v)], [...mirror.flags.slice(0, v)],
-        [...mirror.origin.slice(0, h)], [...mirror.twin.slice(0, h)]]);
+    const { replica } = root.meshwright;
+    const { vertices: v, halfedges: h } = replica;
+    return JSON.stringify([replica.head.cursor, [...replica.places.slice(0, 2 * v)],
+        [...replica.delta.slice(0, v)], [...replica.flags.slice(0, v)],
+        [...replica.origin.slice(0, h)], [...replica.twin.slice(0, h)]]);
 }"""
 
 

@@ -36,7 +36,7 @@ def port(session):
 
 
 def frame(port):
-    return port.session.telling.mirror.frame
+    return port.session.broadcaster.mesh_sync.frame
 
 
 def workers() -> int:
@@ -53,7 +53,7 @@ def until(condition, seconds=10.0) -> None:
 def test_hello_is_answered_with_state_and_agent(session):
     port = Port(session)
     state, agent = port.ask("hello")
-    assert (state["say"], state["reply"], state["to"]) == ("state", 1, "v")
+    assert (state["type"], state["reply"], state["to"]) == ("state", 1, "v")
     assert state["read_only"] is False and state["k"] == 4
     assert [entry["key"] for entry in state["catalogue"]] == list("FRSCGXV")
     head = state["head"]
@@ -79,7 +79,7 @@ def test_operate_undo_redo_and_a_jump(port):
     first = port.replica.slots.buffers
     operation, halfedge = allowed(mesh)
     [patch] = port.operate(operation, halfedge)
-    assert (patch["say"], patch["reply"], patch["asked"]) == ("patch", 2, "v")
+    assert (patch["type"], patch["reply"], patch["asked"]) == ("patch", 2, "v")
     assert patch["head"]["row"]["operation"] == operation and patch["head"]["cursor"] == 1
     assert patch["head"]["track"]["titles"][-1] == "Flip left"
     assert port.replica.shows(mesh, frame(port))
@@ -119,7 +119,7 @@ def test_hover_shows_the_best_or_the_armed_operation(port):
     port.session.document.hover_changed.connect(seen.append)
     operation, halfedge = allowed(mesh)
     [ghost] = port.ask("hover", halfedge=halfedge, operation=operation)
-    assert (ghost["say"], ghost["halfedge"], ghost["operation"]) == ("ghost", halfedge, operation)
+    assert (ghost["type"], ghost["halfedge"], ghost["operation"]) == ("ghost", halfedge, operation)
     assert ghost["reply"] == 2 and ghost["to"] == "v"
     offer = next(entry for entry in ghost["offers"] if entry["operation"] == operation)
     assert offer["allowed"] and offer["change"] == ghost["change"] and offer["reason"] == ""
@@ -139,7 +139,7 @@ def test_hover_shows_the_best_or_the_armed_operation(port):
 
 
 def test_of_hovers_that_pile_up_only_the_last_of_a_view_is_answered(port, monkeypatch):
-    monkeypatch.setattr(loops.Loop, "here", property(lambda self: False))
+    monkeypatch.setattr(loops.ThreadLoop, "here", property(lambda self: False))
     port.packets.clear()
     for halfedge in (4, 5, 6):
         port.ask("hover", halfedge=halfedge, operation=None)
@@ -221,7 +221,7 @@ def test_a_view_that_comes_late_begins_where_the_others_are(port, star):
 def test_who_may_only_look(session, star):
     port = Port(session, read_only=True)
     assert port.ask("hello")[0]["read_only"] is True
-    assert port.ask("hover", halfedge=4, operation=None)[0]["say"] == "ghost"
+    assert port.ask("hover", halfedge=4, operation=None)[0]["type"] == "ghost"
     port.operate(*allowed(star))
     assert port.sentence == "This view is for looking only."
     session.document.submit(*allowed(star))
@@ -233,7 +233,7 @@ def test_another_mesh_is_a_new_state_for_all(port, triangles):
     port.packets.clear()
     port.session.document.replace(triangles, "other")
     [state], agent = port.of("state"), port.of("agent")[-1]
-    assert (state["say"], state["k"], "reply" in state) == ("state", 3, False)
+    assert (state["type"], state["k"], "reply" in state) == ("state", 3, False)
     assert agent["policy"] in [entry["name"] for entry in agent["policies"]]
     assert agent["policy"] != "quad"
     assert port.replica.shows(triangles, frame(port)) and not port.of("patch")
@@ -364,19 +364,19 @@ def test_words_and_greetings_of_others(port):
         return f"{request.action}!"
 
     session.handlers[requests.ChangeLevel] = level
-    session.greetings.append(lambda: Packet({"say": "level", "level": None, "all": []}))
+    session.welcome_messages.append(lambda: Packet({"type": "level", "level": None, "all": []}))
     port.ask("level", action="again")
     assert port.sentence == "again!"
     port.ask("level", action="open", name="x")
     assert port.sentence == "There is no level x."
-    assert port.ask("hello")[-1]["say"] == "level"
+    assert port.ask("hello")[-1]["type"] == "level"
 
 
 def test_what_others_bar_is_refused_and_the_end_is_told_once(star):
     session, ended = Session.of(Document(star)), []
     port = Port(session)
     session.guards.append(lambda request: "not in a level" * isinstance(request, requests.CleanAll))
-    session.endings.append(lambda: ended.append(1))
+    session.on_end.append(lambda: ended.append(1))
     port.ask("clean_all")
     assert port.sentence == "Not in a level." and not session.document.history
     port.operate(*allowed(star))

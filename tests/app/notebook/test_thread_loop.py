@@ -7,7 +7,7 @@ import time
 import pytest
 
 from meshwright.notebook import thread_loop as loops
-from meshwright.notebook.thread_loop import Loop
+from meshwright.notebook.thread_loop import ThreadLoop
 
 
 def in_thread(work) -> None:
@@ -18,7 +18,7 @@ def in_thread(work) -> None:
 
 
 def test_without_an_event_loop_the_queue_waits_for_a_pump():
-    loop, seen = Loop(), []
+    loop, seen = ThreadLoop(), []
     assert loop.here and not loop.running
     in_thread(lambda: [loop(lambda i=i: seen.append(i)) for i in range(100)])
     assert seen == []
@@ -30,7 +30,7 @@ def test_an_event_loop_comes_to_the_queue_by_itself_and_a_pump_may_be_quicker():
     seen = []
 
     async def cell() -> None:
-        loop = Loop()
+        loop = ThreadLoop()
         assert loop.running
         in_thread(lambda: [loop(lambda i=i: seen.append(i)) for i in range(10)])
         assert loop.pump(lambda: len(seen) >= 5)  # the event loop is blocked meanwhile
@@ -45,7 +45,7 @@ def test_the_queue_outlives_an_event_loop():
     seen, kept = [], []
 
     async def cell() -> None:
-        kept.append(Loop())
+        kept.append(ThreadLoop())
 
     async def later() -> None:
         assert kept[0].running
@@ -60,7 +60,7 @@ def test_the_queue_outlives_an_event_loop():
 
 def test_an_owner_that_has_ended_leaves_its_place():
     made, seen = [], []
-    in_thread(lambda: made.append(Loop()))
+    in_thread(lambda: made.append(ThreadLoop()))
     made[0](lambda: seen.append(1))
     assert made[0].here
     made[0].drain()
@@ -68,7 +68,7 @@ def test_an_owner_that_has_ended_leaves_its_place():
 
 
 def test_another_thread_gets_the_answer_or_the_error():
-    loop, got = Loop(), []
+    loop, got = ThreadLoop(), []
 
     def ask() -> None:
         got.append(loop.do(threading.get_ident))
@@ -85,7 +85,7 @@ def test_another_thread_gets_the_answer_or_the_error():
 
 def test_another_thread_does_not_wait_for_ever(monkeypatch):
     monkeypatch.setattr(loops, "PATIENCE", 0.05)
-    loop, done = Loop(), []
+    loop, done = ThreadLoop(), []
 
     def ask() -> None:
         with pytest.raises(TimeoutError, match="busy"):
@@ -97,7 +97,7 @@ def test_another_thread_does_not_wait_for_ever(monkeypatch):
 
 
 def test_a_pump_gives_up_in_time_and_elsewhere_it_only_waits():
-    loop, seen, waited = Loop(), [], []
+    loop, seen, waited = ThreadLoop(), [], []
     begun = time.monotonic()
     assert not loop.pump(lambda: False, timeout=0.1)
     assert 0.09 < time.monotonic() - begun < 2
@@ -113,7 +113,7 @@ def test_a_pump_gives_up_in_time_and_elsewhere_it_only_waits():
 
 def test_a_call_that_raises_is_told_and_logged_and_the_next_one_comes(caplog):
     errors, seen = [], []
-    loop = Loop(errors.append)
+    loop = ThreadLoop(errors.append)
     loop(lambda: 1 / 0)
     loop(lambda: seen.append(1))
     loop.drain()

@@ -42,11 +42,11 @@ class Monkey:
 
     def check(self) -> None:
         """All views show the mesh, and nothing has gone wrong."""
-        self.session.telling.flush()
+        self.session.broadcaster.flush()
         mesh, history = self.session.mesh, self.document.history
         scores = [history.first[0], *(row.after for row in history)]
         for port in self.ports:
-            assert port.replica.shows(mesh, self.session.telling.mirror.frame)
+            assert port.replica.shows(mesh, self.session.broadcaster.mesh_sync.frame)
             assert port.replica.scores[: len(scores)] == scores
             assert "failed" not in {notice["tone"] for notice in port.of("notice")}
             port.packets.clear()

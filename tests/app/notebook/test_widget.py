@@ -40,12 +40,12 @@ class Shown(MeshWidget):
 
     @property
     def sentence(self) -> str:
-        notices = [p.content for p in self.packets if p.content["say"] == "notice"]
+        notices = [p.content for p in self.packets if p.content["type"] == "notice"]
         return str(notices[-1]["sentence"])
 
     @property
     def in_step(self) -> bool:
-        return self.replica.shows(self.mesh, self.session.telling.mirror.frame)
+        return self.replica.shows(self.mesh, self.session.broadcaster.mesh_sync.frame)
 
 
 @pytest.fixture

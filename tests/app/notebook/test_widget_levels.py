@@ -6,7 +6,7 @@ import pytest
 from porting import Port, script_agent
 
 from meshwright.notebook import MeshWidget
-from meshwright.notebook.protocol.level_bridge import Playing
+from meshwright.notebook.protocol.level_bridge import LevelBridge
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.agent_opponent import Standing
 from meshwright_core import MeshError
@@ -92,7 +92,7 @@ def test_again_next_and_open(port):
     assert told(port)["name"] == levels.after("two-turns")
     port.ask("level", action="open", name="star")
     assert told(port)["goal"] == 4
-    assert port.replica.shows(port.session.mesh, port.session.telling.mirror.frame)
+    assert port.replica.shows(port.session.mesh, port.session.broadcaster.mesh_sync.frame)
     port.ask("level", action="next")
     assert "last level" in port.sentence
     assert told(port)["name"] == "star"
@@ -149,7 +149,7 @@ def test_the_agents_steps_win_nothing(widget, port):
 
 
 def test_the_agent_answers_on_a_mesh_of_its_own(widget, port):
-    play = Playing.of(widget.session).play
+    play = LevelBridge.of(widget.session).play
     port.ask("level", action="solve")
     assert told(port)["rival"]["standing"] == "asked"
     assert widget.session.loop.pump(lambda: play.rival.standing is not Standing.ASKED, 20)
@@ -211,7 +211,7 @@ def test_a_widget_wants_a_mesh_or_a_level(strip):
 def test_nothing_is_left_of_a_widget_that_is_closed(monkeypatch, greedy):
     script_agent(monkeypatch, greedy)
     widget = MeshWidget(level="two-turns")
-    document, play = widget.document, Playing.of(widget.session).play
+    document, play = widget.document, LevelBridge.of(widget.session).play
     play.ask_agent()
     widget.close()
     assert play.rival is None

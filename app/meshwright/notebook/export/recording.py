@@ -8,8 +8,8 @@ from typing import Any
 from meshwright.document.document import NO_MESH, Document
 from meshwright.document.history import History
 from meshwright.document.storage.document_state import Kept
-from meshwright.notebook.protocol.document_status import Head
-from meshwright.notebook.protocol.mesh_sync import Mirror, Packet
+from meshwright.notebook.protocol.document_status import DocumentStatus
+from meshwright.notebook.protocol.mesh_sync import MeshSync, Packet
 from meshwright_core import MeshError
 
 VERSION = 1
@@ -24,21 +24,21 @@ def record(document: Document) -> dict[str, Any]:
     """
     shadow = _copied(document)
     shadow.go_to(0)
-    mesh, mirror, head = shadow.mesh, Mirror(), Head(shadow)
+    mesh, mesh_sync, status = shadow.mesh, MeshSync(), DocumentStatus(shadow)
     if mesh is None:
         raise MeshError(NO_MESH)
-    mirror.reset(mesh)
-    head.reset()
-    told = head.whole()
+    mesh_sync.reset(mesh)
+    status.reset()
+    told = status.whole()
     track = told.pop("track")
-    first = mirror.state()
+    first = mesh_sync.state()
     first.content |= {"head": told, "catalogue": [], "read_only": True}
     steps = []
     for state in range(1, len(shadow.history) + 1):
         shadow.go_to(state)
-        packet = mirror.patch(mesh)
-        head.folded.follow(mesh, mirror.moved, mirror.turned)
-        before, told = told, head.news()
+        packet = mesh_sync.patch(mesh)
+        status.inverted.follow(mesh, mesh_sync.moved, mesh_sync.turned)
+        before, told = told, status.news()
         del told["track"]  # all of it is there from the beginning
         packet.content["head"] = {
             name: value for name, value in told.items() if value != before[name]

@@ -42,7 +42,7 @@ export function button(name, label, { sign = null, text = "", act = null } = {})
 }
 
 /** Put text where it differs, so that nothing is laid out again for nothing. */
-export function tell(element, text) {
+export function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 

@@ -1,7 +1,7 @@
 // The exported HTML page: shows the recording that is embedded in it as JSON.
 
 import { mount } from "./card.js";
-import { FilmLink } from "./link/recording_link.js";
+import { RecordingLink } from "./link/recording_link.js";
 
 /** Pixels of the page above and below the canvas. */
 const HEAD_AND_FOOT = 296;
@@ -14,5 +14,5 @@ export function showRecording() {
   const recording = JSON.parse(document.getElementById("recording").textContent);
   const element = document.getElementById("film");
   const room = Math.min(innerHeight - HEAD_AND_FOOT, element.clientWidth, HIGHEST);
-  mount(element, new FilmLink(recording), { height: Math.max(room, LOWEST), theme: "auto" });
+  mount(element, new RecordingLink(recording), { height: Math.max(room, LOWEST), theme: "auto" });
 }

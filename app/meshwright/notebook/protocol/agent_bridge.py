@@ -11,17 +11,17 @@ from meshwright.assistant.search_runner import Effort
 from meshwright.cli.arguments import KIND_NOUN, looks_like_path
 from meshwright.document.document import NO_MESH, Document, title_of
 from meshwright.notebook.protocol.mesh_sync import Packet
-from meshwright.notebook.thread_loop import Loop
+from meshwright.notebook.thread_loop import ThreadLoop
 from meshwright_core import MeshError
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Choice
 
 
-class Helper:
+class AgentBridge:
     """One assistant and the policies that it may follow on one document."""
 
-    def __init__(self, document: Document, assistant: Assistant, loop: Loop) -> None:
+    def __init__(self, document: Document, assistant: Assistant, loop: ThreadLoop) -> None:
         self._document, self.assistant, self._loop = document, assistant, loop
         self._shipped: dict[str, list[str]] = {}
         self._files: dict[str, str] = {}  # policies that were given, and their kinds
@@ -108,7 +108,7 @@ class Helper:
         hints = assistant.hinting.hints
         return Packet(
             {
-                "say": "agent",
+                "type": "agent",
                 "state": str(assistant.state),
                 "loading": assistant.loading,
                 "asking": assistant.hinting.asking,

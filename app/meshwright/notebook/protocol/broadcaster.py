@@ -8,11 +8,11 @@ from typing import Any, Protocol
 from weakref import ReferenceType, ref
 
 from meshwright.document.document import Document
-from meshwright.notebook.protocol.agent_bridge import Helper
-from meshwright.notebook.protocol.document_status import Head
-from meshwright.notebook.protocol.mesh_sync import Mirror, Packet
+from meshwright.notebook.protocol.agent_bridge import AgentBridge
+from meshwright.notebook.protocol.document_status import DocumentStatus
+from meshwright.notebook.protocol.mesh_sync import MeshSync, Packet
 from meshwright.notebook.protocol.requests import Envelope, Request
-from meshwright.notebook.thread_loop import Loop
+from meshwright.notebook.thread_loop import ThreadLoop
 from meshwright_core.operations.catalogue import of_kind
 
 PACE = 0.02
@@ -48,14 +48,14 @@ class Port(Protocol):
         ...
 
 
-class Telling:
+class Broadcaster:
     """Keeps what the browsers know up with the document.
 
     Nothing is compared or sent before the first view has come.
     """
 
-    def __init__(self, document: Document, agent: Helper, loop: Loop) -> None:
-        self.mirror, self.head = Mirror(), Head(document)
+    def __init__(self, document: Document, agent: AgentBridge, loop: ThreadLoop) -> None:
+        self.mesh_sync, self.status = MeshSync(), DocumentStatus(document)
         self._document, self._agent, self._loop = document, agent, loop
         self._ports: list[ReferenceType[Port]] = []
         self._followed = False
@@ -165,13 +165,13 @@ class Telling:
 
     def _send_patch(self, request: Request | None) -> None:
         mesh = self._document.mesh
-        packet = self.mirror.patch(mesh)
+        packet = self.mesh_sync.patch(mesh)
         if mesh is not None:
-            self.head.folded.follow(mesh, self.mirror.moved, self.mirror.turned)
-        if packet.content["say"] == "state":
+            self.status.inverted.follow(mesh, self.mesh_sync.moved, self.mesh_sync.turned)
+        if packet.content["type"] == "state":
             self._send_states(request)
             return
-        packet.content["head"] = self.head.news()
+        packet.content["head"] = self.status.news()
         for port in self.ports:
             self.post(port, packet, request, to_all=True)
 
@@ -182,8 +182,8 @@ class Telling:
     def _take_all(self) -> None:
         self._fresh = self._dirty = False
         self._told, self._shown = self._document.revision, self._document.mesh
-        self.mirror.reset(self._shown)
-        self.head.reset()
+        self.mesh_sync.reset(self._shown)
+        self.status.reset()
 
     # Messages
 
@@ -203,7 +203,7 @@ class Telling:
             self.post(port, packet)
 
     def notice(self, tone: str, words: str) -> None:
-        """Tell all views a sentence; ``tone`` is "refused", "said" or "failed"."""
+        """Tell all views a sentence; ``tone`` is "refused", "info" or "failed"."""
         self.tell(_notice(tone, words))
 
     def answer(self, port: Port, request: Envelope | None, tone: str, words: str) -> None:
@@ -224,9 +224,9 @@ class Telling:
             _log.error("a message to the browser was lost", exc_info=error)
 
     def _state(self, port: Port) -> Packet:
-        packet = self.mirror.state()
+        packet = self.mesh_sync.state()
         packet.content |= {
-            "head": self.head.whole(),
+            "head": self.status.whole(),
             "catalogue": _catalogue(self._document.kind),
             "read_only": port.read_only,
         }
@@ -234,7 +234,7 @@ class Telling:
 
 
 def _notice(tone: str, words: str) -> Packet:
-    return Packet({"say": "notice", "tone": tone, "sentence": words})
+    return Packet({"type": "notice", "tone": tone, "sentence": words})
 
 
 def _catalogue(kind: str) -> list[dict[str, Any]]:

@@ -17,7 +17,7 @@ BLOCKS_UP_TO = 20_000
 """Elements of a quad mesh above which its blocks are not counted after every step."""
 
 
-class Folded:
+class InvertedElements:
     """How many elements are inverted, followed at the cost of what has changed."""
 
     def __init__(self) -> None:
@@ -56,18 +56,18 @@ class Folded:
         self._folded = folded
 
 
-class Head:
+class DocumentStatus:
     """The numbers of one document, as they go with every state and patch."""
 
     def __init__(self, document: Document) -> None:
         self._document = document
         self._track = Track()
-        self.folded = Folded()
+        self.inverted = InvertedElements()
 
     def reset(self) -> None:
         """Another mesh is here."""
         if self._document.mesh is not None:
-            self.folded.reset(self._document.mesh)
+            self.inverted.reset(self._document.mesh)
 
     def whole(self) -> dict[str, Any]:
         """For who knows nothing yet."""
@@ -90,7 +90,7 @@ class Head:
             "elements": mesh.n_elements if mesh is not None else 0,
             "vertices": mesh.n_vertices if mesh is not None else 0,
             "irregular": mesh.irregular_count if mesh is not None else 0,
-            "inverted": len(self.folded),
+            "inverted": len(self.inverted),
             "cursor": history.cursor,
             "length": len(history),
             "can_undo": document.can_undo,

@@ -28,7 +28,7 @@ ACTIONS: dict[type[requests.Request], str] = {
 """Requests that a level may refuse, and the actions of the history that they cause."""
 
 
-class Playing:
+class LevelBridge:
     """Levels on the document of ``session``; the first one is begun by :meth:`begin`."""
 
     def __init__(self, session: Session) -> None:
@@ -40,12 +40,12 @@ class Playing:
         self.play = LevelPlay(session.document, session.assistant.hinting, self._rival)
         self.play.changed.connect(self._on_changed)
         session.handlers[requests.ChangeLevel] = self._do
-        session.greetings.append(lambda: Packet(self._content(everything=True)))
+        session.welcome_messages.append(lambda: Packet(self._content(everything=True)))
         session.guards.append(self._refusal)
-        session.endings.append(self._end)
+        session.on_end.append(self._end)
 
     @classmethod
-    def of(cls, session: Session) -> Playing:
+    def of(cls, session: Session) -> LevelBridge:
         """The levels of a session; new ones if none has been played there yet."""
         found = session.handlers.get(requests.ChangeLevel)
         owner = getattr(found, "__self__", None)
@@ -99,12 +99,12 @@ class Playing:
         session, play = self._session, self.play
         session.level = play.level
         if play.notice:
-            session.telling.notice("failed", play.notice)
+            session.broadcaster.notice("failed", play.notice)
             play.notice = ""
         content = self._content()
         if content != self._told:
             self._told = content
-            session.telling.tell(Packet(content))
+            session.broadcaster.tell(Packet(content))
         known = (play.level, play.done)
         if known != self._known:
             self._known = known
@@ -114,7 +114,7 @@ class Playing:
         """A message; the list of all levels is in it where it may be news."""
         progress, names = self.play.progress, levels.names()
         stars = tuple(progress.best(name).stars for name in names)
-        content: dict[str, Any] = {"say": "level", "level": self._level()}
+        content: dict[str, Any] = {"type": "level", "level": self._level()}
         if everything or stars != self._stars:
             content["all"] = [
                 {"name": level.name, "title": level.title, "stars": won}

@@ -6,7 +6,7 @@ travel as little-endian buffers beside a small object. Places are float32 in a f
 mesh reaches from about -1 to 1.
 
 Every entry is a slot of the mesh: vertex v, half-edge h. Flags of a dead vertex are 0, the origin
-of a dead half-edge is -1. Slots never become fewer: an undo leaves dead ones behind.
+of a dead half-edge is -1. SlotArrays never become fewer: an undo leaves dead ones behind.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Packet:
 
 
 @dataclass(frozen=True)
-class Frame:
+class CoordinateFrame:
     """From places of the mesh to places that are sent: x' = (x - cx) / scale, y' likewise."""
 
     cx: float = 0.0
@@ -57,7 +57,7 @@ class Frame:
     scale: float = 1.0
 
     @classmethod
-    def of(cls, mesh: HalfEdgeMesh) -> Frame:
+    def of(cls, mesh: HalfEdgeMesh) -> CoordinateFrame:
         """The frame in which the live vertices lie between -1 and 1."""
         live = mesh.points[mesh.vertices(), :2]
         if not len(live):
@@ -73,7 +73,7 @@ class Frame:
 
 
 @dataclass(frozen=True)
-class Slots:
+class SlotArrays:
     """What is sent of a mesh of ``V`` vertex slots and ``H`` half-edge slots."""
 
     places: np.ndarray
@@ -88,7 +88,9 @@ class Slots:
     """(H,) int32."""
 
     @classmethod
-    def of(cls, mesh: HalfEdgeMesh, frame: Frame, vertices: int = 0, halfedges: int = 0) -> Slots:
+    def of(
+        cls, mesh: HalfEdgeMesh, frame: CoordinateFrame, vertices: int = 0, halfedges: int = 0
+    ) -> SlotArrays:
         """Copies from the mesh, with at least so many slots."""
         arrays = mesh.arrays
         used, held = mesh.slots, mesh.k * int(arrays.counters[ELEMENT_SLOTS])
@@ -115,7 +117,7 @@ class Slots:
         return cls(places, delta, flags, origin, twin)
 
     @classmethod
-    def none(cls) -> Slots:
+    def none(cls) -> SlotArrays:
         """No slots at all."""
         return cls(
             np.zeros((0, 2), "<f4"),
@@ -132,7 +134,7 @@ class Slots:
         return [array.tobytes() for array in arrays]
 
 
-class Mirror:
+class MeshSync:
     """What the browsers know of a mesh: all views of a session know the same.
 
     :attr:`revision` counts the patches that were made.
@@ -140,26 +142,26 @@ class Mirror:
 
     def __init__(self) -> None:
         self.revision = 0
-        self.frame = Frame()
+        self.frame = CoordinateFrame()
         self.moved = self.turned = np.zeros(0, np.int64)
         """The vertices and the half-edges of the last patch."""
         self._k = 3
-        self._known = Slots.none()
+        self._known = SlotArrays.none()
 
     def reset(self, mesh: HalfEdgeMesh | None) -> None:
         """Another mesh is here, or the first, or none: whoever follows needs :meth:`state`."""
         self.revision += 1
-        self.frame, self._k = Frame(), 3
-        self._known = Slots.none()
+        self.frame, self._k = CoordinateFrame(), 3
+        self._known = SlotArrays.none()
         if mesh is not None:
-            self.frame, self._k = Frame.of(mesh), mesh.k
-            self._known = Slots.of(mesh, self.frame)
+            self.frame, self._k = CoordinateFrame.of(mesh), mesh.k
+            self._known = SlotArrays.of(mesh, self.frame)
 
     def state(self) -> Packet:
         """Everything that is known, as it was sent last."""
         known = self._known
         content = {
-            "say": "state",
+            "type": "state",
             "version": VERSION,
             "revision": self.revision,
             "k": self._k,
@@ -177,7 +179,7 @@ class Mirror:
         old = self._known
         new = old
         if mesh is not None:
-            new = Slots.of(mesh, self.frame, len(old.flags), len(old.origin))
+            new = SlotArrays.of(mesh, self.frame, len(old.flags), len(old.origin))
         changed = _differing((new.places, new.delta, new.flags), (old.places, old.delta, old.flags))
         turned = _differing((new.origin, new.twin), (old.origin, old.twin))
         self._known, self.moved, self.turned = new, changed, turned
@@ -192,7 +194,7 @@ class Mirror:
             new.twin[turned].tobytes(),
         ]
         content = {
-            "say": "patch",
+            "type": "patch",
             "from": self.revision - 1,
             "to": self.revision,
             "vertices": len(new.flags),

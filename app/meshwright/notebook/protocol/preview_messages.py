@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from meshwright.document.operation_preview import Choice, best, choices, ghost
-from meshwright.notebook.protocol.mesh_sync import Frame, Packet
+from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet
 from meshwright_core import HalfEdgeMesh
 
 
 def ghost_packet(
     mesh: HalfEdgeMesh,
-    frame: Frame,
+    frame: CoordinateFrame,
     halfedge: int,
     operation: str | None,
     bar: Callable[[str], str] | None = None,
@@ -30,7 +30,7 @@ def ghost_packet(
     else:
         meant = next((c for c in offered if c.operation == operation and c.allowed), None)
     content = {
-        "say": "ghost",
+        "type": "ghost",
         "halfedge": halfedge,
         "offers": [_offer(choice) for choice in offered],
         "operation": str(meant.operation) if meant is not None else None,
@@ -48,7 +48,7 @@ def ghost_packet(
 def no_ghost() -> Packet:
     """The pointer is over no half-edge."""
     content: dict[str, Any] = {
-        "say": "ghost",
+        "type": "ghost",
         "halfedge": -1,
         "offers": [],
         "operation": None,

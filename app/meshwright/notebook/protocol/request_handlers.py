@@ -87,7 +87,7 @@ def _clean_all(session: Session, request: requests.CleanAll) -> str:
 
 def _auto_smooth(session: Session, request: requests.AutoSmooth) -> str:
     session.document.auto_smooth = request.on
-    session.telling.touch()
+    session.broadcaster.touch()
     return ""
 
 

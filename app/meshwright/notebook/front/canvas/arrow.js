@@ -6,19 +6,19 @@ const ARROW_DEPTH = 9;
 const ARROW_TRIM = 0.12;
 
 /** Corners of a half-edge's element on the screen, from its origin on. */
-export function cornersFrom(mirror, view, halfedge) {
+export function cornersFrom(replica, view, halfedge) {
   const corners = [];
   let h = halfedge;
-  for (let i = 0; i < mirror.k; i += 1) {
-    corners.push(view.toScreen(...mirror.place(mirror.origin[h])));
-    h = mirror.next(h);
+  for (let i = 0; i < replica.k; i += 1) {
+    corners.push(view.toScreen(...replica.place(replica.origin[h])));
+    h = replica.next(h);
   }
   return corners;
 }
 
 /** Tail and head of the arrow just inside the element of a half-edge, on the screen. */
-export function arrowOf(mirror, view, halfedge) {
-  const corners = cornersFrom(mirror, view, halfedge);
+export function arrowOf(replica, view, halfedge) {
+  const corners = cornersFrom(replica, view, halfedge);
   const [cx, cy] = middleOf(corners);
   const [mx, my] = middleOf(corners.slice(0, 2));
   const share = Math.min(0.22, ARROW_DEPTH / Math.max(Math.hypot(cx - mx, cy - my), 1e-6));

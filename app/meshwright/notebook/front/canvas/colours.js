@@ -2,7 +2,7 @@
 
 import { COLOUR_NAMES } from "../generated/constants.js";
 
-export class Palette {
+export class Colours {
   constructor() {
     this.theme = ""; // none: the card is not on the page yet
   }

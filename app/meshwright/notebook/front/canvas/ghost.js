@@ -49,13 +49,13 @@ export function ghostBounds(view, ghost, corners) {
 }
 
 export class GhostPainter {
-  constructor(palette) {
-    this._palette = palette;
+  constructor(colours) {
+    this._colours = colours;
   }
 
   /** The edges; they lie below the marks. */
   paintEdges(pen, view, ghost) {
-    const palette = this._palette;
+    const colours = this._colours;
     const stroke = (colour, width, alpha, dashes, segments) => {
       pen.globalAlpha = alpha;
       pen.strokeStyle = colour;
@@ -65,10 +65,10 @@ export class GhostPainter {
       pen.stroke();
     };
     pen.lineCap = "round";
-    stroke(palette.fill, 4, 0.86, [], ghost.removed);
+    stroke(colours.fill, 4, 0.86, [], ghost.removed);
     pen.lineCap = "butt";
-    stroke(palette.background, 4, 0.8, [], ghost.added);
-    stroke(palette.arrow, 1.9, 1, GHOST_DASHES, ghost.added);
+    stroke(colours.background, 4, 0.8, [], ghost.added);
+    stroke(colours.arrow, 1.9, 1, GHOST_DASHES, ghost.added);
     pen.setLineDash([]);
     pen.globalAlpha = 1;
   }
@@ -94,7 +94,7 @@ export class GhostPainter {
   _paintCrosses(pen, view, ghost) {
     if (ghost.gone.length > 2 * MOST_NUMBERS) return;
     pen.lineCap = "round";
-    for (const [colour, width] of [[this._palette.background, 6], [this._palette.text, 2.25]]) {
+    for (const [colour, width] of [[this._colours.background, 6], [this._colours.text, 2.25]]) {
       pen.strokeStyle = colour;
       pen.lineWidth = width;
       pen.beginPath();
@@ -111,8 +111,8 @@ export class GhostPainter {
 
   /** Beside their vertices, off the arrow, the marks and one another; returns their middles. */
   _paintPills(pen, view, ghost, corners, marks) {
-    const palette = this._palette;
-    pen.font = `600 11px ${palette.font}`;
+    const colours = this._colours;
+    pen.font = `600 11px ${colours.font}`;
     pen.textBaseline = "middle";
     pen.textAlign = "center";
     const [a, b] = corners;
@@ -129,37 +129,37 @@ export class GhostPainter {
       const [left, top] = tries[hits.indexOf(Math.min(...hits))];
       pills.push([left + width / 2, top + PILL_HEIGHT / 2]);
       busy.push(pills[pills.length - 1]);
-      pen.fillStyle = palette.raised;
+      pen.fillStyle = colours.raised;
       pen.lineWidth = 1.25;
-      pen.strokeStyle = delta > 0 ? palette.plus : delta < 0 ? palette.minus : palette.faint;
+      pen.strokeStyle = delta > 0 ? colours.plus : delta < 0 ? colours.minus : colours.faint;
       pen.beginPath();
       pen.roundRect(left, top, width, PILL_HEIGHT, PILL_HEIGHT / 2);
       pen.fill();
       pen.stroke();
-      pen.fillStyle = palette.text;
+      pen.fillStyle = colours.text;
       pen.fillText(text, left + width / 2, top + PILL_HEIGHT / 2 + 0.5);
     });
     return pills;
   }
 
   _paintTag(pen, view, ghost, title, corners, marks) {
-    const palette = this._palette;
-    pen.font = `600 12px ${palette.font}`;
+    const colours = this._colours;
+    pen.font = `600 12px ${colours.font}`;
     pen.textBaseline = "middle";
     const change = signed(ghost.change);
     const width = pen.measureText(title).width + pen.measureText(change).width + 32;
     const [x, y] = this._tagPlace(view, ghost, corners, width, marks);
-    pen.fillStyle = palette.raised;
-    pen.strokeStyle = palette.line;
+    pen.fillStyle = colours.raised;
+    pen.strokeStyle = colours.line;
     pen.lineWidth = 1;
     pen.beginPath();
     pen.roundRect(x, y, width, TAG_HEIGHT, 6);
     pen.fill();
     pen.stroke();
-    pen.fillStyle = palette.text;
+    pen.fillStyle = colours.text;
     pen.textAlign = "left";
     pen.fillText(title, x + 9, y + TAG_HEIGHT / 2 + 0.5);
-    pen.fillStyle = palette.ofChange(ghost.change);
+    pen.fillStyle = colours.ofChange(ghost.change);
     pen.textAlign = "right";
     pen.fillText(change, x + width - 9, y + TAG_HEIGHT / 2 + 0.5);
   }

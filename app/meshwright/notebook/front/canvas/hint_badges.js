@@ -15,8 +15,8 @@ export function percent(probability) {
 }
 
 export class HintBadges {
-  constructor(palette) {
-    this._palette = palette;
+  constructor(colours) {
+    this._colours = colours;
     this._boxes = [];
   }
 
@@ -39,19 +39,19 @@ export class HintBadges {
   }
 
   /** Paint all, the one that is meant in front. `marks`: places that badges keep clear of. */
-  paint(pen, view, mirror, hints, meant, marks) {
-    const palette = this._palette;
-    pen.font = `600 12px ${palette.font}`;
+  paint(pen, view, replica, hints, meant, marks) {
+    const colours = this._colours;
+    pen.font = `600 12px ${colours.font}`;
     this._boxes = [];
     const roots = hints.slice(0, MOST_HINTS).map((hint) => {
-      if (!mirror.live(hint.halfedge)) return null;
-      const [tail, head] = arrowOf(mirror, view, hint.halfedge);
+      if (!replica.live(hint.halfedge)) return null;
+      const [tail, head] = arrowOf(replica, view, hint.halfedge);
       return { tail, head, middle: middleOf([tail, head]) };
     });
     roots.forEach((root, i) => {
       if (!root) return;
       pen.globalAlpha = i === meant ? 1 : 0.6;
-      paintArrow(pen, root.tail, root.head, palette.accent, palette.background);
+      paintArrow(pen, root.tail, root.head, colours.accent, colours.background);
     });
     pen.globalAlpha = 1;
     roots.forEach((root, i) => this._boxes.push(root && this._place(pen, view, root, hints[i], marks)));
@@ -88,34 +88,34 @@ export class HintBadges {
   }
 
   _paintBadge(pen, box, number, hint, meant) {
-    const palette = this._palette;
-    pen.strokeStyle = palette.accent;
+    const colours = this._colours;
+    pen.strokeStyle = colours.accent;
     pen.lineWidth = 1.25;
     pen.beginPath();
     pen.moveTo(...box.root);
     pen.lineTo(box.x + box.width / 2, box.y + BADGE_HEIGHT / 2);
     pen.stroke();
-    pen.fillStyle = palette.raised;
-    pen.strokeStyle = meant ? palette.accent : palette.line;
+    pen.fillStyle = colours.raised;
+    pen.strokeStyle = meant ? colours.accent : colours.line;
     pen.lineWidth = meant ? 1.5 : 1;
     pen.beginPath();
     pen.roundRect(box.x, box.y, box.width, BADGE_HEIGHT, BADGE_HEIGHT / 2);
     pen.fill();
     pen.stroke();
     const middle = box.y + BADGE_HEIGHT / 2;
-    pen.fillStyle = meant ? palette.accent : palette.accent_soft;
+    pen.fillStyle = meant ? colours.accent : colours.accent_soft;
     pen.beginPath();
     pen.arc(box.x + BADGE_HEIGHT / 2, middle, BADGE_HEIGHT / 2 - 2, 0, 2 * Math.PI);
     pen.fill();
     pen.textBaseline = "middle";
     pen.textAlign = "center";
-    pen.fillStyle = meant ? palette.accent_text : palette.accent;
+    pen.fillStyle = meant ? colours.accent_text : colours.accent;
     pen.fillText(String(number), box.x + BADGE_HEIGHT / 2, middle + 0.5);
     pen.textAlign = "left";
-    pen.fillStyle = palette.text;
+    pen.fillStyle = colours.text;
     pen.fillText(percent(hint.probability), box.x + BADGE_HEIGHT + 2, middle + 0.5);
     pen.textAlign = "right";
-    pen.fillStyle = palette.ofChange(hint.change);
+    pen.fillStyle = colours.ofChange(hint.change);
     pen.fillText(signed(hint.change), box.x + box.width - 9, middle + 0.5);
   }
 }

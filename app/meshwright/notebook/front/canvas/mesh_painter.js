@@ -2,7 +2,7 @@
 // pixels and paints what comes into view, an edit paints the tiles it touches, and while one zooms in
 // a large mesh the pixels are stretched until the fingers rest.
 
-import { Hatching } from "./inverted_elements.js";
+import { InvertedElementsPainter } from "./inverted_elements.js";
 import { MARK_SLACK } from "./markers.js";
 
 const TILE = 64;
@@ -13,15 +13,15 @@ const FEW_RECTANGLES = 3;
 const EDGE_WIDTH = 1.1;
 const BOUNDARY_WIDTH = 1.75;
 
-export class Picture {
-  constructor(canvas, palette, marks, afterwards) {
+export class MeshPainter {
+  constructor(canvas, colours, marks, afterwards) {
     this.view = null; // what the canvas shows; at most half a pixel from what was asked for
     this.paints = 0;
     this._canvas = canvas;
     this._pen = canvas.getContext("2d");
-    this._palette = palette;
-    this._marks = marks;
-    this._hatching = new Hatching(palette);
+    this._colours = colours;
+    this._markers = marks;
+    this._invertedPainter = new InvertedElementsPainter(colours);
     this._afterwards = afterwards;
     this._ratio = 1;
     this._cost = 0;
@@ -32,9 +32,9 @@ export class Picture {
   }
 
   /** Paint this mesh from now on. */
-  show(mirror, facts, grid) {
-    this._mirror = mirror;
-    this._facts = facts;
+  show(replica, derived, grid) {
+    this._replica = replica;
+    this._derived = derived;
     this._grid = grid;
   }
 
@@ -49,7 +49,7 @@ export class Picture {
   /** Colours or everything else are others. */
   forget() {
     this._stale = true;
-    this._hatching.forget();
+    this._invertedPainter.forget();
   }
 
   /** These boxes {left, bottom, right, top} of the plane have changed. */
@@ -59,7 +59,7 @@ export class Picture {
 
   /** See to it that the canvas shows `view`. */
   paint(view) {
-    if (!this._mirror || !this._canvas.width) return;
+    if (!this._replica || !this._canvas.width) return;
     const shown = this.view;
     if (this._stale || !shown) this._paintAll(view);
     else if (shown.pixels !== view.pixels || this._stretched) this._zoom(view);
@@ -83,7 +83,7 @@ export class Picture {
     this.view = view;
     this._stale = false;
     this._stretched = null;
-    this._edgeWidth = Math.min(EDGE_WIDTH, Math.max(0.12 * this._facts.typical * view.pixels, 0.34));
+    this._edgeWidth = Math.min(EDGE_WIDTH, Math.max(0.12 * this._derived.typical * view.pixels, 0.34));
     this._paintRegion([[0, 0, this._canvas.width, this._canvas.height]]);
     this._cost = performance.now() - began;
   }
@@ -184,33 +184,33 @@ export class Picture {
     this._ground(pen);
     const elements = this._elementsIn(rectangles.map((r) => r.map((value) => value / ratio)));
     this._paintEdges(pen, elements);
-    this._hatching.paint(pen, ratio, view, this._mirror, this._facts.inverted);
+    this._invertedPainter.paint(pen, ratio, view, this._replica, this._derived.inverted);
     pen.lineWidth = Math.max(BOUNDARY_WIDTH, 1.3 * this._edgeWidth);
-    pen.strokeStyle = this._palette.boundary;
+    pen.strokeStyle = this._colours.boundary;
     this._outline(pen);
     pen.stroke();
-    this._marks.paint(pen, ratio, view, this._mirror, this._facts, boxesOf(rectangles, ratio));
+    this._markers.paint(pen, ratio, view, this._replica, this._derived, boxesOf(rectangles, ratio));
     pen.restore();
   }
 
   _ground(pen) {
     const { width, height } = this._canvas;
     pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.fillStyle = this._palette.background;
+    pen.fillStyle = this._colours.background;
     pen.fillRect(0, 0, width, height);
     pen.setTransform(this._ratio, 0, 0, this._ratio, 0, 0);
     pen.lineJoin = "round";
     pen.lineCap = "round";
-    pen.fillStyle = this._palette.fill;
+    pen.fillStyle = this._colours.fill;
     this._outline(pen);
     pen.fill("evenodd");
   }
 
   /** Begin a path of all boundary loops. */
   _outline(pen) {
-    const { places } = this._mirror;
+    const { places } = this._replica;
     pen.beginPath();
-    for (const loop of this._facts.loops) {
+    for (const loop of this._derived.loops) {
       loop.forEach((v, i) => {
         const at = this.view.toScreen(places[2 * v], places[2 * v + 1]);
         if (i) pen.lineTo(...at);
@@ -231,10 +231,10 @@ export class Picture {
 
   /** Every inner edge of these elements once. */
   _paintEdges(pen, elements) {
-    const { k, origin, twin, places } = this._mirror;
+    const { k, origin, twin, places } = this._replica;
     const { pixels, width, height, x, y } = this.view;
     const [shiftX, shiftY] = [width / 2 - x * pixels, height / 2 + y * pixels];
-    pen.strokeStyle = this._palette.edge;
+    pen.strokeStyle = this._colours.edge;
     pen.lineWidth = this._edgeWidth;
     pen.beginPath();
     let count = 0;

@@ -11,14 +11,14 @@ const RING_RADIUS = 10;
 const CROWD_OF_MARKS = 300;
 
 export class Overlay {
-  constructor(canvas, palette, marks) {
+  constructor(canvas, colours, marks) {
     this._canvas = canvas;
     this._pen = canvas.getContext("2d");
-    this._palette = palette;
-    this._marks = marks;
+    this._colours = colours;
+    this._markers = marks;
     this._ratio = 1;
-    this._ghosts = new GhostPainter(palette);
-    this.badges = new HintBadges(palette);
+    this._ghosts = new GhostPainter(colours);
+    this.badges = new HintBadges(colours);
     this._clear = true;
   }
 
@@ -31,50 +31,50 @@ export class Overlay {
   }
 
   /** Paint what is pointed at: {halfedge, ghost, title, hints, meant}. */
-  paint(view, mirror, facts, shown) {
+  paint(view, replica, derived, shown) {
     const pen = this._pen;
     if (!this._clear) {
       pen.setTransform(1, 0, 0, 1, 0, 0);
       pen.clearRect(0, 0, this._canvas.width, this._canvas.height);
       this._clear = true;
     }
-    const pointed = mirror.live(shown.halfedge);
+    const pointed = replica.live(shown.halfedge);
     this.badges.clear();
     if (!pointed && !shown.hints.length) return;
     this._clear = false;
     pen.setTransform(this._ratio, 0, 0, this._ratio, 0, 0);
     pen.lineJoin = "round";
-    const marks = this._markPlaces(view, mirror, facts);
-    if (pointed) this._paintPointed(pen, view, mirror, facts, shown);
-    this.badges.paint(pen, view, mirror, shown.hints, shown.meant, marks);
+    const marks = this._markPlaces(view, replica, derived);
+    if (pointed) this._paintPointed(pen, view, replica, derived, shown);
+    this.badges.paint(pen, view, replica, shown.hints, shown.meant, marks);
     marks.push(...this.badges.places);
     if (pointed && shown.ghost) {
-      const corners = cornersFrom(mirror, view, shown.halfedge);
+      const corners = cornersFrom(replica, view, shown.halfedge);
       this._ghosts.paintNumbers(pen, view, shown.ghost, shown.title, corners, marks);
     }
   }
 
-  _paintPointed(pen, view, mirror, facts, { halfedge, ghost }) {
-    const palette = this._palette;
-    const corners = cornersFrom(mirror, view, halfedge);
+  _paintPointed(pen, view, replica, derived, { halfedge, ghost }) {
+    const colours = this._colours;
+    const corners = cornersFrom(replica, view, halfedge);
     pen.globalAlpha = 0.11;
-    pen.fillStyle = palette.arrow;
+    pen.fillStyle = colours.arrow;
     pen.beginPath();
     corners.forEach((at, i) => (i ? pen.lineTo(...at) : pen.moveTo(...at)));
     pen.closePath();
     pen.fill();
     pen.globalAlpha = 1;
     if (ghost) this._ghosts.paintEdges(pen, view, ghost);
-    this._marks.paint(pen, this._ratio, view, mirror, facts, [ghostBounds(view, ghost, corners)]);
-    const [tail, head] = arrowOf(mirror, view, halfedge);
-    paintArrow(pen, tail, head, palette.arrow, palette.background);
+    this._markers.paint(pen, this._ratio, view, replica, derived, [ghostBounds(view, ghost, corners)]);
+    const [tail, head] = arrowOf(replica, view, halfedge);
+    paintArrow(pen, tail, head, colours.arrow, colours.background);
     const length = Math.hypot(head[0] - tail[0], head[1] - tail[1]);
     if (length < SMALL_ARROW) this._paintRing(pen, middleOf([tail, head]));
   }
 
   /** A ring that is found where the arrow itself is too small to be seen. */
   _paintRing(pen, [x, y]) {
-    for (const [colour, width] of [[this._palette.background, 4.5], [this._palette.arrow, 2]]) {
+    for (const [colour, width] of [[this._colours.background, 4.5], [this._colours.arrow, 2]]) {
       pen.strokeStyle = colour;
       pen.lineWidth = width;
       pen.beginPath();
@@ -84,9 +84,9 @@ export class Overlay {
   }
 
   /** Places of irregular vertices on the screen, unless they are everywhere. */
-  _markPlaces(view, mirror, facts) {
-    if (facts.irregular.length > 10 * CROWD_OF_MARKS) return [];
-    const places = facts.irregular.map((v) => view.toScreen(...mirror.place(v)));
+  _markPlaces(view, replica, derived) {
+    if (derived.irregular.length > 10 * CROWD_OF_MARKS) return [];
+    const places = derived.irregular.map((v) => view.toScreen(...replica.place(v)));
     const seen = places.filter(([x, y]) => x > 0 && y > 0 && x < view.width && y < view.height);
     return seen.length > CROWD_OF_MARKS ? [] : seen;
   }

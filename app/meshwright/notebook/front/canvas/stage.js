@@ -1,12 +1,12 @@
 // The stage: two canvases, the view of the mesh, and when they are painted.
 
 import { node } from "../dom.js";
-import { MeshWork } from "../mesh/mesh_state.js";
+import { MeshState } from "../mesh/mesh_state.js";
 import { halfedgeAt, middleOf, vertexAt } from "../mesh/picking.js";
 import { clamp } from "../numbers.js";
 import { arrowOf } from "./arrow.js";
-import { Marks } from "./markers.js";
-import { Picture } from "./mesh_painter.js";
+import { Markers } from "./markers.js";
+import { MeshPainter } from "./mesh_painter.js";
 import { Overlay } from "./overlay.js";
 import { Viewport } from "./viewport.js";
 
@@ -15,20 +15,20 @@ const FIT_MOST = 48;
 const FIT_LEAST = 22;
 
 export class Stage {
-  constructor(element, palette, painted) {
+  constructor(element, colours, painted) {
     this.element = element;
-    this.work = new MeshWork();
+    this.meshState = new MeshState();
     this.view = new Viewport();
     this.fitted = true; // nobody has moved the view: it keeps showing all
     this.shown = { halfedge: -1, ghost: null, title: "", hints: [], meant: 0 };
-    this._palette = palette;
+    this._colours = colours;
     this._painted = painted;
     this._lower = node("canvas", "mw-lower", { "aria-hidden": "true" });
     this.surface = node("canvas", "mw-upper", { tabindex: "0", role: "application" });
     element.append(this._lower, this.surface);
-    this._marks = new Marks(palette);
-    this.picture = new Picture(this._lower, palette, this._marks, () => this.repaint());
-    this.overlay = new Overlay(this.surface, palette, this._marks);
+    this._markers = new Markers(colours);
+    this.painter = new MeshPainter(this._lower, colours, this._markers, () => this.repaint());
+    this.overlay = new Overlay(this.surface, colours, this._markers);
     this._ratio = 0;
     this._frame = 0;
     this._observer = new ResizeObserver(() => this.resize());
@@ -38,34 +38,34 @@ export class Stage {
   release() {
     this._observer.disconnect();
     cancelAnimationFrame(this._frame);
-    this.picture.release();
+    this.painter.release();
   }
 
   // The mesh
 
   load(content, buffers) {
-    const before = this.work.mirror.frame;
-    const first = this.work.mirror.revision < 0;
-    this.work.load(content, buffers);
+    const before = this.meshState.replica.frame;
+    const first = this.meshState.replica.revision < 0;
+    this.meshState.load(content, buffers);
     const moved = ["cx", "cy", "scale"].some((name) => before[name] !== content.frame[name]);
     if (first || moved) this.fitted = true;
-    this.picture.forget();
+    this.painter.forget();
     this._show();
   }
 
   /** False if the patch is not for what is here. */
   patch(content, buffers) {
-    const boxes = this.work.patch(content, buffers);
+    const boxes = this.meshState.patch(content, buffers);
     if (boxes === undefined) return false;
-    if (boxes) this.picture.touch(boxes);
-    else this.picture.forget();
+    if (boxes) this.painter.touch(boxes);
+    else this.painter.forget();
     this._show();
     return true;
   }
 
   _show() {
-    const { mirror, facts, grid } = this.work;
-    this.picture.show(mirror, facts, grid);
+    const { replica, derived, grid } = this.meshState;
+    this.painter.show(replica, derived, grid);
     if (this.fitted) this._fit();
     this.repaint();
   }
@@ -74,7 +74,7 @@ export class Stage {
 
   /** Look through another view; the mesh stays in sight. */
   see(view) {
-    this.view = view.over(this.work.facts.box);
+    this.view = view.over(this.meshState.derived.box);
     this.fitted = false;
     this.repaint();
   }
@@ -87,7 +87,7 @@ export class Stage {
   }
 
   _fit() {
-    const { box } = this.work.facts;
+    const { box } = this.meshState.derived;
     const { width, height } = this.view;
     const margin = clamp(FIT_SHARE * Math.min(width, height), FIT_LEAST, FIT_MOST);
     if (box) this.view = this.view.fitted(box, margin);
@@ -106,7 +106,7 @@ export class Stage {
       canvas.style.width = `${across / ratio}px`;
       canvas.style.height = `${down / ratio}px`;
     }
-    this.picture.resize(across, down, ratio);
+    this.painter.resize(across, down, ratio);
     this.overlay.resize(across, down, ratio);
     this.view = this.view.resized(across / ratio, down / ratio);
     if (this.fitted) this._fit();
@@ -138,15 +138,15 @@ export class Stage {
 
   /** Where on the canvas the arrow of a half-edge has its middle. */
   middle(halfedge) {
-    return middleOf(arrowOf(this.work.mirror, this.view, halfedge));
+    return middleOf(arrowOf(this.meshState.replica, this.view, halfedge));
   }
 
   // Painting
 
   /** The colours are others. */
   recolour() {
-    this._marks.forget();
-    this.picture.forget();
+    this._markers.forget();
+    this.painter.forget();
     this.repaint();
   }
 
@@ -158,26 +158,26 @@ export class Stage {
   paint() {
     cancelAnimationFrame(this._frame);
     this._frame = 0;
-    const { mirror, facts } = this.work;
-    if (mirror.revision < 0 || !this._lower.width || !this._palette.theme) return;
+    const { replica, derived } = this.meshState;
+    if (replica.revision < 0 || !this._lower.width || !this._colours.theme) return;
     if ((globalThis.devicePixelRatio || 1) !== this._ratio) {
       this.resize();
       return;
     }
-    this.picture.paint(this.view);
-    this.overlay.paint(this.picture.view, mirror, facts, this.shown);
+    this.painter.paint(this.view);
+    this.overlay.paint(this.painter.view, replica, derived, this.shown);
     this._painted();
   }
 
   /** The half-edge at [x, y] of the canvas, or of the boundary within `reach` pixels; or -1. */
   pick([x, y], reach) {
     const [px, py] = this.view.toPlane(x, y);
-    return halfedgeAt(this.work.mirror, this.work.grid, px, py, reach / this.view.pixels);
+    return halfedgeAt(this.meshState.replica, this.meshState.grid, px, py, reach / this.view.pixels);
   }
 
   /** A half-edge that starts at the vertex within `reach` pixels of [x, y]; or -1. */
   pickVertex([x, y], reach) {
     const [px, py] = this.view.toPlane(x, y);
-    return vertexAt(this.work.mirror, this.work.grid, px, py, reach / this.view.pixels);
+    return vertexAt(this.meshState.replica, this.meshState.grid, px, py, reach / this.view.pixels);
   }
 }

@@ -7,10 +7,10 @@ import { ghostOf } from "../canvas/ghost.js";
 import { asSentence } from "../dom.js";
 import { halfedgeNear, middleOf } from "../mesh/picking.js";
 
-const HOVER_PATIENCE = 3000;
+const ANSWER_TIMEOUT = 3000;
 const ANTICIPATE = { after: 14, times: 3 };
 
-export class Pointing {
+export class HoverState {
   constructor(card) {
     this.halfedge = -1;
     this.pinned = false; // by the keyboard, a menu or a hint: the mouse is elsewhere
@@ -23,7 +23,7 @@ export class Pointing {
     this._asked = null; // the question under way: {id, halfedge, operation, at}
     this._answered = ""; // what offers and ghost are of
     this._acting = false;
-    this._told = "";
+    this._offersKey = "";
     this._place = null; // where in the plane the half-edge was
   }
 
@@ -32,7 +32,7 @@ export class Pointing {
     this.pinned = pinned && halfedge >= 0;
     if (halfedge === this.halfedge) return;
     this.halfedge = halfedge;
-    this._place = halfedge < 0 ? null : middleOf(this._card.mirror.corners(this._card.mirror.element(halfedge)));
+    this._place = halfedge < 0 ? null : middleOf(this._card.replica.corners(this._card.replica.element(halfedge)));
     this._picked = this._previewed = null;
     this._acting = false;
     this._forget();
@@ -53,14 +53,14 @@ export class Pointing {
   arm(operation) {
     this.armed = operation === this.armed ? null : operation;
     this._picked = null;
-    this._retell();
+    this._reset();
   }
 
   /** Show the ghost of this operation while a menu points at it; null: as before. */
   preview(operation) {
     if (operation === this._previewed) return;
     this._previewed = operation;
-    this._retell();
+    this._reset();
   }
 
   /** Mean the next operation that is allowed here (1), or the one before (-1). */
@@ -73,23 +73,23 @@ export class Pointing {
       : (at + step + allowed.length) % allowed.length];
     if (this.armed) this.armed = next;
     else this._picked = next;
-    this._retell();
+    this._reset();
   }
 
   /** Do what is meant here; if that is not known yet, as soon as it is. */
   act() {
-    if (this.halfedge < 0) this._card.say("refused", "Point at a half-edge first.");
+    if (this.halfedge < 0) this._card.notify("refused", "Point at a half-edge first.");
     else if (this.ghost) this._card.operate(this.ghost.operation, this.halfedge);
-    else if (this.offers) this._card.say("refused", this._refusal());
+    else if (this.offers) this._card.notify("refused", this._refusal());
     else this._acting = true;
   }
 
   /** The mesh has changed, or the agent has begun or ended: what was known is of the past. */
   renew() {
-    const { mirror } = this._card;
-    if (this.halfedge >= 0 && !mirror.live(this.halfedge)) {
+    const { replica } = this._card;
+    if (this.halfedge >= 0 && !replica.live(this.halfedge)) {
       // who walks by keyboard goes on from the same place
-      this.halfedge = this.pinned && this._place ? halfedgeNear(mirror, ...this._place) : -1;
+      this.halfedge = this.pinned && this._place ? halfedgeNear(replica, ...this._place) : -1;
     }
     this._forget();
     this._card.pointed();
@@ -112,7 +112,7 @@ export class Pointing {
         this.act();
       }
     }
-    this.ask();
+    this.request();
   }
 
   /** What was asked with this id has been refused; returns whether that was a question of ours:
@@ -125,12 +125,12 @@ export class Pointing {
   }
 
   /** Ask Python what there is to know, unless it is known or asked already. */
-  ask() {
+  request() {
     const card = this._card;
     if (card.readOnly || card.agentBusy || this.halfedge < 0) return;
     if (this._question() === this._answered) return;
     const now = performance.now();
-    if (this._asked && now - this._asked.at < HOVER_PATIENCE) return;
+    if (this._asked && now - this._asked.at < ANSWER_TIMEOUT) return;
     const fields = { halfedge: this.halfedge, operation: this.wanted };
     this._asked = { id: card.link.send("hover", fields), at: now, ...fields };
   }
@@ -146,24 +146,24 @@ export class Pointing {
       if (!waiting()) return;
       this._asked = null;
       this._answered = "";
-      this.ask();
+      this.request();
       this.anticipate(waiting, times - 1);
     }, ANTICIPATE.after);
   }
 
   /** Keep the offers; the same ones stay the same object, so that an open menu stays as it is. */
   _offer(offers) {
-    const told = JSON.stringify(offers);
-    if (this.offers && told === this._told) return;
-    this._told = told;
+    const key = JSON.stringify(offers);
+    if (this.offers && key === this._offersKey) return;
+    this._offersKey = key;
     this.offers = new Map(offers.map((offer) => [offer.operation, offer]));
   }
 
   _question() {
-    return `${this._card.mirror.revision} ${this.halfedge} ${this.wanted}`;
+    return `${this._card.replica.revision} ${this.halfedge} ${this.wanted}`;
   }
 
-  _retell() {
+  _reset() {
     this.ghost = null;
     this._answered = "";
     this._card.pointed();

@@ -106,7 +106,7 @@ export class Pointer {
 
   _onCancel(event) {
     const held = this._down.get(event.pointerId);
-    if (held && held.type === "touch" && this._down.size === 1) this._card.tellTouch();
+    if (held && held.type === "touch" && this._down.size === 1) this._card.showTouchHint();
     this._end(event.pointerId);
     this._moved = false;
   }
@@ -151,7 +151,7 @@ export class Pointer {
   _onWheel(event) {
     const zooms = event.ctrlKey || event.metaKey || this._card.focused;
     if (!zooms) {
-      this._card.tellWheel();
+      this._card.showWheelHint();
       return;
     }
     event.preventDefault();

@@ -12,7 +12,7 @@ export function viewName() {
   return `v${viewsSoFar}-${Date.now().toString(36)}-${random}`;
 }
 
-const LONGER_WORDS = ["agent", "level"]; // what they bring about goes on after the answer
+const LASTING_WORDS = ["agent", "level"]; // what they bring about goes on after the answer
 const LOST = "The kernel that had this mesh is gone: run this cell again to go on.";
 
 export class KernelLink {
@@ -22,14 +22,14 @@ export class KernelLink {
     this.view = viewName();
     this._model = model;
     this._last = 0;
-    this._stirred = false; // something longer was asked for here, and is not over
-    this._revision = this._reckoned = -1;
+    this._lasting = false; // something longer was asked for here, and is not over
+    this._revision = this._counted = -1;
     this._receive = (content, buffers) => {
       // a patch is for all, and its "to" is a revision
-      const mine = content && (content.say === "patch" || !content.to || content.to === this.view);
+      const mine = content && (content.type === "patch" || !content.to || content.to === this.view);
       if (!mine) return;
       this.onmessage(content, buffers || []);
-      this._reckon(content);
+      this._countChange(content);
     };
     model.on("msg:custom", this._receive);
   }
@@ -37,16 +37,16 @@ export class KernelLink {
   /** Say something to Python; answers carry the id as `reply`. */
   send(word, fields = {}) {
     this._last += 1;
-    if (LONGER_WORDS.includes(word) && !this._stirred) {
-      this._stirred = true;
-      this._reckoned = this._revision;
+    if (LASTING_WORDS.includes(word) && !this._lasting) {
+      this._lasting = true;
+      this._counted = this._revision;
     }
     try {
       this._model.send({ do: word, id: this._last, view: this.view, ...fields });
     } catch (error) { // JupyterLab, once the kernel was restarted or shut down: "Cannot send"
       const reply = this._last;
       // later, as any answer: who asked must first know the number of its question
-      setTimeout(() => this.onmessage({ say: "notice", tone: "failed", sentence: LOST, reply }, []));
+      setTimeout(() => this.onmessage({ type: "notice", tone: "failed", sentence: LOST, reply }, []));
     }
     return this._last;
   }
@@ -55,13 +55,13 @@ export class KernelLink {
    *
    * Not after what cells do themselves, or a cell that changes the mesh would run for ever.
    */
-  _reckon({ say, asked, state, to, revision }) {
-    if (say === "patch" || say === "state") this._revision = say === "patch" ? to : revision;
-    const rests = say === "agent" && ["idle", "paused"].includes(state);
-    const done = asked === this.view || (rests && this._stirred);
-    if (!done || this._revision === this._reckoned) return;
-    if (rests) this._stirred = false;
-    this._reckoned = this._revision;
+  _countChange({ type, asked, state, to, revision }) {
+    if (type === "patch" || type === "state") this._revision = type === "patch" ? to : revision;
+    const rests = type === "agent" && ["idle", "paused"].includes(state);
+    const done = asked === this.view || (rests && this._lasting);
+    if (!done || this._revision === this._counted) return;
+    if (rests) this._lasting = false;
+    this._counted = this._revision;
     if (!document.querySelector("marimo-anywidget")) return;
     this._model.set("seen", this._model.get("seen") + 1);
     this._model.save_changes();

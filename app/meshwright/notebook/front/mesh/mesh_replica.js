@@ -22,7 +22,7 @@ export function withRoom(array, length) {
   return longer;
 }
 
-export class Mirror {
+export class MeshReplica {
   constructor() {
     this.revision = -1;
     this.k = 4;
@@ -104,7 +104,7 @@ export class Mirror {
     ];
     return {
       content: {
-        say: "patch", from: content.to, to: content.from, vertices: this.vertices,
+        type: "patch", from: content.to, to: content.from, vertices: this.vertices,
         halfedges: this.halfedges, head: this.head,
       },
       buffers: back.map((array) => new DataView(array.buffer)),

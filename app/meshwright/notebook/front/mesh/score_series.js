@@ -3,10 +3,10 @@
 // State 0 is the start, state i the one after step i; steps that were undone count too.
 
 /** Times the span of a curve beyond which what is left to the optimum is left out of it. */
-const TRACK_FAR = 4;
-const TRACK_COLUMNS = ["scores", "optima", "titles", "by"];
+const FAR_FACTOR = 4;
+const COLUMNS = ["scores", "optima", "titles", "by"];
 
-export class Track {
+export class ScoreSeries {
   constructor() {
     this.clear();
   }
@@ -30,7 +30,7 @@ export class Track {
     if (fresh) {
       const by = fresh.by || [];
       const begin = Math.min(fresh.from, this.length);
-      for (const name of TRACK_COLUMNS) this[name].length = begin;
+      for (const name of COLUMNS) this[name].length = begin;
       fresh.scores.forEach((score, i) => {
         this.scores.push(score);
         this.optima.push(fresh.optima[i]);
@@ -38,7 +38,7 @@ export class Track {
         this.by.push(by[i] || "");
       });
     }
-    for (const name of TRACK_COLUMNS) this[name].length = Math.min(this[name].length, head.length + 1);
+    for (const name of COLUMNS) this[name].length = Math.min(this[name].length, head.length + 1);
     this._best = -1;
     this._others = -1;
   }
@@ -63,7 +63,7 @@ export class Track {
 
   /** " (−2)": what that did to the score; nothing for the start. */
   change(state) {
-    return state <= 0 ? "" : ` (${trackSigned(this.scores[state] - this.scores[state - 1])})`;
+    return state <= 0 ? "" : ` (${formatChange(this.scores[state] - this.scores[state - 1])})`;
   }
 
   /** How many steps an agent took. */
@@ -79,13 +79,13 @@ export class Track {
 }
 
 /** "+1", "−2" with a true minus sign, "±0". */
-function trackSigned(change) {
+function formatChange(change) {
   if (change === 0) return "±0";
   return change > 0 ? `+${change}` : `−${-change}`;
 }
 
 /** "12,345". */
-export function trackNumber(value) {
+export function formatNumber(value) {
   return value.toLocaleString("en-US");
 }
 
@@ -94,24 +94,24 @@ export function trackNumber(value) {
  * The frame is `broken` where the optimum lies so far below all that has happened that the curve
  * would be a level line; the optimum is drawn at the lower edge then.
  */
-export class TrackFrame {
-  constructor(track, left, top, width, height) {
+export class CurveFrame {
+  constructor(series, left, top, width, height) {
     this.left = left;
     this.top = top;
     this.width = Math.max(width, 1);
     this.height = height;
-    this.last = Math.max(track.length - 1, 1);
+    this.last = Math.max(series.length - 1, 1);
     let goal = Infinity;
     let lowest = Infinity;
     let high = -Infinity;
-    for (let i = 0; i < track.length; i += 1) {
-      goal = Math.min(goal, track.optima[i]);
-      lowest = Math.min(lowest, track.scores[i]);
-      high = Math.max(high, track.scores[i]);
+    for (let i = 0; i < series.length; i += 1) {
+      goal = Math.min(goal, series.optima[i]);
+      lowest = Math.min(lowest, series.scores[i]);
+      high = Math.max(high, series.scores[i]);
     }
     this.high = Math.max(high, goal + 1);
     const room = Math.max(this.high - lowest, 4);
-    this.broken = lowest - goal > TRACK_FAR * room;
+    this.broken = lowest - goal > FAR_FACTOR * room;
     this.low = this.broken ? lowest - 0.5 * room : goal;
   }
 

@@ -1,7 +1,7 @@
 // The agent beside the person: which policy, what it shall do, how far it is, and its hints.
 
 import { MOST_HINTS, percent } from "../canvas/hint_badges.js";
-import { button, icon, node, tell } from "../dom.js";
+import { button, icon, node, setText } from "../dom.js";
 import { counted, signed } from "../numbers.js";
 
 const AGENT_SPEEDS = [0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60];
@@ -30,9 +30,9 @@ export class AgentPanel {
 
   _make() {
     this._policy = node("select", "mw-select", { "aria-label": "Policy", title: "The policy that hints and runs follow" });
-    this._policy.addEventListener("change", () => this._card.ask("policy", { name: this._policy.value }));
+    this._policy.addEventListener("change", () => this._card.request("policy", { name: this._policy.value }));
     const action = (text, label, name, sign = null, look = "mw-button") =>
-      button(look, label, { text, sign, act: () => this.ask(name) });
+      button(look, label, { text, sign, act: () => this.request(name) });
     this._hint = action("Hint", "Show the policy's best few operations (H)", "hint");
     this._step = action("Step", "Let the policy take one operation (.)", "step", "step");
     this._play = button("mw-button", "Play", { text: "Play", sign: "play", act: () => this.toggle() });
@@ -46,8 +46,8 @@ export class AgentPanel {
     });
     this._speed.addEventListener("input", () => {
       const value = AGENT_SPEEDS[this._speed.valueAsNumber];
-      this._tellPace(value);
-      this._card.ask("speed", { value });
+      this._updatePace(value);
+      this._card.request("speed", { value });
     });
     this._pace = node("span", "mw-pace", { "aria-hidden": "true" });
     this._words = node("p", "mw-hint mw-agent-words", { role: "status" });
@@ -55,32 +55,32 @@ export class AgentPanel {
   }
 
   /** Ask the agent for something. */
-  ask(action) {
+  request(action) {
     if (this._card.readOnly || this.root.hidden) return;
     if (action === "hint" && this.hints.length) {
       this._putAway();
       return;
     }
     this._away = "";
-    this._card.ask("agent", { action });
+    this._card.request("agent", { action });
   }
 
   /** Play, or hold. */
   toggle() {
-    this.ask(this.state === "playing" ? "pause" : "play");
+    this.request(this.state === "playing" ? "pause" : "play");
   }
 
   /** Take the hint of this index; returns whether there is one. */
   take(index) {
     if (index >= this.hints.length) return false;
-    this._card.ask("take_hint", { index });
+    this._card.request("take_hint", { index });
     return true;
   }
 
   /** Put hints away, or stop what runs; returns whether there was something. */
   escape() {
     if (this.hints.length) this._putAway();
-    else if (this.state !== "idle") this.ask("stop");
+    else if (this.state !== "idle") this.request("stop");
     else return false;
     return true;
   }
@@ -89,7 +89,7 @@ export class AgentPanel {
   update(content) {
     this.state = content.state;
     this.root.hidden = this._card.readOnly;
-    this._tellPolicies(content);
+    this._updatePolicies(content);
     const playing = content.state === "playing";
     const words = playing ? "Pause" : content.state === "paused" ? "Go on" : "Play";
     this._play.replaceChildren(icon(playing ? "pause" : "play"), node("span", "", {}, words));
@@ -105,12 +105,12 @@ export class AgentPanel {
     if (!this._speed.matches(":active")) {
       const away = AGENT_SPEEDS.map((speed) => Math.abs(speed - content.speed));
       this._speed.value = away.indexOf(Math.min(...away));
-      this._tellPace(content.speed);
+      this._updatePace(content.speed);
     }
-    tell(this._words, this._told(content));
-    const told = JSON.stringify(content.hints);
-    this._setHints(told === this._away ? [] : content.hints);
-    this._known = told;
+    setText(this._words, this._statusText(content));
+    const key = JSON.stringify(content.hints);
+    this._setHints(key === this._away ? [] : content.hints);
+    this._known = key;
   }
 
   /** Put the hints away until there are others, or they are asked for again. */
@@ -119,7 +119,7 @@ export class AgentPanel {
     this._setHints([]);
   }
 
-  _told({ loading, asking, state, progress, policies }) {
+  _statusText({ loading, asking, state, progress, policies }) {
     if (!policies.length) return "No policy for meshes of this kind.";
     const { decisions = 0, best = null } = progress || {};
     const lowest = best === null ? "" : `, best s ${best}`;
@@ -131,14 +131,14 @@ export class AgentPanel {
     return decisions ? `${counted(decisions, "operation")} taken${lowest}` : "Ready";
   }
 
-  _tellPace(speed) {
+  _updatePace(speed) {
     const words = `${speed.toLocaleString("en")} operations per second`;
-    tell(this._pace, `${speed.toLocaleString("en")}\u2009/\u2009s`);
+    setText(this._pace, `${speed.toLocaleString("en")}\u2009/\u2009s`);
     this._speed.setAttribute("aria-valuetext", words);
     this._speed.title = `Speed of playing: ${words}`;
   }
 
-  _tellPolicies({ policies, policy }) {
+  _updatePolicies({ policies, policy }) {
     const known = JSON.stringify(policies);
     if (known !== this._policies) {
       this._policies = known;
@@ -154,10 +154,10 @@ export class AgentPanel {
     const before = this.hints.length;
     this.hints = hints.slice(0, MOST_HINTS);
     this._list.hidden = !this.hints.length;
-    const { palette } = this._card;
+    const { colours } = this._card;
     this._list.replaceChildren(...this.hints.map((hint, index) => {
       const change = node("span", "mw-change", {}, signed(hint.change));
-      change.style.color = palette.ofChange(hint.change);
+      change.style.color = colours.ofChange(hint.change);
       const chance = percent(hint.probability);
       const row = node("button", "mw-operation mw-hint-row", {
         type: "button", "aria-label": `Hint ${index + 1}: ${hint.title}, ${chance}, s ${signed(hint.change)}`,

@@ -17,23 +17,23 @@ export function canvasLabel(head) {
 }
 
 /** What is pointed at, in a line; with the reason where the operation that is armed is refused. */
-export function placed(mirror, { halfedge, offers, wanted }) {
-  const ends = `${mirror.origin[halfedge]} \u2192 ${mirror.target(halfedge)}`;
+export function placed(replica, { halfedge, offers, wanted }) {
+  const ends = `${replica.origin[halfedge]} \u2192 ${replica.target(halfedge)}`;
   const offer = offers && wanted ? offers.get(wanted) : null;
   const refusal = offer && !offer.allowed ? `  \u00b7  Not here: ${asSentence(offer.reason)}` : "";
   return `Half-edge ${halfedge}:  ${ends}${refusal}`;
 }
 
 /** What is pointed at, in words: ends, degrees, and what the operation meant would do. */
-export function described({ mirror, pointing }) {
-  const h = pointing.halfedge;
-  if (!mirror.live(h)) return "No half-edge.";
+export function described({ replica, hoverState }) {
+  const h = hoverState.halfedge;
+  if (!replica.live(h)) return "No half-edge.";
   const end = (at) => {
-    const delta = mirror.delta[mirror.origin[at]];
-    return `vertex ${mirror.origin[at]}, degree ${mirror.degree(at)}, ${delta ? signed(delta) : "regular"}`;
+    const delta = replica.delta[replica.origin[at]];
+    return `vertex ${replica.origin[at]}, degree ${replica.degree(at)}, ${delta ? signed(delta) : "regular"}`;
   };
-  const side = mirror.twin[h] < 0 ? ", on the boundary" : "";
-  const info = mirror.catalogue.find((one) => one.operation === pointing.meant);
-  const meant = info ? ` ${info.title}: s ${signed(pointing.ghost.change)}.` : "";
-  return `Half-edge ${h}${side}, from ${end(h)}, to ${end(mirror.next(h))}.${meant}`;
+  const side = replica.twin[h] < 0 ? ", on the boundary" : "";
+  const info = replica.catalogue.find((one) => one.operation === hoverState.meant);
+  const meant = info ? ` ${info.title}: s ${signed(hoverState.ghost.change)}.` : "";
+  return `Half-edge ${h}${side}, from ${end(h)}, to ${end(replica.next(h))}.${meant}`;
 }

@@ -1,19 +1,19 @@
 // The strip over canvas and panel while a level is played: what is to be done, with how many
 // operations, what is won, and the agent's answer.
 
-import { drawn, node, tell } from "../dom.js";
+import { drawn, node, setText } from "../dom.js";
 
 const STARS = 3;
 const STAR_PATH = starPath(10, 10, 8.5, 3.9);
 
-export class Levels {
+export class LevelBar {
   constructor(place, card) {
     this._card = card;
     this._all = [];
     this._done = false;
     this._waits = false;
     this._choice = node("select", "mw-select mw-level-choice", { "aria-label": "Choose a level" });
-    this._choice.addEventListener("change", () => this._ask("open", this._choice.value));
+    this._choice.addEventListener("change", () => this._request("open", this._choice.value));
     this._stars = starRow("mw-level-stars");
     this._facts = node("div", "mw-level-facts");
     this._text = node("p", "mw-level-text");
@@ -42,23 +42,23 @@ export class Levels {
     this._fill(level);
     showStars(this._stars, level.done ? level.stars : level.best_stars);
     this._stars.title = level.done ? "Won just now" : "Your best so far";
-    this._tellFacts(level);
-    this._tellText(level);
-    this._tellButtons(level);
+    this._updateFacts(level);
+    this._updateText(level);
+    this._updateButtons(level);
     this._celebrate(level);
   }
 
   _button(title, action, label) {
     const made = node("button", "mw-button", { type: "button", title: label }, node("span", "", {}, title));
-    made.addEventListener("click", () => this._ask(action));
+    made.addEventListener("click", () => this._request(action));
     return made;
   }
 
-  _ask(action, name = null) {
+  _request(action, name = null) {
     if (this._waits || this._card.readOnly) return;
     this._waits = true; // a second click before the answer means the first one
     setTimeout(() => { this._waits = false; }, 400);
-    this._card.ask("level", name === null ? { action } : { action, name });
+    this._card.request("level", name === null ? { action } : { action, name });
   }
 
   /** The list to choose from. */
@@ -76,7 +76,7 @@ export class Levels {
     this._choice.disabled = this._card.readOnly;
   }
 
-  _tellFacts(level) {
+  _updateFacts(level) {
     const { rival } = level;
     const facts = [
       ["Goal", level.aim, "The score to reach: the lowest that is possible"],
@@ -87,24 +87,24 @@ export class Levels {
     ];
     if (rival) facts.push(["Agent", answerOf(rival), "What the agent took, on a mesh of its own"]);
     const key = JSON.stringify(facts);
-    if (key === this._told) return;
-    this._told = key;
+    if (key === this._factsKey) return;
+    this._factsKey = key;
     this._facts.replaceChildren(...facts.map(([name, value, label]) =>
       node("span", "mw-level-fact", { title: label }, `${name} `, node("b", "", {}, String(value)))));
   }
 
-  _tellText(level) {
+  _updateText(level) {
     const { headline, remark, rival } = level;
     const failed = rival && rival.standing === "failed" ? rival.reason : "";
     this._text.dataset.tone = level.done && !level.helped ? "won" : remark || failed ? "warns" : "";
     const words = remark || failed || level.text;
     this._text.replaceChildren(...(headline ? [node("b", "", {}, `${headline}. `)] : []), words);
-    tell(this._live, headline || remark ? `${headline} ${remark}` : "");
+    setText(this._live, headline || remark ? `${headline} ${remark}` : "");
   }
 
-  _tellButtons(level) {
+  _updateButtons(level) {
     const thinks = level.rival !== null && level.rival.standing === "asked";
-    tell(this._solve.firstChild, level.answered ? "Show a way" : thinks ? "Thinking\u2026" : "Ask the agent");
+    setText(this._solve.firstChild, level.answered ? "Show a way" : thinks ? "Thinking\u2026" : "Ask the agent");
     this._solve.title = level.answered
       ? "Begin again with this way ahead: redo goes along it"
       : "Let the agent solve this level on a mesh of its own, and compare";

@@ -23,14 +23,14 @@ export class Menus {
 
   /** The same for the half-edge that is pointed at, with the focus in it. */
   openByKey() {
-    const { pointing, stage, readOnly } = this._card;
+    const { hoverState, stage, readOnly } = this._card;
     if (readOnly) return;
-    if (pointing.halfedge < 0) {
-      this._card.say("refused", "Point at a half-edge first.");
+    if (hoverState.halfedge < 0) {
+      this._card.notify("refused", "Point at a half-edge first.");
       return;
     }
-    pointing.pinned = true;
-    this.openOperations(pointing.halfedge, stage.middle(pointing.halfedge), false);
+    hoverState.pinned = true;
+    this.openOperations(hoverState.halfedge, stage.middle(hoverState.halfedge), false);
     this._open.popup.focusRow(0);
   }
 
@@ -57,7 +57,7 @@ export class Menus {
     this.close(false);
     this._open = makeMenu(() => {
       this._open = null;
-      this._card.pointing.preview(null);
+      this._card.hoverState.preview(null);
     });
   }
 
@@ -73,8 +73,8 @@ class OperationMenu {
   constructor(card, halfedge, { x, y, touch, closed }) {
     this._card = card;
     this.halfedge = halfedge;
-    const { mirror } = card;
-    this._ends = [mirror.origin[halfedge], mirror.target(halfedge)];
+    const { replica } = card;
+    this._ends = [replica.origin[halfedge], replica.target(halfedge)];
     this.popup = new Popup(card, `Half-edge ${this._ends.join(" \u2192 ")}`, { touch, closed });
     this._fill();
     this.popup.show(x, y);
@@ -82,24 +82,24 @@ class OperationMenu {
 
   /** Offers have come, or are others. */
   refresh() {
-    const { mirror, pointing } = this._card;
-    const same = mirror.live(this.halfedge) && mirror.origin[this.halfedge] === this._ends[0]
-      && mirror.target(this.halfedge) === this._ends[1];
-    if (!same || pointing.halfedge !== this.halfedge) this.popup.close();
-    else if (pointing.offers !== this._offers) this._fill();
+    const { replica, hoverState } = this._card;
+    const same = replica.live(this.halfedge) && replica.origin[this.halfedge] === this._ends[0]
+      && replica.target(this.halfedge) === this._ends[1];
+    if (!same || hoverState.halfedge !== this.halfedge) this.popup.close();
+    else if (hoverState.offers !== this._offers) this._fill();
   }
 
   _fill() {
-    const { mirror, pointing, palette } = this._card;
-    this._offers = pointing.offers;
+    const { replica, hoverState, colours } = this._card;
+    this._offers = hoverState.offers;
     const focused = this.popup.rows.findIndex((row) => row.element.matches(":focus"));
     this.popup.clear();
-    for (const info of mirror.catalogue) {
+    for (const info of replica.catalogue) {
       const offer = this._offers ? this._offers.get(info.operation) : null;
       const refused = offer ? !offer.allowed : false;
       const known = offer && offer.change !== null;
       const change = node("span", "mw-change", {}, known ? signed(offer.change) : "");
-      if (known) change.style.color = palette.ofChange(offer.change);
+      if (known) change.style.color = colours.ofChange(offer.change);
       const reason = refused ? asSentence(offer.reason) : "";
       this.popup.addRow({
         label: `${info.title}${known ? `, s ${signed(offer.change)}` : ""}${reason ? `. Not here: ${reason}` : ""}`,
@@ -111,7 +111,7 @@ class OperationMenu {
         disabled: refused || !offer,
         key: info.key,
         act: () => this._card.operate(info.operation, this.halfedge),
-        pointed: () => pointing.preview(refused || !offer ? null : info.operation),
+        pointed: () => hoverState.preview(refused || !offer ? null : info.operation),
       });
     }
     if (focused >= 0) this.popup.focusRow(focused);
@@ -121,13 +121,13 @@ class OperationMenu {
 /** Desired degree, corner and lock of the vertex where a half-edge starts. */
 class VertexMenu {
   constructor(card, halfedge, { x, y, touch, closed }) {
-    const { mirror } = card;
+    const { replica } = card;
     this._card = card;
-    this.vertex = mirror.origin[halfedge];
-    this._revision = mirror.revision;
-    const degree = mirror.degree(halfedge);
-    const delta = mirror.delta[this.vertex];
-    const flags = mirror.flags[this.vertex];
+    this.vertex = replica.origin[halfedge];
+    this._revision = replica.revision;
+    const degree = replica.degree(halfedge);
+    const delta = replica.delta[this.vertex];
+    const flags = replica.flags[this.vertex];
     const words = `Vertex ${this.vertex}: degree ${degree}, \u0394 ${signed(delta)}`;
     this.popup = new Popup(card, words, { touch, closed });
     const desired = degree - delta;
@@ -148,10 +148,10 @@ class VertexMenu {
   }
 
   refresh() {
-    if (this._card.mirror.revision !== this._revision) this.popup.close();
+    if (this._card.replica.revision !== this._revision) this.popup.close();
   }
 
   _send(word, fields) {
-    this._card.ask(word, { vertex: this.vertex, ...fields });
+    this._card.request(word, { vertex: this.vertex, ...fields });
   }
 }

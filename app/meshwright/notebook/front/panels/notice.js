@@ -1,9 +1,9 @@
 // Sentences for a person: refusals and news over the lower edge of the canvas, what is pointed at in
 // the corner, and the same for those who hear the page instead.
 
-import { button, icon, node, tell } from "../dom.js";
+import { button, icon, node, setText } from "../dom.js";
 
-const NOTICE_TIME = { refused: 5000, said: 3500, failed: 60000, hint: 2500 };
+const NOTICE_TIME = { refused: 5000, info: 3500, failed: 60000, hint: 2500 };
 const SPOKEN_AFTER = 250;
 const WAITING_AFTER = 700;
 const SILENT_AFTER = 6000;
@@ -30,7 +30,7 @@ export class Notice {
     this._text.textContent = sentence;
     if (tone !== "hint") this._live.textContent = sentence;
     clearTimeout(this._timers.hide);
-    this._timers.hide = setTimeout(() => this.hide(), NOTICE_TIME[tone] || NOTICE_TIME.said);
+    this._timers.hide = setTimeout(() => this.hide(), NOTICE_TIME[tone] || NOTICE_TIME.info);
   }
 
   hide() {
@@ -41,7 +41,7 @@ export class Notice {
 
   /** What is pointed at, for those who see it. */
   where(text) {
-    tell(this._where, text);
+    setText(this._where, text);
   }
 
   /** What is pointed at, for those who hear it; the last of a quick series only. */

@@ -1,6 +1,6 @@
 // The score against the optimum, what the mesh consists of, and going back and forth.
 
-import { button, icon, node, tell } from "../dom.js";
+import { button, icon, node, setText } from "../dom.js";
 import { clamp, counted } from "../numbers.js";
 
 export class ScorePanel {
@@ -34,24 +34,24 @@ export class ScorePanel {
   /** Tell what a head says. */
   update(head) {
     const solved = head.at_optimum;
-    tell(this._number, head.score.toLocaleString("en"));
+    setText(this._number, head.score.toLocaleString("en"));
     this._number.setAttribute("aria-label", `Score ${head.score}, optimum ${head.optimum}`);
     this._number.title = "s: the sum of |degree \u2212 desired degree| over all vertices";
-    tell(this._goal, `Optimum ${head.optimum.toLocaleString("en")}`);
-    tell(this._gap, `${(head.score - head.optimum).toLocaleString("en")} above it`);
+    setText(this._goal, `Optimum ${head.optimum.toLocaleString("en")}`);
+    setText(this._gap, `${(head.score - head.optimum).toLocaleString("en")} above it`);
     this._optimal.hidden = !solved;
     this._words.hidden = solved;
     const share = solved ? 1 : clamp(head.return, 0, 1);
     this._bar.style.width = `${100 * share}%`;
     this._barBox.setAttribute("aria-valuenow", String(Math.round(100 * share)));
     const [count, all] = [head.irregular, head.vertices].map((n) => n.toLocaleString("en"));
-    tell(this._irregular, `${count} of ${all}`);
-    tell(this._elements, counted(head.elements, head.kind === "quad" ? "quad" : "triangle"));
-    tell(this._blocks, head.blocks === null ? "" : head.blocks.toLocaleString("en"));
+    setText(this._irregular, `${count} of ${all}`);
+    setText(this._elements, counted(head.elements, head.kind === "quad" ? "quad" : "triangle"));
+    setText(this._blocks, head.blocks === null ? "" : head.blocks.toLocaleString("en"));
     this._blocks.parentElement.hidden = head.blocks === null;
-    tell(this._inverted, head.inverted.toLocaleString("en"));
+    setText(this._inverted, head.inverted.toLocaleString("en"));
     this._inverted.parentElement.hidden = !head.inverted;
-    this._tellSteps(head);
+    this._updateSteps(head);
   }
 
   _fact(title) {
@@ -61,7 +61,7 @@ export class ScorePanel {
   }
 
   _makeSteps() {
-    const ask = (word) => () => this._card.ask(word);
+    const ask = (word) => () => this._card.request(word);
     this._undo = button("mw-tool", "Undo (U)", { sign: "undo", act: ask("undo") });
     this._redo = button("mw-tool", "Redo (Shift+U)", { sign: "redo", act: ask("redo") });
     this._smooth = button("mw-tool", "Smooth the whole mesh", { sign: "smooth", act: ask("smooth") });
@@ -73,14 +73,14 @@ export class ScorePanel {
     });
     this._auto = button("mw-tool mw-tool-text", "Smooth around every operation", { text: "Auto" });
     this._auto.addEventListener("click", () => {
-      this._card.ask("auto_smooth", { on: this._auto.getAttribute("aria-pressed") !== "true" });
+      this._card.request("auto_smooth", { on: this._auto.getAttribute("aria-pressed") !== "true" });
     });
     this._steps = node("div", "mw-tools", { role: "toolbar", "aria-label": "History and smoothing" },
       this._undo, this._redo, node("span", "mw-tools-gap"),
       this._smooth, this._auto, this._clean, this._mend);
   }
 
-  _tellSteps(head) {
+  _updateSteps(head) {
     const locked = this._card.readOnly;
     this._steps.hidden = locked;
     this._undo.disabled = !head.can_undo;

@@ -3,7 +3,7 @@
 import { button, icon, node } from "../dom.js";
 import { KEY_HELP, MOUSE_HELP } from "../input/shortcuts.js";
 
-export class StageTools {
+export class ZoomButtons {
   constructor(card, stage) {
     this._card = card;
     this._help = null;
