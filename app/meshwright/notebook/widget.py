@@ -1,4 +1,4 @@
-"""The widget: a document in a notebook's cell."""
+"""The notebook widget."""
 
 from __future__ import annotations
 
@@ -46,29 +46,29 @@ LOWEST, HIGHEST = 160, 4000
 
 
 class MeshWidget(anywidget.AnyWidget):
-    """A mesh in a cell that a person can edit, with the agent beside it.
+    """An editor for a mesh in a notebook cell, with the agent.
 
-    What is changed in the browser is changed here, and the other way round; several widgets on one
-    document stay in step. Change the mesh through the widget, or its document: what
-    ``widget.mesh.apply`` does is in no history, and no view hears of it.
+    Browser and Python edit the same document; several widgets on one document stay synchronised.
+    Change the mesh through the widget or its document: ``widget.mesh.apply`` records no history
+    and updates no view.
     """
 
-    # anywidget passes on only what the class has; the texts are made for each widget
+    # anywidget sends only traits of the class; their texts are defaults of the instance
     _esm = traitlets.Unicode().tag(sync=True)
     _css = traitlets.Unicode().tag(sync=True)
     height = traitlets.Int(464, min=LOWEST, max=HIGHEST).tag(sync=True)
-    """Pixels of the canvas."""
+    """Height of the canvas in pixels."""
     theme = traitlets.Enum(("auto", "light", "dark"), "auto").tag(sync=True)
-    """The colours: those of the notebook, or always light, or always dark."""
+    """Colours: as the notebook, always light, or always dark."""
     label = traitlets.Unicode("").tag(sync=True)
-    """What the mesh is called, for the browser."""
+    """Name of the mesh, for the browser."""
     score = traitlets.Int(0, read_only=True).tag(sync=True)
-    """s of the mesh now."""
+    """Score s of the present mesh."""
     optimum = traitlets.Int(0, read_only=True).tag(sync=True)
-    """s*, the lowest score that any connectivity can have."""
+    """Optimum s*, the lower bound of the score over all connectivities."""
     seen = traitlets.Int(0).tag(sync=True)
-    """Counts, in marimo, what a browser has brought about: marimo runs the cells that use a widget
-    again when its page changes something, and a message alone does not count as that."""
+    """Counts changes made in the browser. marimo runs the cells that use a widget again when a
+    trait is changed by the page; a message alone does not cause that."""
 
     def __init__(
         self,
@@ -82,22 +82,22 @@ class MeshWidget(anywidget.AnyWidget):
         name: str = "",
         read_only: bool = False,
     ) -> None:
-        """Show ``source``; a document, or another widget's, is shared with whoever has it.
+        """Show ``source``; a document, also that of another widget, is shared and not copied.
 
         Args:
             source: see :func:`meshwright.notebook.document_source.document_of`; or another widget.
-            kind: what a shape is meshed with, "tri" or "quad"; quads by default.
-            policy: what the agent follows: a shipped policy, or a file; by default the first that
-                is shipped for this kind of mesh.
-            level: the name of a level to be played, in the place of a source.
-            height: of the canvas, in pixels.
-            theme: "auto" as the notebook, "light" or "dark".
-            name: what the mesh is called.
-            read_only: whether the browser may look only; Python may go on changing the mesh.
+            kind: elements to mesh a shape with, "tri" or "quad"; quads by default.
+            policy: policy of the agent: the name of a shipped one, or a file; by default the first
+                that is shipped for this kind of mesh.
+            level: name of a level to play, instead of a source.
+            height: height of the canvas in pixels.
+            theme: "auto" (as the notebook), "light" or "dark".
+            name: name of the mesh.
+            read_only: whether the browser may not edit; Python still may.
 
         Raises:
-            MeshError: one sentence on what is wrong with the source or the policy.
-            traitlets.TraitError: the height or the theme cannot be.
+            MeshError: source, level or policy is not valid.
+            traitlets.TraitError: height or theme is not valid.
         """
         self._connected: list[tuple[Signal, Callable[..., None]]] = []
         self.read_only = bool(read_only)
@@ -116,7 +116,7 @@ class MeshWidget(anywidget.AnyWidget):
                 session.agent.choose(policy_of(policy))
             super().__init__(height=height, theme=theme, label=name or document.name)
         except BaseException:
-            session.end_if_alone()  # nobody shows the document: nothing may stay on it
+            session.end_if_alone()  # no widget shows the document: disconnect from it
             raise
         session.join(self)
         self.show_score()
@@ -129,26 +129,26 @@ class MeshWidget(anywidget.AnyWidget):
     def _style(self) -> str:
         return bundle.style()
 
-    # What is here
+    # State
 
     @property
     def document(self) -> Document:
-        """What all views share: mesh, history, selection and their events."""
+        """The document, shared by all views: mesh, history, selection and their events."""
         return self.session.document
 
     @property
     def mesh(self) -> HalfEdgeMesh:
-        """The mesh, live; change it by the widget's own methods. MeshError while there is none."""
+        """The live mesh; change it by the widget's methods only. MeshError while there is none."""
         return self.session.mesh
 
     @property
     def history(self) -> History:
-        """One row for every step."""
+        """The history, one row for every step."""
         return self.document.history
 
     @property
     def assistant(self) -> Assistant:
-        """The agent's side, shared by all widgets on the document."""
+        """Runs the agent; shared by all widgets on the document."""
         return self.session.assistant
 
     @property
@@ -158,36 +158,36 @@ class MeshWidget(anywidget.AnyWidget):
 
     @property
     def level(self) -> Level | None:
-        """The level that is being played, None where none is."""
+        """The level being played, or None."""
         return self.session.level
 
     @property
     def stars(self) -> int:
-        """Stars for what is done in the level: 0 before the goal, and where none is played."""
+        """Stars earned in the level: 0 before the goal is reached, and without a level."""
         return LevelBridge.of(self.session).play.stars if self.session.level is not None else 0
 
-    # Changing the mesh
+    # Editing
 
     def check(self, operation: Operation | str, halfedge: int) -> Verdict:
-        """Whether an operation may be done at a half-edge: true, or false with a ``reason``."""
+        """Whether an operation is allowed at a half-edge: true, or false with a ``reason``."""
         action, at = operation_of(self.mesh, operation), whole(halfedge, "half-edge")
         return self._do(lambda: self.document.check(action, at))
 
     def apply(self, operation: Operation | str, halfedge: int) -> Edit:
-        """Do an operation and smooth around it, as one step; OperationRefused if it is refused."""
+        """Apply an operation and smooth around it, as one step; OperationRefused if refused."""
         action, at = operation_of(self.mesh, operation), whole(halfedge, "half-edge")
         return self._do(lambda: self.document.submit(action, at))
 
     def undo(self) -> Row | None:
-        """Take back the last step; returns its row, None if there is none."""
+        """Undo the last step; returns its row, or None without one."""
         return self._do(self.document.undo)
 
     def redo(self) -> Row | None:
-        """Do again what was taken back last; returns its row, None if there is none."""
+        """Redo the step that was undone last; returns its row, or None without one."""
         return self._do(self.document.redo)
 
     def go_to(self, cursor: int) -> None:
-        """Undo or redo until ``cursor`` steps are done; beyond either end it stops there."""
+        """Undo or redo until ``cursor`` steps are applied, clipped to the length of the history."""
         step = whole(cursor, "step")
         self._do(lambda: self.document.go_to(step))
 
@@ -196,23 +196,23 @@ class MeshWidget(anywidget.AnyWidget):
         self._do(self.document.smooth)
 
     def untangle(self) -> tuple[int, int]:
-        """Mend inverted elements; returns how many there were, and how many stay."""
+        """Repair inverted elements; returns their numbers before and after."""
         return self._do(self.document.untangle)
 
     def clean_all(self) -> int:
-        """Remove every global line of a quad mesh that can be removed; returns their number."""
+        """Remove every removable global line of a quad mesh; returns their number."""
         return self._do(self.document.clean_all)
 
     def set_desired(self, vertex: int, degree: int) -> None:
-        """Ask for another degree at a vertex; s and s* follow."""
+        """Set the desired degree of a vertex; s and s* change with it."""
         self._do(lambda: self.document.set_desired(vertex_of(self.mesh, vertex), degree_of(degree)))
 
     def lock(self, vertex: int, flag: bool = True) -> None:
-        """Lock a vertex, so that it neither moves nor vanishes, or unlock it."""
+        """Lock a vertex, so that it is neither moved nor removed, or unlock it."""
         self._do(lambda: self.document.set_locked(vertex_of(self.mesh, vertex), bool(flag)))
 
     def corner(self, vertex: int, flag: bool = True) -> None:
-        """Make a vertex a corner, which stays where it is, or free it."""
+        """Make a vertex a corner, which keeps its position, or undo that."""
         self._do(lambda: self.document.set_geometric(vertex_of(self.mesh, vertex), bool(flag)))
 
     # The agent
@@ -220,47 +220,47 @@ class MeshWidget(anywidget.AnyWidget):
     def play(
         self, policy: str | Path | None = None, *, speed: float | None = None, wait: bool = False
     ) -> None:
-        """Let the agent play, visibly, while the notebook goes on.
+        """Start the agent; its steps are shown while the notebook stays usable.
 
         Args:
-            policy: another one from now on.
+            policy: policy to use from now on.
             speed: decisions per second from now on.
-            wait: return only at the end of the run, which then goes as fast as it can.
+            wait: return only at the end of the run, which then runs at full speed.
 
         Raises:
-            MeshError: the policy does not fit, or (where the call waits) the run broke off.
+            MeshError: the policy does not fit, or (where the call waits) the run failed.
         """
         agent = self.session.agent
         rate = positive(speed, "speed") if speed is not None else None
         self._choose(policy)
-        self._ask(lambda: agent.play(rate, hurry=wait), wait)
+        self._start(lambda: agent.play(rate, hurry=wait), wait)
 
     def step(self, policy: str | Path | None = None, wait: bool = True) -> None:
-        """One decision of the agent: an operation, and the clean-ups that follow it."""
+        """One decision of the agent: an operation and the line removals that follow it."""
         self._choose(policy)
-        self._ask(self.assistant.step, wait)
+        self._start(self.assistant.step, wait)
 
     def pause(self) -> None:
-        """Hold a run; :meth:`play` and :meth:`step` go on from there."""
+        """Pause a run; :meth:`play` and :meth:`step` continue it."""
         self._do(self.assistant.pause)
 
     def complete(self, seconds: float = COMPLETE_SECONDS, wait: bool = True) -> None:
-        """Search for the best state within so many seconds, and go there."""
+        """Search for ``seconds``, and go to the best state found."""
         effort = Effort(seconds=positive(seconds, "seconds"))
-        self._ask(lambda: self.assistant.search(effort), wait)
+        self._start(lambda: self.assistant.search(effort), wait)
 
     def hint(self, wait: bool = True) -> tuple[Choice, ...]:
-        """The policy's best few operations in the present state.
+        """The operations with the highest probability under the policy in the present state.
 
-        Where the call does not wait: the hints that are known already.
+        Where the call does not wait: the hints that are known already, possibly none.
         """
-        self._ask(self.assistant.hint, wait)
+        self._start(self.assistant.hint, wait)
         return self.assistant.hinting.hints
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until the agent is at rest; returns False if that took longer than ``timeout`` s.
+        """Wait until the agent is idle; returns False if that took longer than ``timeout`` s.
 
-        The browsers follow meanwhile.
+        The browsers are updated in the meantime.
         """
         return self.session.wait(timeout)
 
@@ -268,7 +268,7 @@ class MeshWidget(anywidget.AnyWidget):
         if policy is not None:
             self._do(lambda: self.session.agent.choose(policy_of(policy)))
 
-    def _ask(self, begin: Callable[[], None], wait: bool) -> None:
+    def _start(self, begin: Callable[[], None], wait: bool) -> None:
         if wait:
             self.session.finish(begin)
         else:
@@ -277,14 +277,14 @@ class MeshWidget(anywidget.AnyWidget):
     # Events
 
     def on(self, event: str, callback: Callable[..., Any]) -> Callable[[], None]:
-        """Call ``callback`` at every later ``event``; returns a function that ends this.
+        """Call ``callback`` at every ``event``; returns a function that disconnects it.
 
         Events are "changed", "history" (no arguments), "score" (s), "hover" (a half-edge or -1),
-        "agent" (what it is doing, a word) and "level" (the level or None). What a callback raises
-        goes to the log and, as a sentence, to the browser.
+        "agent" (its state, a word) and "level" (the level or None). An exception in a callback is
+        logged and shown in the browser.
         """
         if not callable(callback):
-            raise MeshError(f"A callback must be something to call, not {shortened(callback)}.")
+            raise MeshError(f"A callback must be callable, not {shortened(callback)}.")
         session, document = self.session, self.document
         events: dict[str, tuple[Signal, Callable[..., tuple[Any, ...]]]] = {
             "changed": (document.changed, lambda: ()),
@@ -296,10 +296,10 @@ class MeshWidget(anywidget.AnyWidget):
         }
         if event not in events:
             raise MeshError(f"There is no event {event!r}; there are {', '.join(events)}.")
-        signal, told = events[event]
+        signal, values = events[event]
 
         def slot(*arguments: Any) -> None:
-            session.call_back(callback, *told(*arguments))
+            session.call_back(callback, *values(*arguments))
 
         entry = (signal, signal.connect(slot))
         self._connected.append(entry)
@@ -356,7 +356,7 @@ class MeshWidget(anywidget.AnyWidget):
         return data | image, metadata | image_metadata
 
     def close(self) -> None:
-        """Take the views away. The agent's thread ends with the document's last widget."""
+        """Remove all views. The agent's thread ends with the document's last widget."""
         session = self.__dict__.get("session")  # an __init__ that has failed leaves none
         if session is not None:
             for signal, slot in self._connected:
@@ -367,7 +367,7 @@ class MeshWidget(anywidget.AnyWidget):
 
     @property
     def reachable(self) -> bool:
-        """Whether there still is a way to the browser; marimo cuts it when a cell runs again."""
+        """Whether the connection is open; marimo closes it when the cell runs again."""
         return self.comm is not None and not getattr(self.comm, "_closed", False)
 
     def post(self, packet: Packet) -> None:
@@ -381,15 +381,15 @@ class MeshWidget(anywidget.AnyWidget):
         return f"<{type(self).__name__} of {mesh!r}>" if mesh is not None else object.__repr__(self)
 
     def show_score(self) -> None:
-        """For the session: the score, or the optimum, is another."""
+        """For the session: update score and optimum."""
         self.set_trait("score", self.document.score)
         self.set_trait("optimum", self.document.optimum)
 
     def set_state(self, sync_data: Any) -> None:
-        """What a browser wants the traits to be is nothing to us: it asks by messages."""
+        """Ignore traits set by the browser: it sends requests as messages."""
 
     def _handle_msg(self, message: Any) -> None:
-        """Whatever comes from the browser; never raises."""
+        """Handle any message from the browser; never raises."""
         content = message.get("content") if isinstance(message, dict) else None
         data = content.get("data") if isinstance(content, dict) else None
         data = data if isinstance(data, dict) else {}

@@ -25,7 +25,7 @@ WRONG = [
     (lambda w: w.play(speed=float("nan")), "speed must be a number above 0"),
     (lambda w: w.play(3), "A policy must be a name or a file"),
     (lambda w: w.complete("long"), "seconds must be a number above 0, not 'long'"),
-    (lambda w: w.on("score", None), "something to call, not None"),
+    (lambda w: w.on("score", None), "callable, not None"),
 ]
 
 

@@ -133,7 +133,7 @@ def test_a_page_is_one_file_that_asks_for_nothing(walked, tmp_path):
     assert not re.search(r"url\(|@import|\bfetch\(|XMLHttpRequest|WebSocket|\bimport\(", text)
     assert len(parts.all("script")) == 2
     assert json.loads(parts.texts["recording"]) == record(walked)
-    assert "It can be watched, not changed." in parts.texts["p"]
+    assert "It cannot be edited." in parts.texts["p"]
 
 
 def test_a_page_lets_no_script_run_but_its_own(walked):

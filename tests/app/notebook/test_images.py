@@ -135,7 +135,7 @@ def test_a_widget_gives_away_the_same(document, tmp_path):
         (lambda d, at: images.png(d, (True, 100)), "A size is two whole numbers"),
         (lambda d, at: images.png(d, "large"), "A size is two whole numbers"),
         (lambda d, at: images.svg(d, (100, 100_000)), "A size is two whole numbers"),
-        (lambda d, at: images.gif(d, 0), "A frame stays between 0 and 60 seconds, not 0"),
+        (lambda d, at: images.gif(d, 0), "A frame lasts between 0 and 60 seconds, not 0"),
         (lambda d, at: images.gif(d, float("nan")), "not nan"),
         (lambda d, at: images.gif(d, "fast"), "not 'fast'"),
         (lambda d, at: images.png(d, theme="pink"), "There is no theme 'pink'"),
@@ -163,5 +163,5 @@ def test_an_old_file_stays_where_the_new_one_fails(document, tmp_path, monkeypat
     with pytest.raises(MeshError, match=r"star.png: cannot be written \(no space left on device\)"):
         images.png(document, SMALL, path)
     assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 1
-    with pytest.raises(MeshError, match=r"^The picture cannot be made \(no space left on device\)"):
+    with pytest.raises(MeshError, match=r"^The image cannot be made \(no space left on device\)"):
         images.png(document, SMALL)

@@ -126,7 +126,7 @@ def test_agent_plays_until_it_is_paused(lab, tmp_path):
     star.agent("Play").click()
     star.until("root => root.meshwright.replica.head.cursor >= 2")
     star.agent("Pause").click()
-    star.agent("Go on").wait_for()
+    star.agent("Resume").wait_for()
     at = lab.ask("widget.history.cursor")
     star.await_head(cursor=at)
     star.page.screenshot(path=tmp_path / "paused.png")
@@ -214,7 +214,7 @@ def test_malformed_messages_are_refused_with_a_reason(lab, star):
     star.look(
         "root => { const link = root.meshwright.link; root.refused = [];"
         " const plain = link.onmessage; link.onmessage = (content, buffers) => {"
-        " if (content.say === 'notice') root.refused.push(content); plain(content, buffers); }; }"
+        " if (content.type === 'notice') root.refused.push(content); plain(content, buffers); }; }"
     )
     view = star.look("root => root.meshwright.link.view")
     for number, wrong in enumerate(WRONG):

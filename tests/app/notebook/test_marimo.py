@@ -58,7 +58,7 @@ def test_agent_plays_until_it_is_paused_and_cells_follow(marimo, tmp_path):
     card.agent("Play").click()
     card.until("root => root.meshwright.replica.head.cursor >= 2")
     card.agent("Pause").click()
-    card.agent("Go on").wait_for()
+    card.agent("Resume").wait_for()
     at = marimo.kernel()
     card.await_head(cursor=at["cursor"])
     marimo.page.wait_for_timeout(500)

@@ -223,7 +223,7 @@ def test_who_may_only_look(session, star):
     assert port.ask("hello")[0]["read_only"] is True
     assert port.ask("hover", halfedge=4, operation=None)[0]["type"] == "ghost"
     port.operate(*allowed(star))
-    assert port.sentence == "This view is for looking only."
+    assert port.sentence == "This view is read-only."
     session.document.submit(*allowed(star))
     assert port.replica.shows(star, frame(port))
     port.close()

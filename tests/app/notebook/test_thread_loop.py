@@ -84,7 +84,7 @@ def test_another_thread_gets_the_answer_or_the_error():
 
 
 def test_another_thread_does_not_wait_for_ever(monkeypatch):
-    monkeypatch.setattr(loops, "PATIENCE", 0.05)
+    monkeypatch.setattr(loops, "TIMEOUT", 0.05)
     loop, done = ThreadLoop(), []
 
     def ask() -> None:

@@ -1,4 +1,4 @@
-// The card: one view of a document. It joins the parts, hears the link and speaks to it.
+// The card: one view of a document. It owns the parts, and exchanges messages with the link.
 
 import { Colours } from "./canvas/colours.js";
 import { Stage } from "./canvas/stage.js";
@@ -95,7 +95,7 @@ class Card {
     delete this.root.meshwright;
   }
 
-  // What there is
+  // State
 
   get replica() {
     return this.stage.meshState.replica;
@@ -127,13 +127,13 @@ class Card {
     return this.colours[name.replace(/-/g, "_")];
   }
 
-  /** Call back after every change of theme. */
+  /** Call `callback` after every change of theme. */
   follow(callback) {
     this._followers.push(callback);
   }
 
-  /** For tests and scripts: where on the page {x, y} a pointer is on a half-edge, just inside its
-   * element; null if there is none. It may lie outside of the window or of the canvas.
+  /** For tests and scripts: the point {x, y} of the page at a half-edge, just inside its element;
+   * null if there is none. It may lie outside of the window or of the canvas.
    */
   screenOf(halfedge) {
     if (!this.replica.live(halfedge)) return null;
@@ -144,7 +144,7 @@ class Card {
 
   // Messages
 
-  /** Ask Python for something that it answers, or not. */
+  /** Send a request to Python. */
   request(word, fields = {}) {
     if (this.readOnly && !["hello", "go_to", "level"].includes(word)) return;
     const id = this.link.send(word, fields);
@@ -183,7 +183,7 @@ class Card {
   _onPatch(content, buffers) {
     if (this.stage.patch(content, buffers)) this._onChanged();
     else if (!this._helloed) {
-      this._helloed = true; // something was missed: begin again, once
+      this._helloed = true; // a patch was missed: get the whole state, once
       this.request("hello");
     }
   }
@@ -213,12 +213,12 @@ class Card {
     if (!stale || tone === "failed") this.notify(tone, sentence);
   }
 
-  /** Tell a person a sentence; tone "refused", "said", "failed" or "hint". */
+  /** Show a sentence; tone "refused", "info", "failed" or "hint". */
   notify(tone, sentence) {
     this.notice.show(tone, sentence);
   }
 
-  /** Do an operation at a half-edge, if it is still the one that was meant. */
+  /** Apply an operation at a half-edge, unless that was removed in the meantime. */
   operate(operation, halfedge) {
     const { replica } = this;
     if (!replica.live(halfedge)) return;
@@ -233,7 +233,7 @@ class Card {
     else this.operate(operation, this.hoverState.halfedge);
   }
 
-  // Pointing
+  // Pointer
 
   pick(at, reach) {
     return this.stage.pick(at, reach);
@@ -242,7 +242,7 @@ class Card {
   hover(halfedge, at) {
     const badge = this.stage.overlay.badges.at(...at);
     this.stage.surface.style.cursor = badge >= 0 ? "pointer" : "";
-    if (badge >= 0) this.meanHint(badge);
+    if (badge >= 0) this.showHint(badge);
     else if (!this.menus.open) {
       this.hoverState.preview(null);
       this.hoverState.point(halfedge);
@@ -250,11 +250,11 @@ class Card {
   }
 
   /** The mouse has left the canvas. */
-  left() {
+  leave() {
     if (!this.menus.open && !this.hoverState.pinned) this.hoverState.point(-1);
   }
 
-  /** Point at a half-edge by other means than the mouse. */
+  /** Point at a half-edge by keyboard, menu or hint. */
   pin(halfedge) {
     this.hoverState.point(halfedge, true);
     this.hoverState.pinned = halfedge >= 0;
@@ -285,16 +285,16 @@ class Card {
     this.announceSoon();
   }
 
-  /** Something about what is pointed at is another: show it, and ask for what is not known. */
+  /** Show the changed hover state, and request what is missing. */
   pointed() {
     const { hoverState, replica, stage } = this;
-    const info = replica.catalogue.find((one) => one.operation === hoverState.meant);
+    const info = replica.catalogue.find((one) => one.operation === hoverState.previewed);
     Object.assign(stage.shown, {
       halfedge: hoverState.halfedge, ghost: hoverState.ghost,
-      title: info && !this.menus.open ? info.title : "", // an open menu says it already
+      title: info && !this.menus.open ? info.title : "", // an open menu shows it already
     });
     this.root.dataset.halfedge = hoverState.halfedge;
-    this.root.dataset.meant = hoverState.meant || "";
+    this.root.dataset.meant = hoverState.previewed || "";
     this.operations.update();
     this.menus.refresh();
     const h = hoverState.halfedge;
@@ -306,41 +306,41 @@ class Card {
   // Hints
 
   showHints(hints) {
-    Object.assign(this.stage.shown, { hints, meant: 0 });
+    Object.assign(this.stage.shown, { hints, selected: 0 });
     this.stage.repaint();
   }
 
-  /** Bring a hint to the front, with its ghost. */
-  meanHint(index) {
+  /** Bring a hint to the front, with its preview. */
+  showHint(index) {
     const hint = this.agent.hints[index];
-    this.stage.shown.meant = index;
+    this.stage.shown.selected = index;
     this.pin(hint.halfedge);
     this.hoverState.preview(hint.operation);
     this.stage.repaint();
   }
 
-  // Words
+  // Sentences
 
   showWheelHint() {
     this.notify("hint", WHEEL_HINT);
   }
 
-  /** One finger has scrolled the page: nobody wants to read that every time. */
+  /** After scrolling with one finger; shown a few times only. */
   showTouchHint() {
     this._touchHints += 1;
     if (this._touchHints <= MOST_TOUCH_HINTS) this.notify("hint", TOUCH_HINT);
   }
 
-  /** Say what is pointed at, once the keys rest. */
+  /** Announce the half-edge to screen readers, after the last of several keys. */
   announceSoon(before = "") {
-    this.notice.speak(() => before + described(this));
+    this.notice.announce(() => before + described(this));
   }
 
   toggleHelp() {
     this.zoomButtons.toggle();
   }
 
-  /** Put down what is in hand, one thing at a time. */
+  /** Close or cancel one thing: menu, help, armed operation, agent, half-edge. */
   escape() {
     if (this.menus.close()) return;
     if (this.zoomButtons.close()) this.focusCanvas();
@@ -357,7 +357,7 @@ class Card {
     if (!inside && this.hoverState.pinned && !this.menus.open) this.hoverState.point(-1);
   }
 
-  // Looks
+  // Colours
 
   retheme() {
     const theme = this.wanted === "auto" ? hostTheme() : this.wanted;
@@ -365,12 +365,12 @@ class Card {
     this._arrive();
   }
 
-  /** Some hosts put the card on the page only after it was made: then the colours are known. */
+  /** Some hosts insert the card later; the colours can be read from then on. */
   _arrive() {
     if (this.root.isConnected && this.colours.theme !== this.root.dataset.theme) this.recolour();
   }
 
-  /** Read the colours again; they are known once the card is on the page. */
+  /** Read the colours again; the card must be in the page. */
   recolour() {
     this.colours.read(this.root);
     this.stage.recolour();
@@ -378,7 +378,7 @@ class Card {
     for (const callback of this._followers) callback();
   }
 
-  /** Take over what a model says. */
+  /** Set height and theme. */
   configure({ height, theme }) {
     this.stage.element.style.height = `${height}px`;
     this.wanted = theme;
@@ -392,7 +392,7 @@ class Card {
   }
 }
 
-/** Show what `link` tells in `element`; returns the Card. options: {height, theme}. */
+/** Show a view of `link` in `element`; returns the Card. options: {height, theme}. */
 export function mount(element, link, options = {}) {
   const card = new Card(link, options);
   element.append(card.root);

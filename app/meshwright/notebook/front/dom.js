@@ -1,4 +1,4 @@
-// Making elements of the page in few words.
+// Creates DOM elements.
 
 import { ICON_STROKES } from "./generated/constants.js";
 
@@ -14,12 +14,12 @@ export function node(tag, name = "", attributes = {}, ...children) {
   return made;
 }
 
-/** One of the icons of app/strokes.py, in the colour of the text around it. */
+/** An icon of meshwright.graphics.icon_paths, in the colour of the surrounding text. */
 export function icon(name, size = 18) {
   return drawn(ICON_STROKES[name], { class: "mw-icon", width: size, height: size });
 }
 
-/** A picture of one path in a square of 20, or of another `viewBox`. */
+/** An SVG of one path in a square of 20, or in another `viewBox`. */
 export function drawn(path, attributes = {}) {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");
@@ -32,7 +32,7 @@ export function drawn(path, attributes = {}) {
   return svg;
 }
 
-/** A button with an icon, words or both; `label` is for those who cannot see it, and its tooltip. */
+/** A button with an icon, text or both; `label` is its accessible name and tooltip. */
 export function button(name, label, { sign = null, text = "", act = null } = {}) {
   const made = node("button", name, { type: "button", "aria-label": label, title: label });
   if (sign) made.append(icon(sign));
@@ -41,12 +41,12 @@ export function button(name, label, { sign = null, text = "", act = null } = {})
   return made;
 }
 
-/** Put text where it differs, so that nothing is laid out again for nothing. */
+/** Set the text if it differs, which avoids a layout. */
 export function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** `text` with a capital and a full stop. */
+/** `text` with a capital first letter and a full stop. */
 export function asSentence(text) {
   const begun = text.charAt(0).toUpperCase() + text.slice(1);
   return /[.!?\u2026]$/.test(begun) ? begun : `${begun}.`;

@@ -1,4 +1,4 @@
-// Numbers: bounds, and how they are written.
+// Bounds and formats of numbers.
 
 /** `value`, or the bound of [low, high] that it exceeds. */
 export function clamp(value, low, high) {

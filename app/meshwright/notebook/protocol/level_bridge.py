@@ -1,4 +1,4 @@
-"""Levels in a notebook: what browsers are told of the play, and what they may ask of it."""
+"""Levels in a notebook: connects the play of a level with the browsers."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ ACTIONS: dict[type[requests.Request], str] = {
 
 
 class LevelBridge:
-    """Levels on the document of ``session``; the first one is begun by :meth:`begin`."""
+    """Handles requests about levels and sends their state; :meth:`begin` starts a level."""
 
     def __init__(self, session: Session) -> None:
-        """For :meth:`of`."""
+        """Use :meth:`of`, which returns the existing bridge of a session."""
         self._session = session
-        self._told: dict[str, Any] = {}
+        self._sent: dict[str, Any] = {}
         self._stars: tuple[int, ...] = ()
         self._known: tuple[Level | None, bool] = (None, False)
         self.play = LevelPlay(session.document, session.assistant.hinting, self._rival)
@@ -46,13 +46,13 @@ class LevelBridge:
 
     @classmethod
     def of(cls, session: Session) -> LevelBridge:
-        """The levels of a session; new ones if none has been played there yet."""
+        """The level bridge of a session; created if none has been played there yet."""
         found = session.handlers.get(requests.ChangeLevel)
         owner = getattr(found, "__self__", None)
         return owner if isinstance(owner, cls) else cls(session)
 
     def begin(self, level: str | Level) -> None:
-        """Begin a level; MeshError if there is none of this name."""
+        """Start a level; MeshError if there is none of this name."""
         self.play.open(level)
 
     def _rival(self, document: Document) -> Assistant:
@@ -62,7 +62,7 @@ class LevelBridge:
         self.play.changed.disconnect(self._on_changed)
         self.play.release()
 
-    # What browsers ask
+    # Requests
 
     def _refusal(self, request: requests.Request) -> str:
         """Why the level refuses a request; empty if it does not."""
@@ -88,12 +88,12 @@ class LevelBridge:
 
     @property
     def _answered(self) -> bool:
-        """Whether there is a way to show: the agent's, or that of a level it cannot play."""
+        """Whether there is a solution to show: the agent's, or that of a level it cannot play."""
         play = self.play
         done = play.rival is not None and play.rival.standing is Standing.DONE
         return done or (play.level is not None and bool(play.level.most))
 
-    # What browsers are told
+    # Messages
 
     def _on_changed(self) -> None:
         session, play = self._session, self.play
@@ -102,16 +102,16 @@ class LevelBridge:
             session.broadcaster.notice("failed", play.notice)
             play.notice = ""
         content = self._content()
-        if content != self._told:
-            self._told = content
-            session.broadcaster.tell(Packet(content))
+        if content != self._sent:
+            self._sent = content
+            session.broadcaster.send_to_all(Packet(content))
         known = (play.level, play.done)
         if known != self._known:
             self._known = known
             session.level_changed.emit(play.level)
 
     def _content(self, everything: bool = False) -> dict[str, Any]:
-        """A message; the list of all levels is in it where it may be news."""
+        """The message; it holds the list of all levels where that may have changed."""
         progress, names = self.play.progress, levels.names()
         stars = tuple(progress.best(name).stars for name in names)
         content: dict[str, Any] = {"type": "level", "level": self._level()}
@@ -152,7 +152,7 @@ class LevelBridge:
         }
 
     def _agent(self, level: Level) -> dict[str, Any] | None:
-        """The agent's answer, or that it is thinking; None where it was not asked."""
+        """State of the agent's solution; None where none was requested."""
         rival = self.play.rival
         if rival is None:
             return None

@@ -1,4 +1,4 @@
-"""What the operations at one half-edge would do, for the view whose pointer is there."""
+"""Messages with a preview of the operations at the half-edge under the pointer."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def ghost_packet(
     operation: str | None,
     bar: Callable[[str], str] | None = None,
 ) -> Packet:
-    """Offers of every operation at a live half-edge, and the ghost of one of them.
+    """All operations at a live half-edge, and the preview ("ghost") of one of them.
 
-    Of ``operation``, or where that is None of the best that is allowed; no ghost where it is
-    refused, by the mesh or by the document's ``bar``.
+    The preview is of ``operation``, or where that is None of the best one that is allowed. There is
+    none where the operation is refused, by the mesh or by the document's ``bar``.
     """
     offered = choices(mesh, halfedge, bar)
     if operation is None:
@@ -32,7 +32,7 @@ def ghost_packet(
     content = {
         "type": "ghost",
         "halfedge": halfedge,
-        "offers": [_offer(choice) for choice in offered],
+        "offers": [_offer(option) for option in offered],
         "operation": str(meant.operation) if meant is not None else None,
         "change": meant.change if meant is not None else None,
     }
@@ -46,7 +46,7 @@ def ghost_packet(
 
 
 def no_ghost() -> Packet:
-    """The pointer is over no half-edge."""
+    """The message for a pointer over no half-edge."""
     content: dict[str, Any] = {
         "type": "ghost",
         "halfedge": -1,
@@ -57,10 +57,10 @@ def no_ghost() -> Packet:
     return Packet(content, [b""] * 5)
 
 
-def _offer(choice: Choice) -> dict[str, Any]:
+def _offer(option: Choice) -> dict[str, Any]:
     return {
-        "operation": str(choice.operation),
-        "allowed": choice.allowed,
-        "reason": choice.verdict.reason,
-        "change": choice.change,
+        "operation": str(option.operation),
+        "allowed": option.allowed,
+        "reason": option.verdict.reason,
+        "change": option.change,
     }

@@ -29,7 +29,7 @@ def require_operation(kind: str, operation: str) -> None:
 
 
 def require_halfedge(mesh: HalfEdgeMesh, halfedge: int) -> None:
-    """Raise MeshError unless there is this half-edge."""
+    """Raise MeshError unless the half-edge exists."""
     if not mesh.live(halfedge):
         raise MeshError(f"there is no half-edge {halfedge} in this mesh")
 
@@ -39,7 +39,7 @@ def _operate(session: Session, request: requests.Operate) -> str:
     operation, halfedge, ends = request.operation, request.halfedge, request.ends
     require_operation(mesh.kind, operation)
     if not mesh.live(halfedge) or (mesh.origin(halfedge), mesh.target(halfedge)) != ends:
-        raise MeshError("the mesh has changed there meanwhile: nothing was done")
+        raise MeshError("the mesh has changed here in the meantime: nothing was done")
     verdict = document.check(operation, halfedge)
     if not verdict:
         raise MeshError(verdict.reason)
@@ -52,7 +52,7 @@ def _undo(session: Session, request: requests.Undo) -> str:
 
 
 def _redo(session: Session, request: requests.Redo) -> str:
-    return _outcome("Done again", session.document.redo(), "There is nothing to redo.")
+    return _outcome("Redone", session.document.redo(), "There is nothing to redo.")
 
 
 def _go_to(session: Session, request: requests.GoTo) -> str:
@@ -66,14 +66,14 @@ def _go_to(session: Session, request: requests.GoTo) -> str:
 def _smooth(session: Session, request: requests.Smooth) -> str:
     before = session.document.revision
     session.document.smooth()
-    return "Smoothed." if session.document.revision != before else "It is smooth already."
+    return "Smoothed." if session.document.revision != before else "The mesh is smooth already."
 
 
 def _untangle(session: Session, request: requests.Untangle) -> str:
     found, left = session.document.untangle()
     if not found:
         return "No element is inverted."
-    return f"{found - left:,} of {found:,} inverted elements mended."
+    return f"{found - left:,} of {found:,} inverted elements repaired."
 
 
 def _clean_all(session: Session, request: requests.CleanAll) -> str:
@@ -81,7 +81,7 @@ def _clean_all(session: Session, request: requests.CleanAll) -> str:
         raise MeshError("only quad meshes have global lines")
     count = session.document.clean_all()
     if not count:
-        return "There is no line that can be removed."
+        return "No global line can be removed."
     return f"Removed {count:,} line{'' if count == 1 else 's'}."
 
 
@@ -117,7 +117,7 @@ def _speed(session: Session, request: requests.Speed) -> str:
 
 
 def _policy(session: Session, request: requests.ChoosePolicy) -> str:
-    if request.name not in session.agent.policies:  # no file is opened for a browser
+    if request.name not in session.agent.policies:  # a browser must not open files
         raise MeshError("that policy is not one of those on offer")
     session.agent.choose(request.name)
     return ""

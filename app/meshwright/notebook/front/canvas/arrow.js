@@ -27,7 +27,7 @@ export function arrowOf(replica, view, halfedge) {
   return [[a[0] + trim[0], a[1] + trim[1]], [b[0] - trim[0], b[1] - trim[1]]];
 }
 
-/** A line with a head, with a halo. */
+/** Paint a line with an arrow head and a halo. */
 export function paintArrow(pen, tail, head, colour, halo) {
   const length = Math.hypot(head[0] - tail[0], head[1] - tail[1]);
   if (length < 1) return;

@@ -1,4 +1,4 @@
-// The ghost of an operation: what would be there dashed, what would go faded, and its numbers.
+// The preview of an operation ("ghost"): new edges dashed, removed edges faded, new irregularities.
 
 import { arrayOf } from "../mesh/mesh_replica.js";
 import { middleOf } from "../mesh/picking.js";
@@ -13,7 +13,7 @@ const TAG_HEIGHT = 24;
 const TAG_GAPS = [14, 36];
 const TAG_HIDES = 60;
 
-/** What a ghost message says, in the plane: {halfedge, operation, change, added, removed, gone,
+/** The content of a ghost message, in the plane: {halfedge, operation, change, added, removed, gone,
  * places, delta}; segments are flat [x, y, x, y, ...]; null if nothing is allowed.
  */
 export function ghostOf(content, buffers) {
@@ -53,7 +53,7 @@ export class GhostPainter {
     this._colours = colours;
   }
 
-  /** The edges; they lie below the marks. */
+  /** Paint the edges; they lie below the markers. */
   paintEdges(pen, view, ghost) {
     const colours = this._colours;
     const stroke = (colour, width, alpha, dashes, segments) => {
@@ -73,8 +73,8 @@ export class GhostPainter {
     pen.globalAlpha = 1;
   }
 
-  /** Pills with the irregularity that vertices would have, crosses on those that would go, and the
-   * tag unless `title` is empty. `corners`: of the half-edge's element, on the screen, its own ends
+  /** Paint labels with the new irregularity of vertices, crosses on removed ones, and a tag with the
+   * title unless that is empty. `corners`: of the half-edge's element, on the screen, its own ends
    * first.
    */
   paintNumbers(pen, view, ghost, title, corners, marks) {
@@ -109,7 +109,7 @@ export class GhostPainter {
     }
   }
 
-  /** Beside their vertices, off the arrow, the marks and one another; returns their middles. */
+  /** Paint the labels beside their vertices, without overlaps if possible; returns their centres. */
   _paintPills(pen, view, ghost, corners, marks) {
     const colours = this._colours;
     pen.font = `600 11px ${colours.font}`;
@@ -164,7 +164,7 @@ export class GhostPainter {
     pen.fillText(change, x + width - 9, y + TAG_HEIGHT / 2 + 0.5);
   }
 
-  /** Beside the element that is pointed at, where the tag hides least. */
+  /** The place beside the element where the tag hides least. */
   _tagPlace(view, ghost, corners, width, marks) {
     const xs = corners.map((at) => at[0]);
     const ys = corners.map((at) => at[1]);

@@ -1,4 +1,4 @@
-// Inverted elements in plain sight: hatched, tinted, and with a sign where they are small.
+// Paints inverted elements: tinted, hatched, and with a warning sign where they are small.
 
 import { middleOf } from "../mesh/picking.js";
 
@@ -14,12 +14,12 @@ export class InvertedElementsPainter {
     this._ratio = 0;
   }
 
-  /** Colours are others. */
+  /** Discard the tile after a change of colours. */
   forget() {
     this._tile = null;
   }
 
-  /** Paint these elements as `view` shows them. */
+  /** Paint these elements in `view`. */
   paint(pen, ratio, view, replica, elements) {
     const seen = [];
     for (const e of elements) {
@@ -30,7 +30,7 @@ export class InvertedElementsPainter {
     }
     if (!seen.length) return;
     const pattern = pen.createPattern(this._strokes(ratio), "repeat");
-    // the strokes are of the plane: they move with the picture
+    // the pattern is fixed in the plane: it moves with the mesh
     const [x, y] = view.toScreen(0, 0).map((value) => Math.round(value * ratio) / ratio);
     pattern.setTransform(new DOMMatrix([1 / ratio, 0, 0, 1 / ratio, x, y]));
     pen.lineWidth = 1.5;

@@ -1,7 +1,7 @@
-// What stands on vertices: corners, irregular vertices with their signed number, locks.
+// Paints markers of vertices: corners, irregular vertices with their signed number, locks.
 //
-// The sizes are those of app/markers.py. In a crowd a disc keeps its number as long as it does not
-// cover the next one; where it would, it is a plain dot until one looks closer.
+// Sizes are those of meshwright.graphics.markers. In crowded places a disc keeps its number as long as
+// it does not cover the next one; otherwise it is a plain dot until the view is zoomed in.
 
 import { FLAG_CORNER } from "../mesh/mesh_replica.js";
 import { clamp, signed } from "../numbers.js";
@@ -17,7 +17,7 @@ const READABLE_BEST = 7;
 const CORNER_HALF = 4;
 const FEW_CORNERS = 64;
 const LOCK_RADIUS = 12.5;
-/** Pixels beside a vertex that its mark reaches; and those that make room for it. */
+/** Extent of a marker in pixels, and the margin of repainted regions. */
 const MARK_REACH = 20;
 export const MARK_SLACK = 36;
 
@@ -35,12 +35,12 @@ export class Markers {
     this._ratio = 0;
   }
 
-  /** Colours or pixels are others. */
+  /** Discard the sprites after a change of colours. */
   forget() {
     this._sprites.clear();
   }
 
-  /** Paint the marks that reach one of `boxes` {left, top, right, bottom} of the screen. */
+  /** Paint the markers that reach one of `boxes` {left, top, right, bottom} of the screen. */
   paint(pen, ratio, view, replica, derived, boxes) {
     if (ratio !== this._ratio) {
       this._sprites.clear();
@@ -132,7 +132,7 @@ export class Markers {
       const size = Math.max(8, (text.length > 2 ? 0.95 : 1.2) * radius, Math.min(9, 1.45 * radius));
       pen.font = `600 ${size}px ${colours.font}`;
       pen.fillStyle = colours.marker_text;
-      const box = pen.measureText(text); // centred by its ink: fonts differ in their metrics
+      const box = pen.measureText(text); // centred by its bounding box: font metrics differ
       pen.fillText(
         text, (box.actualBoundingBoxLeft - box.actualBoundingBoxRight) / 2,
         (box.actualBoundingBoxAscent - box.actualBoundingBoxDescent) / 2,

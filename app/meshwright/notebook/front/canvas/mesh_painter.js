@@ -1,6 +1,6 @@
-// The picture of the mesh on the lower canvas. It is kept as long as it can be: panning moves its
-// pixels and paints what comes into view, an edit paints the tiles it touches, and while one zooms in
-// a large mesh the pixels are stretched until the fingers rest.
+// Paints the mesh on the lower canvas. Pixels are reused: panning moves them and paints the strips that
+// come into view, an edit repaints the tiles it touches, and zooming a large mesh stretches the pixels
+// until the zoom ends.
 
 import { InvertedElementsPainter } from "./inverted_elements.js";
 import { MARK_SLACK } from "./markers.js";
@@ -15,7 +15,7 @@ const BOUNDARY_WIDTH = 1.75;
 
 export class MeshPainter {
   constructor(canvas, colours, marks, afterwards) {
-    this.view = null; // what the canvas shows; at most half a pixel from what was asked for
+    this.view = null; // the painted view; within half a pixel of the requested one
     this.paints = 0;
     this._canvas = canvas;
     this._pen = canvas.getContext("2d");
@@ -46,7 +46,7 @@ export class MeshPainter {
     this.forget();
   }
 
-  /** Colours or everything else are others. */
+  /** Repaint everything next time. */
   forget() {
     this._stale = true;
     this._invertedPainter.forget();
@@ -57,7 +57,7 @@ export class MeshPainter {
     this._boxes.push(...boxes);
   }
 
-  /** See to it that the canvas shows `view`. */
+  /** Paint `view`, reusing pixels where possible. */
   paint(view) {
     if (!this._replica || !this._canvas.width) return;
     const shown = this.view;
@@ -75,7 +75,7 @@ export class MeshPainter {
     clearTimeout(this._timer);
   }
 
-  // All of it, or parts
+  // Whole canvas, or parts
 
   _paintAll(view) {
     clearTimeout(this._timer);
@@ -112,7 +112,7 @@ export class MeshPainter {
     this._paintRegion(strips);
   }
 
-  /** Stretch what was painted last, and paint crisply once it rests. */
+  /** Stretch the painted pixels, and repaint once the zoom ends. */
   _zoom(view) {
     if (this._cost < COSTLY) {
       this._paintAll(view);
@@ -166,8 +166,8 @@ export class MeshPainter {
     else if (count) this._paintRegion(tileRuns(dirty, columns, rows, tile));
   }
 
-  /** Paint rectangles [x, y, width, height] of device pixels. A few are painted one by one: to keep
-   * within one rectangle costs nothing.
+  /** Paint rectangles [x, y, width, height] of device pixels. A few are painted one by one: clipping
+   * to one rectangle is free.
    */
   _paintRegion(rectangles) {
     if (rectangles.length > FEW_RECTANGLES) this._paintClipped(rectangles);
@@ -240,7 +240,7 @@ export class MeshPainter {
     let count = 0;
     for (const e of elements) {
       for (let h = k * e, last = h + k - 1; h <= last; h += 1) {
-        if (twin[h] < h) continue; // the boundary, and what the other side draws
+        if (twin[h] < h) continue; // the boundary, and edges painted from the other side
         const a = 2 * origin[h];
         const b = 2 * origin[h === last ? k * e : h + 1];
         pen.moveTo(places[a] * pixels + shiftX, shiftY - places[a + 1] * pixels);

@@ -1,5 +1,5 @@
-// The upper canvas: the half-edge that is pointed at, the ghost, the hints. A hover paints this one
-// only; where it crosses marks of the mesh they are painted once more above it.
+// Paints the upper canvas: current half-edge, preview, hints. Hovering repaints this canvas only;
+// markers of the mesh under the preview are painted again above it.
 
 import { middleOf } from "../mesh/picking.js";
 import { arrowOf, cornersFrom, paintArrow } from "./arrow.js";
@@ -30,7 +30,7 @@ export class Overlay {
     this._clear = true;
   }
 
-  /** Paint what is pointed at: {halfedge, ghost, title, hints, meant}. */
+  /** Paint half-edge, preview and hints: {halfedge, ghost, title, hints, selected}. */
   paint(view, replica, derived, shown) {
     const pen = this._pen;
     if (!this._clear) {
@@ -46,7 +46,7 @@ export class Overlay {
     pen.lineJoin = "round";
     const marks = this._markPlaces(view, replica, derived);
     if (pointed) this._paintPointed(pen, view, replica, derived, shown);
-    this.badges.paint(pen, view, replica, shown.hints, shown.meant, marks);
+    this.badges.paint(pen, view, replica, shown.hints, shown.selected, marks);
     marks.push(...this.badges.places);
     if (pointed && shown.ghost) {
       const corners = cornersFrom(replica, view, shown.halfedge);
@@ -72,7 +72,7 @@ export class Overlay {
     if (length < SMALL_ARROW) this._paintRing(pen, middleOf([tail, head]));
   }
 
-  /** A ring that is found where the arrow itself is too small to be seen. */
+  /** A ring around an arrow that is too small to be seen. */
   _paintRing(pen, [x, y]) {
     for (const [colour, width] of [[this._colours.background, 4.5], [this._colours.arrow, 2]]) {
       pen.strokeStyle = colour;
@@ -83,7 +83,7 @@ export class Overlay {
     }
   }
 
-  /** Places of irregular vertices on the screen, unless they are everywhere. */
+  /** Irregular vertices on the screen as points, unless there are too many. */
   _markPlaces(view, replica, derived) {
     if (derived.irregular.length > 10 * CROWD_OF_MARKS) return [];
     const places = derived.irregular.map((v) => view.toScreen(...replica.place(v)));

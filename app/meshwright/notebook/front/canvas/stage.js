@@ -1,4 +1,4 @@
-// The stage: two canvases, the view of the mesh, and when they are painted.
+// The stage: two canvases, the view of the mesh, and the scheduling of paints.
 
 import { node } from "../dom.js";
 import { MeshState } from "../mesh/mesh_state.js";
@@ -19,8 +19,8 @@ export class Stage {
     this.element = element;
     this.meshState = new MeshState();
     this.view = new Viewport();
-    this.fitted = true; // nobody has moved the view: it keeps showing all
-    this.shown = { halfedge: -1, ghost: null, title: "", hints: [], meant: 0 };
+    this.fitted = true; // the view was not moved: it keeps fitting the mesh
+    this.shown = { halfedge: -1, ghost: null, title: "", hints: [], selected: 0 };
     this._colours = colours;
     this._painted = painted;
     this._lower = node("canvas", "mw-lower", { "aria-hidden": "true" });
@@ -53,7 +53,7 @@ export class Stage {
     this._show();
   }
 
-  /** False if the patch is not for what is here. */
+  /** Apply a patch; returns false if it is not for the present revision. */
   patch(content, buffers) {
     const boxes = this.meshState.patch(content, buffers);
     if (boxes === undefined) return false;
@@ -72,14 +72,14 @@ export class Stage {
 
   // The view
 
-  /** Look through another view; the mesh stays in sight. */
+  /** Set the view; its centre is kept over the mesh. */
   see(view) {
     this.view = view.over(this.meshState.derived.box);
     this.fitted = false;
     this.repaint();
   }
 
-  /** Show all of the mesh. */
+  /** Fit the mesh into the view. */
   fit() {
     this.fitted = true;
     this._fit();
@@ -93,7 +93,7 @@ export class Stage {
     if (box) this.view = this.view.fitted(box, margin);
   }
 
-  /** Follow size and pixel ratio of the place on the page. */
+  /** Adapt to the size and pixel ratio of the element. */
   resize() {
     const ratio = globalThis.devicePixelRatio || 1;
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
@@ -110,24 +110,24 @@ export class Stage {
     this.overlay.resize(across, down, ratio);
     this.view = this.view.resized(across / ratio, down / ratio);
     if (this.fitted) this._fit();
-    this.paint(); // a canvas that was resized is empty
+    this.paint(); // resizing clears a canvas
   }
 
   pan(dx, dy) {
     this.see(this.view.panned(dx, dy));
   }
 
-  /** Closer by `factor` at (x, y), in the middle if that is left out. */
+  /** Zoom in by `factor` at (x, y), by default in the middle. */
   zoom(factor, x = this.view.width / 2, y = this.view.height / 2) {
     this.see(this.view.zoomed(factor, x, y));
   }
 
-  /** Look at a place so closely that `reach` around it is `least` pixels wide. */
+  /** Zoom in at a point until `reach` around it is `least` pixels wide. */
   reveal(x, y, reach, least) {
     if (this.view.pixels * 2 * reach < least) this.see(this.view.around(x, y, reach, least));
   }
 
-  /** Move the picture where a half-edge lies beside it. */
+  /** Pan until a half-edge lies `margin` pixels inside the canvas. */
   keepInView(halfedge, margin) {
     const [x, y] = this.middle(halfedge);
     const { width, height } = this.view;
@@ -136,21 +136,21 @@ export class Stage {
     if (dx || dy) this.pan(dx, dy);
   }
 
-  /** Where on the canvas the arrow of a half-edge has its middle. */
+  /** The middle of a half-edge's arrow on the canvas. */
   middle(halfedge) {
     return middleOf(arrowOf(this.meshState.replica, this.view, halfedge));
   }
 
   // Painting
 
-  /** The colours are others. */
+  /** Repaint after a change of colours. */
   recolour() {
     this._markers.forget();
     this.painter.forget();
     this.repaint();
   }
 
-  /** Paint with the next frame. */
+  /** Schedule a paint for the next frame. */
   repaint() {
     if (!this._frame) this._frame = requestAnimationFrame(() => this.paint());
   }

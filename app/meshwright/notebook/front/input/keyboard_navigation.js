@@ -1,10 +1,10 @@
-// From half-edge to half-edge and from one irregular vertex to the next, by keyboard.
+// Keyboard navigation between half-edges and between irregular vertices.
 
 import { edgeLength } from "../mesh/derived.js";
 import { halfedgeNear } from "../mesh/picking.js";
 
 const KEEP_IN_VIEW = 48;
-const WALKED_SIZE = 120;
+const REVEALED_SIZE = 120;
 
 export class KeyboardNavigation {
   constructor(card) {
@@ -24,11 +24,11 @@ export class KeyboardNavigation {
     const { replica } = this._card;
     const h = this._here();
     if (h < 0) return;
-    if (replica.twin[h] < 0) this._card.notify("info", "The boundary has no other side.");
+    if (replica.twin[h] < 0) this._card.notify("info", "A boundary edge has no other side.");
     else this._go(replica.twin[h]);
   }
 
-  /** To a half-edge at the next irregular vertex (1), or the one before (-1), as one reads. */
+  /** To a half-edge at the next irregular vertex (1) or the previous one (-1), in reading order. */
   toIrregular(step) {
     const { replica, derived } = this._card;
     const found = inReadingOrder(replica, derived);
@@ -42,11 +42,11 @@ export class KeyboardNavigation {
     const halfedge = replica.origin.indexOf(vertex);
     const reach = Math.max(...replica.around(halfedge).map((h) => edgeLength(replica, h)));
     const [x, y] = replica.place(vertex);
-    this._card.stage.reveal(x, y, reach, WALKED_SIZE);
+    this._card.stage.reveal(x, y, reach, REVEALED_SIZE);
     this._go(halfedge, `Irregular vertex ${place + 1} of ${found.length}. `);
   }
 
-  /** The half-edge that is pointed at; the one in the middle of the view if there is none yet. */
+  /** The current half-edge; without one, -1, and go to the one in the middle of the view. */
   _here() {
     const { replica, hoverState, view } = this._card;
     if (replica.live(hoverState.halfedge)) return hoverState.halfedge;
@@ -62,7 +62,7 @@ export class KeyboardNavigation {
   }
 }
 
-/** Irregular vertices from the top down in bands, so that neighbours follow one another. */
+/** Irregular vertices from the top down in bands, so that neighbours are consecutive. */
 function inReadingOrder(replica, derived) {
   const band = Math.max(3 * derived.typical, 1e-9);
   const row = (v) => Math.floor(-replica.places[2 * v + 1] / band);

@@ -1,9 +1,9 @@
 // Mouse, pen and touch on the canvas.
 //
-// Mouse and pen: pointing, click, drag moves the picture, right click is for the vertex. Touch: one
-// finger belongs to the page, a tap points and opens the menu, holding is for the vertex, two fingers
-// move and zoom. The wheel zooms with Ctrl (or Command), or once the widget has the focus; else the
-// page goes on scrolling.
+// Mouse and pen: hover, click, drag pans, right click opens the menu of the vertex. Touch: one finger
+// scrolls the page, a tap opens the menu of the half-edge, a long press that of the vertex, two
+// fingers pan and zoom. The wheel zooms with Ctrl (or Command), or while the canvas has the focus;
+// otherwise it scrolls the page.
 
 import { middleOf } from "../mesh/picking.js";
 import { clamp } from "../numbers.js";
@@ -16,7 +16,7 @@ const LINE_HEIGHT = 16;
 
 export class Pointer {
   constructor(card, surface) {
-    this.place = null; // [x, y] of the mouse on the canvas, null while it is elsewhere
+    this.place = null; // [x, y] of the mouse on the canvas, null outside
     this.dragging = false;
     this._card = card;
     this._surface = surface;
@@ -80,7 +80,7 @@ export class Pointer {
     }
     const slack = CLICK_SLACK[held.type] || CLICK_SLACK.mouse;
     if (Math.hypot(at[0] - held.start[0], at[1] - held.start[1]) > slack) {
-      if (!this._moved && held.type !== "touch") this._begin();
+      if (!this._moved && held.type !== "touch") this._startDrag();
       this._moved = true;
       clearTimeout(this._hold);
     }
@@ -114,10 +114,10 @@ export class Pointer {
   _onLeave(event) {
     if (event.pointerType === "touch" || this._down.has(event.pointerId)) return;
     this.place = null;
-    this._card.left();
+    this._card.leave();
   }
 
-  _begin() {
+  _startDrag() {
     this.dragging = true;
     this._surface.dataset.dragging = "";
   }
@@ -134,7 +134,7 @@ export class Pointer {
     this._card.hover(this._card.pick(at, OUTSIDE_REACH[type] || OUTSIDE_REACH.mouse), at);
   }
 
-  /** Two fingers: what lies between them stays between them. */
+  /** Pan and zoom with two fingers: the points under them stay under them. */
   _pinch(id, at) {
     const other = [...this._down.entries()].find(([key]) => key !== id)[1].at;
     const was = this._down.get(id).at;

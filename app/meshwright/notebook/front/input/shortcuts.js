@@ -1,25 +1,25 @@
-// The keys of the canvas. All other controls are buttons, which have keys of their own.
+// Keyboard shortcuts of the canvas.
 
 export const KEY_HELP = [
-  ["\u2190 \u2192", "Half-edge before and after"],
+  ["\u2190 \u2192", "Previous and next half-edge"],
   ["\u2191", "Other side of the edge"],
   ["\u2193", "Next irregular vertex"],
-  ["Return", "Do the operation that is shown"],
-  ["[ ]", "Show another operation"],
+  ["Return", "Apply the previewed operation"],
+  ["[ ]", "Preview another operation"],
   ["M", "Menu of the half-edge"],
   ["U", "Undo; with Shift redo"],
-  ["+ \u2212 0", "Zoom, and see all"],
-  ["H", "Hints; then 1 to 5 take one"],
+  ["+ \u2212 0", "Zoom in, zoom out, fit"],
+  ["H", "Hints; then 1 to 5 applies one"],
   [".", "One step of the agent"],
   ["Space", "Play or pause the agent"],
-  ["Esc", "Put down, close, stop"],
+  ["Esc", "Close, disarm, stop"],
 ];
 export const MOUSE_HELP = [
   ["Click", "Operations of a half-edge"],
   ["Right click", "Desired degree, corner, lock"],
-  ["Drag", "Move the picture"],
+  ["Drag", "Pan"],
   ["Ctrl + wheel", "Zoom"],
-  ["Double click", "See all"],
+  ["Double click", "Fit the mesh"],
 ];
 
 export class Shortcuts {
@@ -50,7 +50,7 @@ export class Shortcuts {
     };
   }
 
-  /** A key on the canvas; returns whether it was ours. */
+  /** Handle a key event on the canvas; returns whether the key is a shortcut. */
   press(event) {
     if (event.altKey) return false;
     if (event.ctrlKey || event.metaKey) return this._pressWithControl(event);

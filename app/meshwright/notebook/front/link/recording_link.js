@@ -1,7 +1,7 @@
-// The link to a film that lies in the page: it answers as Python would, of what can be watched.
+// The link to a recording in the page: answers the requests of a read-only view without Python.
 //
-// The recording holds the first state and one message for each step. The steps back are made here,
-// on the way forward. A jump over many steps is one message of all that they change.
+// The recording holds the first state and one patch for each step. Inverse patches are computed while
+// going forward. A jump over several steps is sent as one patch.
 
 import { MeshReplica } from "../mesh/mesh_replica.js";
 import { viewName } from "./kernel_link.js";
@@ -25,7 +25,7 @@ export class RecordingLink {
     this._travel(recording.start);
   }
 
-  /** Say something to the film; answers carry the id as `reply`, and come later. */
+  /** Send a request; answers carry its id as `reply` and arrive asynchronously. */
   send(word, fields = {}) {
     this._last += 1;
     const id = this._last;
@@ -46,7 +46,7 @@ export class RecordingLink {
     else if (word === "redo") this._go(this._state + 1, id);
     else if (word === "hover") this._deliver(emptyGhost(), id);
     else {
-      const sentence = "This is a frozen recording: it can be watched, not changed.";
+      const sentence = "This is a recording: it cannot be edited.";
       this._deliver({ content: { type: "notice", tone: "refused", sentence }, buffers: [] }, id);
     }
   }
@@ -55,7 +55,7 @@ export class RecordingLink {
     this.onmessage({ ...message.content, to: this._addressed(message), reply: id }, message.buffers);
   }
 
-  /** A patch's "to" is a revision; of all else it is the view. */
+  /** The "to" of a patch is a revision, that of other messages the view. */
   _addressed(message) {
     return message.content.type === "patch" ? message.content.to : this.view;
   }
@@ -68,7 +68,7 @@ export class RecordingLink {
     this._deliver(changed === null ? this._whole() : this._patch(from, changed), id);
   }
 
-  /** Go to a state; returns what that changes, {vertices, halfedges} as sets, null for everything. */
+  /** Go to a state; returns the changed ids, {vertices, halfedges} as sets, null for all. */
   _travel(state) {
     const changed = { vertices: new Set(), halfedges: new Set() };
     let whole = false;
@@ -123,7 +123,7 @@ export class RecordingLink {
     return { content, buffers: arrays.map((array) => new DataView(array.buffer)) };
   }
 
-  /** What leads a view from revision `from` here. */
+  /** The patch from revision `from` to the present state. */
   _patch(from, changed) {
     const replica = this._replica;
     const vertices = Int32Array.from(changed.vertices).filter((v) => v < replica.vertices);
@@ -159,7 +159,7 @@ function recordedMessage(message) {
   return { content: message.content, buffers };
 }
 
-/** The answer to "what if": in a film nothing is. */
+/** An empty preview. */
 function emptyGhost() {
   const content = { type: "ghost", halfedge: -1, offers: [], operation: null, change: 0 };
   return { content, buffers: [0, 1, 2, 3, 4].map(() => new DataView(new ArrayBuffer(0))) };

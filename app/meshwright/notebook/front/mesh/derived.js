@@ -1,7 +1,7 @@
-// What follows from the arrays and is drawn: boundary loops, irregular vertices, folded elements.
+// Data derived from the arrays for painting: boundary loops, irregular vertices, inverted elements.
 //
-// All of it is found again after each change, in one pass over the arrays: well under a millisecond
-// for 10,000 elements, so that nothing has to be kept up.
+// Everything is computed again after each change, in one pass over the arrays: well under a
+// millisecond for 10,000 elements, so that nothing is updated incrementally.
 
 import { FLAG_ALIVE, FLAG_CORNER, FLAG_LOCKED } from "./mesh_replica.js";
 
@@ -51,7 +51,7 @@ function boundaryLoops(replica) {
   return loops;
 }
 
-/** The median length of an edge, of a sample of them. */
+/** The median edge length of a sample. */
 function typicalEdge(replica) {
   const step = Math.max(1, Math.floor(replica.halfedges / SAMPLES));
   const lengths = [];
@@ -87,7 +87,7 @@ function shortestEdges(replica) {
   return shortest;
 }
 
-/** How far the nearest other of `vertices` is from each, by vertex id; no more than a few edges. */
+/** Distance to the nearest other of `vertices`, by vertex id; capped at a few edge lengths. */
 function distancesApart(replica, vertices, typical, box) {
   const { places } = replica;
   const apart = new Float32Array(replica.vertices);
@@ -127,7 +127,7 @@ function distancesApart(replica, vertices, typical, box) {
   return apart;
 }
 
-/** Elements with a corner that is flat or turns the wrong way, as meshcore.quality.inverted. */
+/** Elements with a flat or reflex corner, as meshwright_core.geometry.quality.inverted. */
 function invertedElements(replica) {
   const { k, places, origin } = replica;
   const found = [];

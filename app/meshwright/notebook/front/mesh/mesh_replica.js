@@ -1,7 +1,7 @@
-// The mesh as the browser knows it: flat arrays, filled by a state message and kept up by patches.
+// The browser's copy of the mesh: flat arrays, set by a state message and updated by patches.
 //
 // Element e owns the half-edges k*e .. k*e+k-1, counter-clockwise. origin -1: the slot is dead.
-// Places are in the normalised frame of the state message, y up.
+// Coordinates are in the normalised frame of the state message, y up.
 
 export const FLAG_ALIVE = 1;
 const FLAG_BOUNDARY = 2;
@@ -14,7 +14,7 @@ export function arrayOf(Type, view) {
   return new Type(view.buffer.slice(start, start + view.byteLength));
 }
 
-/** `array`, or a longer one with the same beginning where `length` does not fit. */
+/** `array`, or a longer copy if it is shorter than `length`. */
 export function withRoom(array, length) {
   if (length <= array.length) return array;
   const longer = new array.constructor(Math.max(length, Math.ceil(1.5 * array.length)));
@@ -39,7 +39,7 @@ export class MeshReplica {
     this.twin = new Int32Array(0);
   }
 
-  /** Take over a whole state. */
+  /** Load a whole state. */
   loadState(content, buffers) {
     this.k = content.k;
     this.vertices = content.vertices;
@@ -61,7 +61,7 @@ export class MeshReplica {
     return { vertices: arrayOf(Int32Array, buffers[0]), halfedges: arrayOf(Int32Array, buffers[4]) };
   }
 
-  /** Take over a patch; false, and nothing done, if it is not for this revision. */
+  /** Apply a patch; returns false, unchanged, if it is not for this revision. */
   applyPatch(content, buffers) {
     if (content.from !== this.revision) return false;
     const ids = this.idsOf(buffers);
@@ -86,10 +86,7 @@ export class MeshReplica {
     return true;
   }
 
-  /** The patch {content, buffers} that leads back from where this one leads to.
-   *
-   * To be asked for before the patch is applied; what the state has now is its content.
-   */
+  /** The inverse {content, buffers} of a patch; to be called before the patch is applied. */
   inverse(content, buffers) {
     const ids = this.idsOf(buffers);
     const vertices = ids.vertices.filter((v) => v < this.vertices);
@@ -162,7 +159,7 @@ export class MeshReplica {
     return corners;
   }
 
-  /** The half-edges that start where h starts, h first; every traversal has an end. */
+  /** The half-edges with the origin of h, h first; traversals are capped. */
   around(h) {
     const found = [h];
     let at = this.twin[this.prev(h)];
@@ -180,7 +177,7 @@ export class MeshReplica {
     return found;
   }
 
-  /** The degree of the vertex where h starts. */
+  /** The degree of the origin of h. */
   degree(h) {
     const boundary = this.flags[this.origin[h]] & FLAG_BOUNDARY;
     return this.around(h).length + (boundary ? 1 : 0);

@@ -1,4 +1,4 @@
-// A mesh and all that is derived from it, kept together while messages come in.
+// The mesh with its derived data and spatial grid, updated together by messages.
 
 import { DerivedData } from "./derived.js";
 import { MeshReplica } from "./mesh_replica.js";
@@ -13,15 +13,15 @@ export class MeshState {
     this.grid = new SpatialGrid(this.replica);
   }
 
-  /** Take over a state. */
+  /** Load a state. */
   load(content, buffers) {
     this.replica.loadState(content, buffers);
     this.derived = new DerivedData(this.replica);
     this.grid = new SpatialGrid(this.replica);
   }
 
-  /** Take over a patch. Returns the boxes of the plane that have changed, null if that is much of
-   * it, undefined if the patch is not for this revision.
+  /** Apply a patch. Returns the changed boxes of the plane, null for most of it, undefined if the
+   * patch is not for this revision.
    */
   patch(content, buffers) {
     const { replica } = this;
@@ -42,7 +42,7 @@ export class MeshState {
     return boxes && boxes.filter((box) => box !== null);
   }
 
-  /** Elements that a patch changes: of its half-edges, and at its vertices as they are now. */
+  /** Elements changed by a patch: of its half-edges, and around its vertices before the patch. */
   _touched(ids, content) {
     const { k, origin, halfedges } = this.replica;
     const changed = new Uint8Array(Math.max(content.vertices, this.replica.vertices));

@@ -1,9 +1,9 @@
-// Which half-edge or vertex lies at a point of the plane.
+// Finds the half-edge or vertex at a point of the plane.
 
 import { clamp } from "../numbers.js";
 
-/** The half-edge of the element at (x, y) whose edge is nearest; outside the mesh the one of the
- * boundary within `reach` lengths; -1 for none.
+/** The nearest half-edge of the element at (x, y); outside of the mesh the nearest boundary half-edge
+ * within distance `reach`; -1 for none.
  */
 export function halfedgeAt(replica, grid, x, y, reach) {
   for (const e of grid.near(x, y, x, y)) {
@@ -20,7 +20,7 @@ export function halfedgeAt(replica, grid, x, y, reach) {
   return best.halfedge;
 }
 
-/** The vertex nearest to (x, y) within `reach` lengths, as a half-edge that starts there; or -1. */
+/** The nearest vertex within distance `reach` of (x, y), as a half-edge that starts there; or -1. */
 export function vertexAt(replica, grid, x, y, reach) {
   let best = -1;
   let least = reach;
@@ -34,7 +34,7 @@ export function vertexAt(replica, grid, x, y, reach) {
   return best;
 }
 
-/** The half-edge whose element is nearest to (x, y), wherever that is; -1 in an empty mesh. */
+/** The half-edge whose element is nearest to (x, y), at any distance; -1 in an empty mesh. */
 export function halfedgeNear(replica, x, y) {
   let best = -1;
   let least = Infinity;

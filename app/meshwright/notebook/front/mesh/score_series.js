@@ -1,8 +1,8 @@
-// The track: score and optimum of every state of a history, and the lines to draw them with.
+// Score and optimum of every state of a history, and the polylines that show them.
 //
-// State 0 is the start, state i the one after step i; steps that were undone count too.
+// State 0 is the start, state i the one after step i; undone steps are included.
 
-/** Times the span of a curve beyond which what is left to the optimum is left out of it. */
+/** Multiple of the curve's span beyond which the axis is broken above the optimum. */
 const FAR_FACTOR = 4;
 const COLUMNS = ["scores", "optima", "titles", "by"];
 
@@ -24,7 +24,7 @@ export class ScoreSeries {
     return this.scores.length;
   }
 
-  /** Take over what a head tells: the states from `from` on are new, those beyond its end are gone. */
+  /** Update from a head: states from `from` on are new, those beyond its length are removed. */
   follow(head) {
     const fresh = head.track;
     if (fresh) {
@@ -55,24 +55,24 @@ export class ScoreSeries {
     return this._best;
   }
 
-  /** "Flip left by quad-paper": what led to a state. */
+  /** "Flip left by quad-paper": the step before a state. */
   words(state) {
     if (state <= 0) return "the start";
     return `${this.titles[state] || "a step"}${this.by[state] ? ` by ${this.by[state]}` : ""}`;
   }
 
-  /** " (−2)": what that did to the score; nothing for the start. */
+  /** " (−2)": its change of the score; empty for the start. */
   change(state) {
     return state <= 0 ? "" : ` (${formatChange(this.scores[state] - this.scores[state - 1])})`;
   }
 
-  /** How many steps an agent took. */
+  /** Number of steps by agents. */
   get others() {
     if (this._others < 0) this._others = this.by.reduce((sum, _, i) => sum + (i > 0 && !this.mine(i)), 0);
     return this._others;
   }
 
-  /** True if a person took the step that led to a state. */
+  /** Whether the step before a state is the user's. */
   mine(state) {
     return this.by[state] === "" || this.by[state] === "you";
   }
@@ -89,10 +89,10 @@ export function formatNumber(value) {
   return value.toLocaleString("en-US");
 }
 
-/** Where a curve is drawn: pixels of states and scores.
+/** Maps states and scores to pixels.
  *
- * The frame is `broken` where the optimum lies so far below all that has happened that the curve
- * would be a level line; the optimum is drawn at the lower edge then.
+ * The axis is `broken` where the optimum lies so far below all scores that the curve would look flat;
+ * then the optimum is drawn at the lower edge.
  */
 export class CurveFrame {
   constructor(series, left, top, width, height) {
@@ -133,10 +133,10 @@ export class CurveFrame {
     return this.width / this.last;
   }
 
-  /** Values from state `first` to `last` as a line of steps [[x, y], ...].
+  /** Values from state `first` to `last` as a step curve [[x, y], ...].
    *
-   * With more states than pixels each column of pixels shows the lowest and the highest value in
-   * it, so that the line grows with the width and not with the history.
+   * With more states than pixels, each column of pixels shows the minimum and the maximum in it, so
+   * that the size depends on the width and not on the history.
    */
   steps(values, first, last) {
     const line = [];

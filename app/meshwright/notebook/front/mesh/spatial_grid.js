@@ -1,10 +1,10 @@
-// A grid of cells that knows which elements are near a place; kept up cheaply after a patch.
+// A uniform grid of cells with the elements that touch them; updated incrementally by patches.
 
 import { clamp } from "../numbers.js";
 import { withRoom } from "./mesh_replica.js";
 
 export class SpatialGrid {
-  /** All live elements of `mirror`, about one a cell. */
+  /** All live elements of `replica`, about one per cell. */
   constructor(replica) {
     const box = replica.bounds() || { left: 0, bottom: 0, right: 1, top: 1 };
     const [wide, high] = [box.right - box.left || 1, box.top - box.bottom || 1];
@@ -23,7 +23,7 @@ export class SpatialGrid {
     for (let e = 0; e < replica.elements; e += 1) this.add(e);
   }
 
-  /** Take in an element where it is now; dead ones are passed over. */
+  /** Add an element at its present position; dead ones are ignored. */
   add(e) {
     const { k, origin, places } = this._replica;
     if (k * e >= this._replica.halfedges || origin[k * e] < 0) return;
@@ -40,7 +40,7 @@ export class SpatialGrid {
     this._each(range, (cell) => cell.push(e));
   }
 
-  /** Take an element out of where it was put. */
+  /** Remove an element from the cells it was added to. */
   remove(e) {
     const range = this._ranges.get(e);
     if (!range) return;

@@ -1,4 +1,4 @@
-// The agent beside the person: which policy, what it shall do, how far it is, and its hints.
+// The panel of the agent: policy, commands, progress, hints.
 
 import { MOST_HINTS, percent } from "../canvas/hint_badges.js";
 import { button, icon, node, setText } from "../dom.js";
@@ -13,7 +13,7 @@ export class AgentPanel {
     this.state = "idle";
     this._card = card;
     this._policies = "";
-    this._known = this._away = ""; // the hints that were told last, and those that were put away
+    this._received = this._hidden = ""; // the hints received last, and those that were hidden
     this._make();
     this.root = node("section", "mw-part mw-part-agent", { "aria-label": "Agent", hidden: true },
       node("div", "mw-head-line", {}, node("h4", "mw-heading", {}, "Agent"), this._policy),
@@ -23,26 +23,26 @@ export class AgentPanel {
       this._words, this._list);
   }
 
-  /** Whether something runs that changes the mesh by itself. */
+  /** Whether the agent is changing the mesh. */
   get busy() {
     return !AGENT_AT_REST.includes(this.state);
   }
 
   _make() {
-    this._policy = node("select", "mw-select", { "aria-label": "Policy", title: "The policy that hints and runs follow" });
+    this._policy = node("select", "mw-select", { "aria-label": "Policy", title: "Policy for hints and runs" });
     this._policy.addEventListener("change", () => this._card.request("policy", { name: this._policy.value }));
     const action = (text, label, name, sign = null, look = "mw-button") =>
       button(look, label, { text, sign, act: () => this.request(name) });
     this._hint = action("Hint", "Show the policy's best few operations (H)", "hint");
-    this._step = action("Step", "Let the policy take one operation (.)", "step", "step");
+    this._step = action("Step", "Apply one operation chosen by the policy (.)", "step", "step");
     this._play = button("mw-button", "Play", { text: "Play", sign: "play", act: () => this.toggle() });
     this._complete = action(
-      "Complete", "Search for a few seconds, and go to the best state found", "complete", null,
+      "Complete", "Search for a few seconds and go to the best state found", "complete", null,
       "mw-button mw-primary",
     );
-    this._stop = action("Stop", "Stop the policy; what it has done stays", "stop");
+    this._stop = action("Stop", "Stop the policy; its operations are kept", "stop");
     this._speed = node("input", "mw-range", {
-      type: "range", min: 0, max: AGENT_SPEEDS.length - 1, step: 1, value: 3, "aria-label": "Speed of playing",
+      type: "range", min: 0, max: AGENT_SPEEDS.length - 1, step: 1, value: 3, "aria-label": "Playing speed",
     });
     this._speed.addEventListener("input", () => {
       const value = AGENT_SPEEDS[this._speed.valueAsNumber];
@@ -54,47 +54,47 @@ export class AgentPanel {
     this._list = node("div", "mw-hints", { role: "group", "aria-label": "Hints", hidden: true });
   }
 
-  /** Ask the agent for something. */
+  /** Send a command to the agent. */
   request(action) {
     if (this._card.readOnly || this.root.hidden) return;
     if (action === "hint" && this.hints.length) {
-      this._putAway();
+      this._hideHints();
       return;
     }
-    this._away = "";
+    this._hidden = "";
     this._card.request("agent", { action });
   }
 
-  /** Play, or hold. */
+  /** Play or pause. */
   toggle() {
     this.request(this.state === "playing" ? "pause" : "play");
   }
 
-  /** Take the hint of this index; returns whether there is one. */
+  /** Apply the hint of this index; returns whether there is one. */
   take(index) {
     if (index >= this.hints.length) return false;
     this._card.request("take_hint", { index });
     return true;
   }
 
-  /** Put hints away, or stop what runs; returns whether there was something. */
+  /** Hide the hints, or stop the run; returns whether there was one of them. */
   escape() {
-    if (this.hints.length) this._putAway();
+    if (this.hints.length) this._hideHints();
     else if (this.state !== "idle") this.request("stop");
     else return false;
     return true;
   }
 
-  /** What an agent message says. */
+  /** Show the content of an agent message. */
   update(content) {
     this.state = content.state;
     this.root.hidden = this._card.readOnly;
     this._updatePolicies(content);
     const playing = content.state === "playing";
-    const words = playing ? "Pause" : content.state === "paused" ? "Go on" : "Play";
+    const words = playing ? "Pause" : content.state === "paused" ? "Resume" : "Play";
     this._play.replaceChildren(icon(playing ? "pause" : "play"), node("span", "", {}, words));
-    this._play.setAttribute("aria-label", playing ? "Pause" : "Let the policy play at this speed");
-    this._play.title = playing ? "Hold the run (Space)" : "Let the policy go on at this speed (Space)";
+    this._play.setAttribute("aria-label", playing ? "Pause" : "Run the policy at this speed");
+    this._play.title = playing ? "Pause the run (Space)" : "Run the policy at this speed (Space)";
     const none = !content.policies.length;
     for (const one of [this._hint, this._step, this._complete]) {
       one.disabled = none || content.loading || this.busy;
@@ -109,13 +109,13 @@ export class AgentPanel {
     }
     setText(this._words, this._statusText(content));
     const key = JSON.stringify(content.hints);
-    this._setHints(key === this._away ? [] : content.hints);
-    this._known = key;
+    this._setHints(key === this._hidden ? [] : content.hints);
+    this._received = key;
   }
 
-  /** Put the hints away until there are others, or they are asked for again. */
-  _putAway() {
-    this._away = this._known;
+  /** Hide the hints until they change or are requested again. */
+  _hideHints() {
+    this._hidden = this._received;
     this._setHints([]);
   }
 
@@ -124,7 +124,7 @@ export class AgentPanel {
     const { decisions = 0, best = null } = progress || {};
     const lowest = best === null ? "" : `, best s ${best}`;
     if (loading) return "Loading the policy\u2026";
-    if (asking) return "Asking the policy\u2026";
+    if (asking) return "Computing hints\u2026";
     if (state === "searching") return `Searching${lowest}\u2026`;
     if (state === "playing") return `Playing: ${counted(decisions, "operation")}${lowest}`;
     if (state === "paused") return `Paused after ${counted(decisions, "operation")}${lowest}`;
@@ -135,7 +135,7 @@ export class AgentPanel {
     const words = `${speed.toLocaleString("en")} operations per second`;
     setText(this._pace, `${speed.toLocaleString("en")}\u2009/\u2009s`);
     this._speed.setAttribute("aria-valuetext", words);
-    this._speed.title = `Speed of playing: ${words}`;
+    this._speed.title = `Playing speed: ${words}`;
   }
 
   _updatePolicies({ policies, policy }) {
@@ -161,13 +161,13 @@ export class AgentPanel {
       const chance = percent(hint.probability);
       const row = node("button", "mw-operation mw-hint-row", {
         type: "button", "aria-label": `Hint ${index + 1}: ${hint.title}, ${chance}, s ${signed(hint.change)}`,
-        title: `Do it (${index + 1})`,
+        title: `Apply it (${index + 1})`,
       },
       node("kbd", "mw-key", {}, String(index + 1)), node("span", "mw-operation-title", {}, hint.title),
       node("span", "mw-chance", {}, chance), change);
       row.addEventListener("click", () => this.take(index));
       for (const type of ["pointerenter", "focus"]) {
-        row.addEventListener(type, () => this._card.meanHint(index));
+        row.addEventListener(type, () => this._card.showHint(index));
       }
       return row;
     }));

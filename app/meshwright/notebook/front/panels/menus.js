@@ -1,4 +1,4 @@
-// The menus at the pointer: the operations of a half-edge, and what there is to do with a vertex.
+// The context menus: operations of a half-edge, properties of a vertex.
 
 import { asSentence, icon, node } from "../dom.js";
 import { FLAG_CORNER, FLAG_LOCKED } from "../mesh/mesh_replica.js";
@@ -21,7 +21,7 @@ export class Menus {
     this._show((closed) => new OperationMenu(this._card, halfedge, { ...this._onCard(at), touch, closed }));
   }
 
-  /** The same for the half-edge that is pointed at, with the focus in it. */
+  /** Open it for the current half-edge, with the focus in it. */
   openByKey() {
     const { hoverState, stage, readOnly } = this._card;
     if (readOnly) return;
@@ -41,12 +41,12 @@ export class Menus {
     this._show((closed) => new VertexMenu(this._card, halfedge, { ...this._onCard(at), touch, closed }));
   }
 
-  /** Something has changed. */
+  /** Update the open menu after a change. */
   refresh() {
     if (this._open) this._open.refresh();
   }
 
-  /** Close what is open; returns whether there was something. */
+  /** Close the open menu; returns whether there was one. */
   close(focus = true) {
     const was = this._open;
     if (was) was.popup.close(focus);
@@ -68,7 +68,7 @@ export class Menus {
   }
 }
 
-/** Everything that can be done at a half-edge, with what it would change and why it may not be. */
+/** All operations at a half-edge, with the change of s or the reason of a refusal. */
 class OperationMenu {
   constructor(card, halfedge, { x, y, touch, closed }) {
     this._card = card;
@@ -80,7 +80,7 @@ class OperationMenu {
     this.popup.show(x, y);
   }
 
-  /** Offers have come, or are others. */
+  /** Update the rows after an answer from Python. */
   refresh() {
     const { replica, hoverState } = this._card;
     const same = replica.live(this.halfedge) && replica.origin[this.halfedge] === this._ends[0]
@@ -142,8 +142,8 @@ class VertexMenu {
       choice(`Desired degree ${d}`, d === desired, () => this._send("desired", { degree: d }));
     }
     const [corner, locked] = [(flags & FLAG_CORNER) !== 0, (flags & FLAG_LOCKED) !== 0];
-    choice("Corner: it stays where it is", corner, () => this._send("corner", { on: !corner }));
-    choice("Locked: nothing changes it", locked, () => this._send("lock", { on: !locked }));
+    choice("Corner: keeps its position", corner, () => this._send("corner", { on: !corner }));
+    choice("Locked: not moved or removed", locked, () => this._send("lock", { on: !locked }));
     this.popup.show(x, y);
   }
 

@@ -1,4 +1,4 @@
-// A row for each operation: its key, how it would change s where one points, and which is armed.
+// A row for each operation: key, change of s at the current half-edge, armed or not.
 
 import { asSentence, node, setText } from "../dom.js";
 import { signed } from "../numbers.js";
@@ -14,7 +14,7 @@ export class OperationsPanel {
       node("h4", "mw-heading", {}, "Operations"), this._hint, this._list);
   }
 
-  /** Tell what is known of the half-edge that is pointed at. */
+  /** Show what is known of the current half-edge. */
   update() {
     const { replica, hoverState, colours, readOnly } = this._card;
     this.root.hidden = readOnly;
@@ -26,22 +26,22 @@ export class OperationsPanel {
       setText(change, known ? signed(offer.change) : "");
       change.style.color = known ? colours.ofChange(offer.change) : "";
       row.classList.toggle("mw-refused", refused);
-      row.classList.toggle("mw-meant", hoverState.meant === info.operation);
+      row.classList.toggle("mw-meant", hoverState.previewed === info.operation);
       const armed = hoverState.armed === info.operation;
       row.setAttribute("aria-pressed", String(armed));
       const summary = asSentence(info.summary);
-      const told = refused ? `${summary}\nNot here: ${asSentence(offer.reason)}`
-        : `${summary}\n${armed ? "A click on the mesh does it." : "Click to arm it: then each click on the mesh does it."}`;
-      if (row.title !== told) row.title = told;
+      const title = refused ? `${summary}\nNot here: ${asSentence(offer.reason)}`
+        : `${summary}\n${armed ? "A click on the mesh applies it." : "Click to arm it: then each click on the mesh applies it."}`;
+      if (row.title !== title) row.title = title;
     }
-    setText(this._hint, this._words());
+    setText(this._hint, this._hintText());
   }
 
-  _words() {
+  _hintText() {
     const { replica, hoverState } = this._card;
     const armed = replica.catalogue.find((info) => info.operation === hoverState.armed);
-    if (armed) return "A click does it. Esc puts it down.";
-    return hoverState.offers ? "How each would change s here." : "Point at a half-edge of the mesh.";
+    if (armed) return "A click applies it. Esc disarms it.";
+    return hoverState.offers ? "Change of s here, for each." : "Point at a half-edge of the mesh.";
   }
 
   _fill(catalogue) {

@@ -1,11 +1,11 @@
-// The score curve, painted.
+// Paints the score curve.
 
 import { formatNumber } from "../mesh/score_series.js";
 
-/** Pixels between states above which every step has its own mark. */
+/** Pixels between states above which every step gets its own mark. */
 const APART = 7;
 
-/** Paint the curve of `track` in `frame`. where: {shown, hovered}, states, -1 for none. */
+/** Paint the curve of `series` in `frame`. where: {shown, hovered}, states, -1 for none. */
 export function paintScoreCurve(pen, frame, series, card, where) {
   const last = series.length - 1;
   const bottom = frame.top + frame.height;
@@ -48,7 +48,7 @@ function strokeLine(pen, line, colour, width) {
   pen.stroke();
 }
 
-/** Two slanted lines at the left edge: the optimum lies further below than it looks. */
+/** Two slanted lines at the left edge: the axis is broken above the optimum. */
 function paintBreak(pen, frame, colour) {
   const y = frame.top + frame.height - 7;
   for (const shift of [-1.75, 1.75]) {
@@ -56,9 +56,9 @@ function paintBreak(pen, frame, colour) {
   }
 }
 
-/** Who took each step: below the curve a dot for a person, a small diamond for an agent.
+/** The author of each step, below the curve: a dot for the user, a diamond for an agent.
  *
- * Where steps lie too close, runs of them: a bar for a person, two thin lines for an agent.
+ * Where steps are too close, runs of steps: a bar for the user, two thin lines for an agent.
  */
 function paintAuthors(pen, frame, series, card, shown) {
   const y = frame.top + frame.height + 12;

@@ -1,8 +1,8 @@
-// The strip under the canvas: the score of every state as a curve of steps over the optimum, a
-// slider to go through them, and buttons that play what was recorded.
+// The timeline under the canvas: the score of every state as a step curve above the optimum, a slider
+// over the states, and playback.
 //
-// What is asked of the link is `go_to` only, one at a time: while a hand moves faster than answers
-// come, the states between are left out. The mark follows the hand at once, the mesh comes after.
+// It sends `go_to` requests only, one at a time: while the slider moves faster than answers arrive,
+// states in between are skipped. The mark follows the pointer at once, the mesh later.
 
 import { button, drawn, icon, node } from "../dom.js";
 import { ScoreSeries, CurveFrame, formatNumber } from "../mesh/score_series.js";
@@ -10,12 +10,12 @@ import { paintScoreCurve } from "./score_curve.js";
 
 const HEIGHT = 72;
 const MARGINS = { left: 48, right: 16, top: 10, bottom: 20 };
-/** States a second on offer, and how many pictures a second are asked for at most. */
+/** Playback speeds in states per second, and the maximal number of requests per second. */
 const SPEEDS = [1, 2, 5, 10, 25, 100];
 const MOST_FRAMES = 20;
-/** Pixels that a finger moves before it means something. */
+/** Pixels that a finger moves before that counts as dragging. */
 const TOUCH_SLACK = 8;
-/** Milliseconds after which an answer is no longer waited for. */
+/** Milliseconds after which a request is given up. */
 const TIMEOUT = 2000;
 
 export class Timeline {
@@ -55,12 +55,12 @@ export class Timeline {
     };
     this.first = button("first", "To the start", () => this.goTo(0));
     this.back = button("back", "One step back", () => this.goTo(this.shown - 1));
-    this.play = button("play", "Play what was recorded", () => this.toggle());
+    this.play = button("play", "Play the history", () => this.toggle());
     this.ahead = button("ahead", "One step forward", () => this.goTo(this.shown + 1));
     this.end = button("end", "To the last state", () => this.goTo(this.last));
     this.best = button("best", "To the best state", () => this.goTo(this.series.best));
     this.speed = node("select", "mw-timeline-speed", {
-      "aria-label": "Speed of the film", title: "Speed of the film",
+      "aria-label": "Playback speed", title: "Playback speed",
     });
     for (const speed of SPEEDS) this.speed.append(new Option(speedLabel(speed), speed, speed === 2, speed === 2));
     this.words = node("div", "mw-timeline-words");
@@ -76,7 +76,7 @@ export class Timeline {
   _listen() {
     const { slider } = this;
     const state = (event) => this.frame.state(event.clientX - slider.getBoundingClientRect().left);
-    let began = null; // where a finger came down that may mean to scroll the page
+    let began = null; // where a finger came down that may scroll the page
     slider.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || this.empty || this.locked || !this.frame) return;
       slider.setPointerCapture(event.pointerId);
@@ -121,29 +121,29 @@ export class Timeline {
     event.stopPropagation();
   }
 
-  // What is here
+  // State
 
   /** Number of the last state. */
   get last() {
     return Math.max(this.series.length - 1, 0);
   }
 
-  /** True while there is no step. */
+  /** True while the history is empty. */
   get empty() {
     return this.last === 0;
   }
 
-  /** True in a view for looking only on a mesh that lives: its history is not ours to walk. */
+  /** True in a read-only view of a live mesh, which must not move through its history. */
   get locked() {
     return this.card.replica.readOnly && !this.card.link.readOnly;
   }
 
-  /** The state that the mark stands at: where the hand is, else where the mesh is. */
+  /** The state of the mark: that of the slider, else that of the mesh. */
   get shown() {
     return this._wanted === null ? this.cursor : this._wanted;
   }
 
-  /** Take over what a state or a patch says of the history. */
+  /** Take over the history of a state or a patch. */
   update(head) {
     const last = this.last;
     const awaited = this._flight !== null && head.cursor === this._flight;
@@ -156,9 +156,9 @@ export class Timeline {
     this.repaint();
   }
 
-  // Going
+  // Moving
 
-  /** Go to a state, by hand. */
+  /** Go to a state, and stop playback. */
   goTo(state) {
     this.stop();
     this._request(state);
@@ -228,7 +228,7 @@ export class Timeline {
     }, pause);
   }
 
-  // What is shown
+  // Display
 
   hover(state) {
     if (state === this._hovered) return;
@@ -237,7 +237,7 @@ export class Timeline {
     this.repaint();
   }
 
-  /** Say in words and on the buttons where one is. */
+  /** Update texts and buttons. */
   _refresh() {
     const { series, empty, last, shown, locked } = this;
     const looked = this._hovered >= 0 && this._hovered <= last ? this._hovered : shown;
@@ -246,13 +246,13 @@ export class Timeline {
     this.slider.setAttribute("aria-valuemax", last);
     this.slider.setAttribute("aria-valuenow", shown);
     this.slider.setAttribute("aria-valuetext", empty ? "no steps yet" : this.sentence(shown));
-    this.words.textContent = empty ? "No steps yet. Their scores will be drawn here." : this.sentence(looked);
+    this.words.textContent = empty ? "No steps yet. The scores will be drawn here." : this.sentence(looked);
     this.words.classList.toggle("mw-timeline-looked", looked !== shown);
     for (const made of [this.first, this.back]) made.disabled = locked || shown <= 0;
     for (const made of [this.ahead, this.end]) made.disabled = locked || shown >= last;
     this.best.disabled = locked || empty || shown === series.best;
     this.play.disabled = locked || empty;
-    const label = this.playing ? "Pause" : "Play what was recorded";
+    const label = this.playing ? "Pause" : "Play the history";
     if (this.play.title !== label) {
       this.play.title = label;
       this.play.setAttribute("aria-label", label);
@@ -299,7 +299,7 @@ export class Timeline {
   }
 }
 
-/** Outlines in a square of 16; "play" and "pause" are filled. */
+/** Outlines in a square of 16; "play" is filled. */
 const ICONS = {
   first: "M4 4v8 M11.5 4l-4 4 4 4",
   back: "M10 4L6 8l4 4",
