@@ -100,9 +100,9 @@ def test_a_replica_follows_whatever_happens(kind, data):
     mesh = meshing.mesh_domain(gallery.shape("l-shape"), kind)
     document = Document(mesh)
     sync, replica = follow(mesh)
-    head = DocumentStatus(document)
-    head.reset()
-    replica.scores = head.whole()["track"]["scores"]
+    status = DocumentStatus(document)
+    status.reset()
+    replica.scores = status.full()["track"]["scores"]
     names = [info.operation for info in of_kind(kind)]
     for _ in range(data.draw(st.integers(1, 12))):
         act = data.draw(st.sampled_from(["operate", "operate", "operate", "go", "lock", "smooth"]))
@@ -120,8 +120,8 @@ def test_a_replica_follows_whatever_happens(kind, data):
         if data.draw(st.booleans()):
             continue  # several changes may travel in one patch
         replica.take(sync.patch(mesh))
-        head.inverted.follow(mesh, sync.moved, sync.turned)
-        told = head.news()
+        status.inverted.follow(mesh, sync.moved, sync.turned)
+        told = status.update()
         replica.scores[told["track"]["from"] :] = told["track"]["scores"]
         assert replica.shows(mesh, sync.frame)
         assert told["inverted"] == len(inverted(mesh))

@@ -102,7 +102,7 @@ def test_a_click_that_comes_too_late_is_refused(port):
     operation, halfedge = allowed(mesh)
     ends = [mesh.target(halfedge), mesh.origin(halfedge)]
     port.ask("operate", operation=operation, halfedge=halfedge, ends=ends)
-    assert port.of("notice")[-1]["tone"] == "refused" and "meanwhile" in port.sentence
+    assert port.of("notice")[-1]["tone"] == "refused" and "in the meantime" in port.sentence
     assert len(port.session.document.history) == 0
 
 

@@ -254,7 +254,7 @@ def test_a_callback_may_edit_but_not_wait(widget):
     widget.on("history", undo)
     widget.apply(*allowed(widget.mesh))
     assert widget.history.cursor == 0 and widget.in_step
-    assert ["wait for itself" in words for words in raised] == [True, True]
+    assert ["block itself" in words for words in raised] == [True, True]
     assert not widget.assistant.running
 
 

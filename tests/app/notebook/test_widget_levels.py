@@ -175,7 +175,7 @@ def test_who_may_look_only_cannot_play(widget):
     port = Port(widget.session, read_only=True)
     port.ask("hello")
     port.ask("level", action="next")
-    assert "looking only" in port.sentence
+    assert "read-only" in port.sentence
     assert widget.level.name == "two-turns"
     port.close()
 
