@@ -24,7 +24,7 @@ def read(name: str) -> str:
 
 
 def without_comments(text: str) -> str:
-    """JavaScript or CSS without its comments; strings are none in ours that look like comments."""
+    """JavaScript or CSS without comments; no string in our files looks like a comment."""
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     return re.sub(r"^\s*//.*$|\s//\s.*$", "", text, flags=re.MULTILINE)
 
@@ -96,7 +96,7 @@ def test_modules_import_what_they_use_and_use_what_they_import(name: str) -> Non
                 assert not (used or ternary), f"{one} of {other} is not imported"
 
 
-def test_modules_and_folders_import_in_no_circle():
+def test_modules_and_folders_have_no_import_cycle():
     modules = {name: set(imports(name)) for name in SCRIPTS}
     order = list(TopologicalSorter(modules).static_order())  # raises CycleError
     assert set(order) == set(SCRIPTS)
@@ -118,7 +118,7 @@ def test_no_export_is_unused():
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
-def test_scripts_reach_for_nothing_outside_the_page(name: str) -> None:
+def test_modules_access_nothing_outside_of_the_page(name: str) -> None:
     text = without_comments(read(name))
     banned = r"\b(eval|Function|fetch|XMLHttpRequest|WebSocket|EventSource|importScripts|import)\("
     assert re.search(banned, text) is None
@@ -163,7 +163,7 @@ def test_colours_are_those_of_the_theme(name: str) -> None:
 
 @pytest.mark.parametrize("name", [name for name in SCRIPTS if name != "recording_page.js"])
 def test_elements_get_no_ids(name: str) -> None:
-    """Two views on one page must not get into each other's way."""
+    """Ids would clash between two views on one page."""
     text = without_comments(read(name))
     assert re.search(r"\.id = |[\"']id[\"']\s*[,:]|\bid: [\"'`]|getElementById", text) is None
 

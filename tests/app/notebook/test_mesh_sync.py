@@ -1,4 +1,4 @@
-"""The sync: whatever happens to a mesh, a browser that follows its messages has the same mesh."""
+"""State and patch messages: a replica that applies them equals the mesh."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ def follow(mesh: HalfEdgeMesh) -> tuple[MeshSync, Replica]:
     return sync, replica
 
 
-def test_a_state_is_the_mesh(strip):
+def test_a_state_holds_the_mesh(strip):
     sync, replica = follow(strip)
     assert sync.state().content["frame"] == {"cx": 1.0, "cy": 0.5, "scale": 1.0}
     assert replica.slots.places.tolist() == [
@@ -48,7 +48,7 @@ def test_a_state_is_the_mesh(strip):
     assert replica.shows(strip, sync.frame)
 
 
-def test_a_patch_is_what_differs(star):
+def test_a_patch_holds_the_differences(star):
     sync, replica = follow(star)
     star.set_locked(3)
     packet = sync.patch(star)
@@ -59,7 +59,7 @@ def test_a_patch_is_what_differs(star):
     assert nothing.size == 0 and nothing.content["to"] == packet.content["to"] + 1
 
 
-def test_slots_that_an_undo_takes_back_stay_as_dead_ones(strip):
+def test_slots_freed_by_undo_stay_as_dead_slots(strip):
     sync, replica = follow(strip)
     strip.apply("global_split", allowed(strip, ("global_split",))[1])
     replica.take(sync.patch(strip))
@@ -73,7 +73,7 @@ def test_slots_that_an_undo_takes_back_stay_as_dead_ones(strip):
     assert replica.shows(strip, sync.frame)
 
 
-def test_a_patch_larger_than_the_whole_is_the_whole(star):
+def test_a_patch_larger_than_the_state_is_the_state(star):
     sync, replica = follow(star)
     live = star.vertices()
     star.move(live, star.points[live] + 0.1)
@@ -85,7 +85,7 @@ def test_a_patch_larger_than_the_whole_is_the_whole(star):
     assert replica.shows(other, sync.frame)
 
 
-def test_no_mesh_is_a_state_too(star):
+def test_the_state_of_no_mesh_is_empty(star):
     sync = MeshSync()
     sync.reset(None)
     assert sync.state().content["vertices"] == 0 and sync.patch(None).size == 0
@@ -96,7 +96,7 @@ def test_no_mesh_is_a_state_too(star):
 @pytest.mark.parametrize("kind", ["quad", "tri"])
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
-def test_a_replica_follows_whatever_happens(kind, data):
+def test_a_replica_follows_random_edits(kind, data):
     mesh = meshing.mesh_domain(gallery.shape("l-shape"), kind)
     document = Document(mesh)
     sync, replica = follow(mesh)
@@ -146,7 +146,7 @@ def test_bytes_of_a_local_operation_do_not_grow_with_the_mesh():
     assert large > 5 * small and 0 < many < 4 * few
 
 
-def test_a_frame_holds_the_mesh_wherever_it_lies(star):
+def test_coordinates_are_normalised_at_any_position_and_scale(star):
     star.move(star.vertices(), star.points[star.vertices()] * 1e6 + (3e8, -2e8, 0))
     frame = CoordinateFrame.of(star)
     places = SlotArrays.of(star, frame).places

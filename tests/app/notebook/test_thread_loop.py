@@ -1,4 +1,4 @@
-"""Calls into the document's thread: in order, once, from anywhere, with a loop or without."""
+"""Calls into the document's thread: order, exceptions, with and without an event loop."""
 
 import asyncio
 import threading
@@ -26,7 +26,7 @@ def test_without_an_event_loop_the_queue_waits_for_a_pump():
     assert seen == list(range(100))
 
 
-def test_an_event_loop_comes_to_the_queue_by_itself_and_a_pump_may_be_quicker():
+def test_an_event_loop_runs_the_queue_unless_a_pump_is_earlier():
     seen = []
 
     async def cell() -> None:
@@ -41,7 +41,7 @@ def test_an_event_loop_comes_to_the_queue_by_itself_and_a_pump_may_be_quicker():
     asyncio.run(cell())
 
 
-def test_the_queue_outlives_an_event_loop():
+def test_queued_calls_survive_the_end_of_an_event_loop():
     seen, kept = [], []
 
     async def cell() -> None:
@@ -58,7 +58,7 @@ def test_the_queue_outlives_an_event_loop():
     assert seen == [1]
 
 
-def test_an_owner_that_has_ended_leaves_its_place():
+def test_another_thread_replaces_an_owner_that_has_ended():
     made, seen = [], []
     in_thread(lambda: made.append(ThreadLoop()))
     made[0](lambda: seen.append(1))
@@ -67,7 +67,7 @@ def test_an_owner_that_has_ended_leaves_its_place():
     assert seen == [1]
 
 
-def test_another_thread_gets_the_answer_or_the_error():
+def test_another_thread_gets_the_result_or_the_exception():
     loop, got = ThreadLoop(), []
 
     def ask() -> None:
@@ -83,7 +83,7 @@ def test_another_thread_gets_the_answer_or_the_error():
     assert got == [threading.get_ident(), "end"]
 
 
-def test_another_thread_does_not_wait_for_ever(monkeypatch):
+def test_calls_from_another_thread_time_out(monkeypatch):
     monkeypatch.setattr(loops, "TIMEOUT", 0.05)
     loop, done = ThreadLoop(), []
 
@@ -96,7 +96,7 @@ def test_another_thread_does_not_wait_for_ever(monkeypatch):
     assert done == []  # what was given up is not done later
 
 
-def test_a_pump_gives_up_in_time_and_elsewhere_it_only_waits():
+def test_a_pump_times_out_and_only_waits_in_other_threads():
     loop, seen, waited = ThreadLoop(), [], []
     begun = time.monotonic()
     assert not loop.pump(lambda: False, timeout=0.1)
@@ -111,7 +111,7 @@ def test_a_pump_gives_up_in_time_and_elsewhere_it_only_waits():
     assert waited == [False, True] and seen == [threading.get_ident()]
 
 
-def test_a_call_that_raises_is_told_and_logged_and_the_next_one_comes(caplog):
+def test_an_exception_in_a_call_is_reported_and_the_next_call_runs(caplog):
     errors, seen = [], []
     loop = ThreadLoop(errors.append)
     loop(lambda: 1 / 0)

@@ -1,4 +1,4 @@
-"""Levels in a notebook: what browsers hear of the play, and what they may ask of it."""
+"""Levels in a notebook: messages and requests."""
 
 import json
 
@@ -34,7 +34,7 @@ def port(widget):
 
 
 def told(port):
-    """The last that was said of the level."""
+    """The content of the last level message."""
     return port.of("level")[-1]["level"]
 
 
@@ -43,7 +43,7 @@ def solve(port):
         port.operate(operation.value, port.session.mesh.halfedge(a, b))
 
 
-def test_a_view_is_told_of_the_level_when_it_comes(port):
+def test_a_new_view_gets_the_level(port):
     message = port.of("level")[-1]
     assert [one["name"] for one in message["all"]] == list(levels.names())
     level = message["level"]
@@ -54,7 +54,7 @@ def test_a_view_is_told_of_the_level_when_it_comes(port):
     json.dumps(message)
 
 
-def test_without_a_level_nothing_is_told(monkeypatch, greedy, strip):
+def test_without_a_level_no_level_message_is_sent(monkeypatch, greedy, strip):
     script_agent(monkeypatch, greedy)
     widget = MeshWidget(strip)
     port = Port(widget.session)
@@ -109,7 +109,7 @@ def test_again_next_and_open(port):
         ({"action": "again", "stars": 3}, "unknown field"),
     ],
 )
-def test_nonsense_is_refused(port, fields, why):
+def test_malformed_level_requests_are_refused(port, fields, why):
     before = port.session.document.revision
     port.ask("level", **fields)
     assert why in port.sentence
@@ -117,7 +117,7 @@ def test_nonsense_is_refused(port, fields, why):
     assert port.session.level.name == "two-turns"
 
 
-def test_what_is_not_played_in_a_level_is_refused(port):
+def test_requests_outside_the_rules_of_a_level_are_refused(port):
     port.ask("level", action="open", name="three-blocks")
     for word, fields in (
         ("clean_all", {}),
@@ -141,14 +141,14 @@ def test_a_hint_costs_a_star(widget, port):
     assert told(port)["stars"] == 2
 
 
-def test_the_agents_steps_win_nothing(widget, port):
+def test_the_agents_steps_earn_no_stars(widget, port):
     widget.complete()
     level = told(port)
     assert (level["helped"], level["stars"]) == (True, 0)
     assert "win no stars" in level["remark"]
 
 
-def test_the_agent_answers_on_a_mesh_of_its_own(widget, port):
+def test_the_agent_solves_a_copy_of_the_mesh(widget, port):
     play = LevelBridge.of(widget.session).play
     port.ask("level", action="solve")
     assert told(port)["rival"]["standing"] == "asked"
@@ -164,14 +164,14 @@ def test_the_agent_answers_on_a_mesh_of_its_own(widget, port):
     assert "Redo" in port.sentence
 
 
-def test_a_way_is_shown_where_the_agent_cannot_play(widget, port):
+def test_a_solution_is_shown_where_the_agent_cannot_play(widget, port):
     port.ask("level", action="open", name="three-blocks")
     assert told(port)["answered"]
     port.ask("level", action="solve")
     assert len(widget.history) == 4
 
 
-def test_who_may_look_only_cannot_play(widget):
+def test_a_read_only_view_cannot_change_levels(widget):
     port = Port(widget.session, read_only=True)
     port.ask("hello")
     port.ask("level", action="next")
@@ -190,7 +190,7 @@ def test_two_widgets_play_the_same_level(widget, port):
     other.close()
 
 
-def test_a_message_is_small_and_is_sent_only_when_it_is_news(port):
+def test_level_messages_are_small_and_sent_on_change_only(port):
     port.operate("flip_left", next(
         h for h in range(48) if port.session.document.check("flip_left", h)
     ))  # fmt: skip
@@ -201,14 +201,14 @@ def test_a_message_is_small_and_is_sent_only_when_it_is_news(port):
     assert len(port.of("level")) == count
 
 
-def test_a_widget_wants_a_mesh_or_a_level(strip):
+def test_source_and_level_exclude_each_other(strip):
     with pytest.raises(MeshError, match="A level brings its own mesh"):
         MeshWidget(strip, level="star")
     with pytest.raises(MeshError, match="no level named"):
         MeshWidget(level="stra")
 
 
-def test_nothing_is_left_of_a_widget_that_is_closed(monkeypatch, greedy):
+def test_a_closed_widget_with_a_level_leaves_no_references(monkeypatch, greedy):
     script_agent(monkeypatch, greedy)
     widget = MeshWidget(level="two-turns")
     document, play = widget.document, LevelBridge.of(widget.session).play
