@@ -94,10 +94,10 @@ def replayed(film: dict):
 
 def test_a_recording_holds_every_state_exactly(walked):
     mesh, cursor, revision = walked.mesh, walked.history.cursor, walked.revision
-    film, told = Film(walked), record(walked)
+    film, recorded = Film(walked), record(walked)
     assert (walked.mesh, walked.history.cursor, walked.revision) == (mesh, cursor, revision)
     assert recorded["start"] == cursor
-    json.dumps(told, allow_nan=False)
+    json.dumps(recorded, allow_nan=False)
     film.go_to(0)
     frame, head, revision = (
         CoordinateFrame.of(film.mesh),
@@ -105,7 +105,7 @@ def test_a_recording_holds_every_state_exactly(walked):
         recorded["state"]["content"]["revision"],
     )
     messages = [recorded["state"], *recorded["steps"]]
-    for state, (now, message) in enumerate(zip(replayed(told), messages, strict=True)):
+    for state, (now, message) in enumerate(zip(replayed(recorded), messages, strict=True)):
         film.go_to(state)
         wanted = SlotArrays.of(film.mesh, frame, len(now[1]), len(now[3]))
         for found, true in zip(now, (wanted.places.ravel(), *_others(wanted)), strict=True):
