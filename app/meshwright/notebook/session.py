@@ -25,6 +25,7 @@ from meshwright.notebook.protocol.requests import Hello, Hover, RefusedError, Re
 from meshwright.notebook.thread_loop import ThreadLoop
 from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.errors import sentence
 
 Result = TypeVar("Result")
 
@@ -74,7 +75,7 @@ class Session:
         document.score_changed.connect(self._on_score_changed)
         self.assistant.changed.connect(self._on_agent_changed)
         self.assistant.hinting.changed.connect(self._on_agent_changed)
-        self.assistant.said.connect(self._on_said)
+        self.assistant.message.connect(self._on_message)
         self.assistant.failed.connect(self._on_failed)
 
     @classmethod
@@ -270,7 +271,7 @@ class Session:
         self.broadcaster.touch_agent()
         self.agent_changed.emit()
 
-    def _on_said(self, text: str) -> None:
+    def _on_message(self, text: str) -> None:
         self.broadcaster.notice("info", sentence(text))
 
     def _on_failed(self, text: str) -> None:
@@ -279,12 +280,6 @@ class Session:
     def _on_broken(self, error: Exception) -> None:
         """A queued call has raised; the traceback is in the log already."""
         self.broadcaster.notice("failed", broken(error))
-
-
-def sentence(text: str) -> str:
-    """``text`` with a capital first letter and a full stop."""
-    text = text[:1].upper() + text[1:]
-    return text if text.endswith((".", "\u2026", "!", "?")) else text + "."
 
 
 def broken(error: Exception) -> str:

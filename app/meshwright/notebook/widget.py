@@ -13,7 +13,7 @@ import traitlets
 from meshwright.assistant.assistant import Assistant
 from meshwright.assistant.search_runner import COMPLETE_SECONDS, Effort
 from meshwright.document.document import Document
-from meshwright.document.history import History, Row
+from meshwright.document.history import History, HistoryStep
 from meshwright.graphics.export import mimebundle
 from meshwright.notebook import bundle
 from meshwright.notebook.arguments import (
@@ -24,7 +24,6 @@ from meshwright.notebook.arguments import (
     vertex_of,
     whole,
 )
-from meshwright.notebook.document_source import document_of
 from meshwright.notebook.export import html_page, images
 from meshwright.notebook.export.images import SECONDS, SIZE, File
 from meshwright.notebook.protocol.level_bridge import LevelBridge
@@ -33,6 +32,7 @@ from meshwright.notebook.session import Session
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.level import Level
 from meshwright.signals import Signal
+from meshwright.sources import resolve
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class MeshWidget(anywidget.AnyWidget):
         """Show ``source``; a document, also that of another widget, is shared and not copied.
 
         Args:
-            source: see :func:`meshwright.notebook.document_source.document_of`; or another widget.
+            source: see :func:`meshwright.sources.resolve.document`; or another widget.
             kind: elements to mesh a shape with, "tri" or "quad"; quads by default.
             policy: policy of the agent: the name of a shipped one, or a file; by default the first
                 that is shipped for this kind of mesh.
@@ -107,7 +107,7 @@ class MeshWidget(anywidget.AnyWidget):
         if not isinstance(wanted, Level | None):
             raise MeshError(f"A level must be the name of one, not {shortened(level)}.")
         shown = source.document if isinstance(source, MeshWidget) else source
-        document = Document() if wanted is not None else document_of(shown, kind, name)
+        document = Document() if wanted is not None else resolve.document(shown, kind, name)
         session = self.session = Session.of(document)
         try:
             if wanted is not None:
@@ -178,11 +178,11 @@ class MeshWidget(anywidget.AnyWidget):
         action, at = operation_of(self.mesh, operation), whole(halfedge, "half-edge")
         return self._do(lambda: self.document.submit(action, at))
 
-    def undo(self) -> Row | None:
+    def undo(self) -> HistoryStep | None:
         """Undo the last step; returns its row, or None without one."""
         return self._do(self.document.undo)
 
-    def redo(self) -> Row | None:
+    def redo(self) -> HistoryStep | None:
         """Redo the step that was undone last; returns its row, or None without one."""
         return self._do(self.document.redo)
 

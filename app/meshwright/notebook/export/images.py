@@ -98,16 +98,15 @@ def _made(
 
 
 def _checked_size(size: Any) -> tuple[int, int]:
-    match size:
-        case (int(width), int(height)):
-            sides = width, height
-        case _:
-            sides = 0, 0
-    if any(isinstance(side, bool) or not SMALLEST <= side <= LARGEST for side in sides):
+    sides = tuple(size) if isinstance(size, tuple | list) else ()
+    fit = len(sides) == 2 and all(
+        is_whole_number(side) and SMALLEST <= side <= LARGEST for side in sides
+    )
+    if not fit:
         raise MeshError(
             f"A size is two whole numbers of pixels from {SMALLEST} to {LARGEST:,}, not {size!r}."
         )
-    return sides
+    return int(sides[0]), int(sides[1])
 
 
 def _checked_theme(theme: str) -> str:

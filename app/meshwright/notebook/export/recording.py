@@ -7,7 +7,7 @@ from typing import Any
 
 from meshwright.document.document import NO_MESH, Document
 from meshwright.document.history import History
-from meshwright.document.storage.document_state import Kept
+from meshwright.document.storage.document_state import DocumentState
 from meshwright.notebook.protocol.document_status import DocumentStatus
 from meshwright.notebook.protocol.mesh_sync import MeshSync, Packet
 from meshwright_core import MeshError
@@ -55,10 +55,10 @@ def record(document: Document) -> dict[str, Any]:
 
 def _copied(document: Document) -> Document:
     """An independent document with a copy of the mesh and the same history."""
-    kept, known = document.kept(), document.history
+    state, known = document.state(), document.history
     history = History.of(*known.first, list(known), known.cursor, serial=known.given[0])
     copied = Document()
-    copied.adopt(Kept(kept.mesh.copy(history=True), history, kept.name))
+    copied.adopt(DocumentState(state.mesh.copy(history=True), history, state.name))
     return copied
 
 

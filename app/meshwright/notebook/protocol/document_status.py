@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from meshwright.document.document import Document
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN
 from meshwright_core.geometry.outline import Outline
@@ -61,7 +61,7 @@ class DocumentStatus:
 
     def __init__(self, document: Document) -> None:
         self._document = document
-        self._track = Track()
+        self._series = ScoreSeries()
         self.inverted = InvertedElements()
 
     def reset(self) -> None:
@@ -71,12 +71,12 @@ class DocumentStatus:
 
     def full(self) -> dict[str, Any]:
         """All numbers, with the scores of all states."""
-        self._track.follow(self._document.history)
+        self._series.follow(self._document.history)
         return self._values(0)
 
     def update(self) -> dict[str, Any]:
         """All numbers, with the scores of the states since the last call."""
-        return self._values(self._track.follow(self._document.history))
+        return self._values(self._series.follow(self._document.history))
 
     def _values(self, first: int) -> dict[str, Any]:
         document, mesh = self._document, self._document.mesh
@@ -103,8 +103,8 @@ class DocumentStatus:
             "row": self._row(),
             "track": {
                 "from": first,
-                "scores": self._track.scores[first:].tolist(),
-                "optima": self._track.optima[first:].tolist(),
+                "scores": self._series.scores[first:].tolist(),
+                "optima": self._series.optima[first:].tolist(),
                 "titles": [
                     history[state - 1].title if state else "Start"
                     for state in range(first, len(history) + 1)

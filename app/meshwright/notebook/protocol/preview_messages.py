@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.document.operation_preview import Choice, best, choices, ghost
+from meshwright.document.operation_preview import OperationOffer, best, choices, ghost
 from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet
 from meshwright_core import HalfEdgeMesh
 
@@ -32,7 +32,7 @@ def ghost_packet(
     content = {
         "type": "ghost",
         "halfedge": halfedge,
-        "offers": [_offer(option) for option in offered],
+        "offers": [_offer(offer) for offer in offered],
         "operation": str(meant.operation) if meant is not None else None,
         "change": meant.change if meant is not None else None,
     }
@@ -57,10 +57,10 @@ def no_ghost() -> Packet:
     return Packet(content, [b""] * 5)
 
 
-def _offer(option: Choice) -> dict[str, Any]:
+def _offer(offer: OperationOffer) -> dict[str, Any]:
     return {
-        "operation": str(option.operation),
-        "allowed": option.allowed,
-        "reason": option.verdict.reason,
-        "change": option.change,
+        "operation": str(offer.operation),
+        "allowed": offer.allowed,
+        "reason": offer.verdict.reason,
+        "change": offer.change,
     }

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshwright.document.history import Row
+from meshwright.document.history import HistoryStep
 from meshwright.notebook.protocol import requests
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.operations.catalogue import of_kind
@@ -134,7 +134,7 @@ def _vertex(session: Session, vertex: int) -> np.ndarray:
     return np.array([vertex])
 
 
-def _outcome(done: str, row: Row | None, otherwise: str) -> str:
+def _outcome(done: str, row: HistoryStep | None, otherwise: str) -> str:
     return otherwise if row is None else f"{done}: {row.title}."
 
 
