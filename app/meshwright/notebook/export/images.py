@@ -12,6 +12,7 @@ from meshwright.graphics.export.export_job import Order, save_order
 from meshwright.graphics.export.film import Film
 from meshwright.graphics.theme import THEMES
 from meshwright_core import MeshError
+from meshwright_core.arguments import is_whole_number
 from meshwright_core.io import atomic_write
 
 SIZE = (960, 720)
