@@ -36,7 +36,7 @@ from meshwright.sources import resolve
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Choice
+    from meshwright_agent.policy.explanation_types import PolicyAction
     from meshwright_core.domains.domain import Domain
 
 Result = TypeVar("Result")
@@ -249,7 +249,7 @@ class MeshWidget(anywidget.AnyWidget):
         effort = Effort(seconds=positive(seconds, "seconds"))
         self._start(lambda: self.assistant.search(effort), wait)
 
-    def hint(self, wait: bool = True) -> tuple[Choice, ...]:
+    def hint(self, wait: bool = True) -> tuple[PolicyAction, ...]:
         """The operations with the highest probability under the policy in the present state.
 
         Where the call does not wait: the hints that are known already, possibly none.
