@@ -128,7 +128,7 @@ def test_requests_outside_the_rules_of_a_level_are_refused(port):
         port.ask(word, **fields)
         assert "level" in port.sentence
     port.operate("chord_collapse", port.session.mesh.halfedge(0, 1))
-    assert "not played in levels" in port.sentence
+    assert "not allowed in levels" in port.sentence
     assert len(port.session.document.history) == 0
     port.ask("smooth")
     assert told(port)["used"] == 0
