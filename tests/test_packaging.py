@@ -53,7 +53,7 @@ def test_wheel_carries_a_policy_of_each_kind(wheel):
 
 def test_wheel_carries_the_widget_and_the_lessons(wheel):
     carried = set(wheel.namelist())
-    for name in (*bundle.SCRIPTS, *bundle.STYLES):
+    for name in ("generated/bundle.js", *bundle.STYLES):
         assert f"meshwright/notebook/front/{name}" in carried
     lessons = [
         name for name in carried if re.fullmatch(r"meshwright_assets/lessons/[^/]+\.ipynb", name)
