@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from meshwright_core.core import circulators, construction, notebook_display
+from meshwright_core.core import construction, notebook_display
 from meshwright_core.core.arrays import (
     DESIRED,
     ELEMENT_SLOTS,
@@ -32,7 +32,7 @@ from meshwright_core.errors import MeshError, OperationRefused
 from meshwright_core.history import journal
 from meshwright_core.history.packed_steps import Steps, last_done
 from meshwright_core.history.step_archive import Archive, cut_undone
-from meshwright_core.operations import catalogue, refusals
+from meshwright_core.operations import catalogue, global_lines, refusals, vertex_edits
 from meshwright_core.operations.catalogue import Operation
 from meshwright_core.operations.verdicts import YES, Edit, Verdict
 
@@ -87,11 +87,16 @@ class HalfEdgeMesh(MeshView):
         """Whether the operation may be applied to half-edge h, and if not, why. No side effect."""
         code = self._codes.get(operation, -1)
         if code < 0:
-            return Verdict.refused(refusals.OTHER_KIND, self, Operation(operation), h)
+            return Verdict.refused(
+                refusals.OTHER_KIND, self, Operation(operation), h, self.degree_cap
+            )
         found = catalogue.check_once(*self._arrays, code, h, self.degree_cap)
         if found == refusals.ALLOWED or found == refusals.NEED_ROOM:
             return YES
-        return Verdict.refused(found, self, Operation(operation), h)
+        return self._refused(found, operation, h)
+
+    def _refused(self, code: int, operation: Operation | str, h: int) -> Verdict:
+        return Verdict.refused(code, self, Operation(operation), h, self.degree_cap)
 
     def allowed(self, h: int) -> dict[Operation, Verdict]:
         """The verdict on each operation of this kind of mesh at half-edge h."""
@@ -128,12 +133,12 @@ class HalfEdgeMesh(MeshView):
         with self.transaction():
             first, found_since = 0, 0
             while True:
-                h = circulators.cleanable(self._arrays, first, self.degree_cap)
+                h = global_lines.cleanable(self._arrays, first, self.degree_cap)
                 if h < 0 and found_since < len(edits):
                     first, found_since = 0, len(edits)  # a deleted line may have freed another
                     continue
                 if h < 0:
-                    h = circulators.cleanable_ring(self._arrays, self.degree_cap)
+                    h = global_lines.cleanable_ring(self._arrays, self.degree_cap)
                 if h < 0:
                     break
                 first = self.origin(h)
@@ -187,7 +192,7 @@ class HalfEdgeMesh(MeshView):
         for vertex in ids.tolist():
             self._require_live(vertex)
         self._make_room(3 * len(ids))
-        circulators.move(self._arrays, ids, places)
+        vertex_edits.move(self._arrays, ids, places)
 
     def set_desired(self, vertex: int, degree: int) -> None:
         """Set the desired degree of a vertex: one undoable step; s and s* follow."""
@@ -211,7 +216,7 @@ class HalfEdgeMesh(MeshView):
 
     def _set_vertex(self, vertex: int, column: int, value: int) -> None:
         self._make_room(16)
-        circulators.set_vertex(self._arrays, vertex, column, value)
+        vertex_edits.set_vertex(self._arrays, vertex, column, value)
 
     def _require_live(self, vertex: int) -> None:
         if not (0 <= vertex < self.slots and self._arrays.vertex[vertex, HALF] >= 0):

@@ -10,9 +10,9 @@ from meshwright_agent.env.candidates import best_template, masks, shortlist, tem
 from meshwright_agent.env.local_patch import LARGEST, POTENTIALS, Patches, describe, list_patch
 from meshwright_agent.env.potential import field, forget, solve_potential
 from meshwright_core.core.arrays import HALF, NEW_COUNT, TOUCHED_COUNT, TRACE_IDS, MeshArrays
-from meshwright_core.core.circulators import cleanable_at
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.operations.catalogue import CLEANUP, FLIP_LEFT, GLOBAL_SPLIT, TRI_FLIP, rewrite
+from meshwright_core.operations.global_lines import cleanable_at
 
 FIRST_OPERATION = {"tri": TRI_FLIP, "quad": FLIP_LEFT}
 OPERATION_COUNT = {"tri": 3, "quad": 5}

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh, Operation, Verdict
+from meshwright_core.analysis.dry_run import score_change as tried_change
+from meshwright_core.analysis.dry_run import trial
 from meshwright_core.operations.catalogue import CODES, OperationInfo, of_kind, score_change
-from meshwright_core.operations.dry_run import score_change as tried_change
-from meshwright_core.operations.dry_run import trial
 
 GLOBAL = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
 """Operations that go from boundary to boundary."""

@@ -22,9 +22,8 @@ from meshwright_core.core.arrays import (
     on_boundary,
     preceding,
 )
-from meshwright_core.core.circulators import is_ring
 from meshwright_core.core.compilation import kernel
-from meshwright_core.operations.global_lines import check_cleanup
+from meshwright_core.operations.global_lines import check_cleanup, is_ring
 from meshwright_core.operations.refusals import ALLOWED, NEED_ROOM
 
 if TYPE_CHECKING:

@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.core.mesh_view import MeshView
 
 GROUP, NAME = "meshwright.display", "figure"
 """Group and name of the entry point. It is a function of a mesh that returns MIME types with their
@@ -22,7 +21,7 @@ data, and MIME types with their metadata.
 Bundle = tuple[dict[str, Any], dict[str, Any]]
 
 
-def bundle(mesh: HalfEdgeMesh) -> Bundle:
+def bundle(mesh: MeshView) -> Bundle:
     """What a notebook may choose from: the mesh's line of text, and a picture if one is drawn."""
     text = {"text/plain": repr(mesh)}
     draw = drawer()
@@ -33,7 +32,7 @@ def bundle(mesh: HalfEdgeMesh) -> Bundle:
 
 
 @cache
-def drawer() -> Callable[[HalfEdgeMesh], Bundle] | None:
+def drawer() -> Callable[[MeshView], Bundle] | None:
     """The function that is installed for drawing, None if there is none."""
     found = [point for point in entry_points(group=GROUP) if point.name == NAME]
     return found[0].load() if found else None

@@ -13,10 +13,13 @@ ring, which the paper leaves open. Deleting it merges the elements on its two si
 
 from __future__ import annotations
 
+import numpy as np
+
 from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DESIRED,
+    ELEMENT_SLOTS,
     ELEMENTS,
     FLAGS,
     GEOMETRIC,
@@ -25,11 +28,12 @@ from meshwright_core.core.arrays import (
     MARK,
     ORIGIN,
     TWIN,
+    VERTEX_SLOTS,
     following,
     on_boundary,
     preceding,
 )
-from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
 from meshwright_core.history.journal import (
     drop_element,
@@ -281,3 +285,69 @@ def _merge_across(m, h):
     touch(m, r)
     touch(m, u)
     return w
+
+
+@bare_kernel
+def cleanable_at(m, v, cap):
+    """A half-edge that leaves v on a line that may be cleaned up, or -1."""
+    start = m.vertex[v, HALF]
+    h = start
+    for _ in range(m.vertex[v, DEGREE]):
+        code = check_cleanup(m, h, cap)
+        if code == ALLOWED or code == NEED_ROOM:
+            return h
+        h = m.edge[preceding(h, 4), TWIN]
+        if h < 0 or h == start:
+            break
+    return -1
+
+
+@bare_kernel
+def cleanable(m, first, cap):
+    """A half-edge on an open global line that may be cleaned up, or -1.
+
+    Lines are looked for at boundary vertices with ids from `first` on: one sweep.
+    """
+    for v in range(first, m.counters[VERTEX_SLOTS]):
+        if m.vertex[v, HALF] < 0 or m.vertex[v, DEGREE] != 3 or not on_boundary(m, v):
+            continue
+        h = m.edge[preceding(m.vertex[v, HALF], 4), TWIN]
+        code = check_cleanup(m, h, cap)
+        if code == ALLOWED or code == NEED_ROOM:
+            return h
+    return -1
+
+
+@bare_kernel
+def is_ring(m, start, seen, cap):
+    """Whether `start` lies on a closed line that may be cleaned up.
+
+    Marks the half-edges that it walks over in `seen` (uint8), and passes over marked ones.
+    """
+    h = start
+    while m.edge[h, ORIGIN] >= 0 and not seen[h]:
+        t = m.edge[h, TWIN]
+        seen[h] = 1
+        if t < 0:
+            return False
+        seen[t] = 1
+        v = m.edge[t, ORIGIN]
+        if m.vertex[v, DEGREE] != 4 or on_boundary(m, v):
+            return False
+        h = following(m.edge[following(h, 4), TWIN], 4)
+        if h == start:
+            code = check_cleanup(m, h, cap)
+            return code == ALLOWED or code == NEED_ROOM
+    return False
+
+
+@kernel
+def cleanable_ring(m, cap):
+    """A half-edge on a closed line that may be cleaned up, or -1. Every edge is walked over
+    once.
+    """
+    seen = np.zeros(m.counters[ELEMENT_SLOTS] * 4, np.uint8)
+    for start in range(len(seen)):
+        if is_ring(m, start, seen, cap):
+            return start
+    return -1

@@ -5,9 +5,9 @@ import pytest
 from tiny_meshes import faces, grid, ring, square_of_triangles
 
 from meshwright_core import HalfEdgeMesh, OperationRefused
+from meshwright_core.analysis.dry_run import trial
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.operations.catalogue import of_kind
-from meshwright_core.operations.dry_run import trial
 
 
 def _pairs(segments):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -32,11 +32,9 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.errors import OperationRefused
 from meshwright_core.history import journal
+from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations import catalogue, refusals
 from meshwright_core.operations.catalogue import Operation
-
-if TYPE_CHECKING:
-    from meshwright_core.mesh import HalfEdgeMesh
 
 Result = TypeVar("Result")
 
