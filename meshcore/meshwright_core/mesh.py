@@ -17,11 +17,9 @@ from meshwright_core.core.arrays import (
     HALF,
     JOURNAL_TOP,
     LOCKED,
-    NEW_COUNT,
     STEP,
     STEP_COLUMNS,
     STEP_END,
-    TOUCHED_COUNT,
     TRACE_IDS,
     VERTEX_SLOTS,
     MeshArrays,
@@ -90,7 +88,7 @@ class HalfEdgeMesh(MeshView):
             return Verdict.refused(
                 refusals.OTHER_KIND, self, Operation(operation), h, self.degree_cap
             )
-        found = catalogue.check_once(*self._arrays, code, h, self.degree_cap)
+        found = catalogue.check_once(self._arrays, code, h, self.degree_cap)
         if found == refusals.ALLOWED or found == refusals.NEED_ROOM:
             return YES
         return self._refused(found, operation, h)
@@ -110,20 +108,20 @@ class HalfEdgeMesh(MeshView):
         code = self._codes.get(operation, -1)
         if code < 0:
             raise OperationRefused(self.check(operation, h).reason)
-        done = catalogue.apply_once(*self._arrays, code, h, self.degree_cap)
-        while done[0] == refusals.NEED_ROOM:
+        done = catalogue.apply_once(self._arrays, code, h, self.degree_cap)
+        while done.code == refusals.NEED_ROOM:
             self._enlarge()
-            done = catalogue.apply_once(*self._arrays, code, h, self.degree_cap)
-        if done[0] != refusals.ALLOWED:
+            done = catalogue.apply_once(self._arrays, code, h, self.degree_cap)
+        if done.code != refusals.ALLOWED:
             raise OperationRefused(
                 f"{operation} at half-edge {h} is not allowed: {self.check(operation, h).reason}"
             )
         self._archive.future.clear()
-        if done[3] > 6:
+        touched = done.touched[: done.touched_count]
+        if done.touched_count > catalogue.FEW:
             trace = self._arrays.trace
-            ids = tuple(trace[TRACE_IDS : TRACE_IDS + int(trace[TOUCHED_COUNT])].tolist())
-            return Edit(operation, h, done[1], int(trace[NEW_COUNT]), ids)
-        return Edit(operation, h, done[1], done[2], done[4 : 4 + done[3]])
+            touched = tuple(trace[TRACE_IDS : TRACE_IDS + done.touched_count].tolist())
+        return Edit(operation, h, done.score_change, done.new_count, touched)
 
     def clean_all(self) -> list[Edit]:
         """Delete every global line that may be deleted: one undoable step; [] for triangles."""

@@ -37,16 +37,11 @@ from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
     CLEANUP,
-    FLIP_LEFT,
-    FLIP_RIGHT,
     GLOBAL_SPLIT,
     NAMES,
-    QUAD_COLLAPSE,
-    QUAD_SPLIT,
-    TRI_COLLAPSE,
-    TRI_FLIP,
-    TRI_SPLIT,
     Operation,
+    growth,
+    needs_twin,
     rewrite,
     score_change,
 )
@@ -134,30 +129,6 @@ def draw_operation(weights, rng):
 
 
 @bare_kernel
-def growth(m, operation, h):
-    """Elements that an operation adds; 0 for those whose number depends on the way they go."""
-    if operation == TRI_SPLIT:
-        return 2 if m.edge[h, TWIN] >= 0 else 1
-    if operation == TRI_COLLAPSE:
-        return -2 if m.edge[h, TWIN] >= 0 else -1
-    if operation == QUAD_SPLIT:
-        return 1
-    return -1 if operation == QUAD_COLLAPSE else 0
-
-
-@bare_kernel
-def needs_twin(operation):
-    """Whether the operation is never allowed on the boundary, where its change is not defined."""
-    return (
-        operation == TRI_FLIP
-        or operation == FLIP_LEFT
-        or operation == FLIP_RIGHT
-        or operation == QUAD_SPLIT
-        or operation == GLOBAL_SPLIT
-    )
-
-
-@bare_kernel
 def save_best(m, best, state):
     """Keep the present state as the best one."""
     state[BEST_SCORE] = m.counters[SCORE]
@@ -211,12 +182,13 @@ def anneal_slice(
         if h < 0:
             continue
         operation = first + draw_operation(weights, rng)
+        if operation > GLOBAL_SPLIT:
+            operation = CHORD_COLLAPSE
         if m.edge[h, TWIN] < 0 and needs_twin(operation):
             continue
         cleanups = 0
-        if operation > GLOBAL_SPLIT:
+        if operation == CHORD_COLLAPSE:
             # merging the ends of the rungs adds up their irregularities: s never rises
-            operation = CHORD_COLLAPSE
             if m.counters[ELEMENTS] <= floor or check_chord_collapse(m, h, cap) != ALLOWED:
                 continue
             rewrite(m, CHORD_COLLAPSE, h)

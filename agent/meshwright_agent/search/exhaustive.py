@@ -36,9 +36,9 @@ from meshwright_core.operations.catalogue import (
     QUAD_COLLAPSE,
     TRI_COLLAPSE,
     TRI_FLIP,
-    TRI_SPLIT,
     Operation,
     check,
+    needs_twin,
     rewrite,
     score_change,
 )
@@ -218,7 +218,7 @@ def _promises(m, code, h, goal, most):
     """False if this operation cannot be the last one, allowed or not."""
     if code == CLEANUP:
         return most > 0 and m.counters[SCORE] <= goal
-    if m.edge[h, TWIN] < 0 and code != TRI_SPLIT and code != TRI_COLLAPSE and code != QUAD_COLLAPSE:
+    if m.edge[h, TWIN] < 0 and needs_twin(code):
         return False
     return m.counters[SCORE] + score_change(m, code, h) <= goal
 

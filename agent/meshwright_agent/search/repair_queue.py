@@ -24,9 +24,7 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.compilation import bare_kernel
 from meshwright_core.operations.catalogue import (
-    QUAD_COLLAPSE,
-    TRI_COLLAPSE,
-    TRI_SPLIT,
+    needs_twin,
     rewrite,
     score_change,
 )
@@ -131,7 +129,7 @@ def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operati
             for g in range(h - h % k, h - h % k + k):
                 for j in range(first, first + count):
                     # a change is cheap to tell where the operation makes sense at all
-                    if m.edge[g, TWIN] < 0 and not _on_boundary_edges(j):
+                    if m.edge[g, TWIN] < 0 and needs_twin(j):
                         continue
                     change = score_change(m, j, g)
                     if change < best and permitted(m, j, g, cap, floor, ceiling, extended):
@@ -151,14 +149,6 @@ def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operati
         if irregular(m, v):
             enqueue(a, v)
     return done
-
-
-@bare_kernel
-def _on_boundary_edges(operation):
-    """Whether the operation has a meaning at a half-edge without twin: splits and collapses of
-    triangles, collapses of quads.
-    """
-    return operation == TRI_SPLIT or operation == TRI_COLLAPSE or operation == QUAD_COLLAPSE
 
 
 @bare_kernel

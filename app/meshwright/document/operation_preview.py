@@ -15,8 +15,6 @@ from meshwright_core.analysis.dry_run import score_change as tried_change
 from meshwright_core.analysis.dry_run import trial
 from meshwright_core.operations.catalogue import CODES, OperationInfo, of_kind, score_change
 
-GLOBAL = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
-"""Operations that go from boundary to boundary."""
 BARRED = -1
 """The code of a verdict that is not the mesh's own: what is being played does without it."""
 
@@ -108,7 +106,7 @@ def _choice(
     verdict = Verdict(BARRED, why.rstrip(".")) if why else mesh.check(info.operation, halfedge)
     if not verdict:
         return Choice(info, verdict, None)
-    if info.operation == Operation.CHORD_COLLAPSE:  # no formula tells what a whole strip changes
+    if not info.score_formula:
         return Choice(info, verdict, tried_change(mesh, info.operation, halfedge))
     code = CODES[mesh.k][info.operation]
     return Choice(info, verdict, int(score_change(mesh.arrays, code, halfedge)))
@@ -122,7 +120,7 @@ def best(offered: tuple[Choice, ...]) -> Choice | None:
     """
 
     def rank(choice: Choice) -> tuple[bool, int]:
-        return choice.operation in GLOBAL, choice.change or 0
+        return not choice.info.is_local, choice.change or 0
 
     return min((choice for choice in offered if choice.allowed), key=rank, default=None)
 

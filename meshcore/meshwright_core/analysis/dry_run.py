@@ -131,9 +131,9 @@ def _aside(
         aside.counters[[JOURNAL_TOP, STEP, STEP_END, GROUPED]] = 0
         aside.counters[JOURNALLING] = 1
         try:
-            done = catalogue.apply_once(*aside, code, h, mesh.degree_cap)
-            if done[0] == refusals.ALLOWED:
-                return then(aside, int(done[1]))
+            done = catalogue.apply_once(aside, code, h, mesh.degree_cap)
+            if done.code == refusals.ALLOWED:
+                return then(aside, done.score_change)
         finally:
             aside.counters[RESTORED:] = held[RESTORED:]
         vertices, elements, more = aside.trace[TRACE_IDS : TRACE_IDS + 3].tolist()

@@ -151,6 +151,12 @@ def preceding(h, k):
 
 
 @bare_kernel
+def opposite(h):
+    """The half-edge across h in its quad: the last two bits of h are its place there."""
+    return h ^ 2
+
+
+@bare_kernel
 def on_boundary(m, v):
     """Whether the live vertex v lies on the boundary (invariant 4)."""
     return m.edge[m.vertex[v, HALF], TWIN] < 0

@@ -22,6 +22,7 @@ from meshwright_core.core.arrays import (
     following,
     joined,
     on_boundary,
+    opposite,
     preceding,
 )
 from meshwright_core.core.compilation import bare_kernel
@@ -49,11 +50,6 @@ from meshwright_core.operations.vertex_merge import check_loser, hand_over, surv
 
 
 @bare_kernel
-def _opposite_edge(h):
-    return h - h % 4 + (h + 2) % 4
-
-
-@bare_kernel
 def chord_start(m, h):
     """The half-edge through which the strip of h's quad and edge begins; h itself for a ring."""
     entry = h
@@ -61,7 +57,7 @@ def chord_start(m, h):
         t = m.edge[entry, TWIN]
         if t < 0:
             return entry
-        entry = _opposite_edge(t)
+        entry = opposite(t)
         if entry == h:
             return h
     return h
@@ -72,7 +68,7 @@ def _chord_length(m, start):
     """Quads of the strip that begins at `start`, at most twice the number of elements."""
     entry = start
     for count in range(1, 2 * m.counters[ELEMENTS] + 1):
-        entry = m.edge[_opposite_edge(entry), TWIN]
+        entry = m.edge[opposite(entry), TWIN]
         if entry < 0 or entry == start:
             return count
     return 0
@@ -85,7 +81,7 @@ def _rung(m, start, i, entry, ring, length):
     """
     if i < length:
         return m.edge[entry, ORIGIN], m.edge[following(entry, 4), ORIGIN]
-    o = _opposite_edge(entry)
+    o = opposite(entry)
     return m.edge[following(o, 4), ORIGIN], m.edge[o, ORIGIN]
 
 
@@ -97,7 +93,7 @@ def _mark_strip(m, start, length, ring):
     for i in range(length if ring else length + 1):
         if i < length:
             if i > 0:
-                entry = m.edge[_opposite_edge(entry), TWIN]
+                entry = m.edge[opposite(entry), TWIN]
             if m.element_mark[entry // 4]:
                 once = False
             m.element_mark[entry // 4] = 1
@@ -114,7 +110,7 @@ def _unmark_strip(m, start, length):
     entry = start
     for i in range(length):
         if i > 0:
-            entry = m.edge[_opposite_edge(entry), TWIN]
+            entry = m.edge[opposite(entry), TWIN]
         m.element_mark[entry // 4] = 0
         for corner in range(4):
             m.vertex[m.edge[entry - entry % 4 + corner, ORIGIN], MARK] = 0
@@ -174,7 +170,7 @@ def _check_rungs(m, start, length, ring, cap):
     rungs = length if ring else length + 1
     for i in range(rungs):
         if 0 < i < length:
-            entry = m.edge[_opposite_edge(entry), TWIN]
+            entry = m.edge[opposite(entry), TWIN]
         x, y = _rung(m, start, i, entry, ring, length)
         at_end = not ring and (i == 0 or i == length)
         loser = x + y - survivor(m, x, y, 4)
@@ -220,7 +216,7 @@ def check_chord_collapse(m, h, cap):
     entry = start
     for i in range(length + 1):
         if 0 < i < length:
-            entry = m.edge[_opposite_edge(entry), TWIN]
+            entry = m.edge[opposite(entry), TWIN]
         x, y = _rung(m, start, i, entry, ring, length)
         entries += 64 + 2 * (m.vertex[x, DEGREE] + m.vertex[y, DEGREE])
     return ALLOWED if has_room(m, 4, 0, 0, entries) else NEED_ROOM
@@ -255,7 +251,7 @@ def chord_collapse(m, h):
     entry = start
     for i in range(rungs):
         if 0 < i < length:
-            entry = m.edge[_opposite_edge(entry), TWIN]
+            entry = m.edge[opposite(entry), TWIN]
         x, y = _rung(m, start, i, entry, ring, length)
         winner = survivor(m, x, y, 4)
         hand_over(m, x + y - winner, winner, 4)
@@ -266,7 +262,7 @@ def chord_collapse(m, h):
 
     entry = start
     for _ in range(length):
-        onward = m.edge[_opposite_edge(entry), TWIN]
+        onward = m.edge[opposite(entry), TWIN]
         n, p = following(entry, 4), preceding(entry, 4)
         right, left = m.edge[n, TWIN], m.edge[p, TWIN]
         near, far = m.edge[entry, ORIGIN], m.edge[p, ORIGIN]
