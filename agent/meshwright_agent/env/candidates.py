@@ -23,6 +23,7 @@ from meshwright_core.core.arrays import (
     TWIN,
     following,
     preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.operations.catalogue import (
@@ -172,7 +173,7 @@ def _collect_around(m, v, k, found, count):
         for side in range(first, first + k):
             if m.edge[side, TWIN] >= 0:
                 count = _collect(m, m.edge[side, TWIN] // k, found, count)
-        h = m.edge[preceding(h, k), TWIN]
+        h = turned(m, h, k)
         if h < 0 or h == start:
             break
     return count

@@ -30,7 +30,7 @@ from meshwright_core.core.arrays import (
     TWIN,
     VERTEX_SLOTS,
     MeshArrays,
-    preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.mesh import HalfEdgeMesh
@@ -104,7 +104,7 @@ def propose(m, k, anywhere, rng):
     v = m.irregular[int(rng.random() * total)]
     h = m.vertex[v, HALF]
     for _ in range(int(rng.random() * m.vertex[v, DEGREE])):
-        onward = m.edge[preceding(h, k), TWIN]
+        onward = turned(m, h, k)
         if onward < 0:
             break
         h = onward

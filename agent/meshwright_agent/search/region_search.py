@@ -30,7 +30,6 @@ from meshwright_core.core.arrays import (
     FLAGS,
     FREE_ELEMENT,
     LOCKED,
-    ORIGIN,
     TWIN,
     MeshArrays,
     allocate,
@@ -62,7 +61,8 @@ class Confined:
 
     operations: Operations
     """Operations and half-edges of the whole mesh, to be applied in this order, while the vertices
-    that the part does not own are held (:func:`meshwright_core.analysis.submesh.holding`)."""
+    that the part does not own are held
+    (:func:`meshwright_core.analysis.submesh.temporarily_locked`)."""
     score: int
     """s of the whole mesh after them."""
     optimum: int
@@ -192,9 +192,7 @@ class _Search:
         self.bounds = int(np.ceil(floor * size)), max(size + 8, int(GROW * size))
 
     def _outside_ends(self) -> np.ndarray:
-        k = self.mesh.k
-        halfedges = (k * self.outside[:, None] + np.arange(k)).ravel()
-        return self.mesh.arrays.edge[halfedges, ORIGIN].copy()
+        return self.mesh.corners(self.outside)
 
     def over(self, share: float = 1.0) -> bool:
         """Whether that share of the time is used up, or somebody said stop."""
@@ -322,8 +320,7 @@ class _Search:
         whole = self.mesh.copy()
         self.part.put_back(whole, operations)
         here = np.setdiff1d(whole.element_ids(), self.outside, assume_unique=True)
-        corners = (whole.k * here[:, None] + np.arange(whole.k)).ravel()
-        vertices = np.unique(whole.arrays.edge[corners, ORIGIN]).astype(np.int64)
+        vertices = np.unique(whole.corners(here))
         return len(relax(whole, vertices[~whole.locked()[vertices]]))
 
     def answer(self) -> Confined:

@@ -20,7 +20,7 @@ from meshwright_core.core.arrays import (
     TOUCHED_COUNT,
     TRACE_IDS,
     TWIN,
-    preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel
 from meshwright_core.operations.catalogue import (
@@ -134,7 +134,7 @@ def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operati
                     change = score_change(m, j, g)
                     if change < best and permitted(m, j, g, cap, floor, ceiling, extended):
                         best, operation, at = change, j, g
-            h = m.edge[preceding(h, k), TWIN]
+            h = turned(m, h, k)
             if h < 0 or h == start:
                 break
         if at < 0:

@@ -18,7 +18,7 @@ from meshwright.document.storage.document_state import Kept
 from meshwright.document.timeline import NO_MESH as NO_MESH
 from meshwright.document.timeline import Timeline
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
-from meshwright_core.analysis.submesh import holding
+from meshwright_core.analysis.submesh import temporarily_locked
 from meshwright_core.core.notebook_display import Bundle
 from meshwright_core.io import mesh_files
 from meshwright_core.io.formats import SHAPES
@@ -216,7 +216,7 @@ class Document(Timeline):
         mesh = self._need()
 
         def work() -> Edit:
-            with holding(mesh, held) if held is not None else nullcontext():
+            with temporarily_locked(mesh, held) if held is not None else nullcontext():
                 edit = mesh.apply(operation, halfedge)
                 if self.auto_smooth:
                     _relax(mesh, edit.touched, thorough)

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh, Operation, Verdict
+from meshwright_core.analysis.dry_run import dry_run
 from meshwright_core.analysis.dry_run import score_change as tried_change
-from meshwright_core.analysis.dry_run import trial
 from meshwright_core.operations.catalogue import CODES, OperationInfo, of_kind, score_change
 
 BARRED = -1
@@ -75,7 +75,7 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
 
     The mesh stays as it is, to the bit. Raises OperationRefused where it is not allowed.
     """
-    seen = trial(mesh, operation, halfedge)
+    seen = dry_run(mesh, operation, halfedge)
     told = (seen.delta != 0) | ~np.isin(seen.vertices, seen.new_vertices)
     return Ghost(
         operation=seen.operation,

@@ -39,8 +39,7 @@ def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
     while pending:
         element = next(iter(pending))
         del pending[element]
-        halfedges = mesh.k * element + np.arange(mesh.k)
-        corners = mesh.arrays.edge[halfedges, 0].astype(np.int64)
+        corners = mesh.corners(np.array([element]))[0]
         left = relax(mesh, corners.tolist())  # what stays folded there stays so another time too
         for seen in (*elements_at(mesh, corners).tolist(), *left.tolist()):
             pending.pop(seen, None)

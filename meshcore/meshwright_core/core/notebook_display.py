@@ -1,7 +1,7 @@
-"""How a mesh shows itself at the end of a notebook's cell.
+"""The representation of a mesh at the end of a notebook cell.
 
-meshcore draws nothing: who can draw says so by an entry point, which is looked up when the first
-mesh is shown. Without one a mesh is shown as its line of text.
+This package does not draw. Another package registers a drawing function as an entry point, which
+is looked up when the first mesh is shown; without one a mesh is shown as a line of text.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Bundle = tuple[dict[str, Any], dict[str, Any]]
 
 
 def bundle(mesh: MeshView) -> Bundle:
-    """What a notebook may choose from: the mesh's line of text, and a picture if one is drawn."""
+    """MIME data and metadata of a mesh: its line of text, and a picture if one can be drawn."""
     text = {"text/plain": repr(mesh)}
     draw = drawer()
     if draw is None:
@@ -33,6 +33,6 @@ def bundle(mesh: MeshView) -> Bundle:
 
 @cache
 def drawer() -> Callable[[MeshView], Bundle] | None:
-    """The function that is installed for drawing, None if there is none."""
+    """The drawing function that is registered, None if there is none."""
     found = [point for point in entry_points(group=GROUP) if point.name == NAME]
     return found[0].load() if found else None

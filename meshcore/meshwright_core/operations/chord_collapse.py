@@ -21,9 +21,11 @@ from meshwright_core.core.arrays import (
     TWIN,
     following,
     joined,
+    neighbour,
     on_boundary,
     opposite,
     preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel
 from meshwright_core.core.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
@@ -122,18 +124,17 @@ def _across_rung(m, u):
     wanted = -m.vertex[u, MARK]
     h = m.vertex[u, HALF]
     for _ in range(m.vertex[u, DEGREE]):
-        w = m.edge[following(h, 4), ORIGIN]
+        w = neighbour(m, h, 4)
         if m.vertex[w, MARK] == wanted:
             return w
-        back = preceding(h, 4)
-        h = m.edge[back, TWIN]
         if h < 0:
-            return m.edge[back, ORIGIN]
+            break
+        h = turned(m, h, 4)
     return -1
 
 
 @bare_kernel
-def _harmless(m, v, u, partner, i, sign, rungs, ring):
+def _joined_once(m, v, u, partner, i, sign, rungs, ring):
     """Whether u, a neighbour of v, would be joined only once to what v and its partner become."""
     mark = m.vertex[u, MARK]
     if u == partner:
@@ -151,16 +152,12 @@ def _harmless(m, v, u, partner, i, sign, rungs, ring):
 def _rails_apart(m, v, partner, i, sign, rungs, ring):
     """Whether no neighbour of v would be joined twice to the vertex that v and partner become."""
     h = m.vertex[v, HALF]
-    start = h
     for _ in range(m.vertex[v, DEGREE]):
-        if not _harmless(m, v, m.edge[following(h, 4), ORIGIN], partner, i, sign, rungs, ring):
+        if not _joined_once(m, v, neighbour(m, h, 4), partner, i, sign, rungs, ring):
             return False
-        back = preceding(h, 4)
-        h = m.edge[back, TWIN]
         if h < 0:
-            return _harmless(m, v, m.edge[back, ORIGIN], partner, i, sign, rungs, ring)
-        if h == start:
-            return True
+            break
+        h = turned(m, h, 4)
     return True
 
 
@@ -223,8 +220,8 @@ def check_chord_collapse(m, h, cap):
 
 
 @bare_kernel
-def settle(m, v, h):
-    """Make HALF of v the half-edge that invariant 4 wants; h is any half-edge that leaves v."""
+def _set_outgoing(m, v, h):
+    """Set HALF of v as invariant 4 requires; h is any half-edge that leaves v."""
     half = h
     for _ in range(m.vertex[v, DEGREE]):
         t = m.edge[half, TWIN]
@@ -268,10 +265,10 @@ def chord_collapse(m, h):
         near, far = m.edge[entry, ORIGIN], m.edge[p, ORIGIN]
         link(m, right, left)
         drop_element(m, entry, 4)
-        # left runs from near to far, right from far to near; each vertex is settled for good when
-        # the second of its two quads has gone
-        settle(m, near, left if left >= 0 else following(right, 4))
-        settle(m, far, right if right >= 0 else following(left, 4))
+        # left runs from near to far, right from far to near; HALF of each vertex is final when the
+        # second of its two quads has been dropped
+        _set_outgoing(m, near, left if left >= 0 else following(right, 4))
+        _set_outgoing(m, far, right if right >= 0 else following(left, 4))
         touch(m, near)
         touch(m, far)
         entry = onward

@@ -30,9 +30,11 @@ from meshwright_core.core.arrays import (
     TWIN,
     VERTEX_SLOTS,
     following,
+    neighbour,
     on_boundary,
     opposite,
     preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
@@ -123,22 +125,16 @@ def _doubled_edge(m, v, p, q):
     """Whether joining p and q over the line vertex v would make a second edge between them."""
     if p == q:
         return True
-    start = m.vertex[p, HALF]
-    h = start
+    h = m.vertex[p, HALF]
     for _ in range(m.vertex[p, DEGREE]):
-        w = m.edge[following(h, 4), ORIGIN]
+        w = neighbour(m, h, 4)
         if w == q:
             return True
         if w != v and m.vertex[w, MARK] and _straight_across(m, w, p) == q:
             return True
-        back = preceding(h, 4)
-        turned = m.edge[back, TWIN]
-        if turned < 0:
-            w = m.edge[back, ORIGIN]
-            return w == q or (w != v and m.vertex[w, MARK] and _straight_across(m, w, p) == q)
-        h = turned
-        if h == start:
-            return False
+        if h < 0:
+            break
+        h = turned(m, h, 4)
     return False
 
 
@@ -148,21 +144,17 @@ def _straight_across(m, w, p):
 
     On the boundary (degree 3) the two boundary neighbours are across from each other.
     """
-    start = m.vertex[w, HALF]
+    h = m.vertex[w, HALF]
     if on_boundary(m, w):
-        first = m.edge[following(start, 4), ORIGIN]
-        second = m.edge[preceding(start, 4), TWIN]
-        last = m.edge[preceding(second, 4), ORIGIN]
+        first = neighbour(m, h, 4)
+        last = neighbour(m, turned(m, turned(m, h, 4), 4), 4)
         if p == first:
             return last
         return first if p == last else -1
-    h = start
     for _ in range(4):
-        if m.edge[following(h, 4), ORIGIN] == p:
-            turned = m.edge[preceding(h, 4), TWIN]
-            turned = m.edge[preceding(turned, 4), TWIN]
-            return m.edge[following(turned, 4), ORIGIN]
-        h = m.edge[preceding(h, 4), TWIN]
+        if neighbour(m, h, 4) == p:
+            return neighbour(m, turned(m, turned(m, h, 4), 4), 4)
+        h = turned(m, h, 4)
     return -1
 
 
@@ -297,14 +289,13 @@ def _merge_across(m, h):
 @bare_kernel
 def cleanable_at(m, v, cap):
     """A half-edge that leaves v on a line that may be cleaned up, or -1."""
-    start = m.vertex[v, HALF]
-    h = start
+    h = m.vertex[v, HALF]
     for _ in range(m.vertex[v, DEGREE]):
         code = check_cleanup(m, h, cap)
         if code == ALLOWED or code == NEED_ROOM:
             return h
-        h = m.edge[preceding(h, 4), TWIN]
-        if h < 0 or h == start:
+        h = turned(m, h, 4)
+        if h < 0:
             break
     return -1
 
@@ -318,7 +309,7 @@ def cleanable(m, first, cap):
     for v in range(first, m.counters[VERTEX_SLOTS]):
         if m.vertex[v, HALF] < 0 or m.vertex[v, DEGREE] != 3 or not on_boundary(m, v):
             continue
-        h = m.edge[preceding(m.vertex[v, HALF], 4), TWIN]
+        h = turned(m, m.vertex[v, HALF], 4)
         code = check_cleanup(m, h, cap)
         if code == ALLOWED or code == NEED_ROOM:
             return h

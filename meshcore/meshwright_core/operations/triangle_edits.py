@@ -2,8 +2,8 @@ r"""Local edits of triangle meshes: flip, split, collapse (section 2.2 of the pa
 
 Each edit is a pair: ``check_*`` has no side effect and returns a code of
 :mod:`meshwright_core.operations.refusals`;
-the rewrite trusts that check said ALLOWED. Letters: h runs from a to b in the triangle (a, b, c),
-its twin t from b to a in the triangle (b, a, d).
+the rewrite requires that the check returned ALLOWED. Letters: h runs from a to b in the triangle
+(a, b, c), its twin t from b to a in the triangle (b, a, d).
 
             c
           /   \

@@ -1,4 +1,4 @@
-"""What `check` and `apply` answer: a verdict in words, and the trace of an edit."""
+"""Results of `check` and `apply`: a verdict with its reason, and the record of an edit."""
 
 from __future__ import annotations
 

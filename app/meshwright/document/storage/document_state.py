@@ -45,7 +45,7 @@ class Kept:
 
 def taken(kept: Kept) -> tuple[Header, Arrays]:
     """The header and the arrays; those of the mesh itself are not copied."""
-    arrays = snapshot.taken(kept.mesh)
+    arrays = snapshot.to_arrays(kept.mesh)
     history = kept.history
     branches = [
         _branch_record(branch, f"branch{number}", arrays)
@@ -73,7 +73,7 @@ def restored(header: Any, arrays: Mapping[str, Any]) -> Kept:
     version = _number(header, "version")
     if version > VERSION:
         raise MeshError("it was made by a later version of Meshwright")
-    mesh = snapshot.restored(arrays)
+    mesh = snapshot.from_arrays(arrays)
     rows = [row_of(record) for record in _list(header, "rows")]
     cursor = _number(header, "cursor")
     steps = (sum(map(len, side)) for side in mesh.packed_steps())
