@@ -14,25 +14,28 @@ from typing import Any
 from meshwright_core.core.mesh_view import MeshView
 
 GROUP, NAME = "meshwright.display", "figure"
-"""Group and name of the entry point. It is a function of a mesh that returns MIME types with their
-data, and MIME types with their metadata.
+"""Group and name of the entry point. It is a function of a mesh and a name for the caption, which
+may be empty, that returns MIME types with their data, and MIME types with their metadata.
 """
 
 Bundle = tuple[dict[str, Any], dict[str, Any]]
 
 
-def bundle(mesh: MeshView) -> Bundle:
-    """MIME data and metadata of a mesh: its line of text, and a picture if one can be drawn."""
+def bundle(mesh: MeshView, name: str = "") -> Bundle:
+    """MIME data and metadata of a mesh: its line of text, and a picture if one can be drawn.
+
+    `name` goes into the caption of the picture.
+    """
     text = {"text/plain": repr(mesh)}
     draw = drawer()
     if draw is None:
         return text, {}
-    pictures, metadata = draw(mesh)
+    pictures, metadata = draw(mesh, name)
     return {**text, **pictures}, metadata
 
 
 @cache
-def drawer() -> Callable[[MeshView], Bundle] | None:
+def drawer() -> Callable[[MeshView, str], Bundle] | None:
     """The drawing function that is registered, None if there is none."""
     found = [point for point in entry_points(group=GROUP) if point.name == NAME]
     return found[0].load() if found else None
