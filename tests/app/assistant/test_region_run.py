@@ -47,7 +47,7 @@ def test_a_region_is_finished_and_the_rest_stays_to_the_bit(document, assistant,
     elements = around_the_middle(mesh, 3)
     inside = enclose(mesh, elements)
     outer = np.setdiff1d(mesh.element_ids(), elements)
-    halfedges = (mesh.k * outer[:, None] + np.arange(mesh.k)).ravel()
+    halfedges = mesh.halfedges_of(outer).ravel()
     ends = mesh.arrays.edge[halfedges, ORIGIN].copy()
     places = mesh.points[inside.held].copy()
     start, points, flags = document.score, mesh.points.copy(), mesh.arrays.vertex.copy()

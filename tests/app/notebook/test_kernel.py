@@ -14,7 +14,7 @@ import sys
 sys.path.insert(0, {folder!r})
 import meshwright.assistant.worker, meshwright.notebook.kernel_warmup as preparing
 from meshwright.notebook import MeshWidget
-from meshwright.document.operation_preview import GLOBAL, choices
+from meshwright.document.operation_preview import choices
 
 class Runner:
     "Takes the best local operation anywhere, six times."
@@ -30,7 +30,7 @@ class Runner:
         mesh = self.mesh
         halves = [4 * e + i for e in mesh.element_ids().tolist() for i in range(4)]
         offers = [(h, c) for h in halves for c in choices(mesh, h) if c.allowed]
-        offers = [(h, c) for h, c in offers if c.operation not in GLOBAL]
+        offers = [(h, c) for h, c in offers if c.info.is_local]
         h, c = min(offers, key=lambda offer: offer[1].change)
         mesh.apply(c.operation, h)
         self.left -= 1
