@@ -5,9 +5,11 @@ from meshwright.desktop.application.kernel_warmup import Warmup
 
 def test_what_was_loaded_when_the_window_closed_is_told_to_nobody(qtbot, monkeypatch):
     monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.compiled.is_warm_on_disk", lambda: True
+        "meshwright.desktop.application.kernel_warmup.compilation.is_warm_on_disk", lambda: True
     )
-    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.compiled.warm", lambda: None)
+    monkeypatch.setattr(
+        "meshwright.desktop.application.kernel_warmup.compilation.warm", lambda: None
+    )
     warmup, told = Warmup(), []
     warmup.ready.connect(lambda: told.append("ready"))
     warmup.start()
@@ -19,7 +21,7 @@ def test_what_was_loaded_when_the_window_closed_is_told_to_nobody(qtbot, monkeyp
 
 def test_a_window_that_has_closed_starts_nothing(qtbot, monkeypatch):
     monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.compiled.is_warm_on_disk", lambda: True
+        "meshwright.desktop.application.kernel_warmup.compilation.is_warm_on_disk", lambda: True
     )
     warmup = Warmup()
     warmup.stop()
@@ -32,9 +34,9 @@ def test_failure_is_told_in_a_sentence(qtbot, monkeypatch):
         raise OSError("no room")
 
     monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.compiled.is_warm_on_disk", lambda: True
+        "meshwright.desktop.application.kernel_warmup.compilation.is_warm_on_disk", lambda: True
     )
-    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.compiled.warm", break_off)
+    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.compilation.warm", break_off)
     warmup = Warmup()
     with qtbot.waitSignal(warmup.failed) as failed:
         warmup.start()

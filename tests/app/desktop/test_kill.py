@@ -1,6 +1,5 @@
 """``kill -9`` of a window in the middle of an agent's run, and of a save."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -30,12 +29,13 @@ from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.main_window.window import MainWindow
 from meshwright.document.document import Document
 from meshwright.document.history import YOU
-from meshcore import compiled, generate, shapes
+from meshwright_core.core import compilation
+from meshwright_core.domains import gallery, meshing
 
-compiled.warm()
+compilation.warm()
 folder = Path({folder!r})
 app = application()
-document = Document(generate.mesh_domain(shapes.shape("star"), "quad"), "star")
+document = Document(meshing.mesh_domain(gallery.shape("star"), "quad"), "star")
 assistant = Assistant(
     document,
     Dispatcher(),
@@ -86,7 +86,7 @@ def begin():
 
 
 def child_of(tmp_path: Path, work: str) -> subprocess.Popen:
-    code = CHILD.format(tests=os.path.dirname(__file__), folder=str(tmp_path), work=work)
+    code = CHILD.format(tests=str(Path(__file__).parents[1]), folder=str(tmp_path), work=work)
     return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
 
 
