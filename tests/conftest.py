@@ -13,8 +13,9 @@ def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginMa
         pluginmanager.set_blocked("pytest-qt")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark tests by the fixtures that they use."""
+    """Mark tests by the fixtures that they use, before ``-m`` selects by marks."""
     for item in items:
         for fixture, need in NEEDED_BY_FIXTURE.items():
             if fixture in getattr(item, "fixturenames", ()):
