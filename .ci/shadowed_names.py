@@ -23,7 +23,7 @@ def main(python: str) -> None:
         for name in NAMES:
             Path(folder, f"{name}.py").write_text(f"raise ImportError('{name}.py was imported')\n")
         subprocess.run([python, "-c", STATEMENT], cwd=folder, check=True)
-        print(in_notebook(python, folder), end="")
+        sys.stdout.write(in_notebook(python, folder))
 
 
 def in_notebook(python: str, folder: str) -> str:

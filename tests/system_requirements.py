@@ -1,6 +1,6 @@
 """What some tests need besides Python packages, whether it is here, and how it is installed.
 
-Run as a program it prints the Debian packages that all tests together need; ``.ci/run`` installs
+Run as a program it lists the Debian packages that all tests together need; ``.ci/run`` installs
 these. It imports only the standard library, so that it runs before anything is installed.
 """
 
@@ -140,4 +140,4 @@ if __name__ == "__main__":
         *XVFB_PACKAGES, *QT_PACKAGES, *XCB_PACKAGES, *OPENGL_PACKAGES, *XDOTOOL_PACKAGES,
         *CHROMIUM_PACKAGES,
     )  # fmt: skip
-    print("\n".join(packages))
+    sys.stdout.write("\n".join(packages) + "\n")
