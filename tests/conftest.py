@@ -1,8 +1,13 @@
-"""Skips tests whose display, browser or other program is not here, and names what is missing."""
+"""Skips tests whose display, browser or other program is missing, and compiles kernels first."""
+
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 import system_requirements
 
+HERE = Path(__file__).parent
 NEEDED_BY_FIXTURE = {"qapp": "qt", "open_window": "window", "browser": "chromium"}
 
 
@@ -22,6 +27,22 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
                 item.add_marker(pytest.mark.needs(need))
         if "chromium" in needs(item):
             item.add_marker(pytest.mark.browser)
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Compile kernels before the first test: on a slow machine this exceeds a test's time limit."""
+    needing = (HERE / "agent", HERE / "app")
+    if session.config.option.collectonly or not any(
+        item.path.is_relative_to(folder) for item in session.items for folder in needing
+    ):
+        return
+    from meshwright_agent import warm_up
+
+    if not warm_up.is_warm_on_disk():
+        reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+        reporter.write_line("compiling kernels; this takes some minutes, once")
+        for package in ("meshwright_core", "meshwright_agent"):
+            subprocess.run([sys.executable, "-m", f"{package}.warm_up"], check=False)
 
 
 def needs(item: pytest.Item) -> list[str]:
