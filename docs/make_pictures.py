@@ -176,7 +176,6 @@ def make_gallery() -> None:
 
 def make_parts() -> None:
     """Random parts as generated and, below, at the optimum, cut into their blocks."""
-    from meshwright.cli.commands.improve import replay
     from meshwright_agent.policy import policy_files
     from meshwright_agent.search.solver import solve
 
@@ -188,7 +187,7 @@ def make_parts() -> None:
         if number % columns == 0:
             tiles += [[], []]
         tiles[-2].append(plain(mesh, size))
-        replay(mesh, solve(mesh, policy, seconds=PARTS_SECONDS))
+        solve(mesh, policy, seconds=PARTS_SECONDS).replay(mesh)
         smoothing.relax(mesh)
         tiles[-1].append(with_blocks(mesh, size))
     whole = Image.new("RGB", (columns * size[0], len(tiles) * size[1]), LIGHT.background)

@@ -21,11 +21,11 @@ from meshwright.experiments.rollouts import (
     known_policy,
     play,
     require_kind,
-    whole_number,
 )
 from meshwright.graphics.drawing import Drawing, Text
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.arguments import whole_number
 
 if TYPE_CHECKING:
     from meshwright.document.document import Document

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from meshwright.cli.arguments import KIND_NOUN
+from meshwright_core.core.kinds import KIND_NOUN
 
 _METHODS = {
     "policy": "policy",

@@ -25,10 +25,7 @@ def given_mesh(source: Any) -> HalfEdgeMesh:
     :func:`meshwright.sources.resolve.mesh` makes a mesh of. MeshError where there is none or it is
     empty.
     """
-    inner = source if isinstance(source, HalfEdgeMesh) else getattr(source, "mesh", source)
-    if inner is None:
-        raise MeshError("There is no mesh here yet.")
-    mesh = resolve.mesh(inner)
+    mesh = resolve.mesh(source)
     if mesh.n_elements == 0:
         raise MeshError("This mesh has no elements.")
     return mesh

@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshwright.assistant.torch_threads import one_thread
 from meshwright.experiments.halfedge_arrow import arrow
 from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh, still
 from meshwright.experiments.picture import Picture, shifted
-from meshwright.experiments.rollouts import known_policy, one_thread, require_kind
+from meshwright.experiments.rollouts import known_policy, require_kind
 from meshwright.experiments.template_figure import template_figure
 from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Text
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.arguments import whole_number
 from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.operations.catalogue import CATALOGUE, Operation
 
@@ -45,20 +47,18 @@ def policy_view(mesh: Any, policy: str | Policy, halfedge: int | None = None) ->
     shown = given_mesh(mesh)
     known = known_policy(policy)
     require_kind(known, shown)
-    if halfedge is not None and (
-        isinstance(halfedge, bool) or not isinstance(halfedge, int | np.integer) or halfedge < 0
-    ):
-        raise MeshError(f"A half-edge is a whole number of at least 0, not {halfedge!r}.")
+    if halfedge is not None:
+        halfedge = whole_number(halfedge, 0, "A half-edge")
     try:
         with one_thread():
-            among = candidates(shown, known, -1 if halfedge is None else int(halfedge))
+            among = candidates(shown, known, -1 if halfedge is None else halfedge)
             if not len(among):
                 raise MeshError("This mesh is regular: the policy has nothing to look at.")
             seen = outlook(shown, known, among)
     except PolicyError as error:
         sentence = str(error)
         raise MeshError(f"{sentence[0].upper()}{sentence[1:]}.") from None
-    h = int(among[seen.probabilities.max(axis=1).argmax()]) if halfedge is None else int(halfedge)
+    h = int(among[seen.probabilities.max(axis=1).argmax()]) if halfedge is None else halfedge
     return PolicyView(shown, known, h, seen)
 
 

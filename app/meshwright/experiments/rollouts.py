@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from meshwright.assistant.torch_threads import one_thread
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 if TYPE_CHECKING:
@@ -87,19 +86,12 @@ def known_policy(name: object) -> Policy:
 
 def require_kind(policy: Policy, mesh: HalfEdgeMesh) -> None:
     """Refuse a policy for the other kind of mesh, by MeshError."""
-    if policy.kind != mesh.kind:
-        noun = {"tri": "triangles", "quad": "quads"}
-        raise MeshError(
-            f"{policy.name}: this policy is for {noun[policy.kind]}, and the mesh is of"
-            f" {noun[mesh.kind]}."
-        )
+    from meshwright_agent.policy import policy_files
 
-
-def whole_number(value: object, least: int, name: str) -> int:
-    """The number if it is a whole one that is large enough; MeshError else."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise MeshError(f"{name} is a whole number of at least {least}, not {value!r}.")
-    return int(value)
+    try:
+        policy_files.require_kind(policy, mesh.kind)
+    except policy_files.PolicyError as error:
+        raise MeshError(f"{error}.") from None
 
 
 def play(
@@ -155,19 +147,6 @@ def _limited(policy: Policy, mesh: HalfEdgeMesh, steps: int | None) -> Policy:
         return policy
     wanted = (steps + 0.5) / mesh.n_elements
     return longer(policy, wanted / policy.task.steps)
-
-
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """Let torch use one thread meanwhile: the matrices of a decision are small."""
-    import torch
-
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
 
 
 def best_of(values: np.ndarray, k: int) -> tuple[float, float]:

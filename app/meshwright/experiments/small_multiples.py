@@ -9,11 +9,11 @@ import numpy as np
 
 from meshwright.experiments.mesh_thumbnail import given_mesh, still
 from meshwright.experiments.picture import Picture, shifted
-from meshwright.experiments.rollouts import whole_number
 from meshwright.graphics.drawing import Drawing, Text, text_width
 from meshwright.graphics.export.film import Film
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.arguments import whole_number
 
 CELL, GAP, FOOT = 208, 16, 40
 MOST = 400

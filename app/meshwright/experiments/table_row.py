@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshwright.experiments.rollouts import known_policy, one_thread, whole_number
+from meshwright.assistant.torch_threads import one_thread
+from meshwright.experiments.rollouts import known_policy
 from meshwright_core import MeshError
+from meshwright_core.arguments import whole_number
+from meshwright_core.core.kinds import KIND_NOUN
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.policy_files import Policy
@@ -66,7 +69,7 @@ class TableRow:
 
     def __repr__(self) -> str:
         meshes, rollouts = self.returns.shape
-        noun = {"tri": "triangles", "quad": "quads"}[self.kind]
+        noun = KIND_NOUN[self.kind]
         low, high = self.sides
         found = [
             ("single rollout", _spread(self.single)),

@@ -3,6 +3,7 @@
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry.polygons import contains
 
 _NEAR = (8, 32, 128)
 
@@ -31,7 +32,7 @@ class Picker:
             if count == 0:
                 break
             rows = np.atleast_1d(self._tree.query((x, y), k=min(near, count))[1])
-            inside = _contain(self._corners[rows], x, y)
+            inside = contains(self._corners[rows], x, y)
             if inside.any():
                 return int(rows[np.argmax(inside)])
             if near >= count:
@@ -59,16 +60,6 @@ class Picker:
         if squared[nearest] > reach * reach:
             return -1
         return int(self._elements[rows].reshape(-1)[nearest])
-
-
-def _contain(polygons: np.ndarray, x: float, y: float) -> np.ndarray:
-    """For ``polygons`` (m, k, 2): does each contain (x, y)? By crossings; any orientation."""
-    ax, ay = polygons[..., 0], polygons[..., 1]
-    bx, by = np.roll(ax, -1, axis=1), np.roll(ay, -1, axis=1)
-    straddles = (ay > y) != (by > y)
-    rise = np.where(straddles, by - ay, 1.0)
-    crossing = ax + (y - ay) * (bx - ax) / rise
-    return ((straddles & (x < crossing)).sum(axis=1) % 2).astype(bool)
 
 
 def _distances(start: np.ndarray, end: np.ndarray, x: float, y: float) -> np.ndarray:

@@ -12,7 +12,7 @@ from PIL import Image
 
 from meshwright.document import score_series
 from meshwright.document.document import Document
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.drawing import Area, Drawing, Segments, hatching, raster, svg
 from meshwright.graphics.export import export_job, video
 from meshwright.graphics.export.export_job import Order
@@ -39,7 +39,7 @@ def walked(star, greedy) -> Document:
 
 
 def test_a_track_follows_every_way_a_history_can_go(walked):
-    history, track = walked.history, Track()
+    history, track = walked.history, ScoreSeries()
 
     def told():
         first = history.first

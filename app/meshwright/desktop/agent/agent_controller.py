@@ -18,13 +18,12 @@ from meshwright.desktop.canvas.layers.policy_view import FieldLayer, sight
 from meshwright.document.document import title_of
 from meshwright.graphics.markers import label
 from meshwright_core.core.arrays import ORIGIN
+from meshwright_core.core.kinds import ELEMENT_NOUN
 
 if TYPE_CHECKING:
     from meshwright.desktop.main_window.window import MainWindow
     from meshwright_agent.policy.explanation_types import Insight
     from meshwright_core import HalfEdgeMesh
-
-KINDS = {"tri": "triangle", "quad": "quad"}
 
 
 class AgentControl:
@@ -46,8 +45,8 @@ class AgentControl:
         self.hints.connect()
         window.agent_panel.use(window.settings)
         assistant.changed.connect(self._on_changed)
-        assistant.looked.connect(self._on_looked)
-        assistant.said.connect(window.say)
+        assistant.insight_changed.connect(self._on_looked)
+        assistant.message.connect(window.say)
         assistant.failed.connect(window.notice.tell)
         window.document.selection.changed.connect(window.refresh)
 
@@ -57,8 +56,8 @@ class AgentControl:
         assistant.close()
         self.hints.release()
         assistant.changed.disconnect(self._on_changed)
-        assistant.looked.disconnect(self._on_looked)
-        assistant.said.disconnect(window.say)
+        assistant.insight_changed.disconnect(self._on_looked)
+        assistant.message.disconnect(window.say)
         assistant.failed.disconnect(window.notice.tell)
         window.document.selection.changed.disconnect(window.refresh)
 
@@ -133,8 +132,8 @@ class AgentControl:
             return
         if window.document.kind and kind != window.document.kind:
             window.notice.tell(
-                f"{Path(path).name} is a policy for {KINDS[kind]} meshes; this is a"
-                f" {KINDS[window.document.kind]} mesh."
+                f"{Path(path).name} is a policy for {ELEMENT_NOUN[kind]} meshes; this is a"
+                f" {ELEMENT_NOUN[window.document.kind]} mesh."
             )
             return
         window.settings.put("agent/folder", str(Path(path).parent))

@@ -10,7 +10,7 @@ from qtpy.QtCore import QPoint, Qt
 from meshwright.desktop.canvas.mouse import Click
 from meshwright.desktop.editing.operation_menu import OperationMenu
 from meshwright.desktop.widgets.basic import sentence
-from meshwright.document.history import YOU, Row
+from meshwright.document.history import YOU, HistoryStep
 from meshwright.document.operation_preview import choices
 from meshwright.graphics.markers import label
 from meshwright_core import Operation
@@ -205,7 +205,7 @@ def plural(count: int, one: str, many: str = "") -> str:
     return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
-def told(row: Row | None) -> str:
+def told(row: HistoryStep | None) -> str:
     """``Flip left: s 8 to 6 (-2)``, for the status line."""
     if row is None:
         return ""

@@ -8,7 +8,14 @@ import numpy as np
 from qtpy.QtCore import QTimer
 
 from meshwright.desktop.canvas.layers.ghost import GhostLayer
-from meshwright.document.operation_preview import GLOBAL, Choice, best, choices, following, ghost
+from meshwright.document.operation_preview import (
+    GLOBAL,
+    OperationOffer,
+    best,
+    choices,
+    following,
+    ghost,
+)
 from meshwright_core import HalfEdgeMesh, Operation
 
 if TYPE_CHECKING:
@@ -34,7 +41,7 @@ class Pointing:
 
     def __init__(self, window: MainWindow) -> None:
         self._window = window
-        self.choices: tuple[Choice, ...] = ()
+        self.choices: tuple[OperationOffer, ...] = ()
         self.armed: Operation | None = None
         self._at = (-1, -1)  # revision and half-edge that the choices are of
         self._picked: Operation | None = None
@@ -82,7 +89,7 @@ class Pointing:
         self._window.settings.put(GHOSTS, not self.ghosts)
 
     @property
-    def current(self) -> Choice | None:
+    def current(self) -> OperationOffer | None:
         """The operation that is meant where one points, None where there is none allowed."""
         wanted = self._previewed or self._picked or self.armed
         if wanted is None:
@@ -141,7 +148,7 @@ class Pointing:
             window.operations_panel.offer(self.choices, operation)
             self._show_ghost(mesh, meant, halfedge)
 
-    def _show_ghost(self, mesh: HalfEdgeMesh, meant: Choice | None, halfedge: int) -> None:
+    def _show_ghost(self, mesh: HalfEdgeMesh, meant: OperationOffer | None, halfedge: int) -> None:
         self._rest.stop()
         if meant is None or not self.ghosts or self._window.assistant.running:
             self.layer.show(None)

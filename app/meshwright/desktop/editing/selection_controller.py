@@ -14,9 +14,9 @@ from meshwright.desktop.canvas.layers.vertex_drag import RubberLayer
 from meshwright.desktop.canvas.mouse import Click
 from meshwright.desktop.editing.edit_controller import plural
 from meshwright.desktop.editing.vertex_menu import selection_menu, vertex_menu
-from meshwright.document.selection import in_lasso
 from meshwright.document.vertex_drag import Drag, refusal
 from meshwright_core.core.arrays import FLAGS, LOCKED, ORIGIN
+from meshwright_core.geometry.polygons import points_inside
 
 if TYPE_CHECKING:
     from meshwright.desktop.main_window.window import MainWindow
@@ -182,7 +182,7 @@ class Selecting:
             return
         vertices = mesh.vertices()
         at = self._window.canvas.viewport.to_screen(mesh.points[vertices])
-        inside = vertices[in_lasso(at, outline)]
+        inside = vertices[points_inside(at, outline)]
         if remove:
             selection.set(np.setdiff1d(selection.vertices, inside))
         elif add:

@@ -12,7 +12,7 @@ from meshwright_core import MeshError
 
 if TYPE_CHECKING:
     from meshwright.desktop.main_window.window import MainWindow
-    from meshwright.document.storage.recovery import Lost
+    from meshwright.document.storage.recovery import LostWork
 
 
 class Guard:
@@ -29,7 +29,7 @@ class Guard:
         self.autosave = Autosave(window.document, folder)
         self.autosave.enabled = window.settings.autosave
         self.autosave.failed.connect(window.notice.tell)
-        self.autosave.said.connect(window.say)
+        self.autosave.resumed.connect(window.say)
         window.settings.changed.connect(self._on_setting_changed)
 
     def release(self) -> None:
@@ -84,7 +84,7 @@ class Guard:
         else:
             self._window.say("There is no lost work: everything was saved or dropped.")
 
-    def _offer(self, works: list[Lost]) -> None:
+    def _offer(self, works: list[LostWork]) -> None:
         from meshwright.desktop.files.recovery_dialog import LostWork
 
         dialog = LostWork(works, self._window)
@@ -97,7 +97,7 @@ class Guard:
         if chosen is not None:
             self._recover(chosen)
 
-    def _recover(self, work: Lost) -> None:
+    def _recover(self, work: LostWork) -> None:
         window = self._window
         if not self.may_drop():
             work.release()

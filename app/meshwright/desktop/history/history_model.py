@@ -7,7 +7,7 @@ from qtpy.QtCore import QAbstractListModel, QModelIndex, Qt
 
 from meshwright.desktop.history.score_curve import branch_words, row_words
 from meshwright.document.branches import Branches
-from meshwright.document.history import History, Row
+from meshwright.document.history import History, HistoryStep
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class Line:
     """One line of the list: a state, or with ``branch`` >= 0 a branch that forks at ``state``."""
 
     state: int
-    row: Row | None
+    row: HistoryStep | None
     branch: int = -1
 
 
@@ -28,7 +28,7 @@ class HistoryModel(QAbstractListModel):
         self._branches: Branches = ()
         self._order: list[int] = []
         self._places: list[int] = []
-        self._rows: list[Row] = []  # its own: the history may have gone on since the last look
+        self._rows: list[HistoryStep] = []  # a copy: the history may have changed since
         self._empty = True
         self.highest = 0
         """The highest score in the list."""

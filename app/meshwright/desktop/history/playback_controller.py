@@ -10,7 +10,7 @@ from meshwright.desktop.history.export_controller import Exporting
 from meshwright.desktop.history.history_panel import HistoryPanel
 from meshwright.desktop.history.timeline import SPEEDS, Timeline
 from meshwright.document import score_series
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.theme import Theme
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ class Film:
 
     def go_to_best(self) -> None:
         """Show the first state with the lowest score under the present desired degrees."""
-        track = Track()
+        track = ScoreSeries()
         track.follow(self._window.document.history)
         self.go_to(score_series.best_state(track.scores, track.optima))
 

@@ -22,8 +22,8 @@ from meshwright.desktop.widgets.basic import tabular
 from meshwright.desktop.widgets.event_filters import OwnKeys
 from meshwright.document import score_series
 from meshwright.document.branches import Branches
-from meshwright.document.history import YOU, History, Row
-from meshwright.document.score_series import Track
+from meshwright.document.history import YOU, History, HistoryStep
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import GRID, Theme
 
@@ -71,7 +71,7 @@ class ScoreCurve(QWidget):
         self._history = History(0, 0)
         self._branches: Branches = ()
         self._empty = True
-        self._track = Track()
+        self._track = ScoreSeries()
         self._frame = score_series.frame(np.empty(0), np.empty(0), 0, 0, 1, 1)
         self._best = 0
         self._forks: list[float] = []
@@ -329,13 +329,13 @@ class ScoreCurve(QWidget):
         return f"{state:,}  {row_words(row)}:  s {row.after:,}{best}"
 
 
-def row_words(row: Row) -> str:
+def row_words(row: HistoryStep) -> str:
     """``Flip left by quad-paper, -2``: what was done, by whom, and what came of it."""
     who = "" if row.by == YOU else f" by {row.by}"
     return f"{row.title}{who}, {label(row.change)}"
 
 
-def branch_words(rows: tuple[Row, ...]) -> str:
+def branch_words(rows: tuple[HistoryStep, ...]) -> str:
     """``Branch: 12 steps to s 6``."""
     count = len(rows)
     return f"Branch: {count:,} step{'' if count == 1 else 's'} to s {rows[-1].after:,}"

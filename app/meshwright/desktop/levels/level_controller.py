@@ -11,7 +11,7 @@ from meshwright.desktop.levels.level_bar import LevelBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import Theme
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright.puzzles.level import Level
 from meshwright.puzzles.play import LevelPlay
 from meshwright_core import MeshError
@@ -90,7 +90,7 @@ class Levels:
     def answer(self) -> None:
         """Ask the agent; once it has answered show its way."""
         play = self.play
-        asked = play.rival is not None and play.rival.standing is Standing.DONE
+        asked = play.rival is not None and play.rival.standing is OpponentState.DONE
         if asked or (play.level is not None and play.level.most):
             self.show_way()
         else:

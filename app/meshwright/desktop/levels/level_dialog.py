@@ -22,7 +22,7 @@ from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.level import Level
-from meshwright.puzzles.progress import MOST_STARS, Progress
+from meshwright.puzzles.progress import MOST_STARS, LevelProgress
 
 COLUMNS = 4
 CARD = QSize(184, 200)
@@ -36,7 +36,9 @@ STORY = (
 class LevelDialog(QDialog):
     """Offers all levels; :attr:`chosen` is the one to play, None for none."""
 
-    def __init__(self, progress: Progress, theme: Theme, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, progress: LevelProgress, theme: Theme, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.chosen: Level | None = None
         self.cards: list[Card] = []
@@ -62,7 +64,7 @@ class LevelDialog(QDialog):
         self.resize(width, min(760, max(480, room - 4 * GRID)))
         self._focus_next(progress)
 
-    def _head(self, progress: Progress) -> QHBoxLayout:
+    def _head(self, progress: LevelProgress) -> QHBoxLayout:
         line = QHBoxLayout()
         line.addWidget(named("Levels", "EmptyTitle"), 1)
         total = MOST_STARS * len(levels.names())
@@ -70,7 +72,7 @@ class LevelDialog(QDialog):
         line.addWidget(named(f"{won} of {total} stars", "Label"))
         return line
 
-    def _grid(self, progress: Progress, theme: Theme) -> QScrollArea:
+    def _grid(self, progress: LevelProgress, theme: Theme) -> QScrollArea:
         inside = QWidget()
         inside.setObjectName("CardList")
         inside.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
@@ -102,7 +104,7 @@ class LevelDialog(QDialog):
         line.addWidget(close)
         return line
 
-    def _focus_next(self, progress: Progress) -> None:
+    def _focus_next(self, progress: LevelProgress) -> None:
         """The first level without a star has the keyboard."""
         fresh = [card for card in self.cards if not progress.best(card.level.name).stars]
         for card in (fresh or self.cards)[:1]:
@@ -119,7 +121,7 @@ class Card(QPushButton):
     def __init__(
         self,
         level: Level,
-        progress: Progress,
+        progress: LevelProgress,
         theme: Theme,
         focused: Callable[[QWidget], None],
     ) -> None:

@@ -14,6 +14,7 @@ from qtpy.QtWidgets import (
 
 from meshwright.desktop.widgets import icons
 from meshwright.graphics.theme import GRID, Theme
+from meshwright_core.errors import sentence as sentence
 
 
 def tabular(font: QFont) -> QFont:
@@ -28,12 +29,6 @@ def named(text: str, name: str) -> QLabel:
     made = QLabel(text)
     made.setObjectName(name)
     return made
-
-
-def sentence(text: str) -> str:
-    """``text`` with a capital and a full stop, as it stands alone."""
-    text = text[:1].upper() + text[1:]
-    return text if text.endswith((".", "\u2026", "!", "?")) else text + "."
 
 
 def rule() -> QFrame:

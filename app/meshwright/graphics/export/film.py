@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from meshwright.document.document import NO_MESH, Document
-from meshwright.document.history import YOU, Row
-from meshwright.document.score_series import Track
+from meshwright.document.history import YOU, HistoryStep
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export import video
 from meshwright.graphics.markers import label
@@ -38,10 +38,10 @@ class Film:
         if mesh is None:
             raise MeshError(NO_MESH)
         self.name = document.name
-        self.rows: tuple[Row, ...] = tuple(document.history)
+        self.rows: tuple[HistoryStep, ...] = tuple(document.history)
         self._mesh = mesh.copy(history=True)
         self._state = document.history.cursor
-        track = Track()
+        track = ScoreSeries()
         track.follow(document.history)
         self.scores, self.optima = track.scores, track.optima
 

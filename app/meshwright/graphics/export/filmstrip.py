@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshwright.cli.output_files import replacing
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.mesh_figure import Look, Moment, elements, figure
+from meshwright_core.io.atomic_write import replacing
 
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh, Operation
@@ -25,7 +25,7 @@ def write(
 ) -> None:
     """Write the three states side by side as a PNG of ``3 * size``; the mesh is not changed.
 
-    Raises UserError if the file cannot be written.
+    Raises MeshError, one sentence that begins with the path, if the file cannot be written.
     """
     from meshwright_core.geometry import smoothing
 

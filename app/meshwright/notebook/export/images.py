@@ -11,6 +11,7 @@ from meshwright.graphics.export.export_job import Order, save_order
 from meshwright.graphics.export.film import Film
 from meshwright.graphics.theme import THEMES
 from meshwright_core import MeshError
+from meshwright_core.arguments import is_whole_number
 from meshwright_core.io import atomic_write
 
 SIZE = (960, 720)
@@ -98,8 +99,7 @@ def _made(
 def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
     sides = tuple(size) if isinstance(size, tuple | list) else ()
     fit = len(sides) == 2 and all(
-        isinstance(side, int) and not isinstance(side, bool) and SMALLEST <= side <= LARGEST
-        for side in sides
+        is_whole_number(side) and SMALLEST <= side <= LARGEST for side in sides
     )
     if not fit:
         raise MeshError(

@@ -10,6 +10,7 @@ from typing import Any
 
 from meshwright.teaching.exercises.exercise import Blank, Wrong
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.arguments import is_whole_number
 
 LONGEST = 80
 """Letters of a student's own value that a sentence quotes."""
@@ -19,10 +20,9 @@ def whole(given: Any, what: str = "the answer") -> int:
     """A whole number: an int, one of numpy's, or a float without a fraction."""
     if isinstance(given, float) and given.is_integer():
         return int(given)
-    try:
-        return operator.index(given) if not isinstance(given, bool) else int("no")
-    except (TypeError, ValueError):
-        raise Wrong(f"{_begun(what)} is a whole number, not {quoted(given)}.") from None
+    if not is_whole_number(given):
+        raise Wrong(f"{_begun(what)} is a whole number, not {quoted(given)}.")
+    return operator.index(given)
 
 
 def wholes(given: Any, count: int | None = None, what: str = "the answer") -> list[int]:

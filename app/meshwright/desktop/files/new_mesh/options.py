@@ -11,7 +11,7 @@ from meshwright.desktop.files.new_mesh.controls import Choice, Measure, heading
 from meshwright.desktop.files.new_mesh.preview import Preview
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.graphics.theme import GRID, Theme
-from meshwright.sources.mesh_worker import Made
+from meshwright.sources.mesh_worker import NewMesh
 
 WIDTH = 352
 KINDS = (("quad", "Quads"), ("tri", "Triangles"))
@@ -115,7 +115,7 @@ class Options(QWidget):
         """What is said about the mesh: elements, vertices, score, optimum."""
         return {key: str(label.text()) for key, label in self._values.items()}
 
-    def show_made(self, made: Made) -> None:
+    def show_made(self, made: NewMesh) -> None:
         """Draw the mesh and say how large it is."""
         self.preview.show_made(made)
         counts = {"elements": len(made.elements), "vertices": len(made.points)}
