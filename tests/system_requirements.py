@@ -25,7 +25,7 @@ XCB_PACKAGES = (
 XVFB_PACKAGES = ("xvfb",)
 OPENGL_PACKAGES = ("libgl1-mesa-dri",)
 XDOTOOL_PACKAGES = ("xdotool",)
-CHROMIUM_PACKAGES = ("chromium", "fonts-liberation")
+CHROMIUM_PACKAGES = ("chromium", "fonts-liberation", "libatomic1")  # the last for Playwright
 
 PROBE = """
 from qtpy.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QSurfaceFormat
@@ -122,6 +122,12 @@ def missing_chromium() -> str:
         chromium.executable()
     except UserError:
         return f"needs Chromium: {install_line(*CHROMIUM_PACKAGES)}"
+    done = subprocess.run(
+        [sys.executable, "-m", "playwright", "--version"], capture_output=True, text=True
+    )
+    if done.returncode != 0:
+        cause = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        return f"needs the libraries of Playwright ({cause}): {install_line(*CHROMIUM_PACKAGES)}"
     return ""
 
 
