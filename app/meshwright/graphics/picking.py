@@ -1,4 +1,4 @@
-"""Picking: which half-edge or vertex of the mesh lies at a point of the plane."""
+"""Finds the half-edge, element or vertex of a mesh at a point of the plane."""
 
 import numpy as np
 
@@ -11,12 +11,12 @@ _NEAR = (8, 32, 128)
 class Picker:
     """A search tree over the element centres of one state of a mesh; make a new one after edits.
 
-    Source of the idea: the elements whose centres are nearest are the candidates, and a point in
-    polygon test decides; candidates are widened where elements differ much in size.
+    The elements with the nearest centres are candidates, and a point-in-polygon test decides. If
+    none contains the point more candidates are tried, since elements may differ much in size.
     """
 
     def __init__(self, mesh: HalfEdgeMesh) -> None:
-        from scipy.spatial import cKDTree  # only the first hover needs scipy
+        from scipy.spatial import cKDTree  # imported at the first hover, as it takes time
 
         self._mesh = mesh
         self._elements = mesh.elements()

@@ -122,9 +122,9 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 def _write_picture(path: Path, mesh: HalfEdgeMesh) -> None:
     from meshwright.graphics.export import export_job
-    from meshwright.graphics.mesh_figure import Look
+    from meshwright.graphics.mesh_figure import FigureOptions
 
-    export_job.save_mesh_picture(mesh, path, Look(PICTURE_SIZE))
+    export_job.save_mesh_picture(mesh, path, FigureOptions(PICTURE_SIZE))
 
 
 def _write_film(
@@ -135,9 +135,9 @@ def _write_film(
     from meshwright.graphics.export.film import Film
 
     film = Film.of_run(mesh, solution.operations, by, name)
-    order = export_job.Order(ending=path.suffix.lower())
+    order = export_job.ExportOptions(ending=path.suffix.lower())
     with report.progress("filming", len(film.stops(order.stride(film)))) as update:
-        export_job.save_order(film, order, path, lambda done, total: update(done))
+        export_job.save_export(film, order, path, lambda done, total: update(done))
 
 
 def _search(

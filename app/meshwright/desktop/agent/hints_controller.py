@@ -16,7 +16,7 @@ from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
 if TYPE_CHECKING:
     from meshwright.desktop.canvas.mouse import Click
     from meshwright.desktop.main_window.window import MainWindow
-    from meshwright_agent.policy.explanation_types import Choice
+    from meshwright_agent.policy.explanation_types import PolicyAction
 
 
 class Hints:
@@ -26,7 +26,7 @@ class Hints:
         self._window = window
         self.layer: HintsLayer | None = None
         self.shown: tuple[Hint, ...] = ()
-        self._choices: tuple[Choice, ...] = ()
+        self._choices: tuple[PolicyAction, ...] = ()
         self._mouse: QPointF | None = None
 
     def connect(self) -> None:
@@ -125,7 +125,7 @@ class Hints:
             keys = "1" if count == 1 else f"1 to {count}"
             window.say(f"Take a hint by its number ({keys}) or with a click; Esc hides them.")
 
-    def _hint(self, mesh: HalfEdgeMesh, choice: Choice) -> Hint | None:
+    def _hint(self, mesh: HalfEdgeMesh, choice: PolicyAction) -> Hint | None:
         try:
             seen = ghost(mesh, choice.operation, choice.halfedge)
         except OperationRefused:

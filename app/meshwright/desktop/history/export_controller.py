@@ -14,7 +14,7 @@ from qtpy.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QProgressBar, QPush
 
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.widgets.basic import named
-from meshwright.graphics.export.export_job import Order, write_order
+from meshwright.graphics.export.export_job import ExportOptions, write_export
 from meshwright.graphics.theme import GRID, Theme
 from meshwright_core.errors import MeshError
 
@@ -79,7 +79,7 @@ class Exporting:
         self._dispatch = Dispatcher()
         self._thread: threading.Thread | None = None
         self._stop = threading.Event()
-        self._order = Order()
+        self._order = ExportOptions()
         self.bar = ExportBar()
         self.bar.cancelled.connect(self.cancel)
 
@@ -110,7 +110,7 @@ class Exporting:
         if path:
             self.start(film, self._order, path)
 
-    def _ask_path(self, order: Order) -> str:
+    def _ask_path(self, order: ExportOptions) -> str:
         document = self._window.document
         folder = document.path.parent if document.path else Path()
         name = folder / f"{document.name or 'mesh'}{order.ending}"
@@ -122,7 +122,7 @@ class Exporting:
             path += order.ending
         return str(path)
 
-    def start(self, film: Film, order: Order, path: str) -> None:
+    def start(self, film: Film, order: ExportOptions, path: str) -> None:
         """Write ``order`` to ``path`` in the background; ends in one sentence."""
         self._stop.clear()
         self.bar.tell(Path(path).name, 0, 1)
@@ -142,7 +142,7 @@ class Exporting:
             self._thread.join(10.0)
             self._thread = None
 
-    def _work(self, film: Film, order: Order, path: str) -> None:
+    def _work(self, film: Film, order: ExportOptions, path: str) -> None:
         """In the thread: everything that is said goes through the dispatcher."""
         name = Path(path).name
 
@@ -152,7 +152,7 @@ class Exporting:
             self._dispatch(partial(self._on_progress, name, done, total))
 
         try:
-            frames = write_order(film, order, path, progress)
+            frames = write_export(film, order, path, progress)
         except Stopped:
             self._dispatch(partial(self._finish, f"Cancelled: {name} was not written.", False))
         except MeshError as error:

@@ -164,10 +164,12 @@ class Card(QPushButton):
 def picture(name: str, theme: Theme, ratio: float) -> QPixmap:
     """The start of a level."""
     from meshwright.graphics.drawing import raster
-    from meshwright.graphics.mesh_figure import Look, figure
+    from meshwright.graphics.mesh_figure import FigureOptions, figure
 
     size = PICTURE * ratio
-    look = Look((size.width(), size.height()), theme.name, numbers=False, score=False, curve=False)
+    look = FigureOptions(
+        (size.width(), size.height()), theme.name, numbers=False, score=False, curve=False
+    )
     drawn = raster(figure(levels.load(name).mesh(), look)).convert("RGBA")
     image = QImage(
         drawn.tobytes(), drawn.width, drawn.height, 4 * drawn.width, QImage.Format.Format_RGBA8888
