@@ -26,6 +26,7 @@ def small_table(monkeypatch):
 _TWO = (paper_results.Measured(0.992, 0.02), paper_results.Measured(0.95, 0.05))
 
 
+@pytest.mark.slow
 def test_a_table_with_everything(small_table, tmp_path, capfd):
     words = ["evaluate", "--kind", "quad", "--table", "--meshes", "2", "--rollouts", "2"]
     more = ["--baselines", "--race", "0.05", "--shorten", "0.05", "--figure", str(tmp_path / "f")]

@@ -6,6 +6,8 @@ from meshwright.benchmarks import desktop
 from meshwright.benchmarks.desktop.display import display
 from meshwright_core.core import compilation
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.needs("window")
 def test_the_window_is_there_before_torch_and_kernels():

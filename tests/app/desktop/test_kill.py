@@ -15,6 +15,7 @@ from meshwright.document.storage import recovery
 pytestmark = [
     pytest.mark.skipif(sys.platform == "win32", reason="no such signal"),
     pytest.mark.needs("window"),
+    pytest.mark.slow,
 ]
 
 CHILD = """

@@ -280,6 +280,7 @@ for seed in range(1_000_000):
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.3])
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
+@pytest.mark.slow
 def test_kill_9_loses_at_most_the_last_operation(tmp_path, seconds):
     code = CHILD.format(tests=os.path.dirname(__file__), folder=str(tmp_path), kind="quad")
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
