@@ -17,13 +17,13 @@ from meshwright_agent.policy import policy_files
 @pytest.fixture
 def small_table(monkeypatch):
     rows = (
-        paper_results.Row((6, 7), paper_results.Measured(0.98, 0.03)),
-        paper_results.Row((8, 8), *_TWO),
+        paper_results.PaperRow((6, 7), paper_results.ReturnStatistics(0.98, 0.03)),
+        paper_results.PaperRow((8, 8), *_TWO),
     )
     monkeypatch.setitem(paper_results.ROWS, "quad", rows)
 
 
-_TWO = (paper_results.Measured(0.992, 0.02), paper_results.Measured(0.95, 0.05))
+_TWO = (paper_results.ReturnStatistics(0.992, 0.02), paper_results.ReturnStatistics(0.95, 0.05))
 
 
 @pytest.mark.slow
