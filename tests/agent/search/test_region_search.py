@@ -15,6 +15,8 @@ from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry.region import rings
 from meshwright_core.geometry.smoothing import relax
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(params=["quad", "tri"])
 def case(request):

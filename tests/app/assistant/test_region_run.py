@@ -13,6 +13,8 @@ from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry.region import rings
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(params=["quad", "tri"])
 def document(request):

@@ -13,6 +13,7 @@ from meshwright.benchmarks.notebook import chromium, servers
 from meshwright.console import UserError
 
 
+@pytest.mark.needs("chromium")
 def test_suite_measures_clicks_panning_and_bytes(warm, capsys):
     assert cli.main(["bench", "--suite", "notebook", "--quick", "--json"]) == 0
     results = json.loads(capsys.readouterr().out)["results"]

@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 BEGIN = """
 import sys
 sys.path.insert(0, {folder!r})

@@ -2,48 +2,13 @@
 
 import numpy as np
 import pytest
+from mesh_edits import state, wander
 
-from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
-from meshwright_core.core.arrays import ELEMENT_SLOTS, STEP
+from meshwright_core import MeshError, OperationRefused
+from meshwright_core.core.arrays import STEP
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.history import step_archive
 from meshwright_core.history.packed_steps import pack, unpack
-from meshwright_core.operations.catalogue import of_kind
-
-
-def state(mesh: HalfEdgeMesh) -> list[bytes]:
-    """Every bit that an undo must bring back."""
-    arrays = mesh.arrays
-    ends = (mesh.k * int(arrays.counters[ELEMENT_SLOTS]), mesh.slots)
-    return [
-        arrays.edge[: ends[0]].tobytes(),
-        arrays.vertex[: ends[1]].tobytes(),
-        mesh.points.tobytes(),
-        arrays.irregular[: mesh.irregular_count].tobytes(),
-        arrays.counters[:10].tobytes(),
-    ]
-
-
-def wander(mesh: HalfEdgeMesh, steps: int, seed: int = 0) -> list[list[bytes]]:
-    """So many random steps, moves among them; the state after each."""
-    rng = np.random.default_rng(seed)
-    infos = of_kind(mesh.kind)
-    states = []
-    while len(states) < steps:
-        h = int(rng.choice(mesh.element_ids())) * mesh.k + int(rng.integers(mesh.k))
-        operation = infos[rng.integers(len(infos))].operation
-        if rng.random() < 0.2:
-            some = rng.choice(mesh.vertices(), 3, replace=False)
-            mesh.move(some, mesh.points[some] + [1e-3, 1e-3, 0])
-        elif mesh.check(operation, h):
-            with mesh.transaction():
-                mesh.apply(operation, h)
-                some = mesh.vertices()[:2]
-                mesh.move(some, mesh.points[some] * 1.001)
-        else:
-            continue
-        states.append(state(mesh))
-    return states
 
 
 @pytest.fixture

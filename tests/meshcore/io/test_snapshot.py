@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_undo_redo import state, wander
+from mesh_edits import state, wander
 
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.domains import gallery, meshing
