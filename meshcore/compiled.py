@@ -22,6 +22,8 @@ import numba
 import platformdirs
 from numba.core import config as numba_config
 
+from meshcore.linking import Kernel, SharedKernel
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 _KEPT_SECONDS = 30 * 24 * 3600
@@ -76,11 +78,19 @@ def bare_kernel(function: F) -> F:
     return _compiled(function, counts_references=False)
 
 
-def _compiled(function: F, counts_references: bool) -> F:
-    # numba's types know neither this option nor its configuration
-    options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": counts_references}
+def shared_kernel(function: F) -> F:
+    """A bare kernel whose code is compiled once and linked into none of its callers."""
+    return _compiled(function, counts_references=False, form=SharedKernel)
+
+
+def _compiled(function: F, counts_references: bool, form: type[Kernel] = Kernel) -> F:
+    options = {
+        "nopython": True, "nogil": True, "error_model": "numpy", "_nrt": counts_references,
+        "boundscheck": None,
+    }  # fmt: skip
+    # numba's types do not know its configuration
     configuration: Any = numba_config
-    compiled = numba.njit(**options)(function)
+    compiled = form(function, targetoptions=options)
     before = configuration.CACHE_DIR
     configuration.CACHE_DIR = str(cache_folder(function.__module__.partition(".")[0]))
     try:
