@@ -32,6 +32,8 @@ from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime import rtsys
 
+from meshcore.references import declare_read_only
+
 Types = tuple[Any, ...]
 """Numba types of arguments."""
 
@@ -54,6 +56,11 @@ def canonical(kind: Any) -> Any:
 
 class Part(JITCodeLibrary):
     """Unoptimised code of one kernel, and the libraries that it calls."""
+
+    def add_ir_module(self, ir_module: Any) -> None:
+        """Add code to this library."""
+        declare_read_only(ir_module)
+        super().add_ir_module(ir_module)
 
     def finalize(self) -> None:
         """Nothing is linked or optimised before an entry point asks for it."""
