@@ -24,11 +24,13 @@ from meshcore.halfedge import (
     preceding,
 )
 from meshcore.operations import QUAD_COLLAPSE, TRI_COLLAPSE, TRI_SPLIT, rewrite, score_change
+from meshcore.references import by_reference
 
 # places in Agenda.state
 HEAD, FILL = 0, 1
 
 
+@by_reference
 class Agenda(NamedTuple):
     """Arrays by vertex slot (V,) and element slot (E,) of one mesh."""
 

@@ -100,12 +100,20 @@ def member(meshes, b):
 @kernel
 def _reset(meshes, pool, b, p):
     """Start run b afresh from mesh p of the pool."""
-    meshes.edge[b] = pool.edge[p]
-    meshes.vertex[b] = pool.vertex[p]
-    meshes.points[b] = pool.points[p]
-    meshes.irregular[b] = pool.irregular[p]
-    meshes.element_mark[b] = pool.element_mark[p]
-    meshes.counters[b] = pool.counters[p]
+    # loops, because numba takes a second to compile an assignment of a whole array
+    for h in range(pool.edge.shape[1]):
+        for column in range(pool.edge.shape[2]):
+            meshes.edge[b, h, column] = pool.edge[p, h, column]
+    for v in range(pool.vertex.shape[1]):
+        for column in range(pool.vertex.shape[2]):
+            meshes.vertex[b, v, column] = pool.vertex[p, v, column]
+        for axis in range(pool.points.shape[2]):
+            meshes.points[b, v, axis] = pool.points[p, v, axis]
+        meshes.irregular[b, v] = pool.irregular[p, v]
+    for e in range(pool.element_mark.shape[1]):
+        meshes.element_mark[b, e] = pool.element_mark[p, e]
+    for i in range(pool.counters.shape[1]):
+        meshes.counters[b, i] = pool.counters[p, i]
 
 
 @kernel

@@ -14,6 +14,7 @@ import numpy as np
 
 from meshcore.compiled import bare_kernel
 from meshcore.halfedge import DEGREE, DESIRED, ELEMENT_SLOTS, ORIGIN, TWIN, following
+from meshcore.references import by_reference
 
 SWEEPS = 16
 """Jacobi sweeps: a charge is felt over as many edges."""
@@ -25,6 +26,7 @@ _SOFT = 0.05
 _SCALE = 25.0
 
 
+@by_reference
 class Field(NamedTuple):
     """Scratch arrays of one computation; its vertices and edges are numbered."""
 

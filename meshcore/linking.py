@@ -17,8 +17,10 @@ shared kernel
 from __future__ import annotations
 
 import copy
+import gc
 import hashlib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
@@ -252,7 +254,7 @@ class Kernel(CPUDispatcher):
 
     def compile(self, sig: Any) -> Any:
         """Compile an entry point for these arguments, or load it; returns what Python calls."""
-        with global_compiler_lock:
+        with global_compiler_lock, _collecting_seldom():
             args, _ = typing_of(sig)
             known = self.overloads.get(args)
             if known is None:
@@ -324,6 +326,20 @@ class SharedKernel(Kernel):
             llvm.add_symbol(symbol, address)
             _shared[symbol] = module, name, args
         return symbol
+
+
+@contextmanager
+def _collecting_seldom() -> Iterator[None]:
+    """Let Python look for garbage cycles less often: compiling makes many objects and few cycles,
+    and looking takes an eighth of the time.
+    """
+    usual = gc.get_threshold()
+    if usual[0]:
+        gc.set_threshold(max(usual[0], 100_000), *usual[1:])
+    try:
+        yield
+    finally:
+        gc.set_threshold(*usual)
 
 
 def typing_of(sig: Any) -> tuple[Types, Any]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from meshcore.compiled import kernel
 from meshcore.errors import MeshError
+from meshcore.references import by_reference
 
 if TYPE_CHECKING:
     from meshcore.mesh import HalfEdgeMesh
@@ -25,6 +26,7 @@ NEAR = 1e-9
 """Distance, relative to the outline's extent, below which a point lies on the outline."""
 
 
+@by_reference
 class Polylines(NamedTuple):
     """Sides as flat arrays. Closed ones repeat their first point at the end."""
 

@@ -17,6 +17,7 @@ from meshcore.errors import MeshError
 from meshcore.halfedge import FLAGS, GEOMETRIC, HALF, LOCKED, ORIGIN, TWIN
 from meshcore.outline import Outline, Polylines, place_all
 from meshcore.quality import TOLERANCE, corner_sines, reference_normals
+from meshcore.references import by_reference
 from meshcore.sides import Sides
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ ON_SIDE = 1e-13
 """Distance, relative to the region's size, below which a vertex counts as on its side."""
 
 
+@by_reference
 class Seats(NamedTuple):
     """Where the boundary vertices of a region stand on their sides; -1 rows do not slide."""
 
