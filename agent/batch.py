@@ -141,7 +141,9 @@ def _observe_all(
             chosen[b] = -1
             continue
         look(m, chosen[b], k, sizes[b], listed, reads, slot_of, field, features[rows:])
-        all_reads[read_rows : read_rows + sizes[b, 1]] = reads[: sizes[b, 1]]
+        for i in range(sizes[b, 1]):
+            for j in range(reads.shape[1]):
+                all_reads[read_rows + i, j] = reads[i, j]
         rows += sizes[b, 0]
         read_rows += sizes[b, 1]
     return rows, read_rows

@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 
 from agent.patch import seen_vertex
-from meshcore.compiled import bare_kernel, kernel
+from meshcore.compiled import bare_kernel, bare_shared_kernel, kernel
 from meshcore.global_split import crossings
 from meshcore.halfedge import (
     DEGREE,
@@ -279,7 +279,7 @@ def best_template(m, k, source, turn, rng, found, slots, chosen):
     return real
 
 
-@bare_kernel
+@bare_shared_kernel
 def masks(m, chosen, first, count, cap, floor, ceiling, extended, mask, changes):
     """For each candidate (K,) and operation (A,) whether it is permitted, and its change of s;
     returns whether any is.

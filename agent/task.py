@@ -9,7 +9,7 @@ import numpy as np
 from agent.patch import LARGEST, POTENTIALS, Patches, describe, list_patch
 from agent.potential import field, forget, solve_potential
 from agent.selection import best_template, masks, shortlist, template_plan
-from meshcore.compiled import bare_kernel, kernel
+from meshcore.compiled import bare_shared_kernel, shared_kernel
 from meshcore.halfedge import (
     HALF,
     NEW_COUNT,
@@ -126,7 +126,7 @@ class Scratch:
         self.cleaned = np.zeros(MOST_CLEANUPS, np.int64)
 
 
-@bare_kernel
+@bare_shared_kernel
 def transition(m, operation, h, cap, touched, cleaned):
     """One step of the run: the operation, then every clean-up that it makes possible (section 4.1).
 
@@ -158,7 +158,7 @@ def transition(m, operation, h, cap, touched, cleaned):
     return cleanups
 
 
-@kernel
+@shared_kernel
 def choose_candidates(
     m, k, first, count, cap, floor, ceiling, extended, listed, noise, source, turn, rng,
     found, keys, slots, chosen,
@@ -171,7 +171,7 @@ def choose_candidates(
     return best_template(m, k, source, turn, rng, found, slots, chosen)
 
 
-@bare_kernel
+@bare_shared_kernel
 def look(m, chosen, k, sizes, listed, reads, slot_of, field, features):
     """List the patch of the candidates and describe its half-edges: rows of `features` (N, C)
     int8.

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from meshcore import chords, global_lines, global_split, quad_edits, triangle_edits
-from meshcore.compiled import bare_kernel, shared_kernel
+from meshcore.compiled import bare_kernel, bare_shared_kernel
 from meshcore.halfedge import (
     DEGREE,
     DESIRED,
@@ -166,7 +166,7 @@ def of_kind(kind: str) -> tuple[OperationInfo, ...]:
     return tuple(info for info in CATALOGUE if info.kind == kind)
 
 
-@shared_kernel
+@bare_shared_kernel
 def check(m, operation, h, cap):
     """A code of :mod:`meshcore.refusals`: may `operation` be applied to h? No side effect.
 
@@ -195,7 +195,7 @@ def check(m, operation, h, cap):
     return chords.check_chord_collapse(m, h, cap)
 
 
-@shared_kernel
+@bare_shared_kernel
 def rewrite(m, operation, h):
     """Apply an operation that :func:`check` allowed, as one step of the journal."""
     begin_step(m, operation, h)
