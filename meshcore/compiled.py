@@ -111,6 +111,11 @@ def _compiled(function: F, counts_references: bool, form: type[Kernel] = Kernel)
     return cast(F, compiled)
 
 
+def entry_points_on_disk(package: str = "meshcore") -> int:
+    """How many kernels of the package are in its cache, in one form at least."""
+    return sum(1 for _ in cache_folder(package).rglob("*.nbi"))
+
+
 def is_warm_on_disk() -> bool:
     """Whether :func:`warm` has run to its end for these very sources on this machine."""
     return (cache_folder() / _WARM_MARK).exists()

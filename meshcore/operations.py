@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+import numba
+
 from meshcore import chords, global_lines, global_split, quad_edits, triangle_edits
 from meshcore.compiled import bare_kernel, bare_shared_kernel
 from meshcore.halfedge import (
@@ -220,6 +222,11 @@ def rewrite(m, operation, h):
     else:
         chords.chord_collapse(m, h)
     end_step(m)
+
+
+def provide_rewrite(arrays: MeshArrays) -> None:
+    """Compile :func:`rewrite` for such arrays, or load it, without applying an operation."""
+    rewrite.provide((numba.typeof(arrays), numba.int64, numba.int64))
 
 
 @bare_kernel

@@ -113,7 +113,7 @@ def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
 def test_improve_says_why_the_first_time_takes_long(run, capfd, monkeypatch):
     run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
     monkeypatch.setattr(warm_up, "is_warm_on_disk", lambda: False)
-    monkeypatch.setattr(warm_up, "warm", lambda: None)
+    monkeypatch.setattr(warm_up, "warm", lambda tell: None)
     assert cli.main(["improve", "a.vtk", "-o", "a.vtk", "--rollouts", "1"]) == 0
     assert "Preparing the agent" in capfd.readouterr().err
 
