@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numba
 
@@ -226,7 +227,8 @@ def rewrite(m, operation, h):
 
 def provide_rewrite(arrays: MeshArrays) -> None:
     """Compile :func:`rewrite` for such arrays, or load it, without applying an operation."""
-    rewrite.provide((numba.typeof(arrays), numba.int64, numba.int64))
+    shared: Any = rewrite
+    shared.provide((numba.typeof(arrays), numba.int64, numba.int64))
 
 
 @bare_kernel

@@ -1,6 +1,6 @@
 """Getting the compiled kernels ready behind a widget, once in a program.
 
-Where that was never done on this machine it takes a minute or two, in which a notebook that
+Where that was never done on this machine it takes half a minute or so, in which a notebook that
 compiles by itself would say nothing and do nothing. So a process of its own compiles, and what a
 browser asks for meanwhile is put off with a sentence.
 """
@@ -126,8 +126,8 @@ class Preparation:
 
 
 WAITS: dict[Stage, str] = {
-    Stage.EDITING: "Preparing the operations: a minute or two, on this machine only once.",
-    Stage.AGENT: "Preparing the agent: a minute or two, on this machine only once.",
+    Stage.EDITING: "Preparing the operations: some seconds, on this machine only once.",
+    Stage.AGENT: "Preparing the agent: half a minute or so, on this machine only once.",
 }
 DONE: dict[Stage, str] = {
     Stage.AGENT: "The operations are ready.",
