@@ -1,3 +1,4 @@
+# mypy: disable-error-code="attr-defined,name-defined"
 """How kernels are compiled and linked, so that a cold start compiles each of them once.
 
 Numba compiles every function that a kernel calls into a library of its own, with machine code and

@@ -1,3 +1,4 @@
+# mypy: disable-error-code="attr-defined,name-defined"
 """NamedTuples of arrays that kernels hand to each other as one pointer.
 
 Numba hands over every field of every array of a NamedTuple as an argument of its own: 73 for a
