@@ -41,6 +41,7 @@ class Warmup(QObject):
         self._progress = QTimer(self)
         self._progress.setInterval(PROGRESS_MILLISECONDS)
         self._progress.timeout.connect(self._note_progress)
+        self.agent_ready.connect(self._progress.stop)
 
     def start(self) -> None:
         """Begin; returns at once."""
@@ -108,7 +109,7 @@ class Warmup(QObject):
             self.agent_ready.emit()
         else:
             self.noted.emit(AGENT_FIRST)
-            self._run("agent.warm_up", self._finish_agent)
+            self._run("agent.warm_up", self.agent_ready.emit)
             self._progress.start()
 
     def _note_progress(self) -> None:
@@ -116,10 +117,6 @@ class Warmup(QObject):
 
         done, total = progress()
         self.noted.emit(AGENT_PROGRESS.format(done=done, total=total))
-
-    def _finish_agent(self) -> None:
-        self._progress.stop()
-        self.agent_ready.emit()
 
     def _fail(self, sentence: str) -> None:
         if not self._stopped:
