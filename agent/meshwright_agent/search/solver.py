@@ -21,8 +21,8 @@ from meshwright_agent.env.vector_env import Batch
 from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_agent.search.annealing import Operations, anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
+from meshwright_agent.search.coarsening import PATIENCE, replayed, undrawable
 from meshwright_agent.search.coarsening import coarsen as coarser
-from meshwright_agent.search.coarsening import replayed, undrawable
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
 from meshwright_agent.search.shortening import shorten as shorter
@@ -35,7 +35,7 @@ POLISH = 0.15
 POLISHED = 0.5
 """Largest share of the time that shortening and coarsening may take."""
 ALONE = 0.5
-"""Seconds for shortening, and for coarsening, if only a number of rollouts is given."""
+"""Most seconds for shortening, and for coarsening, if only a number of rollouts is given."""
 
 PER_IRREGULAR = 50
 """Steps of a rollout per irregular vertex that is left on a large mesh after the patches."""
@@ -117,7 +117,8 @@ def solve(
         cancelled: polled; the search ends with the best result so far when it is true.
     """
     require_kind(policy, mesh.kind)
-    prepare(policy)
+    if seconds is not None:
+        prepare(policy)  # so that loading the kernels takes none of the time
     mesh = _anchored(mesh)
     if is_large(mesh):
         go_on = partial(solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten)
@@ -341,7 +342,7 @@ class _Search:
             reached = replayed(mesh, operations)
             added = coarser(
                 reached, seconds=self._share(0.7), seed=self.seed + self.done,
-                cancelled=self._stopped,
+                patience=PATIENCE if self.seconds is None else None, cancelled=self._stopped,
             )  # fmt: skip
             operations = operations + added
             if added and shorten:

@@ -10,6 +10,7 @@ closed by its reader.
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 import signal
 import sys
@@ -26,6 +27,9 @@ from meshwright.console import Report, UserError
 DONE, BUG, REFUSED, READER_GONE = 0, 1, 2, 141
 
 DEBUG = "MESHWRIGHT_DEBUG"
+
+GARBAGE_THRESHOLD = 20_000
+"""New objects after which Python looks for reference cycles; its default is 700."""
 
 EPILOG = """\
 Without a command the window opens; with the name of a mesh file or a shape it opens on that.
@@ -90,8 +94,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     words = list(sys.argv[1:] if argv is None else argv)
     report = Report(as_json="--json" in words)
-    with _noted_interrupts() as interrupted:
+    with _rare_garbage_collection(), _noted_interrupts() as interrupted:
         return _run(words, report, interrupted)
+
+
+@contextmanager
+def _rare_garbage_collection() -> Iterator[None]:
+    """Look for reference cycles less often: importing PyTorch and numba makes a great many objects
+    that stay, and looking through them again and again takes a tenth of a short command's time.
+    """
+    usual = gc.get_threshold()
+    gc.set_threshold(max(usual[0], GARBAGE_THRESHOLD), *usual[1:])
+    try:
+        yield
+    finally:
+        gc.set_threshold(*usual)
 
 
 @contextmanager

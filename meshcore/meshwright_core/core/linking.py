@@ -194,9 +194,19 @@ class _StoredForm(CompileResultCacheImpl):
 
 
 class KernelCache(FunctionCache):
-    """Numba's cache of one function with entry points in it."""
+    """Numba's cache of one function, with the entry points of a kernel in it."""
 
     _impl_class = _StoredForm
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The entry point for these argument types, or None.
+
+        Numba's method first registers everything that can be called in kernels, which takes a
+        quarter of a second; machine code needs the runtime for reference counts only.
+        """
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
 
 
 class Kernel(CPUDispatcher):

@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.sparse import coo_matrix, diags
-from scipy.sparse.linalg import splu
 
 from meshwright_core.geometry.quality import TOLERANCE
 from meshwright_core.geometry.region import Region
@@ -38,6 +36,10 @@ def _present(region: Region) -> None:
 
 def _embedded(region: Region) -> None:
     """Start from every vertex at the mean of its neighbours, those on sides where they are."""
+    # here, because few meshes need it and it takes a quarter of a second
+    from scipy.sparse import coo_matrix, diags
+    from scipy.sparse.linalg import splu
+
     n = len(region.vertices)
     a = region.elements.ravel()
     b = np.roll(region.elements, -1, axis=1).ravel()

@@ -105,11 +105,17 @@ def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:
     Raises:
         MeshError: a part cannot be oriented (a Moebius strip).
     """
+    m = len(elements)
+    one, other, agree = _neighbours(elements, len(points))
+    weight = np.ones(m)
+    if np.ptp(points[:, 2]) <= 1e-12 * max(1.0, float(np.abs(points).max())):
+        x, y = points[elements][..., 0], points[elements][..., 1]
+        weight = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1)
+    if agree.all() and (weight >= 0.0).all():
+        return elements.copy()  # most files; scipy is then not imported, which takes long
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    m = len(elements)
-    one, other, agree = _neighbours(elements, len(points))
     # node e stands for element e as it is, node m + e for e turned round
     cross = np.where(agree, 0, m)
     start = np.concatenate([one, one + m])
@@ -125,10 +131,6 @@ def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:
     # each part appears twice, once turned; the smaller label of the two names the part
     part = np.minimum(label[:m], label[m:])
     turned = label[:m] != part
-    weight = np.ones(m)
-    if np.ptp(points[:, 2]) <= 1e-12 * max(1.0, float(np.abs(points).max())):
-        x, y = points[elements][..., 0], points[elements][..., 1]
-        weight = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1)
     total = np.bincount(part, np.where(turned, -weight, weight), minlength=2 * m)
     turned ^= total[part] < 0
     result = elements.copy()
