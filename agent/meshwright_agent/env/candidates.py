@@ -10,6 +10,7 @@ drawn at random, so that the cost of a decision does not grow with the mesh.
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,12 +21,14 @@ from meshwright_core.core.arrays import (
     ELEMENTS,
     HALF,
     IRREGULAR,
+    SIDES,
     TWIN,
     following,
     preceding,
     turned,
 )
 from meshwright_core.core.compilation import bare_kernel, bare_shared_kernel, kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.operations.catalogue import (
     GLOBAL_SPLIT,
     TRI_COLLAPSE,
@@ -42,6 +45,57 @@ REGION = 256
 """Elements of the region that is considered on a mesh with more."""
 LONGEST_CUT = 200
 """Largest number of quads that each half of an agent's global split may cut."""
+
+
+@by_reference
+class Rules(NamedTuple):
+    """The action set, and what the action mask allows of it."""
+
+    first: int
+    """Code of the first operation of the action set."""
+    operations: int
+    """Number of its operations, whose codes follow each other."""
+    cap: int
+    """Highest degree that an operation may produce, 0 for any."""
+    floor: int
+    """Least number of elements."""
+    ceiling: int
+    """Largest number of elements."""
+    extended: bool
+    """Whether boundary edges of triangle meshes may be collapsed."""
+
+
+@by_reference
+class Ranking(NamedTuple):
+    """How the candidates are chosen."""
+
+    shortlist: bool
+    """Whether from the shortlist; otherwise from the template."""
+    noise: float
+    """Scale of the Gumbel noise in the shortlist."""
+    source: np.ndarray
+    """(N,) int32, with `turn` the template, see :func:`template_plan`."""
+    turn: np.ndarray
+    """(N,) int32."""
+
+
+@by_reference
+class WorkArrays(NamedTuple):
+    """Scratch arrays for choosing candidates and listing local patches."""
+
+    found: np.ndarray
+    """(F,) int64: the elements that a decision considers."""
+    keys: np.ndarray
+    """(k F,) float64: the ranking keys of their half-edges."""
+    slots: np.ndarray
+    """(N,) int64: the half-edges of one template."""
+    listed: np.ndarray
+    """(L,) int64: the half-edges of a local patch."""
+    reads: np.ndarray
+    """(L, k + 1) int16: what the convolution reads, see
+    :func:`meshwright_agent.env.local_patch.list_patch`."""
+    slot_of: np.ndarray
+    """(half-edges,) int32: places in `listed`, from 1; zero between calls."""
 
 
 @bare_kernel
@@ -82,20 +136,20 @@ def template_plan(k: int, levels: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @bare_kernel
-def permitted(m, operation, h, cap, floor, ceiling, extended):
+def permitted(m, operation, h, rules):
     """Whether the action mask allows `operation` at h.
 
     It must be valid (:func:`meshwright_core.operations.catalogue.check`), belong to the action set,
-    and leave the number of elements between floor and ceiling.
+    and leave the number of elements between the floor and the ceiling of the rules.
     """
     elements = m.counters[ELEMENTS]
     change = growth(m, operation, h)
-    if operation == TRI_COLLAPSE and not extended and m.edge[h, TWIN] < 0:
+    if operation == TRI_COLLAPSE and not rules.extended and m.edge[h, TWIN] < 0:
         return False
     if change < 0:
-        if elements + change < floor:
+        if elements + change < rules.floor:
             return False
-    elif elements + 2 > ceiling:
+    elif elements + 2 > rules.ceiling:
         return False
     if operation == GLOBAL_SPLIT:
         t = m.edge[h, TWIN]
@@ -105,24 +159,24 @@ def permitted(m, operation, h, cap, floor, ceiling, extended):
         if first < 0:
             return False
         second = crossings(m, m.edge[preceding(t, 4), TWIN], h, LONGEST_CUT)
-        if second < 0 or elements + first + second + 1 > ceiling:
+        if second < 0 or elements + first + second + 1 > rules.ceiling:
             return False
-    return check(m, operation, h, cap) == ALLOWED
+    return check(m, operation, h, rules.cap) == ALLOWED
 
 
 @bare_kernel
-def best_change(m, h, first, count, cap, floor, ceiling, extended):
-    """The lowest change of s among the permitted operations first ... first + count - 1 at h.
+def best_change(m, h, rules):
+    """The lowest change of s among the permitted operations at h.
 
     99 if there is none. For a global split only its change of s counts: whether it is permitted
     would need a walk along the whole split.
     """
     best = 99
-    for operation in range(first, first + count):
+    for operation in range(rules.first, rules.first + rules.operations):
         if operation == GLOBAL_SPLIT:
             if m.edge[h, TWIN] >= 0:
                 best = min(best, score_change(m, operation, h))
-        elif permitted(m, operation, h, cap, floor, ceiling, extended):
+        elif permitted(m, operation, h, rules):
             best = min(best, score_change(m, operation, h))
     return best
 
@@ -207,17 +261,18 @@ def _least_of_largest(keys, total, wanted):
 
 
 @kernel
-def shortlist(m, k, first, count, cap, floor, ceiling, extended, noise, rng, found, keys, chosen):
+def shortlist(m, rules, noise, work, chosen, rng):
     """Fill `chosen` (K,) with half-edges, -1 where there are fewer; returns their number.
 
-    The ranking key is minus the best change of s, plus Gumbel noise scaled by `noise`. found (N,),
-    keys (k N,): scratch.
+    The ranking key is minus the best change of s, plus Gumbel noise scaled by `noise`.
     """
+    k = m.counters[SIDES]
+    found, keys = work.found, work.keys
     elements = near_irregular(m, k, rng, found)
     for i in range(elements):
         for j in range(k):
             h = found[i] * k + j
-            change = best_change(m, h, first, count, cap, floor, ceiling, extended)
+            change = best_change(m, h, rules)
             if change == 99:
                 keys[i * k + j] = -np.inf
             else:
@@ -249,18 +304,20 @@ def local_score(m, h, k, source, turn, slots):
 
 
 @kernel
-def best_template(m, k, source, turn, rng, found, slots, chosen):
+def best_template(m, ranking, work, chosen, rng):
     """Fill `chosen` (K,) with the template of highest local score (section 4.2.1).
 
     -1 beyond the boundary and for repetitions; returns the number of the others. Only templates
     near irregular vertices are compared, since all others have a lower score.
     """
+    k = m.counters[SIDES]
+    found, source, turn = work.found, ranking.source, ranking.turn
     elements = near_irregular(m, k, rng, found)
     best, tied, at = -1, 0, -1
     for i in range(elements):
         for j in range(k):
             h = found[i] * k + j
-            score = local_score(m, h, k, source, turn, slots)
+            score = local_score(m, h, k, source, turn, work.slots)
             if score > best:
                 best, tied, at = score, 1, h
             elif score == best:
@@ -283,7 +340,7 @@ def best_template(m, k, source, turn, rng, found, slots, chosen):
 
 
 @bare_shared_kernel
-def masks(m, chosen, first, count, cap, floor, ceiling, extended, mask, changes):
+def masks(m, chosen, rules, mask, changes):
     """Fill `mask` (K, A) and `changes` (K, A), the exact change of s of permitted operations.
 
     Returns whether any operation is permitted.
@@ -291,11 +348,12 @@ def masks(m, chosen, first, count, cap, floor, ceiling, extended, mask, changes)
     some = False
     for i in range(len(chosen)):
         h = chosen[i]
-        for j in range(count):
+        for j in range(rules.operations):
+            operation = rules.first + j
             mask[i, j] = False
             changes[i, j] = 0
-            if h >= 0 and permitted(m, first + j, h, cap, floor, ceiling, extended):
+            if h >= 0 and permitted(m, operation, h, rules):
                 mask[i, j] = True
-                changes[i, j] = score_change(m, first + j, h)
+                changes[i, j] = score_change(m, operation, h)
                 some = True
     return some

@@ -142,16 +142,13 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
         assert self.mesh is not None
         task, arrays, scratch = self.task, self.mesh.arrays, self._scratch
         source, turn = task.template
-        settings = (task.first_operation, task.operations, task.cap, *self._bounds, task.extended)
-        choose_candidates(
-            arrays, task.k, *settings, task.selection == "shortlist", task.noise, source, turn,
-            self.np_random, scratch.found, scratch.keys, scratch.slots, self._chosen,
-        )  # fmt: skip
+        rules = task.rules(*self._bounds)
+        choose_candidates(arrays, rules, task.ranking, scratch.work, self._chosen, self.np_random)
         changes = np.zeros(self._mask.shape, np.int8)
-        masks(arrays, self._chosen, *settings, self._mask, changes)
+        masks(arrays, self._chosen, rules, self._mask, changes)
         template = np.empty((task.rows, len(source), task.channels), np.int8)
         _describe_templates(
-            arrays, self._chosen, task.k, source, turn, scratch.slots, scratch.field, template
+            arrays, self._chosen, task.k, source, turn, scratch.work.slots, scratch.field, template
         )
         state = (
             (self.mesh.score - self.mesh.optimum) / 10.0,

@@ -12,7 +12,15 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from meshwright_agent.env.candidates import best_template, masks, shortlist, template_plan
+from meshwright_agent.env.candidates import (
+    Ranking,
+    Rules,
+    WorkArrays,
+    best_template,
+    masks,
+    shortlist,
+    template_plan,
+)
 from meshwright_agent.env.checked_settings import (
     NonNegativeFloat,
     NonNegativeInt,
@@ -21,7 +29,7 @@ from meshwright_agent.env.checked_settings import (
 )
 from meshwright_agent.env.local_patch import LARGEST, POTENTIALS, Patches, describe, list_patch
 from meshwright_agent.env.potential import field, forget, solve_potential
-from meshwright_core.core.arrays import HALF, NEW_COUNT, TOUCHED_COUNT, TRACE_IDS, MeshArrays
+from meshwright_core.core.arrays import HALF, NEW_COUNT, SIDES, TOUCHED_COUNT, TRACE_IDS, MeshArrays
 from meshwright_core.core.compilation import bare_shared_kernel, shared_kernel
 from meshwright_core.operations.catalogue import (
     CLEANUP,
@@ -118,6 +126,17 @@ class Task:
             elements + 8, int(self.element_ceiling * elements)
         )
 
+    def rules(self, floor: int, ceiling: int) -> Rules:
+        """The rules of an episode with these bounds of the number of elements."""
+        return Rules(
+            self.first_operation, self.operations, self.cap, int(floor), int(ceiling), self.extended
+        )
+
+    @property
+    def ranking(self) -> Ranking:
+        """How the candidates are chosen."""
+        return Ranking(self.selection == "shortlist", float(self.noise), *self.template)
+
     def to_dict(self) -> dict[str, object]:
         """The settings as plain values."""
         return asdict(self)
@@ -128,12 +147,14 @@ class Scratch:
 
     def __init__(self, task: Task, halfedges: int, vertices: int) -> None:
         """Allocate for meshes with at most so many half-edge slots and vertex slots."""
-        self.found = np.zeros(_FOUND, np.int64)
-        self.keys = np.zeros(_FOUND * task.k)
-        self.slots = np.zeros(len(task.template[0]), np.int64)
-        self.listed = np.zeros(LARGEST, np.int64)
-        self.reads = np.zeros((LARGEST, task.k + 1), np.int16)
-        self.slot_of = np.zeros(halfedges, np.int32)
+        self.work = WorkArrays(
+            np.zeros(_FOUND, np.int64),
+            np.zeros(_FOUND * task.k),
+            np.zeros(len(task.template[0]), np.int64),
+            np.zeros(LARGEST, np.int64),
+            np.zeros((LARGEST, task.k + 1), np.int16),
+            np.zeros(halfedges, np.int32),
+        )
         self.field = field(vertices if task.channels > POTENTIALS else 0)
         self.touched = np.zeros(_TOUCHED, np.int64)
         self.cleaned = np.zeros(MOST_CLEANUPS, np.int64)
@@ -172,28 +193,24 @@ def transition(m, operation, h, cap, touched, cleaned):
 
 
 @shared_kernel
-def choose_candidates(
-    m, k, first, count, cap, floor, ceiling, extended, listed, noise, source, turn, rng,
-    found, keys, slots, chosen,
-):  # fmt: skip
-    """Fill `chosen` (K,) from the shortlist (listed) or the template; returns their number."""
-    if listed:
-        return shortlist(
-            m, k, first, count, cap, floor, ceiling, extended, noise, rng, found, keys, chosen
-        )
-    return best_template(m, k, source, turn, rng, found, slots, chosen)
+def choose_candidates(m, rules, ranking, work, chosen, rng):
+    """Fill `chosen` (K,) from the shortlist or the template; returns their number."""
+    if ranking.shortlist:
+        return shortlist(m, rules, ranking.noise, work, chosen, rng)
+    return best_template(m, ranking, work, chosen, rng)
 
 
 @bare_shared_kernel
-def look(m, chosen, k, sizes, listed, reads, slot_of, field, features):
+def look(m, chosen, sizes, work, field, features):
     """List the local patch of the candidates and write the channels of its half-edges into
     `features` (N, C) int8.
     """
-    list_patch(m, chosen, k, sizes, listed, reads, slot_of)
+    k = m.counters[SIDES]
+    list_patch(m, chosen, k, sizes, work.listed, work.reads, work.slot_of)
     solved = features.shape[1] > POTENTIALS
     elements = solve_potential(m, k, chosen, field) if solved else 0
     for i in range(sizes[0]):
-        describe(m, listed[i], k, field, features[i])
+        describe(m, work.listed[i], k, field, features[i])
     forget(m, k, field, elements)
 
 
@@ -225,29 +242,15 @@ def observe(
 
     The state is left at zero for the caller to fill. bounds: least and largest number of elements.
     """
-    source, turn = task.template
-    settings = (task.first_operation, task.operations, task.cap, *bounds, task.extended)
+    rules = task.rules(*bounds)
     chosen = np.full((1, task.rows), -1, np.int64)
-    choose_candidates(
-        arrays, task.k, *settings, task.selection == "shortlist", task.noise, source, turn, rng,
-        scratch.found, scratch.keys, scratch.slots, chosen[0],
-    )  # fmt: skip
+    choose_candidates(arrays, rules, task.ranking, scratch.work, chosen[0], rng)
     mask = np.zeros((1, task.rows, task.operations), np.bool_)
     changes = np.zeros((1, task.rows, task.operations), np.int8)
-    if not masks(arrays, chosen[0], *settings, mask[0], changes[0]):
+    if not masks(arrays, chosen[0], rules, mask[0], changes[0]):
         return None
     sizes = np.zeros((1, task.blocks + 1), np.int32)
     features = np.zeros((LARGEST, task.channels), np.int8)
-    look(
-        arrays,
-        chosen[0],
-        task.k,
-        sizes[0],
-        scratch.listed,
-        scratch.reads,
-        scratch.slot_of,
-        scratch.field,
-        features,
-    )
-    patches = Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]].copy(), sizes)
+    look(arrays, chosen[0], sizes[0], scratch.work, scratch.field, features)
+    patches = Patches(features[: sizes[0, 0]], scratch.work.reads[: sizes[0, 1]].copy(), sizes)
     return Observation(chosen, mask, changes, np.zeros((1, 3), np.float32), patches)

@@ -7,10 +7,11 @@ pool that is generated once; where an episode ends, the next one starts from a m
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from meshwright_agent.env.candidates import masks, permitted
+from meshwright_agent.env.candidates import Rules, masks, permitted
 from meshwright_agent.env.local_patch import LARGEST, Patches
 from meshwright_agent.env.task import (
     Observation,
@@ -33,7 +34,8 @@ from meshwright_core.core.arrays import (
     allocate,
     enlarge,
 )
-from meshwright_core.core.compilation import kernel
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.core.score import normalised_return
 from meshwright_core.domains.meshing import benchmark_mesh
 from meshwright_core.domains.random_parts import part_mesh
@@ -92,6 +94,46 @@ def _trimmed(arrays: MeshArrays) -> MeshArrays:
     return empty
 
 
+@by_reference
+class Episodes(NamedTuple):
+    """B episodes, and what is known of the P start meshes."""
+
+    active: np.ndarray
+    """(B,) bool: whether the episode goes on."""
+    bounds: np.ndarray
+    """(B, 2) int64: least and largest number of elements."""
+    source: np.ndarray
+    """(B,) int64: the start mesh."""
+    steps: np.ndarray
+    """(B,) int64: the steps so far."""
+    limits: np.ndarray
+    """(P,) int64: largest number of steps from each start mesh."""
+    optima: np.ndarray
+    """(P,) int64: s* of each start mesh."""
+    useful: np.ndarray
+    """(U,) int64: the start meshes that are not at their optimum."""
+
+
+@by_reference
+class ObservedArrays(NamedTuple):
+    """The arrays of an :class:`Observation` while they are filled."""
+
+    chosen: np.ndarray
+    mask: np.ndarray
+    changes: np.ndarray
+    sizes: np.ndarray
+    features: np.ndarray
+    """(N, C) int8: the patches of all episodes, one after the other."""
+    reads: np.ndarray
+    """(N, k + 1) int16: likewise."""
+
+
+@bare_kernel
+def _within(rules, bounds):
+    """The rules with bounds (2,) of the number of elements."""
+    return Rules(rules.first, rules.operations, rules.cap, bounds[0], bounds[1], rules.extended)
+
+
 @kernel
 def member(meshes, b):
     """Mesh b of stacked arrays, as views; returning views needs reference counting."""
@@ -128,36 +170,29 @@ def _reset(meshes, pool, b, p):
 
 
 @kernel
-def _observe_all(
-    meshes, active, k, first, count, cap, floors, ceilings, extended, listed_up, noise, source,
-    turn, rng, found, keys, slots, listed, reads, slot_of, field, chosen, mask, changes, sizes,
-    features, all_reads,
-):  # fmt: skip
+def _observe_all(meshes, episodes, rules, ranking, work, field, seen, rng):
     """Candidates, masks and patches of every active episode.
 
     Returns the numbers of rows of features and of reads.
     """
+    chosen, mask, sizes, reads = seen.chosen, seen.mask, seen.sizes, work.reads
     rows = read_rows = 0
     for b in range(len(chosen)):
         sizes[b] = 0
         mask[b] = False
         chosen[b] = -1
-        if not active[b]:
+        if not episodes.active[b]:
             continue
         m = member(meshes, b)
-        choose_candidates(
-            m, k, first, count, cap, floors[b], ceilings[b], extended, listed_up, noise, source,
-            turn, rng, found, keys, slots, chosen[b],
-        )  # fmt: skip
-        if not masks(
-            m, chosen[b], first, count, cap, floors[b], ceilings[b], extended, mask[b], changes[b]
-        ):
+        own = _within(rules, episodes.bounds[b])
+        choose_candidates(m, own, ranking, work, chosen[b], rng)
+        if not masks(m, chosen[b], own, mask[b], seen.changes[b]):
             chosen[b] = -1
             continue
-        look(m, chosen[b], k, sizes[b], listed, reads, slot_of, field, features[rows:])
+        look(m, chosen[b], sizes[b], work, field, seen.features[rows:])
         for i in range(sizes[b, 1]):
             for j in range(reads.shape[1]):
-                all_reads[read_rows + i, j] = reads[i, j]
+                seen.reads[read_rows + i, j] = reads[i, j]
         rows += sizes[b, 0]
         read_rows += sizes[b, 1]
     return rows, read_rows
@@ -174,28 +209,26 @@ def _act_all(meshes, first, actions, count, cap, chosen, touched, cleaned):
 
 
 @kernel
-def _random_steps(
-    meshes, pool, source, steps, limits, floors, ceilings, optima, first, count, cap, extended,
-    touched, cleaned, useful, rounds, rng,
-):  # fmt: skip
+def _random_steps(meshes, pool, episodes, rules, touched, cleaned, rounds, rng):
     """Apply `rounds` random permitted operations in each episode; returns how many were done."""
     done = 0
     k = meshes.counters[0, SIDES]
+    source, steps, useful = episodes.source, episodes.steps, episodes.useful
     for _ in range(rounds):
         for b in range(len(source)):
             m = member(meshes, b)
+            own = _within(rules, episodes.bounds[b])
             slots = m.counters[ELEMENT_SLOTS] * k
             for _ in range(_TRIES):
                 h = int(rng.random() * slots)
-                operation = first + int(rng.random() * count)
-                if m.edge[h, ORIGIN] >= 0 and permitted(
-                    m, operation, h, cap, floors[b], ceilings[b], extended
-                ):
-                    transition(m, operation, h, cap, touched, cleaned)
+                operation = rules.first + int(rng.random() * rules.operations)
+                if m.edge[h, ORIGIN] >= 0 and permitted(m, operation, h, own):
+                    transition(m, operation, h, rules.cap, touched, cleaned)
                     done += 1
                     break
             steps[b] += 1
-            if steps[b] >= limits[source[b]] or m.counters[SCORE] <= optima[source[b]]:
+            used_up = steps[b] >= episodes.limits[source[b]]
+            if used_up or m.counters[SCORE] <= episodes.optima[source[b]]:
                 source[b] = useful[int(rng.random() * len(useful))]
                 steps[b] = 0
                 _reset(meshes, pool, b, source[b])
@@ -269,6 +302,12 @@ class Batch:
         self.best[b] = self.start_scores[p]
         self.active[b] = self.best[b] > self.optima[p]
 
+    def _episodes(self) -> Episodes:
+        return Episodes(
+            self.active, self._bounds[self.source], self.source, self.steps, self._limits,
+            self.optima, self.useful,
+        )  # fmt: skip
+
     @property
     def scores(self) -> np.ndarray:
         """(B,) current s of each episode."""
@@ -287,14 +326,10 @@ class Batch:
         mask = np.empty((size, task.rows, task.operations), np.bool_)
         changes = np.zeros((size, task.rows, task.operations), np.int8)
         sizes = np.empty((size, task.blocks + 1), np.int32)
-        bounds = self._bounds[self.source]
-        source, turn = task.template
+        seen = ObservedArrays(chosen, mask, changes, sizes, self._features, self._reads)
         rows, read_rows = _observe_all(
-            self.meshes, self.active, task.k, task.first_operation, task.operations, task.cap,
-            np.ascontiguousarray(bounds[:, 0]), np.ascontiguousarray(bounds[:, 1]), task.extended,
-            task.selection == "shortlist", task.noise, source, turn, self.rng, scratch.found,
-            scratch.keys, scratch.slots, scratch.listed, scratch.reads, scratch.slot_of,
-            scratch.field, chosen, mask, changes, sizes, self._features, self._reads,
+            self.meshes, self._episodes(), task.rules(0, 0), task.ranking, scratch.work,
+            scratch.field, seen, self.rng,
         )  # fmt: skip
         left = 1.0 - self.steps / self._limits[self.source]
         growth = self.meshes.counters[:, ELEMENTS] / self.start_elements[self.source]
@@ -308,12 +343,9 @@ class Batch:
         For measuring speed: best states are not recorded.
         """
         task, scratch = self.task, self.scratch
-        bounds = self._bounds[self.source]
         done = _random_steps(
-            self.meshes, self.pool, self.source, self.steps, self._limits,
-            np.ascontiguousarray(bounds[:, 0]), np.ascontiguousarray(bounds[:, 1]), self.optima,
-            task.first_operation, task.operations, task.cap, task.extended, scratch.touched,
-            scratch.cleaned, self.useful, rounds, self.rng,
+            self.meshes, self.pool, self._episodes(), task.rules(0, 0), scratch.touched,
+            scratch.cleaned, rounds, self.rng,
         )  # fmt: skip
         return int(done)
 

@@ -119,5 +119,5 @@ class Runner:
             size = self.mesh.n_elements
             self.mesh.reserve(2 * _SPARE + size // 4, 2 * _SPARE + size // 4)
         arrays = self.mesh.arrays
-        if len(self._scratch.slot_of) < len(arrays.edge):
+        if len(self._scratch.work.slot_of) < len(arrays.edge):
             self._scratch = Scratch(self._task, len(arrays.edge), len(arrays.vertex))

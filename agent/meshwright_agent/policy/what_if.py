@@ -47,18 +47,15 @@ def outlook(mesh: HalfEdgeMesh, policy: Policy, halfedges: np.ndarray) -> Outloo
     chosen = np.asarray(halfedges, np.int64).reshape(1, -1)
     shape = (1, chosen.shape[1], task.operations)
     mask, changes = np.zeros(shape, np.bool_), np.zeros(shape, np.int8)
-    settings = (task.first_operation, task.operations, task.cap, *task.bounds(mesh.n_elements))
-    some = masks(arrays, chosen[0], *settings, task.extended, mask[0], changes[0])
+    rules = task.rules(*task.bounds(mesh.n_elements))
+    some = masks(arrays, chosen[0], rules, mask[0], changes[0])
     if not some:
         nothing = np.zeros(shape[1:])
         return Outlook(chosen[0], nothing, mask[0], changes[0].astype(np.int64), float("nan"))
     sizes = np.zeros((1, task.blocks + 1), np.int32)
     features = np.zeros((LARGEST, task.channels), np.int8)
-    look(
-        arrays, chosen[0], task.k, sizes[0], scratch.listed, scratch.reads, scratch.slot_of,
-        scratch.field, features,
-    )  # fmt: skip
-    patches = Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]].copy(), sizes)
+    look(arrays, chosen[0], sizes[0], scratch.work, scratch.field, features)
+    patches = Patches(features[: sizes[0, 0]], scratch.work.reads[: sizes[0, 1]].copy(), sizes)
     state = np.array([[(mesh.score - mesh.optimum) / 10.0, 1.0, 1.0]], np.float32)
     probabilities, value = action_probabilities(
         policy.network, Observation(chosen, mask, changes, state, patches)
@@ -88,12 +85,9 @@ def candidates(mesh: HalfEdgeMesh, policy: Policy, h: int = -1, seed: int = 0) -
         return real[np.sort(np.unique(real, return_index=True)[1])]
     scratch = Scratch(task, len(arrays.edge), len(arrays.vertex))
     chosen = np.full(task.rows, -1, np.int64)
-    source, turn = task.template
     choose_candidates(
-        arrays, task.k, task.first_operation, task.operations, task.cap,
-        *task.bounds(mesh.n_elements), task.extended, task.selection == "shortlist", 0.0,
-        source, turn, np.random.default_rng(seed), scratch.found, scratch.keys, scratch.slots,
-        chosen,
+        arrays, task.rules(*task.bounds(mesh.n_elements)), task.ranking._replace(noise=0.0),
+        scratch.work, chosen, np.random.default_rng(seed),
     )  # fmt: skip
     chosen = chosen[chosen >= 0]
     if h >= 0 and h not in chosen:

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
-from meshwright_agent.env.candidates import permitted
-from meshwright_agent.env.task import FIRST_OPERATION, MOST_CLEANUPS, Task, transition
+from meshwright_agent.env.candidates import Rules, permitted
+from meshwright_agent.env.task import MOST_CLEANUPS, Task, transition
 from meshwright_core.core.arrays import (
     DEGREE,
     ELEMENT_SLOTS,
@@ -32,6 +33,7 @@ from meshwright_core.core.arrays import (
     turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
@@ -71,6 +73,42 @@ _LONGEST_LOG = 1 << 23
 LENGTH, BEST_LENGTH, BEST_SCORE, BEST_ELEMENTS, PROPOSALS, APPLIED, SAVED_AT, SWEEP_AT = range(8)
 # return codes of a slice
 USED_UP, AT_GOAL, SHORT = 0, 1, 2
+
+
+@by_reference
+class Schedule(NamedTuple):
+    """How proposals are drawn and accepted."""
+
+    hot: float
+    """Temperature at the start of a sweep."""
+    cold: float
+    """Temperature at its end."""
+    sweep: float
+    """Proposals in a sweep."""
+    price: float
+    """Of an element, in units of s."""
+    split_price: float
+    """Of a global split, in units of s."""
+    weights: np.ndarray
+    """(6,) float64: probability of proposing each operation."""
+    anywhere: float
+    """Share of proposals at a half-edge drawn from the whole mesh."""
+    fewer: bool
+    """Among equal s prefer fewer elements, and stop at each state that is better than the best."""
+    goal: int
+    """s at which to stop."""
+
+
+@by_reference
+class Log(NamedTuple):
+    """What was done, with scratch for the clean-ups."""
+
+    operations: np.ndarray
+    """(N, 2) int32: operations and half-edges from the start to the current state."""
+    state: np.ndarray
+    """(8,) int64, indexed by LENGTH, BEST_LENGTH, ..."""
+    touched: np.ndarray
+    cleaned: np.ndarray
 
 
 @bare_kernel
@@ -156,16 +194,14 @@ def restart(m, best, state):
 
 
 @kernel
-def anneal_slice(
-    m, best, log, state, proposals, hot, cold, sweep, price, split_price, fewer, weights, anywhere,
-    first, cap, floor, ceiling, extended, goal, touched, cleaned, rng,
-):  # fmt: skip
-    """At most so many proposals; returns USED_UP, AT_GOAL, or SHORT if the log is full.
+def anneal_slice(m, best, done, proposals, schedule, rules, rng):
+    """At most so many proposals; returns USED_UP, AT_GOAL, or SHORT if the log `done` is full.
 
-    sweep: proposals from the temperature `hot` to `cold`. fewer: among equal s prefer fewer
-    elements, and stop at the first state that is better than the best, with AT_GOAL.
+    With `schedule.fewer` it returns AT_GOAL at the first state that is better than the best.
     """
     k = m.counters[SIDES]
+    log, state, cleaned = done.operations, done.state, done.cleaned
+    hot, cold, sweep, fewer = schedule.hot, schedule.cold, schedule.sweep, schedule.fewer
     temperature = hot
     for at in range(proposals):
         if at % 64 == 0:
@@ -178,10 +214,10 @@ def anneal_slice(
             temperature = hot * (cold / hot) ** (state[SWEEP_AT] / sweep)
             state[SWEEP_AT] += 64
             state[PROPOSALS] += 64
-        h = propose(m, k, anywhere, rng)
+        h = propose(m, k, schedule.anywhere, rng)
         if h < 0:
             continue
-        operation = first + draw_operation(weights, rng)
+        operation = rules.first + draw_operation(schedule.weights, rng)
         if operation > GLOBAL_SPLIT:
             operation = CHORD_COLLAPSE
         if m.edge[h, TWIN] < 0 and needs_twin(operation):
@@ -189,18 +225,20 @@ def anneal_slice(
         cleanups = 0
         if operation == CHORD_COLLAPSE:
             # it merges pairs of vertices and adds their Delta, so s never rises
-            if m.counters[ELEMENTS] <= floor or check_chord_collapse(m, h, cap) != ALLOWED:
+            if m.counters[ELEMENTS] <= rules.floor:
+                continue
+            if check_chord_collapse(m, h, rules.cap) != ALLOWED:
                 continue
             rewrite(m, CHORD_COLLAPSE, h)
         else:
-            change = score_change(m, operation, h) + price * growth(m, operation, h)
+            change = score_change(m, operation, h) + schedule.price * growth(m, operation, h)
             if operation == GLOBAL_SPLIT:
-                change += split_price
+                change += schedule.split_price
             if change > 0.0 and rng.random() >= np.exp(-change / temperature):
                 continue
-            if not permitted(m, operation, h, cap, floor, ceiling, extended):
+            if not permitted(m, operation, h, rules):
                 continue
-            cleanups = transition(m, operation, h, cap, touched, cleaned)
+            cleanups = transition(m, operation, h, rules.cap, done.touched, cleaned)
         length = state[LENGTH]
         log[length, 0], log[length, 1] = operation, h
         for i in range(cleanups):
@@ -211,15 +249,15 @@ def anneal_slice(
             continue
         # copying takes time proportional to the mesh: on large ones it waits for more progress
         due = 64 * (state[APPLIED] - state[SAVED_AT]) >= m.counters[ELEMENTS] - 256
-        if due or fewer or m.counters[SCORE] <= goal:
+        if due or fewer or m.counters[SCORE] <= schedule.goal:
             save_best(m, best, state)
-            if fewer or m.counters[SCORE] <= goal:
+            if fewer or m.counters[SCORE] <= schedule.goal:
                 return AT_GOAL
     return USED_UP
 
 
 @kernel
-def descent_step(m, plateau, first, count, cap, floor, ceiling, extended, touched, cleaned, rng):
+def descent_step(m, plateau, rules, touched, cleaned, rng):
     """The best operation on the whole mesh, ties broken at random: (operation, half-edge, number of
     clean-ups), or -1 for the operation if none lowers s (plateau: or leaves it).
     """
@@ -228,20 +266,20 @@ def descent_step(m, plateau, first, count, cap, floor, ceiling, extended, touche
     for h in range(k * m.counters[ELEMENT_SLOTS]):
         if m.edge[h, ORIGIN] < 0:
             continue
-        for operation in range(first, first + count):
+        for operation in range(rules.first, rules.first + rules.operations):
             if m.edge[h, TWIN] < 0 and needs_twin(operation):
                 continue
             change = score_change(m, operation, h)
             if change > best or (change == best and tied == 0):
                 continue
-            if not permitted(m, operation, h, cap, floor, ceiling, extended):
+            if not permitted(m, operation, h, rules):
                 continue
             tied = 1 if change < best else tied + 1
             if change < best or rng.random() * tied < 1.0:
                 best, chosen, at = change, operation, h
     if chosen < 0:
         return -1, -1, 0
-    return chosen, at, transition(m, chosen, at, cap, touched, cleaned)
+    return chosen, at, transition(m, chosen, at, rules.cap, touched, cleaned)
 
 
 class Annealer:
@@ -287,14 +325,15 @@ class Annealer:
         self.floor = (size if kind == "tri" else 1) if floor is None else floor
         self.ceiling = max(2 * size, size + 8) if ceiling is None else ceiling
         self.goal = mesh.optimum if goal is None else goal
-        self._weights = np.array(WEIGHTS[kind] if weights is None else weights)
-        self._weights /= self._weights.sum()
-        self._temperatures = TEMPERATURES[kind] if temperatures is None else temperatures
-        self._anywhere = anywhere
-        self._sweep = max(64.0, sweep * size)
-        self._prices = (PRICE[kind] if price is None else price, split_price)
+        shares = np.array(WEIGHTS[kind] if weights is None else weights, np.float64)
+        hot, cold = TEMPERATURES[kind] if temperatures is None else temperatures
+        self._schedule = Schedule(
+            float(hot), float(cold), max(64.0, float(sweep * size)),
+            float(PRICE[kind] if price is None else price), float(split_price),
+            shares / shares.sum(), float(anywhere), fewer, self.goal,
+        )  # fmt: skip
         self.fewer = fewer
-        self._first, self._cap, self._extended = FIRST_OPERATION[kind], task.cap, extended
+        self._rules = task.rules(self.floor, self.ceiling)._replace(extended=extended)
         self._touched, self._cleaned = np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64)
         self.rng = np.random.default_rng(seed)
         self.state = np.zeros(8, np.int64)
@@ -302,6 +341,11 @@ class Annealer:
         self.arrays = with_room(mesh, self.ceiling)
         self.best = MeshArrays(*(array.copy() for array in self.arrays))
         self.state[BEST_SCORE], self.state[BEST_ELEMENTS] = mesh.score, size
+
+    @property
+    def rules(self) -> Rules:
+        """The rules for its operations, with the present floor and ceiling."""
+        return self._rules._replace(floor=self.floor, ceiling=self.ceiling)
 
     @property
     def best_score(self) -> int:
@@ -329,10 +373,9 @@ class Annealer:
         That is at the goal or, with `fewer`, at an improvement.
         """
         ended = anneal_slice(
-            self.arrays, self.best, self.log, self.state, proposals, *self._temperatures,
-            self._sweep, *self._prices, self.fewer, self._weights, self._anywhere,
-            self._first, self._cap, self.floor, self.ceiling, self._extended, self.goal,
-            self._touched, self._cleaned, self.rng,
+            self.arrays, self.best, Log(self.log, self.state, self._touched, self._cleaned),
+            proposals, self._schedule._replace(fewer=self.fewer, goal=self.goal), self.rules,
+            self.rng,
         )  # fmt: skip
         if ended == SHORT:
             self._lengthen()
@@ -423,15 +466,14 @@ def greedy(
     state, and its s. The other arguments are those of :class:`Annealer`.
     """
     limits = Annealer(mesh, seed, extended=extended, floor=floor, ceiling=ceiling)
-    task, arrays = Task(mesh.kind), limits.arrays
+    arrays = limits.arrays
     touched, cleaned = np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64)
     done: Operations = []
     length, best, idle = 0, mesh.score, 0
     while best > mesh.optimum and idle <= plateau and not (cancelled is not None and cancelled()):
         code, h, cleanups = descent_step(
-            arrays, idle < plateau, task.first_operation, task.operations, task.cap, limits.floor,
-            limits.ceiling, extended, touched, cleaned, limits.rng,
-        )  # fmt: skip
+            arrays, idle < plateau, limits.rules, touched, cleaned, limits.rng
+        )
         if code < 0:
             break
         done.append((NAMES[code], h))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshwright_agent.search.annealing import Operations, with_room
-from meshwright_agent.search.shortening import first_names, name_all, replay
+from meshwright_agent.search.shortening import Goal, first_names, name_all, nothing_replayed, replay
 from meshwright_core.core.arrays import MeshArrays
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import CLEANUP, CODES, NAMES
@@ -34,17 +34,16 @@ def without_cleanups(mesh: HalfEdgeMesh, operations: Operations) -> Operations:
     if names < 0:
         return operations
     left = entries[codes != CLEANUP]
-    done, on = np.zeros(len(left), np.bool_), np.zeros(len(left), np.int64)
+    done = nothing_replayed(len(left))
     stop = replay(
-        _copy(start), *first_names(mesh.slots, len(start.vertex), names), left, 0, len(left), 0, 0,
-        int(states[-1, 1]), _UNLIMITED, done, on,
+        _copy(start), first_names(mesh.slots, len(start.vertex), names), left, 0, len(left),
+        Goal(0, 0, int(states[-1, 1]), _UNLIMITED), done,
     )  # fmt: skip
     if stop < 0:
         return operations
-    done[stop:] = False
-    return [
-        (NAMES[code], h) for code, h in zip(left[done, 0].tolist(), on[done].tolist(), strict=True)
-    ]
+    kept = np.flatnonzero(done.kept[:stop])
+    codes, halfedges = left[kept, 0], done.halfedges[kept]
+    return [(NAMES[code], h) for code, h in zip(codes.tolist(), halfedges.tolist(), strict=True)]
 
 
 def _copy(arrays: MeshArrays) -> MeshArrays:

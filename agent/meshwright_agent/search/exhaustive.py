@@ -10,6 +10,7 @@ The result for a length is a proof, except for collisions of 64-bit hashes.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from meshwright_core.core.arrays import (
     following,
 )
 from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.history.journal import undo
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import (
@@ -54,6 +56,40 @@ degrees, a collapse replaces four vertices by three, all others change fewer."""
 _ROOM = 64
 """Slots reserved, relative to the size of the mesh: no sequence that is tried needs more."""
 _EXHAUSTED, _FULL, _NODES_USED, _NO_SLOTS = 0, 1, 2, 3
+
+
+@by_reference
+class Goal(NamedTuple):
+    """What is searched for, and how long."""
+
+    score: int
+    """Largest s."""
+    most: int
+    """Largest number of elements, 0 for any."""
+    nodes: int
+    """Largest number of states to be visited."""
+
+
+@by_reference
+class Path(NamedTuple):
+    """The sequence of operations being tried, for each of D + 1 numbers of them."""
+
+    place: np.ndarray
+    """(D + 1, 2) int64: the place in the list of candidates, and the number of vertices made."""
+    made: np.ndarray
+    """(D + 1, N) int64: those vertices."""
+    former: np.ndarray
+    """(D + 1, N) uint64: their names before."""
+
+
+@by_reference
+class Visited(NamedTuple):
+    """A hash table of the states that were reached."""
+
+    keys: np.ndarray
+    """(S,) uint64: hashes of states, 0 for none."""
+    left: np.ndarray
+    """(S,) int8: the largest number of operations left in that state."""
 
 
 @dataclass(frozen=True)
@@ -118,22 +154,26 @@ class _Search:
             journal=np.zeros((1 << 18, 2), np.int64),
         )
         ways = np.zeros((KEPT, self._depth, 2), np.int64)
-        told = np.zeros(2, np.int64)
+        counts = np.zeros(2, np.int64)
         width = len(work.arrays.trace)
         ended = int(
             _explore(
-                work.arrays, _first_names(len(work.arrays.vertex)), self._depth, self._goal,
-                self._most, nodes, np.zeros((self._depth + 1, 2), np.int64),
-                np.zeros((self._depth + 1, width), np.int64),
-                np.zeros((self._depth + 1, width), np.uint64),
-                np.zeros(self._slots, np.uint64), np.zeros(self._slots, np.int8), ways, told,
+                work.arrays, _first_names(len(work.arrays.vertex)), self._depth,
+                Goal(self._goal, self._most, nodes),
+                Path(
+                    np.zeros((self._depth + 1, 2), np.int64),
+                    np.zeros((self._depth + 1, width), np.int64),
+                    np.zeros((self._depth + 1, width), np.uint64),
+                ),
+                Visited(np.zeros(self._slots, np.uint64), np.zeros(self._slots, np.int8)),
+                ways, counts,
             )
         )  # fmt: skip
         if ended == _NO_SLOTS:
             raise RuntimeError("the search needs more slots than it has reserved")
-        self.nodes = int(told[1])
+        self.nodes = int(counts[1])
         self.sequences = tuple(
-            tuple((NAMES[int(code)], int(h)) for code, h in way) for way in ways[: told[0]]
+            tuple((NAMES[int(code)], int(h)) for code, h in way) for way in ways[: counts[0]]
         )
         return ended
 
@@ -194,8 +234,9 @@ def _base(m, names, code, h, k):
 
 
 @bare_kernel
-def _met(keys, left, key, remaining):
+def _met(visited, key, remaining):
     """Whether the state was reached before with as many operations left; if not, it is recorded."""
+    keys, left = visited.keys, visited.left
     mask = np.uint64(len(keys) - 1)
     place = key & mask
     for _ in range(64):
@@ -213,87 +254,87 @@ def _met(keys, left, key, remaining):
 
 
 @bare_kernel
-def _reached(m, goal, most):
-    return m.counters[SCORE] <= goal and (most == 0 or m.counters[ELEMENTS] <= most)
+def _reached(m, goal):
+    fits = goal.most == 0 or m.counters[ELEMENTS] <= goal.most
+    return m.counters[SCORE] <= goal.score and fits
 
 
 @bare_kernel
-def _can_be_last(m, code, h, goal, most):
+def _can_be_last(m, code, h, goal):
     """False if the goal is out of reach with this as the last operation, allowed or not."""
     if code == CLEANUP:
-        return most > 0 and m.counters[SCORE] <= goal
+        return goal.most > 0 and m.counters[SCORE] <= goal.score
     if m.edge[h, TWIN] < 0 and needs_twin(code):
         return False
-    return m.counters[SCORE] + score_change(m, code, h) <= goal
+    return m.counters[SCORE] + score_change(m, code, h) <= goal.score
 
 
 @bare_kernel
-def _last(m, code, h, goal, most):
+def _last(m, code, h, goal):
     """Whether this operation, which must be allowed, leads to the goal."""
     rewrite(m, code, h)
-    reached = _reached(m, goal, most)
+    reached = _reached(m, goal)
     undo(m)
     return reached
 
 
 @bare_kernel
-def _explore(
-    m, names, depth, goal, most, nodes, stack, ids, former, keys, left, ways, told
-):  # fmt: skip
+def _explore(m, names, depth, goal, path, visited, ways, counts):
     """Try all sequences of `depth` operations, skipping states that were reached before.
 
-    stack (depth + 1, 2): the place in the list of candidates, and the number of vertices made;
-    ids, former: of those vertices, their former names. told: sequences found, states looked at.
+    names: of the vertices; ways (W, depth, 2): receives the sequences found; counts (2,): receives
+    the number of sequences found and of states visited. Returns why it ended.
     """
+    place, made_ids, former = path.place, path.made, path.former
     k = m.counters[SIDES]
     first, count = (TRI_FLIP, 3) if k == 3 else (FLIP_LEFT, 6)
     level = 0
-    stack[0, 0] = 0
+    place[0, 0] = 0
     while level >= 0:
-        at = stack[level, 0]
+        at = place[level, 0]
         h, code = at // count, first + at % count
         if h >= k * m.counters[ELEMENT_SLOTS]:
             level -= 1
             if level >= 0:
                 undo(m)
-                for i in range(stack[level, 1] - 1, -1, -1):
-                    names[ids[level, i]] = former[level, i]
+                for i in range(place[level, 1] - 1, -1, -1):
+                    names[made_ids[level, i]] = former[level, i]
             continue
-        stack[level, 0] = at + 1
+        place[level, 0] = at + 1
         if m.edge[h, ORIGIN] < 0 or _same_as_other(m, code, h, k):
             continue
-        if level == depth - 1 and not _can_be_last(m, code, h, goal, most):
+        if level == depth - 1 and not _can_be_last(m, code, h, goal):
             continue
         verdict = check(m, code, h, 0)
         if verdict != ALLOWED:
             if verdict == 99:
                 return _NO_SLOTS
             continue
-        ways[told[0], level, 0], ways[told[0], level, 1] = code, h
+        ways[counts[0], level, 0], ways[counts[0], level, 1] = code, h
         if level == depth - 1:
-            if _last(m, code, h, goal, most):
+            if _last(m, code, h, goal):
                 for i in range(depth):
-                    if told[0] + 1 < len(ways):
-                        ways[told[0] + 1, i, 0] = ways[told[0], i, 0]
-                        ways[told[0] + 1, i, 1] = ways[told[0], i, 1]
-                told[0] += 1
-                if told[0] == len(ways):
+                    if counts[0] + 1 < len(ways):
+                        ways[counts[0] + 1, i, 0] = ways[counts[0], i, 0]
+                        ways[counts[0] + 1, i, 1] = ways[counts[0], i, 1]
+                counts[0] += 1
+                if counts[0] == len(ways):
                     return _FULL
             continue
         base = _base(m, names, code, h, k)
         rewrite(m, code, h)
-        made = _name_created(m, names, base, ids[level], former[level])
+        made = _name_created(m, names, base, made_ids[level], former[level])
         remaining = depth - 1 - level
-        unreachable = m.counters[IRREGULAR] - goal > PER_OPERATION * remaining
-        if unreachable or _met(keys, left, _state(m, names, k), remaining):
+        unreachable = m.counters[IRREGULAR] - goal.score > PER_OPERATION * remaining
+        if unreachable or _met(visited, _state(m, names, k), remaining):
             undo(m)
             for i in range(made - 1, -1, -1):
-                names[ids[level, i]] = former[level, i]
+                names[made_ids[level, i]] = former[level, i]
             continue
-        told[1] += 1
-        if told[1] > nodes:
+        counts[1] += 1
+        if counts[1] > goal.nodes:
             return _NODES_USED
-        stack[level, 1] = made
+        place[level, 1] = made
         level += 1
-        stack[level, 0] = 0
+        place[level, 0] = 0
     return _EXHAUSTED

@@ -9,6 +9,10 @@ element. The correspondence is kept up when operations create and delete element
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from meshwright_agent.env.vector_env import member
 from meshwright_agent.search.repair_queue import FILL, dequeue, enqueue, irregular
 from meshwright_core.core.arrays import (
@@ -28,6 +32,7 @@ from meshwright_core.core.arrays import (
     ORIGIN,
     PLACE,
     SCORE,
+    SIDES,
     STEP,
     STEP_END,
     TWIN,
@@ -37,6 +42,7 @@ from meshwright_core.core.arrays import (
     turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.history.journal import undo
 from meshwright_core.operations.catalogue import check, rewrite, score_change
 from meshwright_core.operations.refusals import ALLOWED
@@ -45,8 +51,16 @@ MOST_TAKEN = 2
 """Largest number of element slots that a local operation takes."""
 
 
+@by_reference
+class Edits(NamedTuple):
+    """Operations and the half-edges that they are applied to, in arrays of one shape."""
+
+    operations: np.ndarray
+    halfedges: np.ndarray
+
+
 @bare_kernel
-def next_patch(m, a, k, smallest, largest, patience, number, tries, found):
+def next_patch(m, a, smallest, largest, patience, number, tries, found):
     """Grow a patch around the first vertex of the agenda that allows it.
 
     A vertex that was visited in vain i times gets smallest * 2^i elements, `largest` at most, and
@@ -56,6 +70,7 @@ def next_patch(m, a, k, smallest, largest, patience, number, tries, found):
     Until :func:`meshwright_agent.search.repair_queue.settle` frees them the vertices belong to the
     patch; so does `place`, which :func:`cut_out` clears.
     """
+    k = m.counters[SIDES]
     while tries > 0 and a.state[FILL] > 0:
         tries -= 1
         v = dequeue(a)
@@ -257,8 +272,9 @@ def _coming(m, k, slots):
 
 
 @bare_kernel
-def _put_back(m, patch, k, cap, elements, operations, halfedges, slots, done, done_at):
+def _put_back(m, patch, cap, elements, operations, halfedges, slots, done):
     """Apply the operations of one patch to the large mesh; see :func:`put_back`."""
+    k = m.counters[SIDES]
     counters = m.counters
     counters[JOURNALLING] = 1
     counters[JOURNAL_TOP] = counters[STEP] = counters[STEP_END] = 0
@@ -276,8 +292,8 @@ def _put_back(m, patch, k, cap, elements, operations, halfedges, slots, done, do
         rewrite(patch, operation, h)
         for j in range(slots.shape[1]):
             elements[slots[1, j]] = slots[0, j]
-        done[count] = operation
-        done_at[count] = there
+        done.operations[count] = operation
+        done.halfedges[count] = there
         count += 1
         if counters[SCORE] < best:
             best, kept = counters[SCORE], count
@@ -288,22 +304,23 @@ def _put_back(m, patch, k, cap, elements, operations, halfedges, slots, done, do
 
 
 @kernel
-def put_back(m, patches, k, cap, elements, operations, halfedges, counts, slots, done, done_at):
+def put_back(m, patches, cap, elements, edits, counts, slots, done):
     """Do on the large mesh what was done on B patches, one after the other.
 
     patches: as they were cut out, stacked; they follow. elements (B, E): the element of the large
-    mesh for each slot of a patch, -1 for none; follows too. operations, halfedges (T, B): the first
-    `counts` (B,) of a patch are its own. Every operation is checked again, and must change s as in
+    mesh for each slot of a patch, -1 for none; follows too. edits (T, B): the first `counts` (B,)
+    of a patch are its own. Every operation is checked again, and must change s as in
     the patch; a patch whose operation fails keeps what came before, up to its lowest s. slots
-    (2, MOST_TAKEN): scratch. done, done_at (N,): receive the operations as they replay on the large
-    mesh. Returns their number; `counts` receives how many each patch kept.
+    (2, MOST_TAKEN): scratch. done (N,): receives the edits as they replay on the large mesh.
+    Returns their number; `counts` receives how many each patch kept.
     """
     total = 0
     for b in range(len(counts)):
         n = counts[b]
         counts[b] = _put_back(
-            m, member(patches, b), k, cap, elements[b], operations[:n, b].copy(),
-            halfedges[:n, b].copy(), slots, done[total:], done_at[total:],
+            m, member(patches, b), cap, elements[b], edits.operations[:n, b].copy(),
+            edits.halfedges[:n, b].copy(), slots,
+            Edits(done.operations[total:], done.halfedges[total:]),
         )  # fmt: skip
         total += counts[b]
     return total

@@ -20,13 +20,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import torch
 
-from meshwright_agent.env.candidates import LOOKED_AT
+from meshwright_agent.env.candidates import LOOKED_AT, Rules
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
 from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_agent.search.patch_extraction import (
     MOST_TAKEN,
+    Edits,
     cut_out,
     mask_rim,
     next_patch,
@@ -304,15 +305,12 @@ class _Work:
 
     def descend(self, stop: Callable[[], str]) -> str:
         """Greedy descent; returns why it was stopped, empty if it was completed."""
-        task = self.task
+        rules = Rules(*self._local, self.cap, *self.bounds, self.task.extended)
         buffers = np.zeros((2, _LOOKS), np.int64)
         reason = stop()
         while not reason and self.agenda.state[FILL] > 0:
             self._make_room()
-            count = descend(
-                self.mesh.arrays, self.agenda, task.k, *self._local, self.cap, *self.bounds,
-                task.extended, _LOOKS, buffers[0], buffers[1],
-            )  # fmt: skip
+            count = descend(self.mesh.arrays, self.agenda, rules, _LOOKS, buffers[0], buffers[1])
             self._note(buffers[0, :count].copy(), buffers[1, :count].copy())
             reason = stop()
         left = self.mesh.arrays.irregular[: self.mesh.irregular_count]
@@ -335,8 +333,8 @@ class _Work:
         tries = int(self.agenda.state[FILL])
         while len(patches) < PATCHES:
             count, tries, _ = next_patch(
-                self.mesh.arrays, self.agenda, self.mesh.k, SMALLEST, LARGEST, VISITS,
-                len(patches) + 1, tries, self._found,
+                self.mesh.arrays, self.agenda, SMALLEST, LARGEST, VISITS, len(patches) + 1, tries,
+                self._found,
             )  # fmt: skip
             if count == 0:
                 break
@@ -393,9 +391,9 @@ class _Work:
             done = np.zeros((2, total), np.int64)
             arrays = self.mesh.arrays._replace(journal=self._journal, steps=self._steps)
             count = put_back(
-                arrays, batch.pool, self.mesh.k, self.mesh.degree_cap, elements,
-                np.array(record.operations), np.array(record.halfedges), record.counts,
-                self._slots, done[0], done[1],
+                arrays, batch.pool, self.mesh.degree_cap, elements,
+                Edits(np.array(record.operations), np.array(record.halfedges)), record.counts,
+                self._slots, Edits(done[0], done[1]),
             )  # fmt: skip
             self._note(done[0, :count], done[1, :count])
         for row, patch, kept in zip(elements, patches, record.counts, strict=True):

@@ -17,6 +17,7 @@ from meshwright_core.core.arrays import (
     HALF,
     ORIGIN,
     PLACE,
+    SIDES,
     TOUCHED_COUNT,
     TRACE_IDS,
     TWIN,
@@ -111,13 +112,14 @@ def enlist(a, vertices):
 
 
 @bare_kernel
-def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operations, halfedges):
+def descend(m, a, rules, looks, operations, halfedges):
     """Apply operations that lower s, the best at each vertex of the queue, until it is empty.
 
     Each vertex is looked at with the elements around it; what an operation touches is queued again.
     Stops after `looks` vertices, or with operations and halfedges (N,) full; they receive what was
     done. Returns how many operations that were.
     """
+    k = m.counters[SIDES]
     done = 0
     while looks > 0 and a.state[FILL] > 0 and done < len(operations):
         looks -= 1
@@ -129,12 +131,12 @@ def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operati
         h = start
         for _ in range(m.vertex[v, DEGREE]):
             for g in range(h - h % k, h - h % k + k):
-                for j in range(first, first + count):
+                for j in range(rules.first, rules.first + rules.operations):
                     # the change is cheap to compute, but undefined without a twin
                     if m.edge[g, TWIN] < 0 and needs_twin(j):
                         continue
                     change = score_change(m, j, g)
-                    if change < best and permitted(m, j, g, cap, floor, ceiling, extended):
+                    if change < best and permitted(m, j, g, rules):
                         best, operation, at = change, j, g
             h = turned(m, h, k)
             if h < 0 or h == start:

@@ -30,6 +30,7 @@ from meshwright_core.core.arrays import (
     following,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import CODES, NAMES, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
@@ -40,6 +41,7 @@ SLICE = 20_000
 _NOWHERE = -1
 
 
+@by_reference
 class Names(NamedTuple):
     """The current names of the vertices."""
 
@@ -47,6 +49,47 @@ class Names(NamedTuple):
     """(names,) int32 vertex ids, -1 for none."""
     name_of: np.ndarray
     """(vertex slots,) int32 names, -1 for none."""
+
+
+@by_reference
+class Goal(NamedTuple):
+    """What a replay must reach, and what it must keep to."""
+
+    cap: int
+    """Highest degree that an operation may produce, 0 for any."""
+    floor: int
+    """Least number of elements at each step."""
+    score: int
+    """Largest s at the end."""
+    most: int
+    """Largest number of elements at the end."""
+
+
+@by_reference
+class Replayed(NamedTuple):
+    """What a replay did with each of N entries."""
+
+    kept: np.ndarray
+    """(N,) bool: whether it was applied."""
+    halfedges: np.ndarray
+    """(N,) int64: to which half-edge."""
+
+
+@by_reference
+class Deletion(NamedTuple):
+    """The entries from which chunks are deleted, with scratch for that."""
+
+    entries: np.ndarray
+    """(N, 5) int32, changed in place."""
+    spare: np.ndarray
+    """(N, 5) int32: scratch."""
+    progress: np.ndarray
+    """(2,) int64: the entry that comes next, and the number of entries."""
+
+
+def nothing_replayed(count: int) -> Replayed:
+    """The arrays for a replay of so many entries."""
+    return Replayed(np.zeros(count, np.bool_), np.zeros(count, np.int64))
 
 
 def first_names(slots: int, capacity: int, count: int) -> Names:
@@ -57,8 +100,9 @@ def first_names(slots: int, capacity: int, count: int) -> Names:
 
 
 @bare_kernel
-def _name_created(m, vertex_of, name_of, first, count):
+def _name_created(m, names, first, count):
     """Name the vertices that the last operation created, at most `count`."""
+    vertex_of, name_of = names.vertex_of, names.name_of
     made = m.trace[NEW_COUNT]
     for i in range(made):
         v = m.trace[TRACE_IDS + i]
@@ -123,8 +167,9 @@ def connectivity_hash(m, k, name_of):
 
 
 @bare_kernel
-def named_halfedge(m, k, entry, vertex_of, name_of):
+def named_halfedge(m, k, entry, names):
     """The half-edge between the vertices named by an entry; -1 if there is none."""
+    vertex_of, name_of = names.vertex_of, names.name_of
     a, b = vertex_of[entry[1]], vertex_of[entry[2]]
     if a < 0 or b < 0 or name_of[a] != entry[1] or name_of[b] != entry[2]:
         return -1
@@ -134,26 +179,32 @@ def named_halfedge(m, k, entry, vertex_of, name_of):
 
 
 @bare_kernel
-def replay(m, vertex_of, name_of, entries, start, stop, cap, floor, goal, most, kept, halfedges):
-    """Replay entries start ... stop-1 as far as they are allowed, and until s <= goal with at most
-    `most` elements. kept (N,): which of them were done; halfedges (N,): on what. Returns how many
-    were gone through, or -1 if that state was not met.
+def _is_at(m, goal):
+    return m.counters[SCORE] <= goal.score and m.counters[ELEMENTS] <= goal.most
+
+
+@bare_kernel
+def replay(m, names, entries, start, stop, goal, done):
+    """Replay entries start ... stop-1 as far as they are allowed, and until the goal is reached.
+
+    done: receives what was applied. Returns how many entries were gone through, or -1 if the goal
+    was not reached.
     """
     k = m.counters[SIDES]
     for i in range(start, stop):
-        if m.counters[SCORE] <= goal and m.counters[ELEMENTS] <= most:
+        if _is_at(m, goal):
             return i
-        kept[i] = False
-        h = named_halfedge(m, k, entries[i], vertex_of, name_of)
-        if h < 0 or check(m, entries[i, 0], h, cap) != ALLOWED:
+        done.kept[i] = False
+        h = named_halfedge(m, k, entries[i], names)
+        if h < 0 or check(m, entries[i, 0], h, goal.cap) != ALLOWED:
             continue
-        kept[i] = True
-        halfedges[i] = h
+        done.kept[i] = True
+        done.halfedges[i] = h
         rewrite(m, entries[i, 0], h)
-        _name_created(m, vertex_of, name_of, entries[i, 3], entries[i, 4])
-        if m.counters[ELEMENTS] < floor:
+        _name_created(m, names, entries[i, 3], entries[i, 4])
+        if m.counters[ELEMENTS] < goal.floor:
             return -1
-    return stop if m.counters[SCORE] <= goal and m.counters[ELEMENTS] <= most else -1
+    return stop if _is_at(m, goal) else -1
 
 
 @bare_kernel
@@ -163,32 +214,27 @@ def _copy(source, target):
 
 
 @kernel
-def debug_pass(
-    prefix, work, vertex_of, name_of, vertex_work, name_work, entries, spare, progress, chunk, cap,
-    floor, goal, most, kept, halfedges, budget,
-):  # fmt: skip
-    """Try to delete chunk after chunk, from progress[0] on, until the end or until `budget`
-    operations have been replayed; progress[1] is the number of entries. Returns True at the end.
+def debug_pass(prefix, names, work, work_names, deletion, goal, done, chunk):
+    """Try to delete chunk after chunk, until the end or until SLICE operations have been replayed.
 
-    prefix: the mesh before entry progress[0], with its names; work and the like: scratch.
+    prefix: the mesh before the next entry, with its names; work, work_names, done: scratch. Returns
+    True at the end.
     """
+    entries, spare, progress = deletion.entries, deletion.spare, deletion.progress
     spent = 0
     while progress[0] < progress[1]:
-        if spent > budget:
+        if spent > SLICE:
             return False
         at, total = progress[0], progress[1]
         copy_mesh(prefix, work)
-        _copy(vertex_of, vertex_work)
-        _copy(name_of, name_work)
-        stop = replay(
-            work, vertex_work, name_work, entries, min(at + chunk, total), total, cap, floor, goal,
-            most, kept, halfedges,
-        )  # fmt: skip
+        _copy(names.vertex_of, work_names.vertex_of)
+        _copy(names.name_of, work_names.name_of)
+        stop = replay(work, work_names, entries, min(at + chunk, total), total, goal, done)
         spent += total - at + 8
         if stop >= 0:
             left = at
             for i in range(min(at + chunk, total), stop):
-                if kept[i]:
+                if done.kept[i]:
                     for column in range(5):
                         spare[left, column] = entries[i, column]
                     left += 1
@@ -199,9 +245,7 @@ def debug_pass(
             continue
         end = min(at + chunk, total)
         # goal and bounds apply to the whole list, so they are switched off for this part
-        replay(
-            prefix, vertex_of, name_of, entries, at, end, cap, 0, -1, 0, kept, halfedges
-        )  # fmt: skip
+        replay(prefix, names, entries, at, end, Goal(goal.cap, 0, -1, 0), done)
         progress[0] = end
     return True
 
@@ -272,8 +316,10 @@ class _Shortener:
                 break
             self._relax_bounds(-1 - int(names), operations)
         self.names = int(names)
-        self.goal, self.most = int(self.states[-1, 1]), int(self.states[-1, 2])
-        self.floor = int(self.states[:, 2].min())
+        self.goal = Goal(
+            self.cap, int(self.states[:, 2].min()), int(self.states[-1, 1]),
+            int(self.states[-1, 2]),
+        )  # fmt: skip
 
     def _relax_bounds(self, failed: int, operations: Operations) -> None:
         """After a refused operation: drop the degree cap, then reserve more slots."""
@@ -288,24 +334,21 @@ class _Shortener:
     def _copied(self) -> MeshArrays:
         return MeshArrays(*(array.copy() for array in self.start))
 
-    def _replayed(self, entries: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
-        """Where a replay reaches the goal (-1: nowhere), the entries applied, their half-edges."""
+    def _replayed(self, entries: np.ndarray) -> tuple[int, Replayed]:
+        """Where a replay reaches the goal, -1 for nowhere, and what it applied until there."""
         names = first_names(self.mesh.slots, len(self.start.vertex), self.names)
-        kept, halfedges = np.zeros(len(entries), np.bool_), np.zeros(len(entries), np.int64)
-        stop = replay(
-            self._copied(), *names, entries, 0, len(entries), self.cap, self.floor, self.goal,
-            self.most, kept, halfedges,
-        )  # fmt: skip
-        kept[max(int(stop), 0) :] = False
-        return int(stop), kept, halfedges
+        done = nothing_replayed(len(entries))
+        stop = int(replay(self._copied(), names, entries, 0, len(entries), self.goal, done))
+        done.kept[max(stop, 0) :] = False
+        return stop, done
 
     def cut_loops(self) -> None:
         """End at the first state that reaches the goal, and remove loops."""
-        good = (self.states[:, 1] <= self.goal) & (self.states[:, 2] <= self.most)
+        good = (self.states[:, 1] <= self.goal.score) & (self.states[:, 2] <= self.goal.most)
         end = int(np.argmax(good))
         shorter = self.entries[:end][without_loops(self.states[: end + 1, 0])]
-        stop, kept, _ = self._replayed(shorter)
-        self.entries = shorter[kept] if stop >= 0 else self.entries[:end]
+        stop, done = self._replayed(shorter)
+        self.entries = shorter[done.kept] if stop >= 0 else self.entries[:end]
 
     def debug(self, time_is_up: Callable[[], bool]) -> None:
         """Delta debugging: delete chunks of decreasing size until none can be deleted."""
@@ -324,19 +367,16 @@ class _Shortener:
         scratch = Names(*(array.copy() for array in names))
         total = len(self.entries)
         entries = self.entries.copy()
-        progress = np.array([0, total])
-        kept, halfedges = np.zeros(total, np.bool_), np.zeros(total, np.int64)
+        deletion = Deletion(entries, np.zeros_like(entries), np.array([0, total]))
+        done = nothing_replayed(total)
         ended = False
         while not ended and not time_is_up():
-            ended = debug_pass(
-                prefix, work, *names, *scratch, entries, np.zeros_like(entries), progress, chunk,
-                self.cap, self.floor, self.goal, self.most, kept, halfedges, SLICE,
-            )  # fmt: skip
-        self.entries = entries[: progress[1]]
+            ended = debug_pass(prefix, names, work, scratch, deletion, self.goal, done, chunk)
+        self.entries = entries[: deletion.progress[1]]
 
     def result(self, operations: Operations) -> Operations:
         """The shortened operations with their half-edges, checked on a copy of the mesh."""
-        stop, kept, halfedges = self._replayed(self.entries)
+        stop, (kept, halfedges) = self._replayed(self.entries)
         if stop < 0 or int(kept.sum()) >= len(operations):
             return operations
         found = [
@@ -348,6 +388,6 @@ class _Shortener:
         checked = self.mesh.copy()
         for operation, h in found:
             checked.apply(operation, h)
-        if checked.score > self.goal or checked.n_elements > self.most:
+        if checked.score > self.goal.score or checked.n_elements > self.goal.most:
             return operations
         return found

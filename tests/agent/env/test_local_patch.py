@@ -31,19 +31,9 @@ def _local(network, mesh, chosen):
     scratch = Scratch(task, len(mesh.arrays.edge), len(mesh.arrays.vertex))
     sizes = np.zeros((1, task.blocks + 1), np.int32)
     features = np.zeros((LARGEST, task.channels), np.int8)
-    look(
-        mesh.arrays,
-        chosen,
-        task.k,
-        sizes[0],
-        scratch.listed,
-        scratch.reads,
-        scratch.slot_of,
-        scratch.field,
-        features,
-    )
-    assert not scratch.slot_of.any()
-    patches = Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]], sizes)
+    look(mesh.arrays, chosen, sizes[0], scratch.work, scratch.field, features)
+    assert not scratch.work.slot_of.any()
+    patches = Patches(features[: sizes[0, 0]], scratch.work.reads[: sizes[0, 1]], sizes)
     rows, tables = assemble(patches, np.array([0]))
     return network.convolve(torch.from_numpy(rows), [torch.from_numpy(t) for t in tables]), sizes[0]
 
@@ -99,18 +89,10 @@ def test_assembling_several_decisions_equals_assembling_each():
         scratch = Scratch(task, len(mesh.arrays.edge), len(mesh.arrays.vertex))
         sizes = np.zeros((1, task.blocks + 1), np.int32)
         features = np.zeros((LARGEST, task.channels), np.int8)
-        look(
-            mesh.arrays,
-            chosen,
-            3,
-            sizes[0],
-            scratch.listed,
-            scratch.reads,
-            scratch.slot_of,
-            scratch.field,
-            features,
+        look(mesh.arrays, chosen, sizes[0], scratch.work, scratch.field, features)
+        parts.append(
+            Patches(features[: sizes[0, 0]], scratch.work.reads[: sizes[0, 1]].copy(), sizes)
         )
-        parts.append(Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]].copy(), sizes))
         alone.append(_local(network, mesh, chosen)[0])
     rows, tables = assemble(Patches.join(parts), np.array([2, 0]))
     both = network.convolve(torch.from_numpy(rows), [torch.from_numpy(t) for t in tables])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from meshwright_agent.env.candidates import permitted, template_plan
+from meshwright_agent.env.candidates import Rules, permitted, template_plan
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch, start_meshes
 from meshwright_agent.policy.inference import decide
@@ -30,8 +30,9 @@ def test_score_change_is_exact(kind):
     for _ in range(6):
         mesh = benchmark_mesh(kind, 12, rng)
         for h in range(mesh.k * mesh.n_elements):
+            rules = task.rules(0, 10**6)._replace(cap=0)
             for code in range(task.first_operation, task.first_operation + task.operations):
-                if not permitted(mesh.arrays, code, h, 0, 0, 10**6, True):
+                if not permitted(mesh.arrays, code, h, rules):
                     continue
                 expected = score_change(mesh.arrays, code, h)
                 assert mesh.apply(NAMES[code], h).score_change == expected
@@ -44,9 +45,12 @@ def test_the_element_floor_and_the_action_set_are_kept():
     mesh = benchmark_mesh("tri", 12, np.random.default_rng(0))
     n = mesh.n_elements
     boundary = [h for h in range(3 * n) if mesh.twin(h) < 0]
-    assert not any(permitted(mesh.arrays, 2, h, 0, 0, 10**6, False) for h in boundary)
-    assert not any(permitted(mesh.arrays, 2, h, 0, n, 10**6, True) for h in range(3 * n))
-    assert any(permitted(mesh.arrays, 2, h, 0, n - 2, 10**6, True) for h in range(3 * n))
+    free = Rules(first=0, operations=3, cap=0, floor=0, ceiling=10**6, extended=True)
+    paper = free._replace(extended=False)
+    kept, less = free._replace(floor=n), free._replace(floor=n - 2)
+    assert not any(permitted(mesh.arrays, 2, h, paper) for h in boundary)
+    assert not any(permitted(mesh.arrays, 2, h, kept) for h in range(3 * n))
+    assert any(permitted(mesh.arrays, 2, h, less) for h in range(3 * n))
 
 
 @pytest.mark.parametrize(("k", "levels", "size"), [(3, 1, 12), (4, 1, 20), (4, 2, 68)])

@@ -7,7 +7,13 @@ from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import stack
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import PolicyError
-from meshwright_agent.search.patch_extraction import MOST_TAKEN, cut_out, next_patch, put_back
+from meshwright_agent.search.patch_extraction import (
+    MOST_TAKEN,
+    Edits,
+    cut_out,
+    next_patch,
+    put_back,
+)
 from meshwright_agent.search.patchwise import improve_large, is_large
 from meshwright_agent.search.repair_queue import FILL, agenda, dequeue, enlarged, enlist
 from meshwright_agent.search.solver import solve
@@ -66,7 +72,7 @@ def patches_of(mesh, sizes=(40, 80)):
     found, ids = np.zeros(512, np.int64), np.zeros(2048, np.int64)
     patches, tries = [], int(a.state[FILL])
     while True:
-        count, tries, _ = next_patch(arrays, a, k, *sizes, 3, len(patches) + 1, tries, found)
+        count, tries, _ = next_patch(arrays, a, *sizes, 3, len(patches) + 1, tries, found)
         if count == 0:
             break
         out = allocate(k, count * k, count, 1, 1)
@@ -137,8 +143,8 @@ def test_operations_on_patches_are_applied_to_the_mesh(kind):
         journal=np.zeros((20_000, 2), np.int64), steps=np.zeros((100, STEP_COLUMNS), np.int64)
     )
     total = put_back(
-        work, pool, mesh.k, 0, elements, record[0], record[1], counts,
-        np.zeros((2, MOST_TAKEN), np.int64), done[0], done[1],
+        work, pool, 0, elements, Edits(record[0], record[1]), counts,
+        np.zeros((2, MOST_TAKEN), np.int64), Edits(done[0], done[1]),
     )  # fmt: skip
     assert counts.tolist() == [len(steps) for steps in played] and total == counts.sum() > 0
     mesh.validate()
