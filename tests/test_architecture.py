@@ -163,3 +163,19 @@ def test_functions_are_annotated(package: str) -> None:
         name for path in sorted((ROOT / package).rglob("*.py")) for name in unannotated(path)
     ]
     assert missing == []
+
+
+MOST_KERNEL_ARGUMENTS = 8
+
+
+def test_kernels_take_few_arguments() -> None:
+    found = []
+    for name, path in module_files().items():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef) and any(
+                "kernel" in ast.unparse(decorator) for decorator in node.decorator_list
+            ):
+                count = len(node.args.posonlyargs) + len(node.args.args)
+                if count > MOST_KERNEL_ARGUMENTS:
+                    found.append(f"{name}.{node.name}: {count}")
+    assert not found

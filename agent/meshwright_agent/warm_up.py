@@ -16,7 +16,7 @@ from contextlib import contextmanager
 
 from meshwright_core.core.compilation import cache_folder, entry_points_on_disk
 
-ENTRY_POINTS = 27
+ENTRY_POINTS = 34
 """Entry points of both packages that searches and runs leave on disk, for messages of progress."""
 
 _MARK = "warm"
@@ -57,31 +57,46 @@ def warm(tell: Tell | None = None) -> None:
 
 
 def _exercise_observing() -> None:
-    """Observe meshes, as policies do, and smooth one."""
+    """Observe meshes, decide, explain a decision, and smooth a mesh."""
     import numpy as np
 
+    from meshwright_agent.env.local_patch import assemble
     from meshwright_agent.env.vector_env import Batch
+    from meshwright_agent.policy.explanation import template_of
     from meshwright_agent.policy.policy_files import load, shipped
     from meshwright_core.domains.meshing import benchmark_mesh
     from meshwright_core.geometry import smoothing
 
     for kind in ("quad", "tri"):
+        task = load(shipped(kind)[0]).task
         mesh = benchmark_mesh(kind, 8, np.random.default_rng(0))
-        batch = Batch(load(shipped(kind)[0]).task, [mesh], 1, np.random.default_rng(0))
-        batch.observe()
+        observation = Batch(task, [mesh], 1, np.random.default_rng(0)).observe()
+        assemble(observation.patches, np.array([0]))
+        template_of(mesh.arrays, task, 0)
         smoothing.relax(mesh)
 
 
 def _exercise_changing() -> None:
-    """Change meshes: annealing, shortening, coarsening, the step of a policy."""
+    """Change meshes: annealing, shortening, coarsening, the step of a policy, patches of a mesh."""
+    import numpy as np
+
     from meshwright_agent.policy.policy_files import load, shipped
+    from meshwright_agent.search.annealing import Annealer
+    from meshwright_agent.search.patchwise import improve_large
+    from meshwright_agent.search.region_search import solve_within
     from meshwright_agent.search.solver import prepare
     from meshwright_core.core.arrays import allocate
+    from meshwright_core.domains.meshing import benchmark_mesh
     from meshwright_core.operations.catalogue import provide_rewrite
 
     provide_rewrite(allocate(4, 4, 1))  # first, while the other process compiles the checks
     for kind in ("quad", "tri"):
-        prepare(load(shipped(kind)[0]))
+        policy = load(shipped(kind)[0])
+        prepare(policy)
+        mesh = benchmark_mesh(kind, 24, np.random.default_rng(0))
+        Annealer(mesh, 0).restart()
+        solve_within(mesh, policy, mesh.element_ids()[:20], rollouts=1)
+        improve_large(mesh, policy, max_steps=40)
 
 
 @contextmanager

@@ -99,7 +99,6 @@ class EntryPoint(JITCodeLibrary):
                 found[library] = None
         runtime = found.pop(rtsys.library, 0) is None
         for library in found:
-            self._reload_init.update(library._reload_init)
             if isinstance(library, Part):
                 self._final_module.link_in(library._final_module, preserve=True)
             else:
@@ -165,13 +164,11 @@ class _StoredForm(CompileResultCacheImpl):
         environments = [each for each in library.environments() if each.can_cache()]
         return (
             library.machine_code(), library.needed(), description, result.environment,
-            result.signature, tuple(result.reload_init), environments,
+            result.signature, environments,
         )  # fmt: skip
 
     def rebuild(self, target_context: Any, stored: Any) -> Any:
-        code, needed, description, environment, signature, reload_init, environments = stored
-        for begin in reload_init:
-            begin()
+        code, needed, description, environment, signature, environments = stored
         for module, name, kinds in needed:
             getattr(import_module(module), name).provide(kinds)
         library = EntryPoint.load(target_context.codegen(), *code)
@@ -188,7 +185,6 @@ class _StoredForm(CompileResultCacheImpl):
             lifted=(),
             fndesc=description,
             environment=environment,
-            reload_init=list(reload_init),
             type_annotation="",
         )
 
@@ -216,7 +212,7 @@ class Kernel(CPUDispatcher):
         self, py_func: Callable[..., Any], locals: Any = None, targetoptions: Any = None,
         pipeline_class: Any = compiler.Compiler,
     ) -> None:  # fmt: skip
-        super().__init__(py_func, locals, targetoptions, pipeline_class)
+        super().__init__(py_func, locals or {}, targetoptions, pipeline_class)
         self._parts: dict[Types, Any] = {}
         self._keys: dict[Types, object] = {}
 
@@ -308,7 +304,6 @@ class Kernel(CPUDispatcher):
             lifted=(),
             fndesc=description,
             environment=part.environment,
-            reload_init=list(library._reload_init),
         )
 
 
