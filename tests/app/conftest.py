@@ -182,7 +182,7 @@ def _own_settings(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 def _without_question(window: Any) -> None:
     """A test that ends leaves nobody there to answer."""
-    if window.files.guard is not None and window.isVisible():
+    if window.isVisible():
         window.files.leave()
 
 

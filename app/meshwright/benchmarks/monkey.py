@@ -161,7 +161,7 @@ class Monkey:
         from qtpy.QtTest import QTest
 
         rng = self.rng
-        if target is self.window and rng.random() < 0.7 and self.window.canvas.plotter is not None:
+        if target is self.window and rng.random() < 0.7 and self.window.canvas.built:
             widget = self.window.canvas.plotter
         else:
             at = QPoint(*(int(rng.integers(max(n, 1))) for n in (target.width(), target.height())))

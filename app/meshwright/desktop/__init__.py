@@ -25,7 +25,7 @@ def run(
 
     app = application()
     window = open_window(source, kind, demo, guided=True, level=level)
-    with on_interrupt(window.files.leave):
+    with on_interrupt(window.leave):
         code = int(app.exec())
-    window.warmup.stop()
+    window.stop_preparing()
     return code

@@ -92,8 +92,8 @@ def test_a_persons_own_window_shows_the_tour_once(qtbot, open_window, star, tmp_
     for expected in (True, False):
         window = open_a_window(Document(star.copy(), "star"), guided=True)
         qtbot.addWidget(window)
-        qtbot.waitUntil(lambda window=window: window.canvas.plotter is not None, timeout=WAIT)
-        assert (window.guide.tour is not None) == expected
+        qtbot.waitUntil(lambda window=window: window.canvas.built, timeout=WAIT)
+        assert (window.help.tour is not None) == expected
         window.close()
 
 

@@ -5,16 +5,16 @@ from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QApplication
 
 from meshwright.desktop.actions import registry
-from meshwright.desktop.actions.action import Action, needs
-from meshwright.desktop.help.command_palette import Entry, rank
+from meshwright.desktop.actions.action import Action
+from meshwright.desktop.help.command_palette import PaletteEntry, rank
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 
 
 def open_palette(qtbot, window):
     press(qtbot, window, Qt.Key.Key_K, CONTROL)
-    qtbot.waitUntil(lambda: window.guide.palette is not None, timeout=WAIT)
-    palette = window.guide.palette
+    qtbot.waitUntil(lambda: window.help.palette is not None, timeout=WAIT)
+    palette = window.help.palette
     qtbot.waitUntil(palette.field.hasFocus, timeout=WAIT)
     return palette
 
@@ -22,7 +22,7 @@ def open_palette(qtbot, window):
 def test_it_lists_all_actions_of_the_menus_with_their_keys(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
-    listed = [a for _, members in registry.groups(window) for a in members]
+    listed = [a for _, members in window.actions_by_id.menus(window.document.kind) for a in members]
     assert [entry.id for entry in palette.shown] == [action.id for action in listed]
     keys = {entry.id: entry.key for entry in palette.shown}
     assert keys["undo"] == "Ctrl+Z"
@@ -37,7 +37,7 @@ def test_a_few_letters_and_return_do_it(qtbot, open_window, star):
     assert palette.shown[0].id == "theme"
     qtbot.keyClick(palette.field, Qt.Key.Key_Return)
     assert window.theme.name == "dark"
-    assert window.guide.palette is None
+    assert window.help.palette is None
     assert window.canvas.plotter.hasFocus()
 
 
@@ -71,7 +71,7 @@ def test_arrows_walk_round_and_escape_gives_the_keyboard_back(qtbot, open_window
     qtbot.keyClick(palette.field, Qt.Key.Key_PageDown)
     assert palette.list.currentRow() == 9
     qtbot.keyClick(palette.field, Qt.Key.Key_Escape)
-    assert window.guide.palette is None
+    assert window.help.palette is None
     assert QApplication.focusWidget() is window.canvas.plotter
 
 
@@ -91,21 +91,21 @@ def test_a_click_takes_a_row_and_a_click_elsewhere_closes(qtbot, open_window, st
     qtbot.keyClicks(palette.field, "tour")
     box = palette.list.visualItemRect(palette.list.item(0))
     qtbot.mouseClick(palette.list.viewport(), Qt.MouseButton.LeftButton, pos=box.center())
-    assert window.guide.tour is not None
-    window.guide.end_tour()
+    assert window.help.tour is not None
+    window.help.end_tour()
     open_palette(qtbot, window)
     qtbot.mouseClick(window.canvas.plotter, Qt.MouseButton.RightButton)
-    qtbot.waitUntil(lambda: window.guide.palette is None, timeout=WAIT)
+    qtbot.waitUntil(lambda: window.help.palette is None, timeout=WAIT)
 
 
 def test_the_same_key_closes_it_and_so_does_the_window(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
     qtbot.keyClick(palette.field, Qt.Key.Key_K, CONTROL)
-    assert window.guide.palette is None
+    assert window.help.palette is None
     open_palette(qtbot, window)
     window.close()
-    assert window.guide.palette is None
+    assert window.help.palette is None
 
 
 def test_every_action_that_can_be_impossible_has_its_reason():
@@ -115,18 +115,18 @@ def test_every_action_that_can_be_impossible_has_its_reason():
         for action in registry.ACTIONS
         if action.enabled is not always
         and not action.id.startswith(("tri.", "quad."))  # listed for their kind of mesh only
-        and needs(action) == "Not possible now."
+        and action.requirement == "Not possible now."
     ]
     assert silent == []
-    assert all(needs(action).endswith(".") for action in registry.ACTIONS)
+    assert all(action.requirement.endswith(".") for action in registry.ACTIONS)
 
 
 def test_matches_in_the_title_come_first_and_the_possible_before_the_impossible():
     entries = [
-        Entry("a", "Fit", "View"),
-        Entry("b", "First step", "History", reason="No."),
-        Entry("c", "Find", "File"),
-        Entry("d", "Other", "Field", tooltip="It finds things"),
+        PaletteEntry("a", "Fit", "View"),
+        PaletteEntry("b", "First step", "History", reason="No."),
+        PaletteEntry("c", "Find", "File"),
+        PaletteEntry("d", "Other", "Field", tooltip="It finds things"),
     ]
     assert [entry.id for entry, _ in rank("fi", entries)] == ["a", "c", "b", "d"]
     assert [entry.id for entry, _ in rank("", entries)] == ["a", "b", "c", "d"]

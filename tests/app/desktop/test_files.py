@@ -7,8 +7,8 @@ from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
 from qtpy.QtWidgets import QApplication, QFileDialog
 
-from meshwright.desktop.files.recovery_dialog import LostWork
-from meshwright.desktop.files.save_question import Question
+from meshwright.desktop.files.recovery_dialog import RecoveryDialog
+from meshwright.desktop.files.save_question import QuestionDialog
 from meshwright.document.document import Document
 from meshwright.document.storage import recovery
 from meshwright.document.storage.autosave import Autosave
@@ -61,13 +61,13 @@ def when_shown(qtbot, kind, act) -> list:
 def answering(qtbot, answer: str) -> list:
     """Press that button of the next question; nothing is Escape."""
 
-    def act(dialog: Question) -> None:
+    def act(dialog: QuestionDialog) -> None:
         if answer:
             qtbot.mouseClick(dialog.buttons[answer], Qt.MouseButton.LeftButton)
         else:
             qtbot.keyClick(dialog, Qt.Key.Key_Escape)
 
-    return when_shown(qtbot, Question, act)
+    return when_shown(qtbot, QuestionDialog, act)
 
 
 @pytest.mark.parametrize("answer", ["drop", "save", "cancel", ""])
@@ -112,7 +112,7 @@ def test_saving_as_a_project_keeps_everything(qtbot, watched, star, tmp_path, mo
     press(qtbot, window, Qt.Key.Key_S, CONTROL)
     assert asked[0][0] == "star.vtk"
     assert (tmp_path / "work.meshwright").exists()
-    assert window.said.text() == "Saved work.meshwright."
+    assert window.status.message == "Saved work.meshwright."
     assert not window.isWindowModified()
     assert window.files.guard.autosave.path is None
     assert window.windowTitle().startswith("work")
@@ -131,9 +131,9 @@ def test_saving_as_a_project_keeps_everything(qtbot, watched, star, tmp_path, mo
 def test_what_a_format_leaves_out_is_said(qtbot, open_window, star, triangles, tmp_path):
     window = open_window(triangles)
     window.files._save(str(tmp_path / "a.stl"))
-    assert "keep no corners" in window.said.text()
+    assert "keep no corners" in window.status.message
     window.files._save(str(tmp_path / "a.vtk"))
-    assert window.said.text() == "Saved a.vtk."
+    assert window.status.message == "Saved a.vtk."
 
 
 def test_a_file_that_cannot_be_written_or_read_is_one_sentence(
@@ -229,14 +229,14 @@ def test_lost_work_is_offered_and_recovered(qtbot, watched, star, triangles, tmp
     window = watched(star)
     met = when_shown(
         qtbot,
-        LostWork,
+        RecoveryDialog,
         lambda dialog: qtbot.mouseClick(dialog.cards[0].recover, Qt.MouseButton.LeftButton),
     )
     window.files.guard.offer()
     assert len(met) == 1
     assert np.array_equal(window.document.mesh.points, lost.mesh.points)
     assert window.document.history.cursor == 3
-    assert window.said.text() == "Recovered lost, 3 steps."
+    assert window.status.message == "Recovered lost, 3 steps."
     assert window.isWindowModified()
     # it is still kept, now by this window, until it is saved
     (journal,) = (tmp_path / "state").iterdir()
@@ -257,7 +257,7 @@ def test_lost_work_is_discarded_by_two_clicks_or_left_for_later(qtbot, watched, 
     window = watched(star)
     said = []
 
-    def discard_one(dialog: LostWork) -> None:
+    def discard_one(dialog: RecoveryDialog) -> None:
         said.extend(
             (card.title.text(), card.story.text(), card.place.text()) for card in dialog.cards
         )
@@ -269,7 +269,7 @@ def test_lost_work_is_discarded_by_two_clicks_or_left_for_later(qtbot, watched, 
         assert len(list(folder.iterdir())) == 1
         qtbot.mouseClick(dialog.later, Qt.MouseButton.LeftButton)
 
-    met = when_shown(qtbot, LostWork, discard_one)
+    met = when_shown(qtbot, RecoveryDialog, discard_one)
     window.actions_by_id["recover"].trigger()
     assert len(met) == 1
     assert {title for title, _, _ in said} == {"first", "second"}
@@ -279,7 +279,7 @@ def test_lost_work_is_discarded_by_two_clicks_or_left_for_later(qtbot, watched, 
     (left,) = recovery.lost(folder)
     left.discard()
     window.actions_by_id["recover"].trigger()
-    assert window.said.text().startswith("There is no lost work")
+    assert window.status.message.startswith("There is no lost work")
 
 
 def test_recovering_asks_for_what_is_here(qtbot, watched, star, tmp_path):
@@ -288,7 +288,7 @@ def test_recovering_asks_for_what_is_here(qtbot, watched, star, tmp_path):
     edit(qtbot, window)
     when_shown(
         qtbot,
-        LostWork,
+        RecoveryDialog,
         lambda dialog: qtbot.mouseClick(dialog.cards[0].recover, Qt.MouseButton.LeftButton),
     )
     met = answering(qtbot, "cancel")
@@ -312,7 +312,7 @@ def test_autosave_follows_the_setting_and_tells_when_it_cannot(qtbot, watched, s
 def test_ctrl_c_closes_without_a_question_and_loses_nothing(qtbot, watched, star, tmp_path):
     window = watched(star)
     edit(qtbot, window)
-    met = when_shown(qtbot, Question, lambda dialog: window.files.leave())
+    met = when_shown(qtbot, QuestionDialog, lambda dialog: window.files.leave())
     assert window.close()
     assert len(met) == 1
     assert not window.isVisible()

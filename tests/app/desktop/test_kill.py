@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from meshwright.desktop.files.unsaved_work import Guard
 from meshwright.document.document import Document
 from meshwright.document.history import YOU
 from meshwright.document.storage import recovery
@@ -27,12 +26,13 @@ from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.main_window.window import MainWindow
 from meshwright.document.document import Document
 from meshwright.document.history import YOU
-from meshcore import compiled, generate, shapes
+from meshwright_core.core import compilation
+from meshwright_core.domains import gallery, meshing
 
-compiled.warm()
+compilation.warm()
 folder = Path({folder!r})
 app = application()
-document = Document(generate.mesh_domain(shapes.shape("star"), "quad"), "star")
+document = Document(meshing.mesh_domain(gallery.shape("star"), "quad"), "star")
 assistant = Assistant(
     document,
     Dispatcher(),
@@ -114,7 +114,7 @@ def test_in_the_middle_of_a_run(qtbot, open_window, tmp_path):
     window.files.watch(tmp_path / "state")
     offered = []
 
-    def take(guard: Guard, works) -> None:
+    def take(guard: UnsavedWorkGuard, works) -> None:
         offered.extend(works)
         guard._recover(works[0])
 

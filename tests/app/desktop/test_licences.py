@@ -5,7 +5,6 @@ import re
 from driving import press
 from qtpy.QtCore import Qt
 
-from meshwright.desktop.actions import registry
 from meshwright.desktop.help.about_dialog import AboutDialog, own_version
 from meshwright.desktop.help.licences import UNKNOWN, licences
 from meshwright.desktop.help.shortcuts_dialog import MOUSE, key_blocks, spread
@@ -43,10 +42,10 @@ def test_about_shows_them_and_copies_versions(qtbot, open_window, star):
 def test_the_page_of_keys_has_every_key_and_stays_open(qtbot, open_window, star):
     window = open_window(star)
     press(qtbot, window, Qt.Key.Key_F1)
-    assert window.guide.keys.isVisible()
+    assert window.help.keys.isVisible()
     window.activateWindow()
-    assert window.guide.keys.isVisible()
-    blocks = key_blocks(registry.groups(window))
+    assert window.help.keys.isVisible()
+    blocks = key_blocks(window.actions_by_id.menus(window.document.kind))
     told = {keys for _, lines in blocks for keys, *_ in lines}
     assert {"Ctrl+Z", "F1", "Ctrl+K", "F"} <= told
     assert len(blocks[-1][1]) == len(MOUSE)
@@ -54,4 +53,4 @@ def test_the_page_of_keys_has_every_key_and_stays_open(qtbot, open_window, star)
     assert [block for column in columns for block in column] == blocks
     assert len(columns) <= 3
     window.close()
-    assert window.guide.keys is None
+    assert window.help.keys is None

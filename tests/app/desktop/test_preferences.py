@@ -110,7 +110,7 @@ def test_colours_and_numbers_reach_the_canvas(qtbot, dialog):
     assert window.settings.colours == name
     assert (window.theme.plus, window.theme.minus) == COLOURS[name][1:]
     assert window.canvas.overlay.markers.theme.plus == COLOURS[name][1]
-    assert window.score_panel.tally._theme.plus == COLOURS[name][1]
+    assert window.quality.score.tally._theme.plus == COLOURS[name][1]
     assert window.canvas.overlay.markers.numbers
     page.switches["numbers"].click()
     assert not window.canvas.overlay.markers.numbers

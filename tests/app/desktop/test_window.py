@@ -13,7 +13,8 @@ from qtpy.QtWidgets import QApplication, QWidget
 from meshwright.assistant.assistant import State
 from meshwright.desktop.actions import registry
 from meshwright.desktop.application.kernel_warmup import AGENT_FIRST
-from meshwright.desktop.editing.edit_controller import POINT_FIRST, PREPARING
+from meshwright.desktop.application.readiness import PREPARING
+from meshwright.desktop.editing.edit_controller import POINT_FIRST
 from meshwright_core.operations.catalogue import of_kind
 
 
@@ -23,10 +24,10 @@ def test_hover_finds_every_half_edge(qtbot, open_window, kind, star, triangles):
     window = open_window(mesh)
     for halfedge in range(0, mesh.k * mesh.n_elements, 7):
         point_at(qtbot, window, halfedge)
-        assert str(mesh.origin(halfedge)) in window.pointed.text()
+        assert str(mesh.origin(halfedge)) in window.status.halfedge
     qtbot.mouseMove(window.canvas.plotter, QPoint(3, 3))
     qtbot.waitUntil(lambda: window.document.hover == -1, timeout=WAIT)
-    assert window.pointed.text() == ""
+    assert window.status.halfedge == ""
 
 
 def test_a_key_does_the_operation_and_ctrl_z_undoes_it(qtbot, open_window, star):
@@ -37,7 +38,7 @@ def test_a_key_does_the_operation_and_ctrl_z_undoes_it(qtbot, open_window, star)
     press(qtbot, window, Qt.Key.Key_F)
     assert [row.action for row in window.document.history] == ["flip_left"]
     assert not np.array_equal(star.elements(), elements)
-    assert window.said.text().startswith("Flip left:  s 12")
+    assert window.status.message.startswith("Flip left:  s 12")
     assert window.isWindowModified()
     press(qtbot, window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert np.array_equal(star.elements(), elements)
@@ -73,8 +74,8 @@ def test_a_refused_key_shows_the_reason(qtbot, open_window, star):
     point_at(qtbot, window, halfedge)
     press(qtbot, window, Qt.Key.Key_F)
     reason = star.check("flip_left", halfedge).reason
-    assert window.said.text().lower() == f"{reason.lower()}."
-    assert window.canvas.overlay.card.text == window.said.text()
+    assert window.status.message.lower() == f"{reason.lower()}."
+    assert window.canvas.overlay.card.text == window.status.message
     assert window.document.history.cursor == 0
 
 
@@ -82,7 +83,7 @@ def test_a_key_beside_the_mesh_says_what_to_do(qtbot, open_window, star):
     window = open_window(star)
     qtbot.mouseMove(window.canvas.plotter, QPoint(4, 4))
     press(qtbot, window, Qt.Key.Key_F)
-    assert window.said.text() == POINT_FIRST
+    assert window.status.message == POINT_FIRST
 
 
 def test_a_click_offers_all_operations_with_reasons(qtbot, open_window, star):
@@ -164,7 +165,6 @@ def test_wheel_zooms_at_the_mouse_drag_pans_and_home_fits(qtbot, open_window, st
 
 def test_step_play_pause_complete(qtbot, open_window, star):
     window = open_window(star)
-    window.refresh()
     panel, document = window.agent_panel, window.document
     qtbot.mouseClick(panel.step, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: document.history.cursor == 1, timeout=WAIT)
@@ -178,15 +178,14 @@ def test_step_play_pause_complete(qtbot, open_window, star):
     qtbot.mouseClick(panel.complete, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: not window.assistant.running, timeout=WAIT)
     assert document.at_optimum
-    assert window.score_panel.optimal.isVisible()
-    assert window.score_panel.gained.text == "1.00"
-    assert "optimum" in window.said.text()
+    assert window.quality.score.optimal.isVisible()
+    assert window.quality.score.gained.text == "1.00"
+    assert "optimum" in window.status.message
     star.validate()
 
 
 def test_escape_stops_and_an_edit_takes_over(qtbot, open_window, star):
     window = open_window(star, bad_steps=500, longest=500)
-    window.refresh()
     window.assistant.speed = 30
     press(qtbot, window, Qt.Key.Key_Space)
     qtbot.waitUntil(lambda: window.document.history.cursor >= 2, timeout=WAIT)
@@ -220,22 +219,22 @@ def test_before_the_kernels_are_ready_operations_say_so(qtbot, open_window, star
     halfedge = find(star, "flip_left")
     point_at(qtbot, window, halfedge)
     press(qtbot, window, Qt.Key.Key_F)
-    assert window.said.text() == PREPARING
+    assert window.status.message == PREPARING
     assert not window.agent_panel.step.isEnabled()
     window.warmup._finish()
     assert not window.agent_panel.step.isEnabled()
-    assert window.preparing.text() == AGENT_FIRST
+    assert window.status.preparation == AGENT_FIRST
     window.warmup.agent_ready.emit()
     assert window.agent_panel.step.isEnabled()
-    assert window.preparing.text() == ""
+    assert window.status.preparation == ""
     press(qtbot, window, Qt.Key.Key_F)
     assert window.document.history.cursor == 1
 
 
 def test_the_kernels_are_made_ready_behind_the_window(qtbot, open_window, star):
     window = open_window(star, ready=False)
-    qtbot.waitUntil(lambda: window.ready, timeout=60_000)
-    assert window.preparing.text() == ""
+    qtbot.waitUntil(lambda: window.readiness.editing, timeout=60_000)
+    assert window.status.preparation == ""
 
 
 def test_a_wrong_file_is_one_sentence(qtbot, open_window, star, tmp_path):

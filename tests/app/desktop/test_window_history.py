@@ -35,21 +35,21 @@ def settle(qtbot, window) -> None:
     history = window.document.history
     qtbot.waitUntil(
         lambda: (
-            window.film.timeline.curve.cursor_state == history.cursor
-            and window.film.panel.model.rowCount() == len(history) + 1 + len(history.branches)
+            window.playback.timeline.curve.cursor_state == history.cursor
+            and window.playback.panel.model.rowCount() == len(history) + 1 + len(history.branches)
         ),
         timeout=WAIT,
     )
 
 
 def on_curve(window, state: int) -> QPoint:
-    curve = window.film.timeline.curve
+    curve = window.playback.timeline.curve
     curve.grab()  # the frame of a curve is known once it has been painted
     return QPoint(round(float(curve._frame.x(state))), curve.height() // 2)
 
 
 def on_list(window, place: int) -> QPoint:
-    panel = window.film.panel
+    panel = window.playback.panel
     index = panel.model.index(place)
     panel.list.scrollTo(index)
     return panel.list.visualRect(index).center()
@@ -57,7 +57,7 @@ def on_list(window, place: int) -> QPoint:
 
 def test_a_click_on_a_line_goes_there_and_back(qtbot, walked):
     window, document = walked, walked.document
-    panel = window.film.panel
+    panel = window.playback.panel
     scores = [document.history.first[0], *(row.after for row in document.history)]
     points = {len(document.history): document.mesh.points.copy()}
     for state in (3, 0, 7, len(document.history)):
@@ -86,7 +86,7 @@ def test_lines_say_what_who_and_how_much(walked):
 
 def test_scrubbing_by_the_mouse(qtbot, walked):
     window, document = walked, walked.document
-    curve = window.film.timeline.curve
+    curve = window.playback.timeline.curve
     qtbot.mousePress(curve, LEFT, pos=on_curve(window, 6))
     qtbot.waitUntil(lambda: document.history.cursor == 6, timeout=WAIT)
     for state in (5, 4, 2, 1):
@@ -105,7 +105,7 @@ def test_scrubbing_by_the_mouse(qtbot, walked):
 
 def test_wheel_and_keys_on_the_curve(qtbot, walked):
     window, document = walked, walked.document
-    curve, last = window.film.timeline.curve, len(document.history)
+    curve, last = window.playback.timeline.curve, len(document.history)
     curve.setFocus()
     for key, wanted in (
         (Qt.Key.Key_Home, 0),
@@ -223,7 +223,7 @@ def test_a_history_that_begins_again(qtbot, walked, triangles):
 
 def test_a_mark_under_the_mouse_goes_with_its_state(qtbot, walked, triangles):
     window = walked
-    curve = window.film.timeline.curve
+    curve = window.playback.timeline.curve
     qtbot.mouseMove(curve, on_curve(window, 3))
     qtbot.mouseMove(curve, on_curve(window, 4))
     qtbot.waitUntil(lambda: curve.hovered == 4, timeout=WAIT)
@@ -235,7 +235,7 @@ def test_a_mark_under_the_mouse_goes_with_its_state(qtbot, walked, triangles):
 
 def test_ten_thousand_steps_are_listed_and_hovered_cheaply(qtbot, open_window, star):
     window = open_window(star)
-    document, film = window.document, window.film
+    document, film = window.document, window.playback
     vertices = np.array([star.vertices()[-1]])
     place = star.points[vertices].copy()
     window.document.changed.disconnect(window.canvas._on_changed)
@@ -280,7 +280,7 @@ def test_export_writes_what_was_asked_for(qtbot, walked, monkeypatch, tmp_path, 
     chosen = []
 
     def choose(dialog):
-        qtbot.mouseClick(dialog.formats.buttons()[number], LEFT)
+        qtbot.mouseClick(list(dialog.formats.values())[number], LEFT)
         dialog.size_box.setCurrentIndex(0)
         dialog.seconds.setValue(0.1)
         assert dialog.preview.pixmap().width() > 100
@@ -288,13 +288,13 @@ def test_export_writes_what_was_asked_for(qtbot, walked, monkeypatch, tmp_path, 
 
     ask(qtbot, window, choose, monkeypatch, tmp_path / "star")
     path = tmp_path / f"star{chosen[0].ending}"
-    qtbot.waitUntil(lambda: not window.film.exporting.running, timeout=WAIT)
+    qtbot.waitUntil(lambda: not window.playback.exporting.running, timeout=WAIT)
     assert path.stat().st_size > 1000
-    assert window.said.text().startswith(f"Written: {path.name}")
-    assert not window.film.exporting.bar.isVisible()
+    assert window.status.message.startswith(f"Written: {path.name}")
+    assert not window.playback.exporting.bar.isVisible()
     assert chosen[0].size == (640, 480)
     if chosen[0].moving:
-        assert f"{len(window.document.history) + 1} frames" in window.said.text()
+        assert f"{len(window.document.history) + 1} frames" in window.status.message
 
 
 def test_export_can_be_cancelled_and_says_what_is_wrong(qtbot, walked, monkeypatch, tmp_path):
@@ -303,11 +303,11 @@ def test_export_can_be_cancelled_and_says_what_is_wrong(qtbot, walked, monkeypat
     ask(qtbot, window, choose, monkeypatch, tmp_path / "star.gif")
     qtbot.mouseClick(exporting.bar.cancel, LEFT)
     qtbot.waitUntil(lambda: not exporting.running, timeout=WAIT)
-    assert window.said.text() == "Cancelled: star.gif was not written."
+    assert window.status.message == "Cancelled: star.gif was not written."
     assert list(tmp_path.iterdir()) == []
     ask(qtbot, window, choose, monkeypatch, tmp_path / "none" / "star.gif")
     qtbot.waitUntil(lambda: not exporting.running, timeout=WAIT)
-    assert "does not exist" in window.notice.text, window.said.text()
+    assert "does not exist" in window.notice.text, window.status.message
     ask(qtbot, window, choose, monkeypatch, tmp_path / "late.gif")
     window.close()
     assert not exporting.running

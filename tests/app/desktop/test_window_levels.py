@@ -129,9 +129,9 @@ def test_what_is_not_played_in_a_level_is_refused_with_a_reason(qtbot, window):
 
     window.levels.open("three-blocks")
     window.actions_by_id["clean_all"].trigger()
-    assert "one by one" in window.said.text()
+    assert "one by one" in window.status.message
     window.editing.submit("chord_collapse", window.document.mesh.halfedge(0, 1))
-    assert "beyond the paper" in window.said.text()
+    assert "beyond the paper" in window.status.message
     assert len(window.document.history) == 0
     menu = vertex_menu(window, 0)
     titles = {action.text(): action.isEnabled() for action in menu.actions()}
@@ -139,7 +139,7 @@ def test_what_is_not_played_in_a_level_is_refused_with_a_reason(qtbot, window):
     menu.deleteLater()
     window.levels.leave()
     window.actions_by_id["clean_all"].trigger()
-    assert "Removed 4 lines" in window.said.text()
+    assert "Removed 4 lines" in window.status.message
 
 
 def test_the_agent_answers_beside_and_shows_its_way(qtbot, window):
@@ -156,14 +156,16 @@ def test_the_agent_answers_beside_and_shows_its_way(qtbot, window):
     assert len(window.document.history) == 0
     click(qtbot, bar.answer)
     assert len(window.document.history) == len(rival.operations)
-    window.film.hold()
-    window.film.go_to(len(rival.operations))
+    window.playback.hold()
+    window.playback.go_to(len(rival.operations))
     assert "win no stars" in bar.text.text()
 
 
 def test_levels_are_dropped_without_a_question(qtbot, window, tmp_path, monkeypatch):
     window.files.watch(tmp_path / "autosave")
-    monkeypatch.setattr("meshwright.desktop.files.unsaved_work.Question", None)  # who asks fails
+    monkeypatch.setattr(
+        "meshwright.desktop.files.unsaved_work.QuestionDialog", None
+    )  # who asks fails
     window.levels.open("two-turns")
     solve(window)
     assert not window.isWindowModified()
@@ -221,7 +223,7 @@ def test_the_window_opens_on_a_level(qtbot):
 
     window = open_on(level=level.load("two-turns"))
     qtbot.addWidget(window)
-    qtbot.waitUntil(lambda: window.canvas.plotter is not None, timeout=WAIT)
+    qtbot.waitUntil(lambda: window.canvas.built, timeout=WAIT)
     assert window.levels.bar.isVisible()
     assert window.document.mesh.score == 6
     window.close()

@@ -59,8 +59,8 @@ def test_shift_click_selects_and_takes_out(qtbot, open_window, grid):
         shift_click(qtbot, window, vertex)
     assert selection.vertices.tolist() == [8, 9, 15, 16]
     assert len(selection.elements) == 1
-    assert window.selecting.layer.count == 4
-    assert "4 vertices selected" in window.said.text()
+    assert window.selection_tools.layer.count == 4
+    assert "4 vertices selected" in window.status.message
     shift_click(qtbot, window, 9)
     assert selection.vertices.tolist() == [8, 15, 16]
     assert window.editing.menu is None
@@ -78,7 +78,7 @@ def test_boxes_and_lassos_with_the_shift_key(qtbot, open_window, grid):
     selection.clear()
     drag(qtbot, window, (3.5, 3.4), (2.4, 1.5), (3.6, 1.5), modifier=LASSO)
     assert selection.vertices.tolist() == [17]
-    assert window.selecting.band.outline == []
+    assert window.selection_tools.band.outline == []
     assert window.document.history.cursor == 0
 
 
@@ -96,7 +96,7 @@ def test_the_tools_of_the_toolbar(qtbot, open_window, grid):
     assert window.document.selection.vertices.tolist() == [8, 9]
     assert window.canvas.viewport.centre == centre
     press(qtbot, window, Qt.Key.Key_Escape)
-    assert window.selecting.tool == "edit"
+    assert window.selection_tools.tool == "edit"
     press(qtbot, window, Qt.Key.Key_Escape)
     assert len(window.document.selection) == 0
 
@@ -120,7 +120,7 @@ def test_a_vertex_is_dragged_and_the_drag_undone(qtbot, open_window, grid):
     window = open_window(grid)
     centre = window.canvas.viewport.centre
     drag(qtbot, window, (2, 2), (2.2, 2.3), (2.4, 2.4), release=False)
-    assert len(window.selecting.rubber.places) == 1
+    assert len(window.selection_tools.rubber.places) == 1
     assert grid.points[16].tolist() == [2.0, 2.0, 0.0]
     at = pixel(window, (2.4, 2.4))
     qtbot.mouseRelease(window.canvas.plotter, Qt.MouseButton.LeftButton, pos=at)
@@ -142,28 +142,28 @@ def test_corners_and_locked_vertices_stay_and_say_so(qtbot, open_window, grid):
     window = open_window(grid)
     before = grid.points.copy()
     drag(qtbot, window, (0, 0), (0.3, 0.3))
-    assert window.canvas.overlay.card.text == window.said.text() == CORNER
+    assert window.canvas.overlay.card.text == window.status.message == CORNER
     window.document.set_locked(16, True)
     qtbot.wait(50)
     drag(qtbot, window, (2, 2), (2.3, 2.3))
-    assert window.said.text() == LOCK
+    assert window.status.message == LOCK
     assert np.array_equal(grid.points, before)
 
 
 def test_folded_elements_are_seen_while_dragging_and_after(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 2), (3.4, 3.4), release=False)
-    assert window.selecting.rubber.folded > 0
+    assert window.selection_tools.rubber.folded > 0
     qtbot.mouseRelease(
         window.canvas.plotter, Qt.MouseButton.LeftButton, pos=pixel(window, (3.4, 3.4))
     )
-    assert "inverted" in window.said.text()
+    assert "inverted" in window.status.message
     qtbot.waitUntil(lambda: window.inverted.layer.count > 0, timeout=WAIT)
     press(qtbot, window, Qt.Key.Key_U, Qt.KeyboardModifier.ControlModifier)
-    assert window.said.text().startswith("Untangled")
+    assert window.status.message.startswith("Untangled")
     qtbot.waitUntil(lambda: window.inverted.layer.count == 0, timeout=WAIT)
     press(qtbot, window, Qt.Key.Key_U, Qt.KeyboardModifier.ControlModifier)
-    assert window.said.text() == "No element is inverted."
+    assert window.status.message == "No element is inverted."
 
 
 def test_escape_calls_a_drag_off(qtbot, open_window, grid):
@@ -174,7 +174,7 @@ def test_escape_calls_a_drag_off(qtbot, open_window, grid):
         window.canvas.plotter, Qt.MouseButton.LeftButton, pos=pixel(window, (2.4, 2.4))
     )
     assert window.document.history.cursor == 0
-    assert len(window.selecting.rubber.places) == 0
+    assert len(window.selection_tools.rubber.places) == 0
     assert window.editing.menu is None
 
 
@@ -183,7 +183,7 @@ def test_an_edit_of_the_agent_calls_a_drag_off(qtbot, open_window, grid):
     drag(qtbot, window, (2, 2), (2.4, 2.4), release=False)
     window.document.submit("collapse", grid.halfedge(16, 17), "greedy")
     assert not window.canvas.mouse.dragging
-    assert len(window.selecting.rubber.places) == 0
+    assert len(window.selection_tools.rubber.places) == 0
     qtbot.mouseRelease(
         window.canvas.plotter, Qt.MouseButton.LeftButton, pos=pixel(window, (2.4, 2.4))
     )
@@ -201,7 +201,6 @@ def test_a_selection_is_dragged_as_one(qtbot, open_window, grid):
 def test_the_menu_of_a_whole_selection(qtbot, open_window, grid):
     window = open_window(grid)
     window.document.selection.set([8, 9, 15, 16])
-    window.refresh()
     menu = open_menu(qtbot, window, pixel(window, (1, 1)) + QPoint(1, 1))
     assert menu.actions()[0].text().startswith("4 vertices")
     entry(menu, "Locked").trigger()
@@ -229,7 +228,7 @@ def test_a_menu_of_a_mesh_that_has_gone_on_does_nothing(qtbot, open_window, grid
     window.document.submit("collapse", grid.halfedge(17, 24), "greedy")
     for text in ("Smooth here", "Locked", "Corner"):
         entry(menu, text).trigger()
-        assert window.said.text() == GONE_ON
+        assert window.status.message == GONE_ON
     menu.close()
     assert window.document.history.cursor == 2
 

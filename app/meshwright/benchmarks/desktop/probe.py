@@ -37,17 +37,19 @@ def start(began: float, *numbers: int) -> dict[str, Any]:
                 result["first_paint_s"] = time.time() - began
                 result["torch_at_first_paint"] = "torch" in sys.modules
                 result["pyvista_at_first_paint"] = "pyvista" in sys.modules
-                result["compiled_at_first_paint"] = window.ready
+                result["compiled_at_first_paint"] = window.readiness.editing
             return False
 
     app = application()
     watch = Watch()
     window = open_window("star", demo=False)
     window.installEventFilter(watch)
-    _spin(app, lambda: window.canvas.plotter is not None)
+    _spin(app, lambda: window.canvas.built)
     _frame(app, window)
     result["mesh_drawn_s"] = time.time() - began
-    _spin(app, lambda: window.ready, KERNELS_S)  # minutes where nothing was compiled yet
+    _spin(
+        app, lambda: window.readiness.editing, KERNELS_S
+    )  # minutes where nothing was compiled yet
     result["kernels_ready_s"] = time.time() - began
     result["torch_at_the_end"] = "torch" in sys.modules
     window.close()
@@ -116,7 +118,7 @@ def _open(mesh: Any) -> tuple[Any, Any]:
     window = MainWindow(Document(mesh), ready=True)
     window.resize(1280, 800)
     window.show()
-    _spin(app, lambda: window.canvas.plotter is not None)
+    _spin(app, lambda: window.canvas.built)
     window.activateWindow()
     _frame(app, window)
     return app, window

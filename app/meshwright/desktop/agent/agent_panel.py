@@ -20,10 +20,11 @@ from qtpy.QtWidgets import (
 
 from meshwright.assistant.assistant import Assistant, State
 from meshwright.assistant.policy_catalogue import kind_of, label, shipped
-from meshwright.desktop.actions.registry import ActionSet
 from meshwright.desktop.agent.hint_list import HintList
 from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.controller import Connections
 from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import Bar, named
 from meshwright.desktop.widgets.number_box import IntegerBox
 from meshwright.document.document import Document
@@ -48,6 +49,7 @@ class AgentPanel(QWidget):
         self,
         document: Document,
         assistant: Assistant,
+        settings: Settings,
         actions: ActionSet,
         theme: Theme,
     ) -> None:
@@ -55,34 +57,23 @@ class AgentPanel(QWidget):
         self._document = document
         self._assistant = assistant
         self._actions = actions
-        self._settings: Settings | None = None
+        self._settings = settings
         self._theme = theme
-        self._buttons: list[tuple[QWidget, str]] = []
-        self._numbers: dict[QSpinBox, str] = {}
-        self._files: list[str] = []
+        self._files = settings.texts(FILES)
         self._drawn: tuple[bool, Theme] | None = None  # what the icons are for
         self._make_policy()
         self._make_buttons()
         self._make_progress()
         self._arrange()
-        document.replaced.connect(self._on_replaced)
-        assistant.changed.connect(self._on_assistant_changed)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._on_replaced)
+        self._connections.add(assistant.changed, self._on_assistant_changed)
         self._on_replaced()
 
-    def use(self, settings: Settings) -> None:
-        """Take up what was set last time, and keep what is set from now on."""
-        speed = settings.number("agent/speed", USUAL_SPEED)
-        self.speed.setValue(min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - speed)))
-        for box, key in self._numbers.items():
-            box.setValue(round(min(max(settings.number(key, box.value()), 1), box.maximum())))
-        self._settings, self._files = settings, settings.texts(FILES)
-        self._fill()
-
     def release(self) -> None:
-        """Let go of document and assistant."""
+        """Disconnect from document and assistant."""
         self._clock.stop()
-        self._document.replaced.disconnect(self._on_replaced)
-        self._assistant.changed.disconnect(self._on_assistant_changed)
+        self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in other colours."""
@@ -90,11 +81,6 @@ class AgentPanel(QWidget):
         self.bar.set_theme(theme)
         self.hints.set_theme(theme)
         self._on_assistant_changed()
-
-    def refresh(self) -> None:
-        """Enable the buttons whose actions are enabled."""
-        for button, name in self._buttons:
-            button.setEnabled(self._actions[name].isEnabled())
 
     @property
     def rollouts(self) -> int:
@@ -109,13 +95,9 @@ class AgentPanel(QWidget):
     def offer(self, path: str, kind: str) -> None:
         """Offer a policy file from now on, too, where meshes are of its kind."""
         self._files = [path, *(one for one in self._files if one != path)][:MOST_FILES]
-        self._keep(FILES, self._files)
+        self._settings.put(FILES, self._files)
         if kind == self._document.kind:
             self._fill()
-
-    def _keep(self, key: str, value: object) -> None:
-        if self._settings is not None:
-            self._settings.put(key, value)
 
     # Making
 
@@ -150,15 +132,17 @@ class AgentPanel(QWidget):
         self.watch.setToolTip(self._actions["agent.watch"].toolTip())
         self.watch.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.watch.clicked.connect(self._actions["agent.watch"].trigger)
-        self._buttons.append((self.watch, "agent.watch"))
+        self._follow(self.watch, "agent.watch")
         self.speed = QSlider(Qt.Orientation.Horizontal)
         self.speed.setRange(0, len(SPEEDS) - 1)
         self.speed.setToolTip("Decisions per second of Play")
         self.speed.setAccessibleName("Speed")
         self.speed.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.pace = named("", "Label")
+        usual = self._settings.number("agent/speed", USUAL_SPEED)
+        self.speed.setValue(min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - usual)))
+        self._set_speed(self.speed.value())
         self.speed.valueChanged.connect(self._on_speed_moved)
-        self.speed.setValue(SPEEDS.index(USUAL_SPEED))
 
     def _make_progress(self) -> None:
         self.bar = Bar(self._theme)
@@ -179,18 +163,22 @@ class AgentPanel(QWidget):
         made.setAccessibleName(action.text())
         made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         made.clicked.connect(action.trigger)
-        self._buttons.append((made, name))
+        self._follow(made, name)
         return made
+
+    def _follow(self, widget: QWidget, name: str) -> None:
+        """Enable ``widget`` while the action is enabled."""
+        widget.setEnabled(self._actions[name].isEnabled())
+        self._actions[name].enabledChanged.connect(widget.setEnabled)
 
     def _number(self, key: str, most: int, usual: int, unit: str) -> QSpinBox:
         made = IntegerBox()
         made.setRange(1, most)
         made.setSuffix(unit)
-        made.setValue(usual)
+        made.setValue(round(min(max(self._settings.number(key, usual), 1), most)))
         made.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         made.setKeyboardTracking(False)
-        made.valueChanged.connect(partial(self._keep, key))
-        self._numbers[made] = key
+        made.valueChanged.connect(partial(self._settings.put, key))
         return made
 
     def _arrange(self) -> None:
@@ -259,9 +247,12 @@ class AgentPanel(QWidget):
             self._select()  # what is chosen is followed only once it is loaded
 
     def _on_speed_moved(self, index: int) -> None:
+        self._set_speed(index)
+        self._settings.put("agent/speed", SPEEDS[index])
+
+    def _set_speed(self, index: int) -> None:
         self._assistant.speed = SPEEDS[index]
         self.pace.setText(f"{SPEEDS[index]:g} per second")
-        self._keep("agent/speed", SPEEDS[index])
 
     def _on_assistant_changed(self) -> None:
         assistant = self._assistant
@@ -282,18 +273,17 @@ class AgentPanel(QWidget):
             else:
                 self._clock.stop()
         self._on_tick()
-        self.refresh()
 
     def _on_tick(self) -> None:
         share = self._assistant.progress.share
         self.bar.setVisible(share is not None)
         self.bar.share = share or 0.0
-        text = told(self._assistant)
+        text = activity(self._assistant)
         if text != self.progress.text():
             self.progress.setText(text)
 
 
-def told(assistant: Assistant) -> str:
+def activity(assistant: Assistant) -> str:
     """What the assistant is doing, in a few words."""
     progress = assistant.progress
     decisions = progress.counted

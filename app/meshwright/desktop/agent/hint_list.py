@@ -43,7 +43,7 @@ class HintRow(QPushButton):
             part.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setFixedHeight(30)
 
-    def tell(self, hint: Hint, theme: Theme) -> None:
+    def show_hint(self, hint: Hint, theme: Theme) -> None:
         """Show this hint."""
         change = label(hint.ghost.change)
         self.number.setText(str(hint.number))
@@ -56,10 +56,12 @@ class HintRow(QPushButton):
 
 
 class HintList(QWidget):
-    """Rows of hints. ``taken(index)``: one is clicked; ``pointed(index)``: the mouse is on one."""
+    """Rows of hints. ``taken(index)``: one was clicked; ``hovered(index)``: the mouse or the
+    keyboard focus is on one.
+    """
 
     taken = Signal(int)
-    pointed = Signal(int)
+    hovered = Signal(int)
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -81,7 +83,7 @@ class HintList(QWidget):
         for index, row in enumerate(self.rows):
             row.setVisible(index < len(self._hints))
             if index < len(self._hints):
-                row.tell(self._hints[index], self._theme)
+                row.show_hint(self._hints[index], self._theme)
         self.setVisible(bool(self._hints))
 
     def set_theme(self, theme: Theme) -> None:
@@ -90,9 +92,12 @@ class HintList(QWidget):
         self.show_hints(self._hints)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Tell which row is pointed at."""
-        if event.type() in (QEvent.Type.Enter, QEvent.Type.FocusIn):
-            self.pointed.emit(self.rows.index(watched))
+        """Report the row under the mouse, or with the focus."""
+        if isinstance(watched, HintRow) and event.type() in (
+            QEvent.Type.Enter,
+            QEvent.Type.FocusIn,
+        ):
+            self.hovered.emit(self.rows.index(watched))
         return False
 
     def _on_clicked(self, index: int, checked: bool = False) -> None:

@@ -128,8 +128,8 @@ class Settings:
     def number(self, key: str, default: float) -> float:
         """A number; the default where the store holds something else."""
         try:
-            return float(self._store.value(key, default))
-        except (TypeError, ValueError):
+            return float(self.text(key, str(default)))
+        except ValueError:
             return default
 
     def texts(self, key: str) -> list[str]:

@@ -8,14 +8,16 @@ from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QVBoxLayout, QWidget
 
 from meshwright.desktop.canvas.gestures import Gesture
-from meshwright.desktop.canvas.mouse import Mouse
+from meshwright.desktop.canvas.mesh_view import MeshView, VtkView
+from meshwright.desktop.canvas.mouse import MouseInput
 from meshwright.desktop.canvas.overlay import Overlay
+from meshwright.desktop.controller import Connections
 from meshwright.document.document import Document
-from meshwright.graphics.markers import label
+from meshwright.graphics.markers import Markers, label
 from meshwright.graphics.picking import Picker
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
-from meshwright.graphics.vtk_scene import CROWD, Scene
+from meshwright.graphics.vtk_scene import CROWD
 
 VERTEX_REACH = 12
 """Pixels around a vertex that count as on it."""
@@ -26,16 +28,16 @@ QUICK = 5000
 class Canvas(QWidget):
     """Shows ``document`` and follows the mouse; it never writes the mesh.
 
-    The plotter is made by :meth:`build`, after the window has been shown, because its import takes
-    longer than all the rest. ``clicked(click)`` carries a
-    :class:`~meshwright.desktop.canvas.mouse.Click`,
-    ``pointed(at)`` where the mouse is now, None when it is gone; ``escaped()`` says that Escape has
-    been pressed and nothing was under way; ``drawn()`` follows every frame. What a drag with the
-    left button does is asked of :attr:`gesture_at`: None moves the picture.
+    The view draws nothing until :meth:`build`, which is called after the window has been shown,
+    because the import of VTK takes longer than everything else. ``clicked(click)`` carries a
+    :class:`~meshwright.desktop.canvas.mouse.Click`; ``hovered(at)`` the position of the mouse in
+    pixels, None when it has left; ``escaped()``: Escape was pressed while no drag was under way;
+    ``drawn()`` follows every update of the mesh. :attr:`gesture_at` returns what a drag with the
+    left button does; where it returns None the drag moves the camera.
     """
 
     clicked = Signal(object)
-    pointed = Signal(object)
+    hovered = Signal(object)
     escaped = Signal()
     drawn = Signal()
     _refresh = Signal()
@@ -44,8 +46,7 @@ class Canvas(QWidget):
         super().__init__()
         self.document = document
         self.viewport = Viewport()
-        self.scene: Scene | None = None
-        self.plotter: QWidget | None = None
+        self.view = MeshView(self)
         self.overlay = Overlay(self, theme)
         self._theme = theme
         self._picker: Picker | None = None
@@ -54,7 +55,7 @@ class Canvas(QWidget):
         self._stale = False
         self._at: QPointF | None = None  # where the mouse is
         self._pinned = -1  # the half-edge that the keyboard points at
-        self.mouse = Mouse(self)
+        self.mouse = MouseInput(self)
         self.gesture_at: Callable[[QPointF, Qt.KeyboardModifier], Gesture | None]
         self.gesture_at = lambda at, modifiers: None
         self._frozen = False
@@ -64,51 +65,57 @@ class Canvas(QWidget):
         self._point_again.setSingleShot(True)
         self._point_again.setInterval(0)
         self._point_again.timeout.connect(self._on_point_again)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        document.replaced.connect(self._on_replaced)
-        document.changed.connect(self._on_changed)
-        document.hover_changed.connect(self._on_hover_changed)
+        self._layout = QVBoxLayout(self)
+        self._layout.setContentsMargins(0, 0, 0, 0)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._on_replaced)
+        self._connections.add(document.changed, self._on_changed)
+        self._connections.add(document.hover_changed, self._on_hover_changed)
 
     # Making and ending
 
-    def build(self) -> None:
-        """Make the plotter; needs a display and takes about a second."""
-        from pyvistaqt import QtInteractor
+    @property
+    def built(self) -> bool:
+        """Whether the mesh is drawn: :meth:`build` has been called and the canvas is open."""
+        return self.view.built
 
-        # the default re-renders five times a second, and multisampling is dear in software
-        self.plotter = QtInteractor(self, auto_update=False, multi_samples=0)
-        self.plotter.setAcceptDrops(False)
-        self.plotter.setMouseTracking(True)
-        self.plotter.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.plotter.installEventFilter(self)
-        self.layout().addWidget(self.plotter)
+    @property
+    def plotter(self) -> QWidget:
+        """The widget that takes mouse and keys: the plotter once it is there, else the canvas."""
+        return self.view.widget
+
+    @property
+    def markers(self) -> Markers | None:
+        """The markers that are drawn; None without a mesh and before :meth:`build`."""
+        return self.view.markers
+
+    def build(self) -> None:
+        """Import VTK and show the mesh; needs a display and takes about a second."""
+        self.view = VtkView(self, self._theme, self)
+        self._layout.addWidget(self.plotter)
         self.plotter.show()  # at once, so that it can take the keyboard
-        ratio = self.devicePixelRatioF()  # VTK counts the pixels of the screen
-        self.scene = Scene(self.plotter, self._theme, width=ratio, short_outlines=True)
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())
         self._on_replaced()
 
     def release(self) -> None:
-        """Let go of VTK's resources and of the document; called when the window closes."""
-        self.document.replaced.disconnect(self._on_replaced)
-        self.document.changed.disconnect(self._on_changed)
-        self.document.hover_changed.disconnect(self._on_hover_changed)
+        """Disconnect from the document and free VTK's resources; called when the window closes."""
+        self._connections.close()
         self._point_again.stop()
         self.overlay.card.hide()
-        if self.plotter is not None:
-            self.plotter.removeEventFilter(self)
-            self.plotter.close()
-            self.plotter = self.scene = None
+        self.view.close()
+        self.view = MeshView(self)
+
+    def focus(self) -> None:
+        """Give the keyboard to the canvas."""
+        self.plotter.setFocus()
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in other colours."""
         self._theme = theme
         self.overlay.set_theme(theme)
-        if self.scene is not None:
-            self.scene.set_theme(theme, self.document.mesh)
-            self._look()
+        self.view.set_theme(theme, self.document.mesh)
+        self._look()
 
     # Camera
 
@@ -127,16 +134,16 @@ class Canvas(QWidget):
         self._look()
 
     def _look(self) -> None:
-        mesh = self.document.mesh
-        if self.scene is None:
+        if not self.built:
             return
-        self.scene.look(self.viewport)
-        marks = self.scene.markers
+        mesh, view = self.document.mesh, self.view
+        view.look(self.viewport)
+        marks = view.markers
         if marks is not None and mesh is not None:
             at = self.viewport.to_screen(marks.places)
             seen = ((at > 0) & (at < self.viewport.size)).all(axis=1).sum() if len(at) else 0
-            self.scene.show_crowd(mesh, bool(seen > CROWD))
-        self.overlay.show_markers(marks, self.viewport, self.scene.crowd, self.scene.outlined)
+            view.show_crowd(mesh, bool(seen > CROWD))
+        self.overlay.show_markers(marks, self.viewport, view.crowd, view.outlined)
         self._show_hover()
         self.plotter.update()
 
@@ -147,8 +154,8 @@ class Canvas(QWidget):
         self._pinned = -1
         self._picker = None
         self._stale = False
-        if self.scene is not None:
-            self.scene.show(self.document.mesh)
+        if self.built:
+            self.view.show(self.document.mesh)
             self.fit()
             self._look()
 
@@ -162,10 +169,10 @@ class Canvas(QWidget):
 
     def _on_refresh(self) -> None:
         mesh = self.document.mesh
-        if not self._stale or self.scene is None or mesh is None:
+        if not self._stale or not self.built or mesh is None:
             return
         self._stale = False
-        self.scene.update(mesh)
+        self.view.update(mesh)
         if mesh.n_elements <= QUICK:
             self._on_point_again()
         else:
@@ -201,7 +208,7 @@ class Canvas(QWidget):
         self._pinned = halfedge if mesh is not None and mesh.live(halfedge) else -1
         self.overlay.card.hide()
         self.document.hover = self._pinned
-        self.pointed.emit(None)
+        self.hovered.emit(None)
 
     def freeze(self, frozen: bool) -> None:
         """Keep the half-edge that is shown while a menu is open."""
@@ -242,7 +249,7 @@ class Canvas(QWidget):
         self._at, self._pinned = at, -1
         self.document.hover = self._halfedge_at(at)
         self._tell_vertex(at)
-        self.pointed.emit(at)
+        self.hovered.emit(at)
 
     def leave(self) -> None:
         """The mouse is gone; while a menu is open that says nothing."""
@@ -252,7 +259,7 @@ class Canvas(QWidget):
         self.overlay.card.hide()
         if self._pinned < 0:
             self.document.hover = -1
-            self.pointed.emit(None)
+            self.hovered.emit(None)
 
     def _tell_vertex(self, at: QPointF) -> None:
         mesh = self.document.mesh

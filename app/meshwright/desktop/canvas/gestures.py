@@ -131,16 +131,17 @@ class MoveVertices(Gesture):
         self._layer.clear()
 
 
-class Refused(Gesture):
-    """A drag that cannot be: says why once."""
+class RefusedDrag(Gesture):
+    """A drag of a vertex that must not move: calls ``explain`` once."""
 
     cursor = Qt.CursorShape.ForbiddenCursor
 
-    def __init__(self, tell: Callable[[], None]) -> None:
-        self._tell: Callable[[], None] | None = tell
+    def __init__(self, explain: Callable[[], None]) -> None:
+        self._explain = explain
+        self._explained = False
 
     def move(self, at: QPointF) -> None:
-        """Say it the first time."""
-        if self._tell is not None:
-            tell, self._tell = self._tell, None
-            tell()
+        """Explain the refusal at the first move."""
+        if not self._explained:
+            self._explained = True
+            self._explain()

@@ -35,7 +35,7 @@ class Click:
         return bool(self.modifiers & Qt.KeyboardModifier.ShiftModifier)
 
 
-class Mouse:
+class MouseInput:
     """Turns the plotter's mouse events into the canvas's calls and signals."""
 
     def __init__(self, canvas: Canvas) -> None:
@@ -67,15 +67,16 @@ class Mouse:
     def handle(self, event: QEvent) -> bool:
         """Act on an event of the plotter; True if VTK shall not see it."""
         kind = event.type()
-        if kind == QEvent.Type.MouseMove:
-            self._move(event)
-        elif kind in (QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick):
-            self._press(event)
-        elif kind == QEvent.Type.MouseButtonRelease:
-            self._release(event)
-        elif kind == QEvent.Type.Wheel:
+        if isinstance(event, QMouseEvent):
+            if kind == QEvent.Type.MouseMove:
+                self._move(event)
+            elif kind == QEvent.Type.MouseButtonRelease:
+                self._release(event)
+            else:  # also the second press of a double click
+                self._press(event)
+        elif isinstance(event, QWheelEvent):
             self._wheel(event)
-        elif kind == QEvent.Type.KeyPress:
+        elif isinstance(event, QKeyEvent) and kind == QEvent.Type.KeyPress:
             self._key(event)
         elif kind == QEvent.Type.Leave:
             self._canvas.leave()

@@ -4,6 +4,8 @@ A transparent widget whose layers are painted by QPainter: a hover repaints a fe
 any size of mesh.
 """
 
+from typing import TypeVar
+
 import numpy as np
 from qtpy.QtCore import QRectF, Qt
 from qtpy.QtGui import QPainter, QPaintEvent
@@ -16,6 +18,8 @@ from meshwright.desktop.canvas.layers.text_card import CardLayer
 from meshwright.graphics.markers import Markers
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
+
+AnyLayer = TypeVar("AnyLayer", bound=Layer)
 
 
 class Overlay(QWidget):
@@ -36,7 +40,7 @@ class Overlay(QWidget):
         self.arrow = self.add(ArrowLayer(theme))
         self.card = self.add(CardLayer(theme, self.font(), self))
 
-    def add(self, layer: Layer, below: Layer | None = None) -> Layer:
+    def add(self, layer: AnyLayer, below: Layer | None = None) -> AnyLayer:
         """Paint ``layer`` too: just below another one, or above all; returned for keeping."""
         place = len(self.layers) if below is None else self.layers.index(below)
         self.layers.insert(place, layer)

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from qtpy.QtCore import QTimer
 
+from meshwright.assistant.assistant import Assistant
+from meshwright.desktop.application.readiness import Readiness
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.canvas.layers.ghost import GhostLayer
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.editing.operations_panel import OperationsPanel
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.document.operation_preview import GLOBAL, Choice, best, choices, following, ghost
+from meshwright.graphics.theme import Theme
 from meshwright_core import HalfEdgeMesh, Operation
-
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
 GHOSTS = "editing/ghosts"
 """The setting that shows ghosts."""
@@ -26,60 +30,72 @@ FEW = 2000
 """The tag of a ghost keeps off irregular vertices while there are no more than this."""
 
 
-class Pointing:
-    """The operation that is meant is, in this order: the one that a menu's row is pointed at, the
-    one chosen with Tab at this half-edge, the armed one, the best of the local ones (see
+class HoverController(Controller):
+    """Determines the current operation, previews it, and owns the panel of operations.
+
+    The current operation is, in this order: the one of the hovered row of a menu, the one chosen
+    with Tab at this half-edge, the armed one, the best of the local ones (see
     :func:`meshwright.document.operation_preview.best`).
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self,
+        document: Document,
+        assistant: Assistant,
+        canvas: Canvas,
+        settings: Settings,
+        readiness: Readiness,
+        status: StatusBar,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._assistant, self._canvas = document, assistant, canvas
+        self._settings, self._readiness, self._status = settings, readiness, status
+        self.panel = OperationsPanel(document, theme)
         self.choices: tuple[Choice, ...] = ()
         self.armed: Operation | None = None
         self._at = (-1, -1)  # revision and half-edge that the choices are of
         self._picked: Operation | None = None
         self._previewed: Operation | None = None
         self._shown: tuple[int, int, Operation | None] = (-1, -1, None)
-        self.layer = GhostLayer(window.theme, window.font())
-        self._rest = QTimer(window)
+        self.layer = GhostLayer(theme, canvas.font())
+        self._rest = QTimer(canvas)
         self._rest.setSingleShot(True)
         self._rest.setInterval(REST)
         self._rest.timeout.connect(self._draw_ghost)
-
-    def connect(self) -> None:
-        """Follow the mouse and the document."""
-        window = self._window
-        overlay = window.canvas.overlay
+        overlay = canvas.overlay
         overlay.add(self.layer, below=overlay.markers)
         overlay.add(self.layer.numbers, below=overlay.card)
-        window.canvas.pointed.connect(self.refresh)
-        window.document.hover_changed.connect(self._on_hover_changed)
-        window.document.changed.connect(self._on_changed)
-        window.document.replaced.connect(self.disarm)
-        window.assistant.changed.connect(self.refresh)
-        window.settings.changed.connect(self._on_settings_changed)
-        window.operations_panel.chosen.connect(self.arm)
+        canvas.hovered.connect(self.refresh)
+        self._connections.add(document.hover_changed, self._on_hover_changed)
+        self._connections.add(document.changed, self._on_changed)
+        self._connections.add(document.replaced, self.disarm)
+        self._connections.add(assistant.changed, self.refresh)
+        self._connections.add(settings.changed, self._on_settings_changed)
+        self._connections.add(readiness.changed, self.refresh)
+        self.panel.chosen.connect(self.arm)
 
-    def release(self) -> None:
-        """Let go of the document."""
-        window = self._window
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        super().set_theme(theme)
+        self.panel.set_theme(theme)
+
+    def close(self) -> None:
+        """Disconnect, and stop the timer."""
+        super().close()
         self._rest.stop()
-        window.document.hover_changed.disconnect(self._on_hover_changed)
-        window.document.changed.disconnect(self._on_changed)
-        window.document.replaced.disconnect(self.disarm)
-        window.assistant.changed.disconnect(self.refresh)
-        window.settings.changed.disconnect(self._on_settings_changed)
+        self.panel.release()
 
     # Which one
 
     @property
     def ghosts(self) -> bool:
         """Whether ghosts are shown."""
-        return self._window.settings.flag(GHOSTS, True)
+        return self._settings.flag(GHOSTS, True)
 
     def toggle_ghosts(self) -> None:
         """Show ghosts, or none."""
-        self._window.settings.put(GHOSTS, not self.ghosts)
+        self._settings.put(GHOSTS, not self.ghosts)
 
     @property
     def current(self) -> Choice | None:
@@ -97,13 +113,20 @@ class Pointing:
         """A click opens the menu again."""
         self._set_armed(None)
 
+    def put_down(self) -> bool:
+        """Disarm; False if no operation is armed."""
+        armed = self.armed is not None
+        if armed:
+            self.disarm()
+        return armed
+
     def cycle(self, step: int) -> None:
         """Mean the next operation that is allowed here, or the one before for -1."""
         self.refresh()
         meant = self.current
         chosen = following(self.choices, meant.operation if meant else None, step)
         if chosen is None:
-            self._window.say("Point at a half-edge first.")
+            self._status.show_message("Point at a half-edge first.")
         elif self.armed is not None:
             self._set_armed(chosen.operation)
         else:
@@ -117,33 +140,33 @@ class Pointing:
 
     def _set_armed(self, operation: Operation | None) -> None:
         self.armed, self._picked = operation, None
-        self._window.operations_panel.arm(operation)
+        self.panel.arm(operation)
         self.refresh()
 
     # Following
 
     def refresh(self, *_: object) -> None:
         """Show what is meant now; costs nothing where nothing has changed."""
-        window, mesh = self._window, self._window.document.mesh
-        halfedge = window.document.hover
-        if mesh is None or not window.ready or halfedge < 0 or not mesh.live(halfedge):
+        mesh = self._document.mesh
+        halfedge = self._document.hover
+        if mesh is None or not self._readiness.editing or halfedge < 0 or not mesh.live(halfedge):
             self._clear()
             return
-        at = (window.document.revision, halfedge)
+        at = (self._document.revision, halfedge)
         if at != self._at:
             if halfedge != self._at[1]:
                 self._picked = None
-            self._at, self.choices = at, choices(mesh, halfedge, window.document.bar)
+            self._at, self.choices = at, choices(mesh, halfedge, self._document.bar)
         meant = self.current
         operation = meant.operation if meant is not None else None
         if (*at, operation) != self._shown:
             self._shown = (*at, operation)
-            window.operations_panel.offer(self.choices, operation)
+            self.panel.offer(self.choices, operation)
             self._show_ghost(mesh, meant, halfedge)
 
     def _show_ghost(self, mesh: HalfEdgeMesh, meant: Choice | None, halfedge: int) -> None:
         self._rest.stop()
-        if meant is None or not self.ghosts or self._window.assistant.running:
+        if meant is None or not self.ghosts or self._assistant.running:
             self.layer.show(None)
         elif meant.operation in GLOBAL and mesh.n_elements > LARGE:
             self.layer.show(None)
@@ -153,12 +176,11 @@ class Pointing:
 
     def _draw_ghost(self) -> None:
         """Show the ghost of what is meant now."""
-        mesh, meant, halfedge = self._window.document.mesh, self.current, self._at[1]
-        if mesh is None or meant is None or self._at[0] != self._window.document.revision:
+        mesh, meant, halfedge = self._document.mesh, self.current, self._at[1]
+        if mesh is None or meant is None or self._at[0] != self._document.revision:
             return
         seen = ghost(mesh, meant.operation, halfedge)
-        scene = self._window.canvas.scene
-        marks = scene.markers.places if scene is not None and scene.markers is not None else None
+        marks = self._canvas.markers.places if self._canvas.markers is not None else None
         if marks is not None and len(marks) > FEW:
             marks = None
         self.layer.show(seen, meant.info.title, _corners(mesh, halfedge), marks)
@@ -167,7 +189,7 @@ class Pointing:
         self._at, self.choices, self._picked = (-1, -1), (), None
         if self._shown != (-1, -1, None):
             self._shown = (-1, -1, None)
-            self._window.operations_panel.offer((), None)
+            self.panel.offer((), None)
             self._rest.stop()
             self.layer.show(None)
 
@@ -184,7 +206,6 @@ class Pointing:
         if key == GHOSTS:
             self._shown = (-1, -1, None)
             self.refresh()
-            self._window.refresh()
 
 
 def _corners(mesh: HalfEdgeMesh, halfedge: int) -> np.ndarray:

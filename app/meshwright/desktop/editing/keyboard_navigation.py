@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from meshwright.desktop.canvas.canvas import Canvas
+from meshwright.desktop.canvas.layers.highlight import SpotLayer
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.graphics.markers import label
-
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
+from meshwright.graphics.theme import Theme
 
 STRIDE = 64.0
 """Pixels that an arrow key moves the picture."""
@@ -19,20 +20,22 @@ SIZE = 120.0
 _BITS = 16
 
 
-class Walking:
-    """What the keys do that move the view or the half-edge that is pointed at."""
+class KeyboardNavigation(Controller):
+    """Moves the view and the half-edge that counts as hovered, by keys."""
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self,
+        document: Document,
+        canvas: Canvas,
+        highlight: SpotLayer,
+        status: StatusBar,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._canvas = document, canvas
+        self._highlight, self._status = highlight, status
         self._vertex = -1
-
-    def connect(self) -> None:
-        """Follow the document."""
-        self._window.document.replaced.connect(self._on_replaced)
-
-    def release(self) -> None:
-        """Let go of the document."""
-        self._window.document.replaced.disconnect(self._on_replaced)
+        self._connections.add(document.replaced, self._on_replaced)
 
     def _on_replaced(self) -> None:
         self._vertex = -1
@@ -41,12 +44,12 @@ class Walking:
 
     def pan(self, right: float, up: float) -> None:
         """Look further right or up by so many strides."""
-        canvas = self._window.canvas
+        canvas = self._canvas
         canvas.see(canvas.viewport.panned(-STRIDE * right, STRIDE * up))
 
     def zoom(self, closer: bool) -> None:
         """Look from closer by, or from farther away, at the middle of the view."""
-        canvas = self._window.canvas
+        canvas = self._canvas
         width, height = canvas.viewport.size
         factor = ZOOM if closer else 1.0 / ZOOM
         canvas.see(canvas.viewport.zoomed(factor, width / 2.0, height / 2.0))
@@ -58,26 +61,26 @@ class Walking:
 
         They come in an order in which those near each other follow one another.
         """
-        mesh = self._window.document.mesh
+        mesh = self._document.mesh
         if mesh is None:
             return
         delta = mesh.irregularity()
         found = np.flatnonzero(delta)
         if not len(found):
-            self._window.say("Every vertex is regular.")
+            self._status.show_message("Every vertex is regular.")
             return
         found = found[np.argsort(_curve(mesh.points[found, :2]), kind="stable")]
         at = np.flatnonzero(found == self._vertex)
         place = (int(at[0]) + step) % len(found) if len(at) else (0 if step > 0 else -1)
         self._vertex = vertex = int(found[place])
-        canvas = self._window.canvas
+        canvas = self._canvas
         around = mesh.points[[vertex, *mesh.neighbours(vertex)]]
         reach = float(np.abs(around - mesh.points[vertex])[:, :2].max())
         box = mesh.points[vertex] + reach * np.array([(-1.0, -1.0, 0.0), (1.0, 1.0, 0.0)])
         canvas.see(canvas.viewport.around(box, SIZE))
         canvas.pin(mesh.outgoing(vertex)[0])
-        self._window.dashboard.spot.show(mesh.points[[vertex]])
-        self._window.say(
+        self._highlight.show(mesh.points[[vertex]])
+        self._status.show_message(
             f"Vertex {vertex}: \u0394 {label(int(delta[vertex]))}, "
             f"{place % len(found) + 1:,} of {len(found):,}."
         )
@@ -86,37 +89,37 @@ class Walking:
 
     def turn(self, step: int) -> None:
         """Point at the next half-edge around the vertex where this one starts (1), or back (-1)."""
-        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
             return
         fan = mesh.outgoing(mesh.origin(halfedge))
-        self._window.canvas.pin(fan[(fan.index(halfedge) + step) % len(fan)])
+        self._canvas.pin(fan[(fan.index(halfedge) + step) % len(fan)])
         self._keep_in_view()
 
     def along(self) -> None:
         """Point at the half-edge that follows in the element."""
-        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
             return
-        self._window.canvas.pin(mesh.next(halfedge))
+        self._canvas.pin(mesh.next(halfedge))
         self._keep_in_view()
 
     def across(self) -> None:
         """Point at the other half-edge of the edge."""
-        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
         elif mesh.twin(halfedge) < 0:
-            self._window.say("The boundary has no other side.")
+            self._status.show_message("The boundary has no other side.")
         else:
-            self._window.canvas.pin(mesh.twin(halfedge))
+            self._canvas.pin(mesh.twin(halfedge))
             self._keep_in_view()
 
     def _begin(self) -> None:
         """Point at the half-edge nearest to the middle of the view."""
-        mesh, canvas = self._window.document.mesh, self._window.canvas
+        mesh, canvas = self._document.mesh, self._canvas
         if mesh is None:
             return
         elements = mesh.elements()
@@ -128,7 +131,7 @@ class Walking:
 
     def _keep_in_view(self) -> None:
         """Move the picture where what is pointed at lies beside it."""
-        mesh, canvas = self._window.document.mesh, self._window.canvas
+        mesh, canvas = self._document.mesh, self._canvas
         halfedge = canvas.under_mouse
         if mesh is None or halfedge < 0:
             return

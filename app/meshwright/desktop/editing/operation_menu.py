@@ -5,8 +5,9 @@ from qtpy.QtGui import QCloseEvent, QKeyEvent, QMouseEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from meshwright.desktop.canvas.layers.ghost import change_colour
-from meshwright.desktop.widgets.basic import sentence, tabular
+from meshwright.desktop.widgets.basic import tabular
 from meshwright.desktop.widgets.event_filters import OwnKeys
+from meshwright.desktop.widgets.wording import sentence
 from meshwright.document.operation_preview import Choice
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import GRID, Theme
@@ -18,13 +19,13 @@ WIDTH = 296
 class OperationMenu(QFrame):
     """A popup with a row for each operation; a refused one is grey and tells its reason.
 
-    ``chosen(operation)`` comes with an allowed operation, by mouse, arrows and Return, or its key;
-    ``pointed(operation)`` with the allowed one that is pointed at, None for none; ``closed()`` when
-    the menu goes away.
+    ``chosen(operation)``: an allowed operation was chosen by mouse, arrows and Return, or its key;
+    ``hovered(operation)``: the row of an allowed operation is current, None for any other row;
+    ``closed()``: the menu has closed.
     """
 
     chosen = Signal(object)
-    pointed = Signal(object)
+    hovered = Signal(object)
     closed = Signal()
 
     def __init__(
@@ -35,6 +36,7 @@ class OperationMenu(QFrame):
         parent: QWidget,
     ) -> None:
         super().__init__(parent, Qt.WindowType.Popup | Qt.WindowType.FramelessWindowHint)
+        self._frame = parent.window()
         OwnKeys(self)
         self.setObjectName("OperationMenu")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -58,7 +60,7 @@ class OperationMenu(QFrame):
     def popup(self, at: QPoint) -> None:
         """Show the menu beside the point ``at`` of the screen, within the window if it can be."""
         self.adjustSize()
-        room = self.parentWidget().window().geometry()
+        room = self._frame.geometry()
         x = min(at.x() + 3 * GRID, room.right() - self.width())
         y = min(at.y() - GRID, room.bottom() - self.height())
         self.move(max(x, room.left()), max(y, room.top()))
@@ -95,7 +97,7 @@ class OperationMenu(QFrame):
             self._current.set_current(False)
         self._current = row
         row.set_current(True)
-        self.pointed.emit(row.info.operation if row.allowed else None)
+        self.hovered.emit(row.info.operation if row.allowed else None)
 
     def _take(self, operation: Operation) -> None:
         row = next(row for row in self.rows if row.info.operation == operation)

@@ -1,11 +1,17 @@
 """The operations of the mesh's kind: keys, what each would change here, and which is armed."""
 
+from __future__ import annotations
+
+from functools import partial
+
 from qtpy.QtCore import QRectF, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QAbstractButton, QVBoxLayout, QWidget
 
 from meshwright.desktop.canvas.layers.ghost import change_colour
-from meshwright.desktop.widgets.basic import named, sentence, tabular
+from meshwright.desktop.controller import Connections
+from meshwright.desktop.widgets.basic import named, tabular
+from meshwright.desktop.widgets.wording import sentence
 from meshwright.document.document import Document
 from meshwright.document.operation_preview import Choice
 from meshwright.graphics.markers import label
@@ -30,20 +36,21 @@ class OperationsPanel(QWidget):
         self._kind = ""
         self._armed: Operation | None = None
         self.rows: list[OperationButton] = []
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(GRID)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(GRID)
         self._hint = named(EMPTY, "Hint")
         self._hint.setWordWrap(True)
-        layout.addWidget(self._hint)
+        self._column.addWidget(self._hint)
         self._body = QWidget()
-        layout.addWidget(self._body)
-        document.replaced.connect(self._on_replaced)
+        self._column.addWidget(self._body)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._on_replaced)
         self._on_replaced()
 
     def release(self) -> None:
-        """Let go of the document."""
-        self._document.replaced.disconnect(self._on_replaced)
+        """Disconnect from the document."""
+        self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in other colours."""
@@ -85,15 +92,14 @@ class OperationsPanel(QWidget):
         column.setSpacing(0)
         self.rows = [OperationButton(info, self._theme) for info in of_kind(self._kind)]
         for row in self.rows:
-            row.clicked.connect(self._on_clicked)
+            row.clicked.connect(partial(self._on_clicked, row))
             column.addWidget(row)
-        self.layout().replaceWidget(self._body, body)
+        self._column.replaceWidget(self._body, body)
         self._body.deleteLater()
         self._body = body
 
-    def _on_clicked(self) -> None:
-        row = self.sender()
-        row.setChecked(row.info.operation == self._armed)  # whether it is armed is told by arm()
+    def _on_clicked(self, row: OperationButton, checked: bool = False) -> None:
+        row.setChecked(row.info.operation == self._armed)  # arm() decides whether it is armed
         self.chosen.emit(row.info.operation)
 
 

@@ -4,26 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QEvent, QMimeData, QObject, QRectF, Qt
-from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen
+from qtpy.QtGui import (
+    QColor,
+    QDragEnterEvent,
+    QDragMoveEvent,
+    QDropEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+)
 from qtpy.QtWidgets import QWidget
 
 from meshwright.graphics.theme import GRID, Theme
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
-
-class Dropping(QObject):
+class DropTarget(QObject):
     """Lets files be dropped on ``window``; ``open_file(path)`` gets the first of them."""
 
-    def __init__(self, window: MainWindow, open_file: Callable[[str], object]) -> None:
+    def __init__(self, window: QWidget, open_file: Callable[[str], object], theme: Theme) -> None:
         super().__init__(window)
         self._window = window
         self._open = open_file
-        self.veil = Veil(window)
+        self.veil = DropVeil(window, theme)
         window.setAcceptDrops(True)
         window.installEventFilter(self)
 
@@ -34,33 +38,39 @@ class Dropping(QObject):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Show what would happen while a file is over the window; open it when it is let go."""
-        kind = event.type()
-        if kind == QEvent.Type.DragEnter:
+        if isinstance(event, QDragEnterEvent):
             path = dropped(event.mimeData())
             if path:
                 event.acceptProposedAction()
-                self.veil.show_for(path, self._window.theme)
+                self.veil.show_for(path)
             return True
-        if kind == QEvent.Type.DragLeave:
-            self.veil.hide()
-            return True
-        if kind == QEvent.Type.Drop:
+        if isinstance(event, QDragMoveEvent):
+            return False
+        if isinstance(event, QDropEvent):
             self.veil.hide()
             path = dropped(event.mimeData())
             if path:
                 event.acceptProposedAction()
                 self._open(path)
             return True
+        if event.type() == QEvent.Type.DragLeave:
+            self.veil.hide()
+            return True
         return False
 
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        self.veil.set_theme(theme)
 
-class Veil(QWidget):
+
+class DropVeil(QWidget):
     """Over the whole window: the name of what would be opened."""
 
-    def __init__(self, window: MainWindow) -> None:
+    def __init__(self, window: QWidget, theme: Theme) -> None:
         super().__init__(window)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._theme = window.theme
+        self._window = window
+        self._theme = theme
         self._name = ""
         self.hide()
 
@@ -69,10 +79,15 @@ class Veil(QWidget):
         """What it says."""
         return f"Drop to open {self._name}"
 
-    def show_for(self, path: str, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        self._theme = theme
+        self.update()
+
+    def show_for(self, path: str) -> None:
         """Cover the window with the name of this file."""
-        self._name, self._theme = Path(path).name, theme
-        self.setGeometry(self.parentWidget().rect())
+        self._name = Path(path).name
+        self.setGeometry(self._window.rect())
         self.raise_()
         self.show()
 

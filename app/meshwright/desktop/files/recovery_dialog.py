@@ -30,7 +30,7 @@ CARD = 92
 """Height of one work in pixels."""
 
 
-class LostWork(QDialog):
+class RecoveryDialog(QDialog):
     """Offers ``works``; :attr:`chosen` is the one to recover, None for later.
 
     What is discarded here is deleted at once, after a second click.
@@ -40,7 +40,7 @@ class LostWork(QDialog):
         super().__init__(parent)
         self.chosen: Lost | None = None
         self.works = list(works)
-        self.cards: list[Card] = []
+        self.cards: list[LostWorkCard] = []
         self.setWindowTitle("Recover work")
         self.setMinimumWidth(560)
         layout = QVBoxLayout(self)
@@ -70,7 +70,7 @@ class LostWork(QDialog):
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(GRID)
         for number, work in enumerate(self.works):
-            card = Card(work)
+            card = LostWorkCard(work)
             card.recover.clicked.connect(partial(self._on_recover, work))
             card.discard.clicked.connect(partial(self._on_discard, card))
             if not number:
@@ -91,7 +91,7 @@ class LostWork(QDialog):
         self.chosen = work
         self.accept()
 
-    def _on_discard(self, card: "Card", checked: bool = False) -> None:
+    def _on_discard(self, card: "LostWorkCard", checked: bool = False) -> None:
         if not card.sure:
             card.make_sure()
             return
@@ -104,7 +104,7 @@ class LostWork(QDialog):
             self.reject()
 
 
-class Card(QFrame):
+class LostWorkCard(QFrame):
     """One work: what it was called, when its last step was, how far it had come."""
 
     def __init__(self, work: Lost) -> None:

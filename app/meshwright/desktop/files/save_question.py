@@ -9,7 +9,7 @@ from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
 
-class Question(QDialog):
+class QuestionDialog(QDialog):
     """Asks ``title``, with ``text`` below it; :attr:`answer` is the id of the button pressed.
 
     ``answers`` are (id, word), the recommended one last; ``aside`` stands apart at the left, for

@@ -20,15 +20,17 @@ _SHADE = 3
 class Callout(QWidget):
     """Heading, text and the buttons of a tour. It never takes the keyboard by itself.
 
-    ``went(step)`` with -1 for *Back* and 1 for *Next*; ``ended()`` for *Skip* and the last *Done*.
+    ``step_requested(step)`` with -1 for *Back* and 1 for *Next*; ``ended()`` for *Skip* and the
+    last *Done*.
     """
 
-    went = Signal(int)
+    step_requested = Signal(int)
     ended = Signal()
 
     def __init__(self, theme: Theme, parent: QWidget) -> None:
         super().__init__(parent)
         self._theme = theme
+        self._window = parent
         self._side = "left"
         self._tip = QPointF()
         self.setObjectName("Callout")
@@ -43,8 +45,8 @@ class Callout(QWidget):
         self.back = self._button("Back", "", "The step before")
         self.next = self._button("Next", "Primary", "The next step")
         self.skip.clicked.connect(lambda checked=False: self.ended.emit())
-        self.back.clicked.connect(lambda checked=False: self.went.emit(-1))
-        self.next.clicked.connect(lambda checked=False: self.went.emit(1))
+        self.back.clicked.connect(lambda checked=False: self.step_requested.emit(-1))
+        self.next.clicked.connect(lambda checked=False: self.step_requested.emit(1))
         self._card = QWidget(self)
         self._card.setFixedWidth(WIDTH)
         layout = QVBoxLayout(self._card)
@@ -78,7 +80,7 @@ class Callout(QWidget):
         self._theme = theme
         self.update()
 
-    def tell(self, number: int, total: int, heading: str, text: str, done: str = "") -> None:
+    def show_step(self, number: int, total: int, heading: str, text: str, done: str = "") -> None:
         """Show step ``number`` of ``total``, from 1; ``done`` says that it has been done."""
         self.count.setText(f"{number} of {total}")
         self.heading.setText(heading)
@@ -97,7 +99,7 @@ class Callout(QWidget):
         self._card.adjustSize()
         width, height = self._card.width() + 2 * _TIP, self._card.height() + 2 * _TIP
         self.resize(width, height)
-        room = self.parentWidget().rect()
+        room = self._window.rect()
         rooms = {
             "left": target.left() - room.left() - width,
             "right": room.right() - target.right() - width,

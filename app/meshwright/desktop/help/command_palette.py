@@ -4,8 +4,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from qtpy.QtCore import QEvent, QObject, QRect, QSize, Qt, Signal
-from qtpy.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPen
+from qtpy.QtCore import (
+    QEvent,
+    QModelIndex,
+    QObject,
+    QPersistentModelIndex,
+    QRect,
+    QSize,
+    Qt,
+    Signal,
+)
+from qtpy.QtGui import (
+    QColor,
+    QFocusEvent,
+    QFont,
+    QFontMetrics,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPen,
+)
 from qtpy.QtWidgets import (
     QApplication,
     QFrame,
@@ -34,7 +52,7 @@ _PLACES = _ENTRY + 1
 
 
 @dataclass(frozen=True)
-class Entry:
+class PaletteEntry:
     """One row: an action's id, what it is called and where, its key, and why it is not possible."""
 
     id: str
@@ -45,11 +63,11 @@ class Entry:
     tooltip: str = ""
 
 
-def rank(query: str, entries: Sequence[Entry]) -> list[tuple[Entry, tuple[int, ...]]]:
+def rank(query: str, entries: Sequence[PaletteEntry]) -> list[tuple[PaletteEntry, tuple[int, ...]]]:
     """The entries that ``query`` finds, best first, each with the letters of its title that were
     meant. Those that are not possible now come after equals.
     """
-    found: list[tuple[float, int, Entry, tuple[int, ...]]] = []
+    found: list[tuple[float, int, PaletteEntry, tuple[int, ...]]] = []
     for number, entry in enumerate(entries):
         here = match(query, entry.title)
         there = match(query, f"{entry.menu} {entry.title}")
@@ -68,7 +86,7 @@ def rank(query: str, entries: Sequence[Entry]) -> list[tuple[Entry, tuple[int, .
     return [(entry, places) for _, _, entry, places in found]
 
 
-class Palette(QFrame):
+class CommandPalette(QFrame):
     """A box over the window, with the keyboard until it is closed.
 
     ``chosen(id)`` comes with an entry that is possible, ``closed()`` when the box goes away. It is
@@ -78,9 +96,10 @@ class Palette(QFrame):
     chosen = Signal(str)
     closed = Signal()
 
-    def __init__(self, entries: Sequence[Entry], theme: Theme, parent: QWidget) -> None:
+    def __init__(self, entries: Sequence[PaletteEntry], theme: Theme, parent: QWidget) -> None:
         super().__init__(parent)
         self._entries = list(entries)
+        self._window = parent
         self._before = QApplication.focusWidget()
         self.setObjectName("Palette")
         self.field = QLineEdit()
@@ -111,7 +130,7 @@ class Palette(QFrame):
         self._fill("")
 
     @property
-    def shown(self) -> list[Entry]:
+    def shown(self) -> list[PaletteEntry]:
         """The entries in the list, from the top."""
         return [self.list.item(row).data(_ENTRY) for row in range(self.list.count())]
 
@@ -127,7 +146,7 @@ class Palette(QFrame):
         if self.isHidden():
             return
         self.field.removeEventFilter(self)
-        self.parentWidget().removeEventFilter(self)
+        self._window.removeEventFilter(self)
         self.hide()
         if self._before is not None:
             self._before.setFocus(Qt.FocusReason.PopupFocusReason)
@@ -136,25 +155,36 @@ class Palette(QFrame):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Keys that walk and choose; the box stays in the middle, and goes when left."""
-        if watched is self.parentWidget():
+        if watched is self._window:
             if event.type() == QEvent.Type.Resize:
                 self._place()
             return False
         kind = event.type()
         if watched is self.list.viewport():
-            if kind == QEvent.Type.MouseMove:  # rows that scroll past a resting mouse are not meant
-                self.list.setCurrentItem(self.list.itemAt(event.position().toPoint()))
+            # rows that scroll past a resting mouse are not chosen
+            if isinstance(event, QMouseEvent) and kind == QEvent.Type.MouseMove:
+                self._on_hovered(event)
             return False
-        if kind == QEvent.Type.ShortcutOverride and _is_ours(event):
-            event.accept()  # else a shortcut of the window would take it
-            return True
-        if kind == QEvent.Type.KeyPress and _is_ours(event):
-            self._on_key(event.key())
-            return True
-        if kind == QEvent.Type.FocusOut and event.reason() not in _ELSEWHERE_FOR_NOW:
+        if isinstance(event, QKeyEvent) and _is_ours(event):
+            if kind == QEvent.Type.ShortcutOverride:
+                event.accept()  # else a shortcut of the window would take it
+                return True
+            if kind == QEvent.Type.KeyPress:
+                self._on_key(event.key())
+                return True
+        if (
+            isinstance(event, QFocusEvent)
+            and kind == QEvent.Type.FocusOut
+            and event.reason() not in _ELSEWHERE_FOR_NOW
+        ):
             self._before = None  # the keyboard has gone where the person put it
             self.dismiss()
         return False
+
+    def _on_hovered(self, event: QMouseEvent) -> None:
+        item = self.list.itemAt(event.position().toPoint())
+        if item is not None:
+            self.list.setCurrentItem(item)
 
     def _on_key(self, key: int) -> None:
         step = _STEPS.get(key, 0)
@@ -193,7 +223,7 @@ class Palette(QFrame):
 
     def _place(self) -> None:
         """In the middle, near the top."""
-        room = self.parentWidget().rect()
+        room = self._window.rect()
         self.setFixedWidth(min(WIDTH, room.width() - 4 * GRID))
         self.adjustSize()
         self.move((room.width() - self.width()) // 2, min(12 * GRID, room.height() // 6))
@@ -220,7 +250,12 @@ class _Row(QStyledItemDelegate):
         super().__init__(parent)
         self._theme = theme
 
-    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: object) -> None:
+    def paint(
+        self,
+        painter: QPainter,
+        option: QStyleOptionViewItem,
+        index: QModelIndex | QPersistentModelIndex,
+    ) -> None:
         """One row."""
         entry, places = index.data(_ENTRY), index.data(_PLACES)
         painter.save()

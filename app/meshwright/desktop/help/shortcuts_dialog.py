@@ -14,7 +14,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from meshwright.desktop.actions.action import Action, key_text
+from meshwright.desktop.widgets.action_set import ActionEntry, key_text
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
@@ -34,10 +34,12 @@ MOUSE = (
 )
 
 
-class KeysDialog(QDialog):
+class ShortcutsDialog(QDialog):
     """All keys in columns; stays open beside the window."""
 
-    def __init__(self, groups: Sequence[tuple[str, Sequence[Action]]], parent: QWidget) -> None:
+    def __init__(
+        self, groups: Sequence[tuple[str, Sequence[ActionEntry]]], parent: QWidget
+    ) -> None:
         super().__init__(parent)
         self.setWindowTitle("Keys and mouse")
         body = QWidget()
@@ -77,7 +79,7 @@ class KeysDialog(QDialog):
         self.resize(width, min(wanted.height() + 10 * GRID, room.height() - 8 * GRID))
 
 
-def key_blocks(groups: Sequence[tuple[str, Sequence[Action]]]) -> list[Block]:
+def key_blocks(groups: Sequence[tuple[str, Sequence[ActionEntry]]]) -> list[Block]:
     """What the page shows: a block for each menu with keys, then the mouse."""
     blocks: list[Block] = []
     for menu, members in groups:

@@ -58,7 +58,8 @@ class ExportDialog(QDialog):
         if len(film.rows) == 0 and order.moving:
             order = replace(order, ending=".png")  # there is nothing that moves
         self.order = order
-        self.formats = QButtonGroup(self)
+        self._group = QButtonGroup(self)
+        self.formats: dict[str, QPushButton] = {}
         self.size_box = QComboBox()
         self.theme_box = QComboBox()
         self.seconds = DecimalBox()
@@ -82,9 +83,9 @@ class ExportDialog(QDialog):
             button.setCheckable(True)
             button.setAutoDefault(False)
             button.setToolTip(hint)
-            button.setProperty("ending", ending)
             button.setChecked(ending == order.ending)
-            self.formats.addButton(button)
+            self._group.addButton(button)
+            self.formats[ending] = button
         for width, height in SIZES:
             self.size_box.addItem(f"{width} \u00d7 {height}", (width, height))
         self.size_box.setCurrentIndex(SIZES.index(order.size) if order.size in SIZES else 1)
@@ -101,7 +102,7 @@ class ExportDialog(QDialog):
             self.parts[name] = QCheckBox(title)
             self.parts[name].setChecked(getattr(order, name))
             self.parts[name].toggled.connect(self._on_changed)
-        self.formats.buttonClicked.connect(self._on_changed)
+        self._group.buttonClicked.connect(self._on_changed)
         for box in (self.size_box, self.theme_box):
             box.currentIndexChanged.connect(self._on_changed)
         for spin in (self.seconds, self.every):
@@ -110,7 +111,7 @@ class ExportDialog(QDialog):
     def _arrange(self) -> None:
         formats = QHBoxLayout()
         formats.setSpacing(0)
-        for button in self.formats.buttons():
+        for button in self.formats.values():
             formats.addWidget(button, 1)
         grid = QGridLayout()
         grid.setHorizontalSpacing(2 * GRID)
@@ -167,21 +168,24 @@ class ExportDialog(QDialog):
 
     def _on_changed(self) -> None:
         """Take over what the fields say."""
-        chosen = self.formats.checkedButton()
+        ending = next(e for e, button in self.formats.items() if button.isChecked())
         self.order = replace(
             self.order,
-            ending=str(chosen.property("ending")),
+            ending=ending,
             size=tuple(self.size_box.currentData()),
             theme=str(self.theme_box.currentData()),
             seconds=round(self.seconds.value(), 2),
             every=self.every.value(),
-            **{name: box.isChecked() for name, box in self.parts.items()},
+            score=self.parts["score"].isChecked(),
+            curve=self.parts["curve"].isChecked(),
+            numbers=self.parts["numbers"].isChecked(),
+            changes=self.parts["changes"].isChecked(),
         )
         moving = self.order.moving
         for part in (*self._pace, self.seconds, self.every):
             part.setVisible(moving)
         self.every.setSuffix(" step" if self.every.value() == 1 else " steps")
-        self.note.setText(str(chosen.toolTip()) + ".")
+        self.note.setText(f"{self.formats[ending].toolTip()}.")
         self.length.setText(self._words())
         self.export.setEnabled(not moving or len(self._film.rows) > 0)
         self._later.start()

@@ -3,15 +3,15 @@
 from bisect import bisect_left
 from dataclasses import dataclass
 
-from qtpy.QtCore import QAbstractListModel, QModelIndex, Qt
+from qtpy.QtCore import QAbstractListModel, QModelIndex, QPersistentModelIndex, Qt
 
-from meshwright.desktop.history.score_curve import branch_words, row_words
+from meshwright.desktop.widgets.wording import branch_words, step_words
 from meshwright.document.branches import Branches
 from meshwright.document.history import History, Row
 
 
 @dataclass(frozen=True)
-class Line:
+class HistoryLine:
     """One line of the list: a state, or with ``branch`` >= 0 a branch that forks at ``state``."""
 
     state: int
@@ -33,20 +33,20 @@ class HistoryModel(QAbstractListModel):
         self.highest = 0
         """The highest score in the list."""
 
-    def rowCount(self, parent: QModelIndex | None = None) -> int:  # noqa: N802
+    def rowCount(self, parent: QModelIndex | QPersistentModelIndex | None = None) -> int:  # noqa: N802
         """Lines there are; a line has none below it."""
         if self._empty or (parent is not None and parent.isValid()):
             return 0
         return len(self._rows) + 1 + len(self._places)
 
-    def line(self, place: int) -> Line:
+    def line(self, place: int) -> HistoryLine:
         """What stands at a place of the list."""
         before = bisect_left(self._places, place)
         if before < len(self._places) and self._places[before] == place:
             branch = self._order[before]
-            return Line(self._branches[branch].at, None, branch)
+            return HistoryLine(self._branches[branch].at, None, branch)
         state = place - before
-        return Line(state, self._rows[state - 1] if state else None)
+        return HistoryLine(state, self._rows[state - 1] if state else None)
 
     def place(self, state: int) -> int:
         """Where in the list a state stands."""
@@ -67,8 +67,10 @@ class HistoryModel(QAbstractListModel):
         """False while the history has other branches than those that are shown."""
         return self._branches is self._history.branches
 
-    def data(self, index: QModelIndex, role: int = Qt.ItemDataRole.DisplayRole) -> object:
-        """Words for people who hear the list, or point at it; the delegate paints from lines."""
+    def data(
+        self, index: QModelIndex | QPersistentModelIndex, role: int = Qt.ItemDataRole.DisplayRole
+    ) -> object:
+        """Text for screen readers and tooltips; the delegate paints from lines."""
         if role not in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
             return None
         if not 0 <= index.row() < self.rowCount():
@@ -81,7 +83,7 @@ class HistoryModel(QAbstractListModel):
             return f"{branch_words(branch.rows)}, from step {branch.at:,}{more}"
         if line.row is None:
             return f"Start, s {self._history.first[0]:,}"
-        return f"Step {line.state:,}: {row_words(line.row)}, s {line.row.after:,}"
+        return f"Step {line.state:,}: {step_words(line.row)}, s {line.row.after:,}"
 
     def follow(self, history: History, empty: bool) -> None:
         """Take over what ``history`` holds now, with no more fuss than it needs."""

@@ -25,7 +25,7 @@ from qtpy.QtWidgets import (
     QVBoxLayout,
 )
 
-from meshwright.desktop.history.history_model import HistoryModel, Line
+from meshwright.desktop.history.history_model import HistoryLine, HistoryModel
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.desktop.widgets.event_filters import OwnKeys
 from meshwright.document.history import YOU, History
@@ -48,7 +48,7 @@ GLYPH, CHANGE = 18, 26
 """Pixels of two columns; numbers take what they need, the title has the rest."""
 
 
-class Lines(QStyledItemDelegate):
+class HistoryDelegate(QStyledItemDelegate):
     """Paints one line: number, who, what, change of the score, score."""
 
     def __init__(self, model: HistoryModel, theme: Theme) -> None:
@@ -97,7 +97,7 @@ class Lines(QStyledItemDelegate):
             self._paint_state(painter, box, line, option.font)
         painter.restore()
 
-    def _paint_state(self, painter: QPainter, box: QRectF, line: Line, font: QFont) -> None:
+    def _paint_state(self, painter: QPainter, box: QRectF, line: HistoryLine, font: QFont) -> None:
         theme, row = self.theme, line.row
         undone = line.state > self.cursor
         ink = QColor(theme.faint if undone else theme.text)
@@ -135,7 +135,7 @@ class Lines(QStyledItemDelegate):
         place = QRectF(begin, box.top(), edge - begin, box.height())
         painter.drawText(place, left, _elided(painter, title, place.width()))
 
-    def _paint_branch(self, painter: QPainter, box: QRectF, line: Line, font: QFont) -> None:
+    def _paint_branch(self, painter: QPainter, box: QRectF, line: HistoryLine, font: QFont) -> None:
         branch = self._model.branches[line.branch]
         ink = QColor(self.theme.accent)
         x, y = box.left() + self._number + GLYPH / 2, box.center().y()
@@ -206,10 +206,12 @@ class HistoryList(QTableView):
 
 
 class HistoryPanel(QFrame):
-    """The list with its heading; ``asked(state)`` and ``branch_asked(index)``."""
+    """The list with its heading; a click emits ``state_requested(state)`` or
+    ``branch_requested(index)``.
+    """
 
-    asked = Signal(int)
-    branch_asked = Signal(int)
+    state_requested = Signal(int)
+    branch_requested = Signal(int)
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -217,8 +219,8 @@ class HistoryPanel(QFrame):
         self.model = HistoryModel()
         self.list = HistoryList()
         self.list.setModel(self.model)
-        self._lines = Lines(self.model, theme)
-        self.list.setItemDelegate(self._lines)
+        self._delegate = HistoryDelegate(self.model, theme)
+        self.list.setItemDelegate(self._delegate)
         self.list.activated_at.connect(self._on_activated)
         self.count = named("", "Label")
         head = QHBoxLayout()
@@ -236,7 +238,7 @@ class HistoryPanel(QFrame):
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in other colours."""
-        self._lines.theme = theme
+        self._delegate.theme = theme
         self.list.viewport().update()
 
     def show_history(self, history: History, empty: bool) -> None:
@@ -244,9 +246,9 @@ class HistoryPanel(QFrame):
         self.model.follow(history, empty)
         count = len(history)
         self.count.setText(f"{history.cursor:,} of {count:,}" if count else "")
-        moved = self._lines.cursor != history.cursor
-        self._lines.cursor = history.cursor
-        self._lines.measure(self.list.font())
+        moved = self._delegate.cursor != history.cursor
+        self._delegate.cursor = history.cursor
+        self._delegate.measure(self.list.font())
         if not empty:
             place = self.model.index(self.model.place(history.cursor))
             self.list.setCurrentIndex(place)
@@ -257,9 +259,9 @@ class HistoryPanel(QFrame):
     def _on_activated(self, place: int) -> None:
         line = self.model.line(place)
         if line.branch >= 0 and self.model.current:
-            self.branch_asked.emit(line.branch)
+            self.branch_requested.emit(line.branch)
         elif line.branch < 0:
-            self.asked.emit(line.state)
+            self.state_requested.emit(line.state)
 
 
 def _draw_author(painter: QPainter, middle: QPointF, by: str, ink: QColor) -> None:

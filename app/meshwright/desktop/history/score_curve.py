@@ -20,11 +20,11 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from meshwright.desktop.widgets.basic import tabular
 from meshwright.desktop.widgets.event_filters import OwnKeys
+from meshwright.desktop.widgets.wording import branch_words, step_words
 from meshwright.document import score_series
 from meshwright.document.branches import Branches
-from meshwright.document.history import YOU, History, Row
+from meshwright.document.history import History
 from meshwright.document.score_series import Track
-from meshwright.graphics.markers import label
 from meshwright.graphics.theme import GRID, Theme
 
 HEIGHT = 96
@@ -43,16 +43,16 @@ FORK_REACH = 7
 
 
 class ScoreCurve(QWidget):
-    """Paints a history; what a person asks for it says by ``asked(state)``, ``walked(steps)`` and
-    ``branch_asked(index)``.
+    """Paints a history. A click or drag emits ``state_requested(state)``, a wheel turn or key
+    ``step_requested(steps)``, a click on the mark of a branch ``branch_requested(index)``.
 
-    The curve lies in a pixmap that is made anew only when the history, the size or the colours
-    change: the cursor and what is under the mouse are painted over it.
+    The curve is kept in a pixmap that is drawn again only when the history, the size or the colours
+    change; the cursor and what is under the mouse are painted over it.
     """
 
-    asked = Signal(int)
-    walked = Signal(int)
-    branch_asked = Signal(int)
+    state_requested = Signal(int)
+    step_requested = Signal(int)
+    branch_requested = Signal(int)
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -124,7 +124,7 @@ class ScoreCurve(QWidget):
         self.setFocus(Qt.FocusReason.MouseFocusReason)
         fork = self._fork_at(event.position())
         if fork >= 0 and self._branches is self._history.branches:
-            self.branch_asked.emit(fork)
+            self.branch_requested.emit(fork)
         elif fork < 0:
             self._ask(event.position())
 
@@ -151,7 +151,7 @@ class ScoreCurve(QWidget):
         """One step back or forward for each notch."""
         turn = event.angleDelta().y() or event.angleDelta().x()
         if turn and not self._empty:
-            self.walked.emit(1 if turn < 0 else -1)
+            self.step_requested.emit(1 if turn < 0 else -1)
         event.accept()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
@@ -161,13 +161,13 @@ class ScoreCurve(QWidget):
             return
         page = max(1, len(self._history) // 20)
         whole = len(self._history)
-        self.walked.emit((-1, 1, -page, page, -whole, whole)[WALKING.index(event.key())])
+        self.step_requested.emit((-1, 1, -page, page, -whole, whole)[WALKING.index(event.key())])
 
     def _ask(self, at: QPointF) -> None:
         state = min(self._frame.state(at.x()), len(self._history))
         if state != self.cursor_state:
             self.set_cursor(state)  # the line follows the mouse at once, the mesh comes after
-            self.asked.emit(state)
+            self.state_requested.emit(state)
 
     def _fork_at(self, at: QPointF) -> int:
         """The branch whose mark is at this place, -1 for none."""
@@ -326,19 +326,7 @@ class ScoreCurve(QWidget):
             return ""
         row = self._history[state - 1]
         best = "  (best)" if state == self._best else ""
-        return f"{state:,}  {row_words(row)}:  s {row.after:,}{best}"
-
-
-def row_words(row: Row) -> str:
-    """``Flip left by quad-paper, -2``: what was done, by whom, and what came of it."""
-    who = "" if row.by == YOU else f" by {row.by}"
-    return f"{row.title}{who}, {label(row.change)}"
-
-
-def branch_words(rows: tuple[Row, ...]) -> str:
-    """``Branch: 12 steps to s 6``."""
-    count = len(rows)
-    return f"Branch: {count:,} step{'' if count == 1 else 's'} to s {rows[-1].after:,}"
+        return f"{state:,}  {step_words(row)}:  s {row.after:,}{best}"
 
 
 def _polygon(points: np.ndarray) -> QPolygonF:

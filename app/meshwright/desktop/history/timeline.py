@@ -3,9 +3,9 @@
 from qtpy.QtCore import QSignalBlocker, QSize, Qt, Signal
 from qtpy.QtWidgets import QComboBox, QFrame, QHBoxLayout, QToolButton, QVBoxLayout
 
-from meshwright.desktop.actions.registry import ActionSet
 from meshwright.desktop.history.score_curve import HEIGHT, ScoreCurve
 from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.graphics.theme import GRID, Theme
 
 SPEEDS = (1, 2, 4, 8, 15, 30, 60)
@@ -19,7 +19,7 @@ BUTTONS = (
 )
 
 
-class Timeline(QFrame):
+class TimelineBar(QFrame):
     """Buttons, speed and curve; ``speed_chosen(steps per second)``."""
 
     speed_chosen = Signal(int)
@@ -73,6 +73,8 @@ class Timeline(QFrame):
         made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         made.setAutoRepeat(action_id in ("history.back", "history.forward"))
         made.clicked.connect(action.trigger)
+        made.setEnabled(action.isEnabled())
+        action.enabledChanged.connect(made.setEnabled)
         self.buttons[action_id] = made
         return made
 
@@ -94,11 +96,6 @@ class Timeline(QFrame):
         """Say which speed is chosen."""
         with QSignalBlocker(self.speed):
             self.speed.setCurrentIndex(SPEEDS.index(speed))
-
-    def refresh(self) -> None:
-        """Enable what makes sense now."""
-        for action_id, button in self.buttons.items():
-            button.setEnabled(self._actions[action_id].isEnabled())
 
     def _on_speed_chosen(self, index: int) -> None:
         self.speed_chosen.emit(SPEEDS[index])

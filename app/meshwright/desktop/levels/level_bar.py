@@ -18,7 +18,7 @@ WIDE = 1120
 """Pixels from which on two lines of text are enough; else there are three."""
 
 
-class Figure(QWidget):
+class LevelFigure(QWidget):
     """A number after its name."""
 
     def __init__(self, title: str, tooltip: str) -> None:
@@ -48,11 +48,11 @@ class Figure(QWidget):
 
 
 class LevelBar(QFrame):
-    """Shows a :class:`LevelPlay`; ``asked(action)`` is one of "again", "answer", "next", "leave"
-    and "choose".
+    """Shows a :class:`LevelPlay`; ``action_requested(action)`` when a button is clicked: "again",
+    "answer", "next" or "leave".
     """
 
-    asked = Signal(str)
+    action_requested = Signal(str)
 
     def __init__(self, play: LevelPlay, theme: Theme) -> None:
         super().__init__()
@@ -70,22 +70,22 @@ class LevelBar(QFrame):
         self.title = named("", "LevelTitle")
         self.place = named("", "Hint")
         self.stars = Stars(theme, 18)
-        self.goal = Figure("Goal", "The score to reach: the lowest that is possible")
-        self.par = Figure("Par", "The fewest operations known")
-        self.used = Figure("You", "Your operations from the start to here; Undo takes them back")
-        self.agent = Figure("Agent", "Operations that the agent took, on a mesh of its own")
+        self.goal = LevelFigure("Goal", "The score to reach: the lowest that is possible")
+        self.par = LevelFigure("Par", "The fewest operations known")
+        self.used = LevelFigure("You", "Your operations since the start; Undo takes them back")
+        self.agent = LevelFigure("Agent", "Operations that the agent took, on a mesh of its own")
         self.leave = QToolButton()
         self.leave.setToolTip("Leave the level; the mesh stays")
         self.leave.setAccessibleName("Leave the level")
         self.leave.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.leave.clicked.connect(lambda checked=False: self.asked.emit("leave"))
+        self.leave.clicked.connect(lambda checked=False: self.action_requested.emit("leave"))
         line = QHBoxLayout()
         line.setSpacing(GRID)
         for part in (self.title, self.place, self.stars):
             line.addWidget(part)
         line.addStretch(1)
-        for part in (self.goal, self.par, self.used, self.agent):
-            line.addWidget(part)
+        for figure in (self.goal, self.par, self.used, self.agent):
+            line.addWidget(figure)
             line.addSpacing(GRID)
         line.addWidget(self.leave)
         return line
@@ -109,7 +109,7 @@ class LevelBar(QFrame):
     def _button(self, title: str, action: str, tooltip: str) -> QPushButton:
         made = QPushButton(title)
         made.setToolTip(tooltip)
-        made.clicked.connect(lambda checked=False: self.asked.emit(action))
+        made.clicked.connect(lambda checked=False: self.action_requested.emit(action))
         return made
 
     def set_theme(self, theme: Theme) -> None:

@@ -39,7 +39,7 @@ class LevelDialog(QDialog):
     def __init__(self, progress: Progress, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.chosen: Level | None = None
-        self.cards: list[Card] = []
+        self.cards: list[LevelCard] = []
         self.setWindowTitle("Levels")
         column = QVBoxLayout(self)
         column.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
@@ -79,7 +79,7 @@ class LevelDialog(QDialog):
         grid.setSpacing(GRID)
         self._area = QScrollArea()
         for place, level in enumerate(levels.all()):
-            card = Card(level, progress, theme, self._area.ensureWidgetVisible)
+            card = LevelCard(level, progress, theme, self._area.ensureWidgetVisible)
             card.clicked.connect(partial(self._on_chosen, level))
             self.cards.append(card)
             grid.addWidget(card, place // COLUMNS, place % COLUMNS)
@@ -113,7 +113,7 @@ class LevelDialog(QDialog):
         self.accept()
 
 
-class Card(QPushButton):
+class LevelCard(QPushButton):
     """One level; a click plays it. ``focused(card)`` is called when it gets the keyboard."""
 
     def __init__(

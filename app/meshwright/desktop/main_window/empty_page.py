@@ -1,12 +1,14 @@
 """What is shown in the place of a mesh while there is none."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.controller import Connections
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
@@ -16,10 +18,10 @@ MOST = 5
 
 
 class EmptyPage(QWidget):
-    """Shown in the canvas's place while there is no mesh.
+    """Shown in place of the canvas while there is no mesh.
 
-    ``new()`` and ``open_file()`` do what the buttons say, ``open_recent(path)`` what a click on a
-    recent file means.
+    The buttons call ``new()`` and ``open_file()``; a click on one of the recent files, which it
+    reads from ``settings``, calls ``open_recent(path)``.
     """
 
     def __init__(
@@ -27,8 +29,10 @@ class EmptyPage(QWidget):
         new: Callable[[], None],
         open_file: Callable[[], None],
         open_recent: Callable[[str], None],
+        settings: Settings,
     ) -> None:
         super().__init__()
+        self._settings = settings
         self._open_recent = open_recent
         self.setObjectName("Empty")
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
@@ -70,13 +74,26 @@ class EmptyPage(QWidget):
         layout.addWidget(self._recent, 0, Qt.AlignmentFlag.AlignHCenter)
         layout.addStretch(4)
         self.recent: list[QPushButton] = []
+        self._connections = Connections()
+        self._connections.add(settings.changed, self._on_settings_changed)
+        self._show_recent()
 
-    def show_recent(self, paths: Sequence[str]) -> None:
-        """Offer these files, as far as they are still there."""
+    def release(self) -> None:
+        """Disconnect from the settings."""
+        self._connections.close()
+
+    def _on_settings_changed(self, key: str) -> None:
+        if key == "files/recent":
+            self._show_recent()
+
+    def _show_recent(self) -> None:
+        """List the recent files that still exist."""
         while (item := self._column.takeAt(0)) is not None:
-            item.widget().deleteLater()
+            widget = item.widget()
+            if widget is not None:
+                widget.deleteLater()
         self.recent = []
-        there = [path for path in paths if Path(path).is_file()][:MOST]
+        there = [path for path in self._settings.recent if Path(path).is_file()][:MOST]
         if not there:
             return
         heading = named("RECENT", "Heading")

@@ -78,7 +78,7 @@ class Sidebar(QFrame):
         self.sections = {section.panel: section for section in sections}
         body = QWidget()
         body.setObjectName("SidebarBody")
-        column = QVBoxLayout(body)
+        self._column = column = QVBoxLayout(body)
         column.setContentsMargins(3 * GRID, 12, 3 * GRID, 2 * GRID)
         column.setSpacing(12)
         for number, section in enumerate(sections):
@@ -108,5 +108,5 @@ class Sidebar(QFrame):
         """Unfold ``panel`` and scroll to it."""
         section = self.sections[panel]
         section.heading.setChecked(True)
-        self._area.widget().layout().activate()
+        self._column.activate()
         self._area.ensureWidgetVisible(section, 0, GRID)

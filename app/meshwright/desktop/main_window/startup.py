@@ -19,7 +19,7 @@ DEMO_SHAPE = "star"
 def application() -> QApplication:
     """The QApplication, made if there is none yet."""
     app = QApplication.instance()
-    if app is None:
+    if not isinstance(app, QApplication):
         QSurfaceFormat.setDefaultFormat(surface_format())
         app = QApplication(sys.argv[:1])
     app.setApplicationName("Meshwright")
@@ -74,13 +74,11 @@ def open_window(
     if source is not None and not isinstance(source, Document):
         load(document, source, kind)
     if level is not None:
-        window.levels.play.open(level)
+        window.play_level(level)
     if demo:
-        window.warmup.ready.connect(window.assistant.prepare)
+        window.prepare_agent()
     if guided:
-        window.preferences.restore_place()
-        window.files.watch()
-        window.opened.connect(window.guide.welcome)
+        window.start_session()
     window.show()
     window.activateWindow()
     return window

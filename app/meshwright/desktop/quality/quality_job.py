@@ -7,6 +7,7 @@ from functools import partial
 from qtpy.QtCore import QObject, QTimer, Signal
 
 from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.desktop.controller import Connections
 from meshwright.document.document import Document
 from meshwright.document.quality_summary import QualitySummary, summarise
 from meshwright_core import HalfEdgeMesh
@@ -18,7 +19,7 @@ LATE = 400
 does not make the panels flicker."""
 
 
-class Gauge(QObject):
+class QualityMonitor(QObject):
     """Follows ``document``. ``measured()`` when :attr:`summary` is new or none, ``aged()`` when it
     has been of an earlier state of the mesh for a while.
 
@@ -48,14 +49,14 @@ class Gauge(QObject):
         self._late.setSingleShot(True)
         self._late.setInterval(LATE)
         self._late.timeout.connect(self._on_late)
-        document.replaced.connect(self._on_replaced)
-        document.changed.connect(self._on_changed)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._on_replaced)
+        self._connections.add(document.changed, self._on_changed)
         self._on_replaced()
 
     def release(self) -> None:
-        """Let go of the document and end the thread."""
-        self._document.replaced.disconnect(self._on_replaced)
-        self._document.changed.disconnect(self._on_changed)
+        """Disconnect from the document and end the thread."""
+        self._connections.close()
         self._pause.stop()
         self._late.stop()
         self._cancel.set()

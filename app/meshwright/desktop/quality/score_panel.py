@@ -3,8 +3,9 @@
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
+from meshwright.desktop.controller import Connections
 from meshwright.desktop.quality.irregularity_chart import Tally
-from meshwright.desktop.quality.quality_job import Gauge
+from meshwright.desktop.quality.quality_job import QualityMonitor
 from meshwright.desktop.widgets.basic import Bar, Fact, Link, Optimal, named, tabular
 from meshwright.document.document import Document
 from meshwright.graphics.theme import GRID, Theme
@@ -14,7 +15,7 @@ _STALE = "\u2026"
 
 
 class ScorePanel(QWidget):
-    """Follows the document's score at once, and what ``gauge`` measures when it is there.
+    """Follows the document's score at once, and what ``monitor`` measures when it is there.
 
     ``delta_chosen(delta)`` when a column of the tally is clicked, ``inverted_chosen()`` when the
     count of inverted elements is.
@@ -23,10 +24,10 @@ class ScorePanel(QWidget):
     delta_chosen = Signal(int)
     inverted_chosen = Signal()
 
-    def __init__(self, document: Document, gauge: Gauge, theme: Theme) -> None:
+    def __init__(self, document: Document, monitor: QualityMonitor, theme: Theme) -> None:
         super().__init__()
         self._document = document
-        self._gauge = gauge
+        self._monitor = monitor
         self.score = named("", "Big")
         self.score.setFont(tabular(self.score.font()))
         self.score.setToolTip("s: the sum of |degree \u2212 desired degree| over all vertices")
@@ -45,14 +46,15 @@ class ScorePanel(QWidget):
         self._arrange()
         self.tally.chosen.connect(self.delta_chosen)
         self.inverted.clicked.connect(self.inverted_chosen)
-        document.score_changed.connect(self._on_score_changed)
-        gauge.aged.connect(self._on_measured)
-        gauge.measured.connect(self._on_measured)
+        self._connections = Connections()
+        self._connections.add(document.score_changed, self._on_score_changed)
+        monitor.aged.connect(self._on_measured)
+        monitor.measured.connect(self._on_measured)
         self._on_score_changed()
 
     def release(self) -> None:
-        """Let go of the document."""
-        self._document.score_changed.disconnect(self._on_score_changed)
+        """Disconnect from the document."""
+        self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in other colours."""
@@ -113,7 +115,7 @@ class ScorePanel(QWidget):
 
     def _on_measured(self) -> None:
         """Blocks and inverted elements; an ellipsis while they are not yet of this mesh."""
-        mesh, summary = self._document.mesh, self._gauge.summary
+        mesh, summary = self._document.mesh, self._monitor.summary
         if mesh is None:
             self.elements.text = _NONE
             self.inverted.show_value(_NONE)
@@ -121,13 +123,13 @@ class ScorePanel(QWidget):
         if mesh.k == 4:
             blocks = "blocks"
             number = _STALE
-            if not self._gauge.stale and summary is not None and summary.blocks is not None:
+            if not self._monitor.stale and summary is not None and summary.blocks is not None:
                 number = f"{summary.blocks:,}"
                 blocks = "block" if summary.blocks == 1 else blocks
             self.elements.text = f"{mesh.n_elements:,} quads in {number} {blocks}"
         else:
             self.elements.text = f"{mesh.n_elements:,} triangles"
-        if summary is None or self._gauge.stale:
+        if summary is None or self._monitor.stale:
             self.inverted.show_value(_STALE)
             return
         count = len(summary.inverted)

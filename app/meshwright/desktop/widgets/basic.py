@@ -30,12 +30,6 @@ def named(text: str, name: str) -> QLabel:
     return made
 
 
-def sentence(text: str) -> str:
-    """``text`` with a capital and a full stop, as it stands alone."""
-    text = text[:1].upper() + text[1:]
-    return text if text.endswith((".", "\u2026", "!", "?")) else text + "."
-
-
 def rule() -> QFrame:
     """A thin line between two panels."""
     made = QFrame()
@@ -154,7 +148,7 @@ class Link(QWidget):
             self._value.style().polish(self._value)
 
 
-class Notice(QFrame):
+class NoticeBar(QFrame):
     """A bar over the canvas with one sentence and a button that closes it."""
 
     def __init__(self, theme: Theme) -> None:
@@ -180,8 +174,8 @@ class Notice(QFrame):
         """The sentence, empty while the bar is hidden."""
         return str(self._text.text()) if not self.isHidden() else ""
 
-    def tell(self, sentence: str) -> None:
-        """Show the sentence until it is closed or another one comes."""
+    def show_message(self, sentence: str) -> None:
+        """Show the sentence until it is closed or replaced."""
         self._text.setText(sentence)
         self.show()
 

@@ -8,6 +8,7 @@ process.
 from collections.abc import Callable, Collection
 
 from qtpy.QtCore import QEvent, QObject, QPoint, Qt
+from qtpy.QtGui import QHelpEvent, QKeyEvent
 from qtpy.QtWidgets import QToolTip, QWidget
 
 
@@ -24,9 +25,9 @@ class OwnKeys(QObject):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Claim the keys; everything else goes its way."""
-        if event.type() != QEvent.Type.ShortcutOverride:
+        if not isinstance(event, QKeyEvent) or event.type() != QEvent.Type.ShortcutOverride:
             return False
-        own = self._keys is None or (event.key() in self._keys and not event.modifiers())
+        own = self._keys is None or (Qt.Key(event.key()) in self._keys and not event.modifiers())
         if own:
             event.accept()
         return own
@@ -42,7 +43,7 @@ class OwnTooltips(QObject):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Show the words of the place."""
-        if event.type() != QEvent.Type.ToolTip:
+        if not isinstance(event, QHelpEvent) or event.type() != QEvent.Type.ToolTip:
             return False
         QToolTip.showText(event.globalPos(), self._words(event.pos()), self._widget)
         return True

@@ -28,7 +28,7 @@ STEPS = 200
 """Positions of a slider."""
 
 
-class Choice(QWidget):
+class SegmentedButtons(QWidget):
     """Buttons side by side of which one is down. ``changed(key)``."""
 
     changed = Signal(str)
@@ -47,7 +47,6 @@ class Choice(QWidget):
             button.setCheckable(True)
             button.setAutoDefault(False)
             button.setAccessibleName(f"{name}: {title}")
-            button.setProperty("key", key)
             button.setMinimumWidth(_width(button, title))
             button.clicked.connect(self._on_clicked)
             self._group.addButton(button)
@@ -59,7 +58,7 @@ class Choice(QWidget):
     @property
     def key(self) -> str:
         """Which one is down."""
-        return str(self._group.checkedButton().property("key"))
+        return next(key for key, button in self.buttons.items() if button.isChecked())
 
     @key.setter
     def key(self, key: str) -> None:

@@ -28,7 +28,6 @@ class Coordinates(QTableWidget):
         super().__init__(0, 3, parent)
         self.setObjectName("Table")
         self.setAccessibleName("Coordinates of the corners")
-        self.setHorizontalHeaderLabels(["Corner", "x", "y"])
         self.setFixedWidth(WIDTH)
         self.verticalHeader().hide()
         self.verticalHeader().setDefaultSectionSize(28)
@@ -37,13 +36,11 @@ class Coordinates(QTableWidget):
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
         header.resizeSection(0, 9 * GRID)
         header.setHighlightSections(False)
-        for axis in (1, 2):
-            self.horizontalHeaderItem(axis).setTextAlignment(
-                Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-            )
-        self.horizontalHeaderItem(0).setTextAlignment(
-            Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-        )
+        left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
+        for column, (title, side) in enumerate((("Corner", left), ("x", right), ("y", right))):
+            item = QTableWidgetItem(title)
+            item.setTextAlignment(side | Qt.AlignmentFlag.AlignVCenter)
+            self.setHorizontalHeaderItem(column, item)
         self.setShowGrid(False)
         self.setFont(tabular(self.font()))
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)

@@ -19,7 +19,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from meshwright.desktop.files.new_mesh.controls import Choice
+from meshwright.desktop.files.new_mesh.controls import SegmentedButtons
 from meshwright.desktop.files.new_mesh.draw_page import DrawPage
 from meshwright.desktop.files.new_mesh.file_page import FilePage
 from meshwright.desktop.files.new_mesh.gallery_page import GalleryPage
@@ -28,7 +28,8 @@ from meshwright.desktop.files.new_mesh.options import Options
 from meshwright.desktop.files.new_mesh.page_base import Page
 from meshwright.desktop.files.new_mesh.random_page import RandomPage
 from meshwright.desktop.widgets import icons
-from meshwright.desktop.widgets.basic import named, sentence
+from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.wording import sentence
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.sources.mesh_worker import Made
 
@@ -80,7 +81,7 @@ class NewMeshDialog(QDialog):
             self.file.take(file)
 
     def _arrange(self) -> None:
-        self.tabs = Choice(PAGES, "Where the shape comes from")
+        self.tabs = SegmentedButtons(PAGES, "Where the shape comes from")
         self.stack = QStackedWidget()
         for page in self._pages.values():
             self.stack.addWidget(page)

@@ -7,7 +7,7 @@ from typing import Any
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
-from meshwright.desktop.files.new_mesh.controls import Choice, Measure, heading
+from meshwright.desktop.files.new_mesh.controls import Measure, SegmentedButtons, heading
 from meshwright.desktop.files.new_mesh.preview import Preview
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.graphics.theme import GRID, Theme
@@ -33,8 +33,8 @@ class Options(QWidget):
         super().__init__()
         self.setFixedWidth(WIDTH)
         self.preview = Preview(theme)
-        self.kind = Choice(KINDS, "Elements", kind or "quad")
-        self.rule = Choice(RULES, "Quads by")
+        self.kind = SegmentedButtons(KINDS, "Elements", kind or "quad")
+        self.rule = SegmentedButtons(RULES, "Quads by")
         for key, button in self.rule.buttons.items():
             button.setToolTip(RULE_TIPS[key])
         self.size_of = Measure("Longest edge", "automatic", 0.001, 1.0, 0.2, 4, geometric=True)

@@ -25,8 +25,10 @@ class Page(QWidget):
     changed = Signal()
     told = Signal(str)
 
-    takes_settings = True
-    """Whether kind, size and quality have a meaning for what is chosen here."""
+    @property
+    def takes_settings(self) -> bool:
+        """Whether kind, size and quality apply to what is chosen here."""
+        return True
 
     @property
     def source(self) -> dict[str, Any] | None:

@@ -124,8 +124,12 @@ def _discs(painter: QPainter, made: Made, view: Viewport, theme: Theme) -> None:
 def blend(one: str, other: str, share: float) -> QColor:
     """A colour between two, ``share`` of the way from the first."""
     a, b = QColor(one), QColor(other)
-    parts = [(1 - share) * p + share * q for p, q in zip(a.getRgbF(), b.getRgbF(), strict=True)]
-    return QColor.fromRgbF(*parts)
+    return QColor.fromRgbF(
+        (1 - share) * a.redF() + share * b.redF(),
+        (1 - share) * a.greenF() + share * b.greenF(),
+        (1 - share) * a.blueF() + share * b.blueF(),
+        (1 - share) * a.alphaF() + share * b.alphaF(),
+    )
 
 
 def _pen(colour: str, width: float) -> QPen:

@@ -8,7 +8,7 @@ import numpy as np
 from qtpy.QtCore import QSignalBlocker, Qt, QTimer
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
-from meshwright.desktop.files.new_mesh.controls import Choice
+from meshwright.desktop.files.new_mesh.controls import SegmentedButtons
 from meshwright.desktop.files.new_mesh.page_base import Page, Pictures
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named
@@ -31,7 +31,7 @@ class RandomPage(Page):
     def __init__(self, theme: Theme) -> None:
         super().__init__()
         self._theme = theme
-        self.kind = Choice(KINDS, "Kind of shape")
+        self.kind = SegmentedButtons(KINDS, "Kind of shape")
         self.sides = IntegerBox()
         self.sides.setRange(FEWEST, MOST)
         self.sides.setValue(10)
