@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from meshwright.desktop.files.unsaved_work import UnsavedWorkGuard
 from meshwright.document.document import Document
 from meshwright.document.history import YOU
 from meshwright.document.storage import recovery
