@@ -56,7 +56,7 @@ def test_what_is_not_possible_tells_why_and_stays(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
     qtbot.keyClicks(palette.field, "undo")
-    assert palette.shown[0].reason == "There is nothing to take back."
+    assert palette.shown[0].reason == "There is nothing to undo."
     qtbot.keyClick(palette.field, Qt.Key.Key_Return)
     assert palette.isVisible()
 

@@ -264,7 +264,7 @@ def test_lost_work_is_discarded_by_two_clicks_or_left_for_later(qtbot, watched, 
         card = dialog.cards[0]
         qtbot.mouseClick(card.discard, Qt.MouseButton.LeftButton)
         assert len(list(folder.iterdir())) == 2
-        assert card.discard.text() == "Delete for good?"
+        assert card.discard.text() == "Delete permanently?"
         qtbot.mouseClick(card.discard, Qt.MouseButton.LeftButton)
         assert len(list(folder.iterdir())) == 1
         qtbot.mouseClick(dialog.later, Qt.MouseButton.LeftButton)

@@ -1,6 +1,5 @@
 """``kill -9`` of a window in the middle of an agent's run, and of a save."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -84,7 +83,7 @@ def begin():
 
 
 def child_of(tmp_path: Path, work: str) -> subprocess.Popen:
-    code = CHILD.format(tests=os.path.dirname(__file__), folder=str(tmp_path), work=work)
+    code = CHILD.format(tests=str(Path(__file__).parents[1]), folder=str(tmp_path), work=work)
     return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
 
 

@@ -143,18 +143,18 @@ def test_quick_edits_are_measured_once_and_a_closed_window_leaves_no_thread(qtbo
     quads = np.column_stack((corner, corner + 1, corner + 152, corner + 151))
     mesh = HalfEdgeMesh.from_elements(np.column_stack((x.ravel(), y.ravel())), quads)
     window = open_window(mesh)
-    gauge = measured(qtbot, window).gauge
+    monitor = measured(qtbot, window).monitor
     seen = []
-    gauge.measured.connect(lambda: seen.append(gauge.summary.jacobian.worst))
+    monitor.measured.connect(lambda: seen.append(monitor.summary.jacobian.worst))
     inside = int(np.flatnonzero(~mesh.boundary())[0])
     for _ in range(10):
         window.document.move(np.array([inside]), mesh.points[[inside]] + (0.02, 0.0, 0.0))
     measured(qtbot, window)
     assert seen == [pytest.approx(quality.scaled_jacobian(mesh).min())]
     window.document.undo()
-    qtbot.waitUntil(lambda: gauge._thread is not None, timeout=WAIT)
+    qtbot.waitUntil(lambda: monitor._thread is not None, timeout=WAIT)
     window.close()
-    assert gauge._thread is None
+    assert monitor._thread is None
 
 
 def test_sections_fold_away_and_that_is_kept(qtbot, open_window, star):

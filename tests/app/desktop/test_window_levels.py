@@ -152,7 +152,7 @@ def test_the_agent_answers_beside_and_shows_its_way(qtbot, window):
     rival = window.levels.play.rival
     qtbot.waitUntil(lambda: rival.standing is not Standing.ASKED, timeout=WAIT)
     assert bar.agent.text.startswith(str(len(rival.operations)))
-    assert bar.answer.text() == "Show a way"
+    assert bar.answer.text() == "Show a solution"
     assert len(window.document.history) == 0
     click(qtbot, bar.answer)
     assert len(window.document.history) == len(rival.operations)

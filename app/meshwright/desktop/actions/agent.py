@@ -13,7 +13,7 @@ HINTS = 5
 """Hints that have a key of their own."""
 
 
-@needing("Needs a mesh, and an agent that is ready.")
+@needing("Needs a mesh, and the agent must be ready.")
 def _can_hint(context: ActionContext) -> bool:
     return can_run(context) and context.assistant.state is not State.SEARCHING
 
@@ -39,7 +39,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.hint",
         "Hint",
-        "Show the policy's best few operations, with their probabilities; again to hide them",
+        "Show or hide the policy's most probable operations",
         run=lambda context: context.hints.ask_or_hide(),
         shortcuts=("H",),
         enabled=_can_hint,
@@ -49,7 +49,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.step",
         "Step",
-        "Let the policy take one operation",
+        "Apply one operation of the policy",
         run=lambda context: context.assistant.step(),
         shortcuts=(".",),
         enabled=can_run,
@@ -58,7 +58,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.play",
         "Play or pause",
-        "Let the policy go on at the chosen speed, or hold it",
+        "Run the policy at the chosen speed, or pause it",
         run=lambda context: context.agent.play_or_pause(),
         shortcuts=("Space",),
         enabled=can_run,
@@ -68,7 +68,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.complete",
         "Complete",
-        f"Search for up to {COMPLETE_SECONDS:g} seconds, and go to the best state found",
+        f"Search for up to {COMPLETE_SECONDS:g} seconds, and apply the best result",
         run=lambda context: context.assistant.search(),
         shortcuts=("Ctrl+Return",),
         enabled=can_run,
@@ -77,7 +77,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.best_of",
         "Best of several runs",
-        "Run the policy as often as the panel says, and go to the best state found",
+        "Run the policy as often as set in the panel, and apply the best result",
         run=lambda context: context.agent.best_of(),
         shortcuts=("Ctrl+B",),
         enabled=can_run,
@@ -86,7 +86,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.search",
         "Search",
-        "Search as long as the panel says for the optimum, then for fewer elements and operations",
+        "Search for the optimum, then for fewer elements and operations; the panel sets the time",
         run=lambda context: context.agent.search(),
         shortcuts=("Ctrl+Shift+Return",),
         enabled=can_run,
@@ -95,17 +95,17 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.region",
         "Finish only this region",
-        "Search among the elements whose corners are all selected; nothing outside changes",
+        "Search within the selected region; nothing outside it changes",
         run=lambda context: context.agent.finish_region(),
         shortcuts=("Ctrl+R",),
         enabled=_has_region,
         menu="Agent",
-        needs="Needs a region: select vertices with Shift and a drag.",
+        needs="Needs a selected region: select vertices with Shift+drag.",
     ),
     Action(
         "agent.watch",
         "Show what the policy sees",
-        "Show its template, its field of view and its probabilities, also while it runs",
+        "Show the policy's template, field of view and probabilities",
         run=lambda context: context.agent.toggle_watch(),
         shortcuts=("W",),
         enabled=can_run,
@@ -114,15 +114,15 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "agent.policy",
-        "Choose policy file\u2026",
-        "Follow a policy of your own, from a file that training has written",
+        "Load policy file\u2026",
+        "Use a policy from a file that training has written",
         run=lambda context: context.agent.choose_policy(),
         menu="Agent",
     ),
     Action(
         "agent.stop",
         "Stop",
-        "Stop the policy; what it has done stays. A search still goes to the best it has found",
+        "Stop the policy and keep its operations; a search applies its best result so far",
         run=lambda context: context.agent.stop(),
         shortcuts=("Esc",),
         enabled=_is_busy,
@@ -132,14 +132,14 @@ ACTIONS: tuple[Action, ...] = (
     *(
         Action(
             f"agent.take_{index + 1}",
-            f"Take hint {index + 1}",
-            f"Do what hint {index + 1} says",
+            f"Apply hint {index + 1}",
+            f"Apply the operation of hint {index + 1}",
             run=partial(_take, index),
             shortcuts=(str(index + 1),),
             enabled=partial(_has_hint, index),
             menu="Agent",
             repeats=False,
-            needs="Needs a hint: ask for some with H.",
+            needs="No hints are shown: press H to show them.",
         )
         for index in range(HINTS)
     ),

@@ -16,7 +16,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "new",
         "New\u2026",
-        "Make a mesh of a shape: gallery, random, drawn, or from a file",
+        "Mesh a shape: from the gallery, random, drawn, or from a file",
         run=lambda context: context.files.new(),
         shortcuts=("Ctrl+N",),
         menu="File",
@@ -34,7 +34,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "recent",
         "Open recent",
-        "Files that were opened or saved lately",
+        "Recently opened or saved files",
         run=lambda context: context.files.show_recent(),
         enabled=has_recent,
         menu="File",
@@ -42,7 +42,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "save",
         "Save",
-        "Write the mesh to its file",
+        "Save the mesh to its file",
         run=lambda context: context.files.save(),
         shortcuts=("Ctrl+S",),
         enabled=has_mesh,
@@ -52,7 +52,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "save_as",
         "Save as\u2026",
-        "Write the mesh to another file, or all of the work to a project",
+        "Save the mesh to another file, or mesh and history to a project",
         run=lambda context: context.files.save_as(),
         shortcuts=("Ctrl+Shift+S",),
         enabled=has_mesh,
@@ -60,8 +60,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "recover",
-        "Recover lost work\u2026",
-        "Take up what was not saved when the program ended without closing",
+        "Recover unsaved work\u2026",
+        "Recover work that was not saved when the program ended unexpectedly",
         run=lambda context: context.files.ask_for_lost(),
         menu="File",
     ),

@@ -8,7 +8,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "palette",
         "Find a command\u2026",
-        "Every command, found by a few letters",
+        "Search all commands by a few letters",
         run=lambda context: context.help.show_palette(),
         shortcuts=("Ctrl+K", "Ctrl+Shift+P"),
         menu="Help",
@@ -17,8 +17,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "help",
-        "Keys and mouse",
-        "All keys, and what the mouse does",
+        "Keyboard and mouse",
+        "All keyboard shortcuts and mouse gestures",
         run=lambda context: context.help.show_keys(),
         shortcuts=("F1",),
         menu="Help",

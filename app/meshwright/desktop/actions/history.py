@@ -6,22 +6,22 @@ from meshwright.desktop.actions.action import Action, has_mesh, needing
 from meshwright.desktop.actions.context import ActionContext
 
 
-@needing("This is the start.")
+@needing("This is the start of the history.")
 def _can_go_back(context: ActionContext) -> bool:
     return context.readiness.editing and context.document.can_undo
 
 
-@needing("This is the end.")
+@needing("This is the end of the history.")
 def _can_go_on(context: ActionContext) -> bool:
     return context.readiness.editing and context.document.can_redo
 
 
-@needing("There are no steps yet.")
+@needing("The history is empty.")
 def _has_steps(context: ActionContext) -> bool:
     return context.readiness.editing and len(context.document.history) > 0
 
 
-@needing("There is no branch.")
+@needing("The history has no branches.")
 def _has_branches(context: ActionContext) -> bool:
     return context.readiness.editing and len(context.document.history.branches) > 0
 
@@ -29,8 +29,8 @@ def _has_branches(context: ActionContext) -> bool:
 ACTIONS: tuple[Action, ...] = (
     Action(
         "history.play",
-        "Play or hold the film",
-        "Play the recorded steps from here, from the start if this is the end; or hold",
+        "Play or pause the history",
+        "Play the recorded steps from here, or from the start if this is the end; or pause",
         run=lambda context: context.playback.play_or_hold(),
         shortcuts=("Shift+Space",),
         enabled=_has_steps,
@@ -84,8 +84,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "history.branch",
-        "To the branch left last",
-        "Take the steps up again that were left last; the present ones become a branch",
+        "To the last branch",
+        "Switch to the branch that was left last; the current steps become a branch",
         run=lambda context: context.playback.take_last_branch(),
         shortcuts=("Alt+Down",),
         enabled=_has_branches,
@@ -94,8 +94,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "history.export",
-        "Export film or picture\u2026",
-        "Write the history as a film (GIF, MP4), or this state as a picture (PNG, SVG)",
+        "Export video or image\u2026",
+        "Export the history as a video (GIF, MP4), or this state as an image (PNG, SVG)",
         run=lambda context: context.playback.export(),
         shortcuts=("Ctrl+E",),
         enabled=has_mesh,

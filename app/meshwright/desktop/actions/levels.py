@@ -30,8 +30,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "level.again",
-        "Begin again",
-        "Begin the level again",
+        "Restart",
+        "Restart the level",
         run=lambda context: context.levels.again(),
         enabled=in_level,
         menu="Levels",
@@ -39,7 +39,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "level.next",
         "Next level",
-        "Go on to the next level",
+        "Start the next level",
         run=lambda context: context.levels.next(),
         enabled=has_next,
         menu="Levels",
@@ -47,15 +47,15 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "level.answer",
         "Play against the agent",
-        "Let the agent solve the level on a mesh of its own; once it has, show its way",
+        "Let the agent solve a copy of the level; once it is solved, show the solution",
         run=lambda context: context.levels.answer(),
         enabled=in_level,
         menu="Levels",
     ),
     Action(
         "level.way",
-        "Show a way",
-        "Begin again with a way ahead: the agent's, or the shortest known",
+        "Show a solution",
+        "Restart with a solution to step through: the agent's, or the shortest known",
         run=lambda context: context.levels.show_way(),
         enabled=in_level,
         menu="Levels",
@@ -63,7 +63,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "level.leave",
         "Leave the level",
-        "Go on with the mesh as it is, without counting",
+        "Keep the mesh, and stop counting operations",
         run=lambda context: context.levels.leave(),
         enabled=in_level,
         menu="Levels",

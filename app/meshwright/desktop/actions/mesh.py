@@ -40,7 +40,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "smooth",
         "Smooth",
-        "Smooth and untangle the whole mesh; corners stay",
+        "Smooth and untangle the whole mesh; corners are fixed",
         run=lambda context: context.editing.smooth(),
         shortcuts=("Ctrl+M",),
         enabled=has_mesh,
@@ -51,7 +51,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "smooth_here",
         "Smooth the selection",
-        "Smooth and untangle the selected vertices; no others move",
+        "Smooth and untangle the selected vertices; all others are fixed",
         run=lambda context: context.editing.smooth_here(),
         shortcuts=("Ctrl+Shift+M",),
         enabled=lambda context: len(context.document.selection) > 0,
@@ -61,7 +61,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "untangle",
         "Untangle",
-        "Mend inverted elements; what is not near them stays where it is",
+        "Repair inverted elements; only vertices near them move",
         run=lambda context: context.editing.untangle(),
         shortcuts=("Ctrl+U",),
         enabled=has_mesh,

@@ -16,7 +16,7 @@ def _panning(name: str, key: str, right: float, up: float) -> Action:
     return Action(
         f"walk.{name}",
         f"View {name}",
-        f"Look further {name}",
+        f"Move the view {name}",
         run=partial(_pan, right, up),
         shortcuts=(key,),
         enabled=has_mesh,
@@ -29,7 +29,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "walk.next",
         "Next irregular vertex",
-        "Look at the next irregular vertex, and point at an edge of it",
+        "Go to the next irregular vertex, and point at one of its edges",
         run=lambda context: context.navigation.to_irregular(1),
         shortcuts=("N",),
         enabled=has_mesh,
@@ -38,7 +38,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "walk.previous",
         "Previous irregular vertex",
-        "Look at the irregular vertex before",
+        "Go to the previous irregular vertex",
         run=lambda context: context.navigation.to_irregular(-1),
         shortcuts=("Shift+N",),
         enabled=has_mesh,
@@ -47,7 +47,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "walk.operation",
         "Next operation",
-        "Show the ghost of the next operation that is allowed here",
+        "Preview the next operation that is allowed here",
         run=lambda context: context.hover.cycle(1),
         shortcuts=("Tab",),
         enabled=has_mesh,
@@ -57,7 +57,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "walk.operation_back",
         "Previous operation",
-        "Show the ghost of the operation before",
+        "Preview the previous operation that is allowed here",
         run=lambda context: context.hover.cycle(-1),
         shortcuts=("Shift+Tab",),
         enabled=has_mesh,
@@ -66,8 +66,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "walk.do",
-        "Do what the ghost shows",
-        "Do the operation whose ghost is shown",
+        "Apply previewed operation",
+        "Apply the operation that is previewed",
         run=lambda context: context.editing.operate_current(),
         shortcuts=("Return", "Enter"),
         enabled=has_mesh,
@@ -76,8 +76,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "walk.turn",
-        "Turn to the next edge",
-        "Point at the next half-edge around the vertex where this one starts",
+        "Rotate to next edge",
+        "Point at the next half-edge around the origin of this one",
         run=lambda context: context.navigation.turn(1),
         shortcuts=("E",),
         enabled=has_mesh,
@@ -85,8 +85,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "walk.turn_back",
-        "Turn back",
-        "Point at the half-edge before, around the vertex where this one starts",
+        "Rotate to previous edge",
+        "Point at the previous half-edge around the origin of this one",
         run=lambda context: context.navigation.turn(-1),
         shortcuts=("Shift+E",),
         enabled=has_mesh,
@@ -94,8 +94,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "walk.along",
-        "Along the element",
-        "Point at the half-edge that follows in the element",
+        "Next edge of the element",
+        "Point at the next half-edge of the element",
         run=lambda context: context.navigation.along(),
         shortcuts=("D",),
         enabled=has_mesh,
@@ -104,7 +104,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "walk.across",
         "Across the edge",
-        "Point at the other half-edge of the edge",
+        "Point at the twin half-edge",
         run=lambda context: context.navigation.across(),
         shortcuts=("Q",),
         enabled=has_mesh,

@@ -44,11 +44,9 @@ def _tool(tool: str, title: str, tooltip: str, keys: str) -> Action:
 
 
 ACTIONS: tuple[Action, ...] = (
-    _tool(EDIT, "Edit", "Click half-edges, drag vertices, drag beside them to move the view", "A"),
-    _tool(BOX, "Select by box", "Drag a box around vertices; with Shift at any time", "B"),
-    _tool(
-        LASSO, "Select by lasso", "Draw around vertices; with Shift and Alt at any time", "Shift+B"
-    ),
+    _tool(EDIT, "Edit", "Click half-edges, drag vertices; drag anywhere else to pan", "A"),
+    _tool(BOX, "Select by box", "Drag a box around vertices; Shift+drag in any tool", "B"),
+    _tool(LASSO, "Select by lasso", "Draw around vertices; Shift+Alt+drag in any tool", "Shift+B"),
     Action(
         "select.all",
         "Select all",
@@ -60,8 +58,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "select.none",
-        "Select nothing",
-        "Empty the selection",
+        "Clear selection",
+        "Deselect all vertices",
         run=lambda context: context.document.selection.clear(),
         shortcuts=("Ctrl+Shift+A",),
         enabled=has_selection,
@@ -70,7 +68,7 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "select.invert",
-        "Invert the selection",
+        "Invert selection",
         "Select the vertices that are not selected",
         run=lambda context: context.document.selection.invert(),
         shortcuts=("Ctrl+I",),
@@ -79,8 +77,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "select.grow",
-        "Grow the selection",
-        "Select the elements around it too",
+        "Grow selection",
+        "Add the neighbouring elements",
         run=lambda context: context.document.selection.grow(),
         shortcuts=(">",),
         enabled=has_selection,
@@ -89,8 +87,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "select.shrink",
-        "Shrink the selection",
-        "Take out the vertices at its rim",
+        "Shrink selection",
+        "Remove the vertices at its border",
         run=lambda context: context.document.selection.shrink(),
         shortcuts=("<",),
         enabled=has_selection,

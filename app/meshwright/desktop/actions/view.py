@@ -19,7 +19,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "zoom_in",
         "Zoom in",
-        "Look from closer by",
+        "Zoom in at the centre of the view",
         run=lambda context: context.navigation.zoom(True),
         shortcuts=("+", "=", "Ctrl++"),
         enabled=has_mesh,
@@ -28,7 +28,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "zoom_out",
         "Zoom out",
-        "Look from farther away",
+        "Zoom out at the centre of the view",
         run=lambda context: context.navigation.zoom(False),
         shortcuts=("-", "Ctrl+-"),
         enabled=has_mesh,
@@ -36,8 +36,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "ghosts",
-        "Ghosts of operations",
-        "Show what an operation would do where one points",
+        "Preview of operations",
+        "Preview the operation at the mouse",
         run=lambda context: context.hover.toggle_ghosts(),
         shortcuts=("Ctrl+G",),
         enabled=has_mesh,
@@ -46,8 +46,8 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "lines",
-        "Lines that can be removed",
-        "Let the global lines glow that can be removed: a click removes one",
+        "Removable lines",
+        "Highlight the global lines that can be removed; a click removes one",
         run=lambda context: context.lines.toggle(),
         shortcuts=("L",),
         enabled=has_quads,
@@ -57,7 +57,7 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "theme",
-        "Light or dark",
+        "Light or dark theme",
         "Switch between the light and the dark theme",
         run=lambda context: context.preferences.toggle_theme(),
         shortcuts=("Ctrl+T",),
@@ -67,7 +67,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "auto_smooth",
         "Smooth after every operation",
-        "Move the vertices near an operation, so that the picture stays readable",
+        "Smooth the vertices around every operation",
         run=lambda context: context.preferences.toggle_auto_smooth(),
         menu="Edit",
         checked=lambda context: context.settings.auto_smooth,

@@ -104,7 +104,7 @@ class AgentController(Controller):
         mesh = self._document.mesh
         elements = self._document.selection.elements
         if mesh is None or not len(elements):
-            self._status.show_message("Select a region first: Shift and a drag over the mesh.")
+            self._status.show_message("Select a region first: Shift+drag over the mesh.")
             return
         outside = np.setdiff1d(mesh.element_ids(), elements, assume_unique=True)
         seconds = self._panel.seconds
@@ -128,7 +128,7 @@ class AgentController(Controller):
         """Ask for a policy file, and follow it."""
         path, _ = QFileDialog.getOpenFileName(
             self._parent,
-            "Choose policy file",
+            "Load policy file",
             self._settings.text("agent/folder"),
             f"Policies (*{ENDING});;All files (*)",
         )
@@ -186,9 +186,8 @@ class AgentController(Controller):
         policy = policy_label(self._assistant.policy)
         value = f"{insight.value:.2f}".replace("-", "\u2212")
         return (
-            f"{policy} weighs {len(insight.halfedges)} half-edges; next: {title},"
+            f"{policy} rates {len(insight.halfedges)} half-edges; next: {title},"
             f" {percent(wanted.probability)}, \u0394s {label(wanted.change)}",
-            f"Rings: its template, {slots} vertices by slot{beyond}",
-            f"Tint: its field of view, {len(insight.field)} elements in {blocks} blocks"
-            f"; value {value}",
+            f"Rings: template, {slots} vertices by slot{beyond}",
+            f"Tint: field of view, {len(insight.field)} elements in {blocks} blocks; value {value}",
         )

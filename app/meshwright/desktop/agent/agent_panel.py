@@ -124,10 +124,10 @@ class AgentPanel(QWidget):
         self.region = self._button("agent.region", "Finish only this region")
         self.rollouts_box = self._number("agent/rollouts", MOST_ROLLOUTS, USUAL_ROLLOUTS, " runs")
         self.rollouts_box.setAccessibleName("Runs of Best of")
-        self.rollouts_box.setToolTip("How often Best of runs the policy")
+        self.rollouts_box.setToolTip("Number of runs of Best of")
         self.seconds_box = self._number("agent/seconds", MOST_SECONDS, USUAL_SECONDS, " s")
         self.seconds_box.setAccessibleName("Seconds of Search")
-        self.seconds_box.setToolTip("How long Search and Finish only this region look")
+        self.seconds_box.setToolTip("Time limit of Search and of Finish only this region")
         self.watch = QCheckBox("Show what the policy sees")
         self.watch.setToolTip(self._actions["agent.watch"].toolTip())
         self.watch.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -228,7 +228,7 @@ class AgentPanel(QWidget):
                         self.policy.count() - 1, name, Qt.ItemDataRole.ToolTipRole
                     )
             if not names:
-                self.policy.addItem("No policy yet" if not kind else NO_POLICY[kind])
+                self.policy.addItem("No policy" if not kind else NO_POLICY[kind])
         self.policy.setEnabled(bool(names))
         self._select()
         return names
@@ -258,13 +258,13 @@ class AgentPanel(QWidget):
         assistant = self._assistant
         playing = assistant.state is State.PLAYING
         self.play.setText(
-            "Pause" if playing else "Go on" if assistant.state is State.PAUSED else "Play"
+            "Pause" if playing else "Resume" if assistant.state is State.PAUSED else "Play"
         )
         if self._drawn != (playing, self._theme):
             self._drawn = (playing, self._theme)
             self.step.setIcon(icons.icon("step", self._theme))
             self.play.setIcon(icons.icon("pause" if playing else "play", self._theme))
-        self.stop.setText("Stop at once" if assistant.stopping else "Stop")
+        self.stop.setText("Stop now" if assistant.stopping else "Stop")
         self.watch.setChecked(assistant.watch)
         self._select()
         if assistant.running != self._clock.isActive():
@@ -291,7 +291,7 @@ def activity(assistant: Assistant) -> str:
     if assistant.loading:
         return "Loading the policy\u2026"
     if assistant.hinting.asking:
-        return "Asking the policy\u2026"
+        return "Computing hints\u2026"
     if assistant.stopping:
         return f"Stopping{best}"
     if assistant.state is State.SEARCHING:

@@ -51,7 +51,7 @@ class HintRow(QPushButton):
         self.chance.setText(hint.chance)
         self.change.setText(change)
         self.change.setStyleSheet(f"color: {change_colour(hint.ghost.change, theme)};")
-        self.setToolTip(f"Do it: s changes by {change}  ({hint.number})")
+        self.setToolTip(f"Apply: s changes by {change}  ({hint.number})")
         self.setAccessibleName(f"Hint {hint.number}: {hint.title}, {hint.chance}, s {change}")
 
 

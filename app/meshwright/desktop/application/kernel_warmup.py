@@ -10,9 +10,9 @@ from qtpy.QtCore import QObject, QProcess, Signal
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright_core.core import compilation
 
-FIRST_START = "Preparing (first start only)\u2026"
-EVERY_START = "Preparing\u2026"
-AGENT_FIRST = "Preparing the agent (first start only)\u2026"
+FIRST_START = "Compiling operations (first start only)\u2026"
+EVERY_START = "Loading operations\u2026"
+AGENT_FIRST = "Compiling the agent (first start only)\u2026"
 
 
 class Warmup(QObject):

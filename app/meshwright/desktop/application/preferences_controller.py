@@ -63,9 +63,9 @@ class PreferencesController(Controller):
         settings = self._settings
         settings.auto_smooth = not settings.auto_smooth
         self._status.show_message(
-            "Operations are smoothed again."
+            "Vertices are smoothed after every operation."
             if settings.auto_smooth
-            else "Operations no longer move the vertices around them."
+            else "Vertices are no longer smoothed after operations."
         )
 
     def show(self) -> None:

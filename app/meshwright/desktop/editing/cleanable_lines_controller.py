@@ -81,13 +81,13 @@ class CleanableLinesController(Controller):
         """Let them glow, or not."""
         self._settings.put(LINES, not self.shown)
         if not self.shown:
-            self._status.show_message("Lines glow no more.")
+            self._status.show_message("Removable lines hidden.")
             return
         self.find()
         if self._document.kind == "quad" and not self._lines:
-            self._status.show_message("No line can be removed here.")
+            self._status.show_message("No line of this mesh can be removed.")
         elif self._lines:
-            self._status.show_message("Click a glowing line to remove it, or Clean all.")
+            self._status.show_message("Click a highlighted line to remove it, or use Clean all.")
 
     def find(self) -> None:
         """Look for lines now."""

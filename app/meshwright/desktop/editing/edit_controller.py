@@ -79,7 +79,7 @@ class EditController(Controller):
             self.submit(operation, halfedge)
 
     def operate_current(self) -> None:
-        """Do the operation whose ghost is shown."""
+        """Apply the operation that is previewed."""
         halfedge = self._canvas.under_mouse
         if halfedge < 0:
             self._status.show_message(POINT_FIRST)
@@ -150,13 +150,13 @@ class EditController(Controller):
             return
         count = self._document.clean_all()
         removed = f"Removed {plural(count, 'line')}."
-        self._status.show_message(removed if count else "There is no line that can be removed.")
+        self._status.show_message(removed if count else "No line can be removed.")
 
     def smooth(self) -> None:
         """Smooth the whole mesh."""
         if self.is_ready():
             self._document.smooth()
-            self._status.show_message("Smoothed.")
+            self._status.show_message("Mesh smoothed.")
 
     def smooth_here(self) -> None:
         """Smooth the selected vertices, and no others."""
@@ -175,15 +175,11 @@ class EditController(Controller):
         if not found:
             self._status.show_message("No element is inverted.")
         elif not left:
-            self._status.show_message(
-                f"Untangled: {plural(found, 'element')} was inverted, none is now."
-                if found == 1
-                else f"Untangled: {found:,} elements were inverted, none is now."
-            )
+            self._status.show_message(f"Repaired {plural(found, 'inverted element')}.")
         else:
             self._status.show_message(
-                f"{left:,} of {plural(found, 'element')} stay inverted: "
-                "no position of the free vertices was found that mends them."
+                f"{left:,} of {plural(found, 'inverted element')} could not be repaired: "
+                "no valid positions of the free vertices were found."
             )
 
     def undo(self) -> None:
@@ -196,4 +192,4 @@ class EditController(Controller):
         """Do one step again."""
         row = self._document.redo()
         if row is not None:
-            self._status.show_message(f"Done again: {row.title}.")
+            self._status.show_message(f"Redone: {row.title}.")

@@ -48,7 +48,7 @@ class KeyboardNavigation(Controller):
         canvas.see(canvas.viewport.panned(-STRIDE * right, STRIDE * up))
 
     def zoom(self, closer: bool) -> None:
-        """Look from closer by, or from farther away, at the middle of the view."""
+        """Zoom in at the centre of the view, or from farther away, at the middle of the view."""
         canvas = self._canvas
         width, height = canvas.viewport.size
         factor = ZOOM if closer else 1.0 / ZOOM
@@ -88,7 +88,7 @@ class KeyboardNavigation(Controller):
     # Half-edges
 
     def turn(self, step: int) -> None:
-        """Point at the next half-edge around the vertex where this one starts (1), or back (-1)."""
+        """Point at the next half-edge around the origin of this one (1), or back (-1)."""
         mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
@@ -98,7 +98,7 @@ class KeyboardNavigation(Controller):
         self._keep_in_view()
 
     def along(self) -> None:
-        """Point at the half-edge that follows in the element."""
+        """Point at the next half-edge of the element."""
         mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
@@ -107,12 +107,12 @@ class KeyboardNavigation(Controller):
         self._keep_in_view()
 
     def across(self) -> None:
-        """Point at the other half-edge of the edge."""
+        """Point at the twin half-edge."""
         mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
         elif mesh.twin(halfedge) < 0:
-            self._status.show_message("The boundary has no other side.")
+            self._status.show_message("A half-edge on the boundary has no twin.")
         else:
             self._canvas.pin(mesh.twin(halfedge))
             self._keep_in_view()

@@ -19,9 +19,9 @@ from meshwright.graphics.theme import GRID, Theme
 from meshwright_core.operations.catalogue import Operation, OperationInfo, of_kind
 
 HEIGHT = 26
-POINT = "Point at a half-edge: its operations and how each would change s."
-ARMED = "{}: a click on a half-edge does it. Esc puts it down."
-EMPTY = "Operations appear here when there is a mesh."
+POINT = "Point at a half-edge to see its operations and how each changes s."
+ARMED = "{}: click half-edges to apply it; Esc cancels."
+EMPTY = "Operations are listed here when there is a mesh."
 
 
 class OperationsPanel(QWidget):
@@ -151,7 +151,7 @@ class OperationButton(QAbstractButton):
         if not self.allowed and self._choice is not None:
             text = f"{text}\nNot here: {self._choice.verdict.reason}."
         else:
-            text += "\nClick to arm it: then each click on the mesh does it."
+            text += "\nClick to arm it; each click on the mesh then applies it."
         self.setToolTip(text)
         self.setAccessibleDescription(text)
 

@@ -83,8 +83,8 @@ class SelectionController(Controller):
         self._status.show_message(
             {
                 EDIT: "Click a half-edge for its operations; drag vertices.",
-                BOX: "Drag a box around vertices; Shift adds, Ctrl takes out.",
-                LASSO: "Draw around vertices; Shift adds, Ctrl takes out.",
+                BOX: "Drag a box around vertices; Shift adds, Ctrl removes.",
+                LASSO: "Draw around vertices; Shift adds, Ctrl removes.",
             }[tool]
         )
         self.tool_changed.emit()
@@ -183,7 +183,7 @@ class SelectionController(Controller):
         moved = f"Moved {plural(len(drag.vertices), 'vertex', 'vertices')}."
         if folded:
             verb = "is" if folded == 1 else "are"
-            moved += f" {plural(folded, 'element')} {verb} inverted now; Untangle mends that."
+            moved += f" {plural(folded, 'element')} {verb} inverted now; Untangle repairs this."
         self._status.show_message(moved)
 
     def _choose(self, outline: np.ndarray, add: bool, remove: bool) -> None:

@@ -185,7 +185,7 @@ class FileController(Controller):
     # Saving
 
     def save(self) -> bool:
-        """Write the mesh to its file, or ask for one; whether it is written."""
+        """Save the mesh to its file, or ask for one; whether it is written."""
         if self._document.path is None:
             return self.save_as()
         return self._save(None)
@@ -239,7 +239,7 @@ def waiting() -> Iterator[None]:
 def to_open() -> str:
     """The groups of files that can be opened."""
     groups = {MESHES: mesh_files.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
-    return _filters({"All that can be opened": sum(groups.values(), ()), **groups})
+    return _filters({"All supported files": sum(groups.values(), ()), **groups})
 
 
 def to_save() -> str:
@@ -257,7 +257,7 @@ def left_out(path: Path) -> str:
     if is_project(path) or formats.of(path).data:
         return ""
     title = formats.of(path).title
-    return f" {title} files keep no corners, desired degrees or history; a project does."
+    return f" {title} files store no corners, desired degrees or history; projects do."
 
 
 def _is_length(value: Any) -> bool:

@@ -21,8 +21,8 @@ from meshwright.document.storage.recovery import Lost
 from meshwright.graphics.theme import GRID
 
 STORY = (
-    "Meshwright ended before this was saved. Every step up to then has been kept: it can be taken"
-    " up where it stopped, with its whole history."
+    "Meshwright ended before this work was saved. Every step until then was recorded and can be"
+    " recovered, with the whole history."
 )
 SHOWN = 4
 """Works that are seen at once; with more of them the list scrolls."""
@@ -46,7 +46,7 @@ class RecoveryDialog(QDialog):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
         layout.setSpacing(GRID)
-        layout.addWidget(named("There is work that was not saved", "Question"))
+        layout.addWidget(named("Unsaved work was found", "Question"))
         story = named(STORY, "Label")
         story.setWordWrap(True)
         layout.addWidget(story)
@@ -54,7 +54,7 @@ class RecoveryDialog(QDialog):
         layout.addWidget(self._list())
         layout.addSpacing(GRID)
         self.later = QPushButton("Decide later")
-        self.later.setToolTip("It is offered again at the next start")
+        self.later.setToolTip("Ask again at the next start")
         self.later.setAutoDefault(False)
         self.later.clicked.connect(self.reject)
         line = QHBoxLayout()
@@ -119,7 +119,7 @@ class LostWorkCard(QFrame):
         words = QVBoxLayout()
         words.setSpacing(2)
         words.addStretch(1)
-        self.title = named(work.name or "Mesh without a name", "CardTitle")
+        self.title = named(work.name or "Untitled mesh", "CardTitle")
         self.story = named(progress(work), "Label")
         self.place = named(f"{moment(work.when)}, {origin(work)}", "Hint")
         for part in (self.title, self.story, self.place):
@@ -128,7 +128,7 @@ class LostWorkCard(QFrame):
         words.addStretch(1)
         self.discard = QPushButton("Discard")
         self.discard.setObjectName("Link")
-        self.discard.setToolTip("Delete this work for good")
+        self.discard.setToolTip("Delete this work permanently")
         self.recover = QPushButton("Recover")
         for button in (self.discard, self.recover):
             button.setAutoDefault(False)
@@ -141,7 +141,7 @@ class LostWorkCard(QFrame):
     def make_sure(self) -> None:
         """The next click on *Discard* means it."""
         self.sure = True
-        self.discard.setText("Delete for good?")
+        self.discard.setText("Delete permanently?")
 
 
 def progress(work: Lost) -> str:
@@ -170,5 +170,5 @@ def origin(work: Lost) -> str:
     """Where it was saved last."""
     if work.file is None:
         return "never saved to a file"
-    there = "" if Path(work.file).exists() else ", which is gone"
+    there = "" if Path(work.file).exists() else ", which no longer exists"
     return f"from {work.file.name}{there}"

@@ -126,9 +126,9 @@ class UnsavedWorkGuard:
         name = document.name or "this mesh"
         self._question = QuestionDialog(
             f"Save the changes to {name}?",
-            f"What has changed since {document.path.name} was saved is lost otherwise."
+            f"Otherwise the changes since {document.path.name} was saved are lost."
             if document.path is not None
-            else "It has not been saved to a file yet, and is lost otherwise.",
+            else "It has not been saved to a file yet, and would be lost.",
             (("cancel", "Cancel"), ("save", "Save")),
             ("drop", "Don\u2019t save"),
             self._window,
@@ -151,7 +151,7 @@ class UnsavedWorkGuard:
         if works:
             self._offer(works)
         else:
-            self._status.show_message("There is no lost work: everything was saved or dropped.")
+            self._status.show_message("There is no unsaved work to recover.")
 
     def _offer(self, works: list[Lost]) -> None:
         from meshwright.desktop.files.recovery_dialog import RecoveryDialog

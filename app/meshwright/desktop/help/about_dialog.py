@@ -111,7 +111,7 @@ class AboutDialog(QDialog):
 
     def _buttons(self) -> QHBoxLayout:
         copy = QPushButton("Copy versions")
-        copy.setToolTip("Copy the versions of Meshwright and what it runs on, for a report")
+        copy.setToolTip("Copy the versions of Meshwright and its libraries, for a bug report")
         copy.clicked.connect(lambda checked=False: self._copy())
         close = QPushButton("Close")
         close.setToolTip("Close this page")
@@ -141,7 +141,7 @@ def own_version() -> str:
 
 
 def _told(one: Licence) -> str:
-    text = one.text() or "Its text was not installed with the package."
+    text = one.text() or "The licence text was not installed with the package."
     home = f"\n{one.url}" if one.url else ""
     return f"{one.package} {one.version}: {one.licence}{home}\n\n{text}"
 

@@ -42,7 +42,7 @@ class Callout(QWidget):
         self.done = named("", "CalloutDone")
         self.done.setWordWrap(True)
         self.skip = self._button("Skip", "Chip", "End the tour; Help shows it again")
-        self.back = self._button("Back", "", "The step before")
+        self.back = self._button("Back", "", "The previous step")
         self.next = self._button("Next", "Primary", "The next step")
         self.skip.clicked.connect(lambda checked=False: self.ended.emit())
         self.back.clicked.connect(lambda checked=False: self.step_requested.emit(-1))

@@ -27,10 +27,10 @@ MOUSE = (
     ("Move", "Point at a half-edge"),
     ("Click", "Operations of the half-edge"),
     ("Right click", "Desired degree, corner, lock"),
-    ("Drag", "Move a vertex, or the picture"),
-    ("Wheel", "Zoom at the mouse"),
-    ("Shift click", "Select a vertex too"),
-    ("Shift drag", "Box; with Alt a lasso"),
+    ("Drag", "Move a vertex, or pan"),
+    ("Wheel", "Zoom"),
+    ("Shift click", "Add a vertex to the selection"),
+    ("Shift drag", "Select by box; with Alt by lasso"),
 )
 
 
@@ -41,7 +41,7 @@ class ShortcutsDialog(QDialog):
         self, groups: Sequence[tuple[str, Sequence[ActionEntry]]], parent: QWidget
     ) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Keys and mouse")
+        self.setWindowTitle("Keyboard and mouse")
         body = QWidget()
         body.setObjectName("SidebarBody")
         columns = QHBoxLayout(body)
@@ -60,7 +60,7 @@ class ShortcutsDialog(QDialog):
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         area.setWidget(body)
-        area.setAccessibleName("Keys and mouse")
+        area.setAccessibleName("Keyboard and mouse")
         close = QPushButton("Close")
         close.setToolTip("Close this page")
         close.setDefault(True)

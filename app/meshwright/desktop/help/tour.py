@@ -90,32 +90,32 @@ STEPS = (
         sides=("right", "below", "left"),
     ),
     TourStep(
-        "Do an operation",
-        "While you point, press one of these keys, or click for a menu with all of them. "
-        "Ctrl+Z takes everything back.",
+        "Apply an operation",
+        "Point at a half-edge and press one of these keys, or click for a menu with all of them. "
+        "Ctrl+Z undoes it.",
         lambda places: places.panel(places.operations),
-        "Done. The mesh has changed, and it is still a mesh.",
+        "Done. The mesh has changed, and is still valid.",
         panel=lambda places: places.operations,
         sides=("right",),
     ),
     TourStep(
         "Watch the score",
-        "s adds up how far all degrees are from the desired ones. It can never fall below the "
-        "optimum s*: where they meet, the connectivity is provably optimal.",
+        "s is the sum of |degree \u2212 desired degree| over all vertices. It cannot fall below "
+        "the optimum s*; where s = s*, the connectivity is provably optimal.",
         lambda places: places.panel(places.score),
         panel=lambda places: places.score,
     ),
     TourStep(
         "Let the agent help",
-        "Step takes one operation, Play goes on, Complete searches for the optimum. Edit or stop "
-        "at any time: what it has done stays.",
+        "Step applies one operation, Play continues, Complete searches for the optimum. Edit or "
+        "stop at any time: its operations are kept.",
         lambda places: places.panel(places.agent),
         panel=lambda places: places.agent,
     ),
     TourStep(
-        "Nothing is lost",
-        "Every step, yours or the agent\u2019s, is kept. Click or drag on the timeline to go back, "
-        "and edit on from there. Ctrl+K finds every command, F1 lists all keys.",
+        "Go back at any time",
+        "Every step, yours or the agent\u2019s, is recorded. Click or drag on the timeline to go "
+        "back, and continue editing from there. Ctrl+K finds every command, F1 lists all keys.",
         lambda places: places.first_visible(places.history),
         sides=("above", "right", "below"),
     ),

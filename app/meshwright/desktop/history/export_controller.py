@@ -63,8 +63,7 @@ class ExportBar(QFrame):
 
     def show_progress(self, name: str, done: int, total: int) -> None:
         """Show how many frames of the file ``name`` are written."""
-        noun = "frame" if total > 1 else "picture"
-        count = f", {noun} {done:,} of {total:,}" if total > 1 else ""
+        count = f", frame {done:,} of {total:,}" if total > 1 else ""
         self._words.setText(f"Writing {name}{count}")
         self.progress.setMaximum(total)
         self.progress.setValue(done)
@@ -104,7 +103,7 @@ class ExportController(Controller):
         from meshwright.graphics.export.film import Film
 
         if self.running:
-            self._status.show_message("A film is being written already: wait, or cancel it.")
+            self._status.show_message("An export is already running: wait, or cancel it.")
             return
         document = self._document
         film = Film(document)

@@ -26,16 +26,16 @@ from meshwright.graphics.mesh_figure import figure
 from meshwright.graphics.theme import GRID, THEMES
 
 FORMATS = (
-    (".gif", "Film, GIF", "Plays anywhere, also inside a README or a slide"),
-    (".mp4", "Film, MP4", "Smaller and sharper; for talks and web pages"),
-    (".png", "Picture, PNG", "The present state as pixels"),
-    (".svg", "Picture, SVG", "The present state as lines and letters that stay sharp in print"),
+    (".gif", "Animation, GIF", "Plays anywhere, also inside a README or a slide"),
+    (".mp4", "Video, MP4", "Smaller and sharper; for talks and web pages"),
+    (".png", "Image, PNG", "The current state as pixels"),
+    (".svg", "Image, SVG", "The current state as vector graphics, which stay sharp in print"),
 )
 PARTS = (
     ("score", "Score and step above the mesh"),
     ("curve", "Score curve below the mesh"),
     ("numbers", "Numbers in the discs"),
-    ("changes", "What each step changes"),
+    ("changes", "Changes of each step"),
 )
 PREVIEW = (480, 360)
 LARGE = 20_000
@@ -51,7 +51,7 @@ class ExportDialog(QDialog):
 
     def __init__(self, film: Film, order: Order, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Export film or picture")
+        self.setWindowTitle("Export video or image")
         self._film = film
         self._state = film.state
         self._moment = film.moment(film.state)
@@ -116,7 +116,7 @@ class ExportDialog(QDialog):
         grid = QGridLayout()
         grid.setHorizontalSpacing(2 * GRID)
         grid.setVerticalSpacing(GRID)
-        self._pace = [named("Each frame stays", "Label"), named("One frame for every", "Label")]
+        self._pace = [named("Time per frame", "Label"), named("One frame for every", "Label")]
         rows = (
             (named("Size", "Label"), self.size_box),
             (named("Theme", "Label"), self.theme_box),
@@ -195,7 +195,7 @@ class ExportDialog(QDialog):
         if not self.order.moving:
             return f"The state after step {self._state:,}." if self._state else "The start."
         if len(self._film.rows) == 0:
-            return "There are no steps yet: nothing would move."
+            return "The history is empty: there is nothing to animate."
         frames = len(self._film.stops(self.order.every))
         inside = max(frames - 2, 0) * self.order.seconds
         ends = max(FIRST, self.order.seconds) + max(LAST, self.order.seconds)

@@ -34,8 +34,8 @@ class TimelineBar(QFrame):
         self.curve = ScoreCurve(theme)
         self.buttons: dict[str, QToolButton] = {}
         self.speed = QComboBox()
-        self.speed.setToolTip("Speed of the film")
-        self.speed.setAccessibleName("Speed of the film")
+        self.speed.setToolTip("Playback speed")
+        self.speed.setAccessibleName("Playback speed")
         self.speed.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         for speed in SPEEDS:
             self.speed.addItem(f"{speed} step{'' if speed == 1 else 's'} / s", speed)

@@ -73,9 +73,9 @@ class LevelBar(QFrame):
         self.goal = LevelFigure("Goal", "The score to reach: the lowest that is possible")
         self.par = LevelFigure("Par", "The fewest operations known")
         self.used = LevelFigure("You", "Your operations since the start; Undo takes them back")
-        self.agent = LevelFigure("Agent", "Operations that the agent took, on a mesh of its own")
+        self.agent = LevelFigure("Agent", "Operations of the agent on a copy of the level")
         self.leave = QToolButton()
-        self.leave.setToolTip("Leave the level; the mesh stays")
+        self.leave.setToolTip("Leave the level and keep the mesh")
         self.leave.setAccessibleName("Leave the level")
         self.leave.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.leave.clicked.connect(lambda checked=False: self.action_requested.emit("leave"))
@@ -94,9 +94,9 @@ class LevelBar(QFrame):
         self.text = named("", "LevelText")
         self.text.setWordWrap(True)
         self.text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        self.again = self._button("Again", "again", "Begin the level again")
+        self.again = self._button("Again", "again", "Restart the level")
         self.answer = self._button("Ask the agent", "answer", "")
-        self.next = self._button("Next", "next", "Go on to the next level")
+        self.next = self._button("Next", "next", "Start the next level")
         line = QHBoxLayout()
         line.setContentsMargins(0, 0, GRID, 0)
         line.setSpacing(GRID)
@@ -129,9 +129,9 @@ class LevelBar(QFrame):
         self.goal.show_value(level.aim)
         self.par.show_value(str(level.par))
         self.par.setToolTip(
-            "No fewer operations will do: all ways were tried"
+            "Proven minimum: all shorter sequences were tried"
             if level.proved
-            else "The fewest operations known; perhaps you find fewer"
+            else "The fewest operations known; fewer may be possible"
         )
         self.used.show_value(str(play.used))
         self.stars.count = play.stars if play.done else play.best
@@ -161,12 +161,12 @@ class LevelBar(QFrame):
             shown = str(len(rival.operations)) if standing is Standing.DONE else "\u2013"
             self.agent.show_value(shown if reached else f"{shown} (s {rival.score})")
         knows = standing is Standing.DONE or (level is not None and bool(level.most))
-        self.answer.setText("Show a way" if knows else "Ask the agent")
+        self.answer.setText("Show a solution" if knows else "Ask the agent")
         self.answer.setEnabled(standing is not Standing.ASKED)
         self.answer.setToolTip(
-            "Begin again with this way ahead: Redo goes along it"
+            "Restart with this solution: Redo steps through it"
             if knows
-            else "Let the agent solve this level on a mesh of its own, and compare"
+            else "Let the agent solve a copy of this level, and compare"
         )
 
     def _refresh_looks(self, name: str) -> None:

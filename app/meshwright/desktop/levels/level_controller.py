@@ -88,11 +88,11 @@ class LevelController(Controller):
             self._canvas.fit()
 
     def again(self) -> None:
-        """Begin the level again."""
+        """Restart the level."""
         self._try(self.play.again)
 
     def next(self) -> None:
-        """Go on to the next level."""
+        """Start the next level."""
         self._try(self.play.next)
         self._canvas.fit()
 

@@ -28,8 +28,9 @@ COLUMNS = 4
 CARD = QSize(184, 200)
 PICTURE = QSize(168, 120)
 STORY = (
-    "Each level is a mesh with a goal and a par: reach the lowest score, with as few operations as"
-    " you can. Stars count operations only; Undo takes them back, and smoothing is free."
+    "Each level is a mesh with a goal and a par: reach the lowest score with as few operations as"
+    " you can. Stars depend on the number of operations; undone operations and smoothing do not"
+    " count."
 )
 
 

@@ -36,7 +36,7 @@ class Section(QWidget):
         self.heading.setObjectName("Fold")
         self.heading.setCheckable(True)
         self.heading.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.heading.setToolTip(f"Show or fold away: {title}")
+        self.heading.setToolTip(f"Show or hide: {title}")
         self.heading.setAccessibleName(title)
         line = QHBoxLayout()
         line.addWidget(self.heading)

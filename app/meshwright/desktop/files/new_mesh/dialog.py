@@ -81,13 +81,13 @@ class NewMeshDialog(QDialog):
             self.file.take(file)
 
     def _arrange(self) -> None:
-        self.tabs = SegmentedButtons(PAGES, "Where the shape comes from")
+        self.tabs = SegmentedButtons(PAGES, "Source of the shape")
         self.stack = QStackedWidget()
         for page in self._pages.values():
             self.stack.addWidget(page)
         self.status = named("", "Status")
         self.status.setWordWrap(True)
-        self.status.setAccessibleName("What is wrong or to be done")
+        self.status.setAccessibleName("Status")
         self.cancel, self.make = QPushButton("Cancel"), QPushButton(MAKE)
         self.make.setObjectName("Primary")
         self.make.setDefault(True)

@@ -32,7 +32,7 @@ from meshwright.sources.snapping import Snap, Snapper
 REACH = 9.0
 """Pixels within which corners and lines attract the mouse."""
 CORNER = 8.0
-CLOSED = "Everything is closed: click an edge to put a corner on it, or press Add hole."
+CLOSED = "All loops are closed: click an edge to insert a corner, or press Add hole."
 _CLOSEST_GRID = 7.0
 """Pixels between grid lines below which only every fifth or tenth is drawn."""
 _DRAG = 4.0
@@ -92,7 +92,7 @@ class DrawingArea(QWidget):
         self.update()
 
     def fit(self) -> None:
-        """Show all that is drawn, or the square from -1 to 1."""
+        """Fit the view to the drawing, or the square from -1 to 1."""
         places = [place for _, _, place in self.sketch.corners()]
         points = np.array(places if len(places) > 1 else [(-1.0, -1.0), (1.0, 1.0)])
         self.view = self.view.resized(self.width(), self.height()).fitted(points, 6 * GRID)

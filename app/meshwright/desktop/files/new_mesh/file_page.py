@@ -28,7 +28,7 @@ from meshwright_core.io import drawings, mesh_files
 from meshwright_core.io.drawings.curves import CURVE_STEP
 
 NO_FILE = "Choose a file, or drop one here."
-MESH_WORDS = "A mesh is opened as it is: its elements are neither made anew nor moved."
+MESH_WORDS = "A mesh is opened unchanged."
 SHAPE_WORDS = "The shape in the file is meshed."
 
 
@@ -73,8 +73,8 @@ class FilePage(Page):
         layout.setSpacing(3 * GRID)
         layout.addWidget(self.zone)
         layout.addWidget(self._readings())
-        layout.addWidget(_kinds("Shapes, which are meshed", shapes))
-        layout.addWidget(_kinds("Meshes, which are opened as they are", meshes))
+        layout.addWidget(_kinds("Shapes, to be meshed", shapes))
+        layout.addWidget(_kinds("Meshes, opened unchanged", meshes))
         layout.addStretch(1)
 
     def _readings(self) -> QWidget:
@@ -87,12 +87,12 @@ class FilePage(Page):
             (
                 "Corners turn by more than",
                 self.corner_angle,
-                "Raise it where curved sides are drawn as short straight pieces.",
+                "Increase it if curved sides are drawn as short straight pieces.",
             ),
             (
                 "Curves turn at each point by",
                 self.curve_step,
-                "Lower it to follow arcs and splines more closely.",
+                "Decrease it to follow arcs and splines more closely.",
             ),
         )
         for row, (title, field, hint) in enumerate(rows):

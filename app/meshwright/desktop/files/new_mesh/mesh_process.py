@@ -17,7 +17,7 @@ PAUSE = 120
 PATIENCE = 300
 """Milliseconds that work no longer wanted may take before the process is replaced."""
 
-GONE = "The mesh could not be made: the process at work ended, perhaps for want of memory."
+GONE = "Meshing failed: the process ended unexpectedly, perhaps for lack of memory."
 
 
 class Maker(QObject):

@@ -38,9 +38,9 @@ class Options(QWidget):
         for key, button in self.rule.buttons.items():
             button.setToolTip(RULE_TIPS[key])
         self.size_of = Measure("Longest edge", "automatic", 0.001, 1.0, 0.2, 4, geometric=True)
-        self.quality = Measure("Least angle of triangles", "automatic", 0.0, 34.0, 28.0, 1, "°")
+        self.quality = Measure("Minimum angle of triangles", "automatic", 0.0, 34.0, 28.0, 1, "°")
         self.quality.setToolTip(
-            "Degrees that no angle of the triangles should be below; small angles of the shape stay"
+            "Lower bound of all angles in degrees; smaller angles of the shape itself remain"
         )
         self._values: dict[str, QLabel] = {}
         self._size = 0.0
@@ -76,10 +76,10 @@ class Options(QWidget):
         grid.setHorizontalSpacing(GRID)
         grid.setVerticalSpacing(2)
         titles = (
-            ("elements", "Elements", "How many elements the mesh has"),
-            ("vertices", "Vertices", "How many vertices the mesh has"),
-            ("score", "s", "The sum over all vertices of how far their degree is off"),
-            ("optimum", "s*", "The lowest score that any connectivity can have here"),
+            ("elements", "Elements", "Number of elements of the mesh"),
+            ("vertices", "Vertices", "Number of vertices of the mesh"),
+            ("score", "s", "s: the sum of |degree \u2212 desired degree| over all vertices"),
+            ("optimum", "s*", "s*: no connectivity can have a lower score"),
         )
         for i, (key, title, tip) in enumerate(titles):
             value = named("\u2013", "Value")

@@ -35,7 +35,7 @@ class Preview(QWidget):
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setAccessibleName("Preview of the mesh")
-        self.setToolTip("Wheel: zoom. Drag: move. Double click: all of it.")
+        self.setToolTip("Wheel: zoom. Drag: pan. Double click: fit.")
         self.setMinimumSize(240, 200)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._theme = theme

@@ -39,7 +39,7 @@ class RandomPage(Page):
         self.seed = IntegerBox()
         self.seed.setRange(0, LAST_SEED)
         self.seed.setAccessibleName("Seed")
-        self.seed.setToolTip("The same sides and seed make the same shape, always")
+        self.seed.setToolTip("The same number of sides and seed always give the same shape")
         self.seed.setMinimumWidth(12 * GRID)
         for field in (self.sides, self.seed):
             field.setAlignment(Qt.AlignmentFlag.AlignRight)
