@@ -107,4 +107,4 @@ def configuration_of(given: Mapping[str, Any], name: str) -> Training:
 
 def shipped_configuration(kind: str) -> Path:
     """The configuration with which the shipped policy of this kind was trained."""
-    return Path(str(files("agent") / "configs" / f"{kind}.toml"))
+    return Path(str(files("meshwright_agent") / "configs" / f"{kind}.toml"))

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.benchmarks.engine import apply_all
+from meshwright.benchmarks.core import apply_all
 from meshwright.console import Update
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import JOURNALLING

@@ -51,11 +51,11 @@ import json, sys
 from pathlib import Path
 import numpy as np
 from safetensors.torch import save_file
-from agent import training
+from meshwright_agent.training import trainer
 
 configuration, folder = sys.argv[1], Path(sys.argv[2])
-training.evaluate = lambda *_: {"single_mean": 0.0, "seconds": 1.0}
-loop = training._loop
+trainer.evaluate = lambda *_: {"single_mean": 0.0, "seconds": 1.0}
+loop = trainer._loop
 
 def loop_and_tell(trainer, *rest):
     loop(trainer, *rest)
@@ -73,8 +73,8 @@ def loop_and_tell(trainer, *rest):
     name.with_suffix(".json").write_text(json.dumps(told))
     save_file(trainer.network.state_dict(), name.with_suffix(".safetensors"))
 
-training._loop = loop_and_tell
-training.train(configuration, folder)
+trainer._loop = loop_and_tell
+trainer.train(configuration, folder)
 """
 
 

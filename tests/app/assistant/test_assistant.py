@@ -421,14 +421,14 @@ def test_a_program_that_breaks_off_is_not_held_by_a_run():
         import time
         from meshwright.assistant.assistant import Assistant
         from meshwright.document.document import Document
-        from meshcore import generate, shapes
+        from meshwright_core.domains import gallery, meshing
 
         class Runner:
             finished, reason = False, ""
             look = staticmethod(lambda: None)
             step = staticmethod(lambda: [("flip_left", 0)])
 
-        mesh = generate.mesh_domain(shapes.shape("star"), "quad")
+        mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
         calls = []
         assistant = Assistant(
             Document(mesh), calls.append, lambda name: name, lambda *_: Runner()

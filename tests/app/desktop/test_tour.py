@@ -46,11 +46,11 @@ def test_five_steps_each_inside_the_window_and_beside_what_they_show(
     qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
     window.help.show_tour()
     callout = window.help.tour.callout
-    for number, stop in enumerate(STEPS, start=1):
+    for number, step in enumerate(STEPS, start=1):
         assert callout.count.text() == f"{number} of 5"
-        assert callout.heading.text() == stop.heading
+        assert callout.heading.text() == step.heading
         assert window.rect().contains(callout.geometry())
-        target = stop.target(window)
+        target = step.target(window.help.places)
         assert target is not None
         assert not QRect(target.center() - QPoint(2, 2), target.center()).intersects(
             callout.geometry()
@@ -99,9 +99,9 @@ def test_closing_the_window_ends_it(open_window, star):
 def test_what_is_hidden_is_not_pointed_at(open_window, star):
     window = open_window(star)
     last = STEPS[-1]
-    timeline = last.target(window)
+    timeline = last.target(window.help.places)
     for part in (window.playback.timeline, window.playback.panel):
         part.hide()
     button = window.toolbar.widgetForAction(window.actions_by_id["undo"])
-    assert last.target(window) != timeline
-    assert last.target(window).size() == button.size()
+    assert last.target(window.help.places) != timeline
+    assert last.target(window.help.places).size() == button.size()

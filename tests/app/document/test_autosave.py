@@ -172,7 +172,7 @@ def test_what_a_living_process_holds_is_left_alone(document, tmp_path):
     code = f"""
 import sys
 from pathlib import Path
-from app import recovery
+from meshwright.document.storage import recovery
 sys.exit(len(recovery.lost(Path({str(tmp_path)!r}))))
 """
     assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0
@@ -266,11 +266,11 @@ from pathlib import Path
 import numpy as np
 from meshwright.document.storage.autosave import Autosave
 from meshwright.document.document import Document
-from meshcore import generate, shapes
+from meshwright_core.domains import gallery, meshing
 sys.path.insert(0, {tests!r})
 from test_branches import wander
 
-document = Document(generate.mesh_domain(shapes.shape("star"), {kind!r}), "star")
+document = Document(meshing.mesh_domain(gallery.shape("star"), {kind!r}), "star")
 keeper = Autosave(document, Path({folder!r}))
 for seed in range(1_000_000):
     wander(document, 1, seed)

@@ -159,10 +159,11 @@ def test_figure_in_pixels_shows_the_loud_things_and_no_others(walked):
 
 def test_a_picture_needs_neither_display_nor_vtk(tmp_path):
     code = (
-        "import sys; from app import pictures; from meshwright.graphics.mesh_figure import Look; "
-        "from meshcore import generate, shapes; "
-        "m = generate.mesh_domain(shapes.shape('star'), 'quad'); "
-        f"pictures.save_mesh_picture(m, r'{tmp_path / 'star.png'}', Look((300, 200), 'dark')); "
+        "import sys; from meshwright.graphics.export import export_job; "
+        "from meshwright.graphics.mesh_figure import Look; "
+        "from meshwright_core.domains import gallery, meshing; "
+        "m = meshing.mesh_domain(gallery.shape('star'), 'quad'); "
+        f"export_job.save_mesh_picture(m, r'{tmp_path / 'star.png'}', Look((300, 200), 'dark')); "
         "assert not {'vtkmodules', 'pyvista', 'qtpy', 'torch'} & set(sys.modules)"
     )
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}

@@ -10,8 +10,8 @@ from meshwright.graphics.theme import THEMES
 from meshwright.notebook import bundle
 
 FOLDER = Path(bundle.__file__).parent / "front"
-SCRIPTS = sorted(path.name for path in FOLDER.glob("*.js"))
-STYLES = sorted(path.name for path in FOLDER.glob("*.css"))
+SCRIPTS = sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.js"))
+STYLES = sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.css"))
 
 
 def read(name: str) -> str:

@@ -178,7 +178,9 @@ def test_a_solution_takes_the_place_of_the_blank():
 
 def test_teaching_needs_neither_torch_nor_qt():
     code = "import meshwright.teaching, meshwright.teaching.lessons, sys; print(*sys.modules)"
-    topics = "".join(f"; import meshwright.teaching.{topic}" for topic in list(TOPICS.values())[:4])
+    topics = "".join(
+        f"; import meshwright.teaching.exercises.{topic}" for topic in list(TOPICS.values())[:4]
+    )
     done = subprocess.run(
         [sys.executable, "-c", code.replace("; print", f"{topics}; print")],
         capture_output=True,

@@ -59,7 +59,7 @@ class PreferencesDialog(QDialog):
             self._switch(
                 "numbers",
                 "Numbers on irregular vertices",
-                "Degree minus desired degree, inside each disc.",
+                "Degree minus desired degree, in each disc.",
             )
         )
         layout.addSpacing(GRID)
@@ -91,7 +91,7 @@ class PreferencesDialog(QDialog):
             line.addWidget(button)
         line.addStretch(1)
         self.colours.setToolTip(
-            "Colours of degrees too high and too low; safe for colour-blind users"
+            "Colours of too high and too low degrees; safe for colour-blind users"
         )
         self.colours.setAccessibleName("Colours of irregular vertices")
         for name, (title, *_) in COLOURS.items():

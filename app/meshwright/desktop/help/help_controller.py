@@ -30,7 +30,7 @@ class HelpController(Controller):
         super().__init__(theme)
         self._document, self._canvas, self._settings = document, canvas, settings
         self._actions, self._status = actions, status
-        self._places, self._window = places, places.window
+        self.places, self._window = places, places.window
         self._awaits_mesh = False
         self.tour: Tour | None = None
         """The tour while it is shown; so with the other two."""
@@ -75,7 +75,7 @@ class HelpController(Controller):
             return
         self._awaits_mesh = False
         self._settings.toured = True
-        self.tour = Tour(self._document, self._places, self._theme)
+        self.tour = Tour(self._document, self.places, self._theme)
         self.tour.ended.connect(self._on_tour_ended)
 
     def end_tour(self) -> None:

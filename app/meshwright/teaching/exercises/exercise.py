@@ -22,13 +22,13 @@ Check = Callable[..., str]
 """
 
 TOPICS = {
-    "1": "half_edges",
-    "2": "the_bound",
-    "3": "triangle_operations",
-    "4": "quad_operations",
-    "5": "block_decomposition",
-    "6": "policy_sight",
-    "7": "research",
+    "1": "lesson1_half_edges",
+    "2": "lesson2_bound",
+    "3": "lesson3_triangles",
+    "4": "lesson4_quads",
+    "5": "lesson5_blocks",
+    "6": "lesson6_policy_view",
+    "7": "lesson7_research",
 }
 """The module of this package with the checks of each lesson."""
 
@@ -99,7 +99,7 @@ def exercise(name: str) -> Exercise:
     name = str(name)
     topic = TOPICS.get(name.partition(".")[0])
     if topic is not None:
-        importlib.import_module(f"meshwright.teaching.{topic}")
+        importlib.import_module(f"meshwright.teaching.exercises.{topic}")
     if name not in _DECLARED:
         near = difflib.get_close_matches(name, _DECLARED, 3, 0.5)
         hint = f"did you mean {' or '.join(near)}?" if near else "the first lesson begins with 1.1."
