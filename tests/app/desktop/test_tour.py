@@ -12,7 +12,7 @@ def click(qtbot, button):
 
 
 def test_the_window_alone_shows_no_tour(open_window, star):
-    assert open_window(star).guide.tour is None
+    assert open_window(star).help.tour is None
 
 
 def test_it_is_shown_once_and_again_when_asked_for(qtbot, open_window, star):

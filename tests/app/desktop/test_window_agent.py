@@ -88,7 +88,7 @@ def test_watching_shows_each_decision_before_it_is_taken(qtbot, open_window, sta
     field = window.agent.field
     qtbot.waitUntil(lambda: field.sight is not None, timeout=WAIT)
     assert window.agent_panel.watch.isChecked()
-    assert any("weighs" in line for line in field.sight.words)
+    assert any("rates" in line for line in field.sight.words)
     for count in (1, 2):
         wanted = window.assistant.insight.wanted
         press(qtbot, window, Qt.Key.Key_Period)
