@@ -76,7 +76,7 @@ def test_a_click_on_a_line_goes_there_and_back(qtbot, walked):
 
 
 def test_lines_say_what_who_and_how_much(walked):
-    model = walked.film.panel.model
+    model = walked.playback.panel.model
     words = [model.data(model.index(place)) for place in range(model.rowCount())]
     assert words[0] == "Start, s 12"
     row = walked.document.history[0]
@@ -147,7 +147,7 @@ def test_keys_walk_from_the_canvas(qtbot, walked):
 
 
 def test_the_film_plays_at_its_speed_and_is_held(qtbot, walked):
-    window, document, film = walked, walked.document, walked.film
+    window, document, film = walked, walked.document, walked.playback
     film.timeline.speed.setCurrentIndex(film.timeline.speed.count() - 1)
     assert window.settings.number("film/speed", 0) == 60
     qtbot.mouseClick(film.timeline.buttons["history.play"], LEFT)
@@ -167,7 +167,7 @@ def test_the_film_plays_at_its_speed_and_is_held(qtbot, walked):
 
 
 def test_branches_are_seen_and_taken(qtbot, walked, greedy):
-    window, document, film = walked, walked.document, walked.film
+    window, document, film = walked, walked.document, walked.playback
     former = [row.serial for row in document.history]
     end = document.mesh.points.tobytes()
     document.go_to(4)
@@ -193,7 +193,7 @@ def test_branches_are_seen_and_taken(qtbot, walked, greedy):
 
 
 def test_list_and_timeline_can_be_hidden_and_stay_so(qtbot, walked):
-    window, film = walked, walked.film
+    window, film = walked, walked.playback
     height = window.canvas.height()
     press(qtbot, window, Qt.Key.Key_F3)
     press(qtbot, window, Qt.Key.Key_F4)
@@ -210,7 +210,7 @@ def test_list_and_timeline_can_be_hidden_and_stay_so(qtbot, walked):
 
 
 def test_a_history_that_begins_again(qtbot, walked, triangles):
-    window, film = walked, walked.film
+    window, film = walked, walked.playback
     window.document.replace(triangles, "triangles")
     settle(qtbot, window)
     assert film.panel.model.rowCount() == 1
@@ -298,7 +298,7 @@ def test_export_writes_what_was_asked_for(qtbot, walked, monkeypatch, tmp_path, 
 
 
 def test_export_can_be_cancelled_and_says_what_is_wrong(qtbot, walked, monkeypatch, tmp_path):
-    window, exporting = walked, walked.film.exporting
+    window, exporting = walked, walked.playback.exporting
     choose = lambda dialog: None  # noqa: E731
     ask(qtbot, window, choose, monkeypatch, tmp_path / "star.gif")
     qtbot.mouseClick(exporting.bar.cancel, LEFT)

@@ -1,4 +1,4 @@
-"""What the agent does beside the person."""
+"""Actions of the menu Agent: hints, runs and searches."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from meshwright.desktop.actions.action import Action, can_run, needing
 from meshwright.desktop.actions.context import ActionContext
 
 HINTS = 5
-"""Hints that have a key of their own."""
+"""Hints that can be applied by a number key."""
 
 
 @needing("Needs a mesh, and the agent must be ready.")
@@ -23,7 +23,7 @@ def _has_region(context: ActionContext) -> bool:
 
 
 def _is_busy(context: ActionContext) -> bool:
-    """Something is under way that can be ended."""
+    """A run is under way or paused, or hints are shown."""
     return context.agent.busy
 
 

@@ -1,4 +1,4 @@
-"""What the actions act on."""
+"""The objects that actions call: document, assistant and controllers."""
 
 from __future__ import annotations
 

@@ -13,8 +13,8 @@ from meshwright.graphics.theme import Theme
 class ActionDispatcher(Controller):
     """Connects ``actions`` to the table's functions on ``context``.
 
-    It follows every signal after which an action may have become possible, impossible, on or off,
-    so that no other controller has to care; it is made after them, so that they react first.
+    It connects to every signal that may change which actions are enabled or checked, so that other
+    controllers need not refresh them. It is constructed after them, so their slots run first.
     """
 
     def __init__(self, actions: ActionSet, context: ActionContext, theme: Theme) -> None:
@@ -43,7 +43,7 @@ class ActionDispatcher(Controller):
         self._actions.set_theme(theme)
 
     def close(self) -> None:
-        """Run no more actions."""
+        """Disconnect from signals and actions."""
         super().close()
         self._actions.triggered.disconnect(self._on_triggered)
 

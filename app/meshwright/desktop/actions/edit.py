@@ -1,4 +1,4 @@
-"""Going back and forth, and what is selected."""
+"""Actions of the menu Edit: undo and redo."""
 
 from __future__ import annotations
 

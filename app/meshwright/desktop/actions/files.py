@@ -1,4 +1,4 @@
-"""Meshes that come and go: new, open, save."""
+"""Actions of the menu File: new, open, save, recover, quit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from meshwright.desktop.actions.context import ActionContext
 
 @needing("No file has been opened or saved yet.")
 def has_recent(context: ActionContext) -> bool:
-    """There are files to be opened again."""
+    """The list of recent files is not empty."""
     return bool(context.settings.recent)
 
 

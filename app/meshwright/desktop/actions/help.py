@@ -1,4 +1,4 @@
-"""Help."""
+"""Actions of the menu Help: palette, shortcuts, tour, About."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The film: walking through the history, and exporting it."""
+"""Actions of the menu History: navigation, playback, branches and export."""
 
 from __future__ import annotations
 

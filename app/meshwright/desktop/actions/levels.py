@@ -1,4 +1,4 @@
-"""Levels: puzzles with a goal, a par and stars."""
+"""Actions of the menu Levels: puzzles with a goal, a par and stars."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Changes of the mesh: the catalogue's operations, and what concerns the whole mesh."""
+"""Actions of the menu Mesh: the catalogue's operations, and edits of the whole mesh."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from meshwright_core.operations.catalogue import CATALOGUE, OperationInfo
 
 
 def operation_id(info: OperationInfo) -> str:
-    """The id of the action that does an operation on the half-edge under the mouse."""
+    """The id of the action that applies an operation to the half-edge under the mouse."""
     return f"{info.kind}.{info.operation.value}"
 
 

@@ -1,4 +1,4 @@
-"""Going about by keyboard: view, irregular vertices, half-edges, the operation that is meant."""
+"""Actions of the menu Go: view, irregular vertices, half-edges and operations by keyboard."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is selected, and the tools of the mouse."""
+"""Actions of the menu Select: the selection, and the mouse tools."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from meshwright.desktop.actions.context import ActionContext
 from meshwright.desktop.editing.selection_controller import BOX, EDIT, LASSO
 
 DEGREES = range(2, 9)
-"""Degrees that can be selected by."""
+"""Degrees with a command that selects their vertices."""
 
 
 def has_selection(context: ActionContext) -> bool:

@@ -1,4 +1,4 @@
-"""What is seen, and how."""
+"""Actions of the menu View, and the preferences."""
 
 from __future__ import annotations
 

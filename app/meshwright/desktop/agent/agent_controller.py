@@ -1,4 +1,4 @@
-"""The agent beside the person: what the window does about its runs."""
+"""Runs of the agent, started by the user and shown in the window."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class AgentController(Controller):
 
     @property
     def busy(self) -> bool:
-        """A run is under way or held, or hints are shown: :meth:`stop` has something to end."""
+        """Whether :meth:`stop` would end something: a run, a paused run, or hints."""
         assistant = self._assistant
         active = assistant.running or assistant.state is State.PAUSED
         return active or assistant.hinting.asking or bool(self._hints.shown)
@@ -91,16 +91,18 @@ class AgentController(Controller):
             self._assistant.play()
 
     def best_of(self) -> None:
-        """Run the policy as often as the panel says."""
+        """Run the policy as often as set in the panel, and apply the best result."""
         rollouts = self._panel.rollouts
         self._assistant.search(Effort(rollouts=rollouts, seconds=None))
 
     def search(self) -> None:
-        """Search as long as the panel says."""
+        """Search for the time set in the panel."""
         self._assistant.search(Effort(seconds=self._panel.seconds))
 
     def finish_region(self) -> None:
-        """Search in the selected region, as long as the panel says; nothing outside changes."""
+        """Search in the selected region for the time set in the panel; the rest of the mesh is
+         unchanged.
+        """
         mesh = self._document.mesh
         elements = self._document.selection.elements
         if mesh is None or not len(elements):
@@ -113,7 +115,7 @@ class AgentController(Controller):
             self._region = mesh, outside
 
     def stop(self) -> None:
-        """End what is under way; what is done stays."""
+        """End the run, or hide the hints; operations that were applied are kept."""
         assistant = self._assistant
         if assistant.running or assistant.state is State.PAUSED:
             assistant.stop()
@@ -121,11 +123,11 @@ class AgentController(Controller):
             self._hints.hide()
 
     def toggle_watch(self) -> None:
-        """Show what the policy sees, or no longer."""
+        """Show or hide what the policy sees."""
         self._assistant.watch = not self._assistant.watch
 
     def choose_policy(self) -> None:
-        """Ask for a policy file, and follow it."""
+        """Ask for a policy file, and use it."""
         path, _ = QFileDialog.getOpenFileName(
             self._parent,
             "Load policy file",
@@ -136,7 +138,7 @@ class AgentController(Controller):
             self.open_policy(path)
 
     def open_policy(self, path: str) -> None:
-        """Follow the policy in a file; one sentence if that cannot be."""
+        """Use the policy in a file; a notice says if it cannot be read or is of another kind."""
         try:
             kind = kind_of(path)
         except (ValueError, OSError) as error:
@@ -162,7 +164,7 @@ class AgentController(Controller):
                 self._select_all_but(outside)
 
     def _select_all_but(self, outside: np.ndarray) -> None:
-        """Select the corners of all elements but those outside: the region as it is now."""
+        """Select the corners of all elements that are not in ``outside``."""
         mesh = self._document.mesh
         if mesh is not None:
             inside = np.setdiff1d(mesh.element_ids(), outside, assume_unique=True)
@@ -177,7 +179,7 @@ class AgentController(Controller):
             self.field.show(sight(insight, mesh, self._words(insight, mesh.kind)))
 
     def _words(self, insight: Insight, kind: str) -> tuple[str, ...]:
-        """What is seen, in three lines."""
+        """The legend of what the policy sees, in three lines."""
         wanted = insight.wanted
         title = title_of(wanted.operation, kind)
         slots = len(insight.template)

@@ -1,4 +1,4 @@
-"""The agent panel: which policy, what it shall do, and how far it is."""
+"""The agent panel: choice of policy, buttons for hints and runs, progress."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ from meshwright.graphics.theme import GRID, Theme
 
 NO_POLICY = {"tri": "No policy for triangle meshes", "quad": "No policy for quad meshes"}
 SPEEDS = (0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60)
-"""What the slider offers, in decisions per second."""
+"""Steps of the slider, in decisions per second."""
 USUAL_SPEED, USUAL_ROLLOUTS, USUAL_SECONDS = 4, 10, 10
 MOST_ROLLOUTS, MOST_SECONDS = 1000, 3600
 TICK = 100
-"""Milliseconds between two looks at the clock while something is under way."""
+"""Milliseconds between updates of the elapsed time during a run."""
 FILES = "agent/files"
-"""The setting that remembers policy files."""
+"""The setting with the paths of the user's policy files."""
 MOST_FILES = 10
 
 
 class AgentPanel(QWidget):
-    """Follows the assistant; its buttons are the table's actions."""
+    """Shows the state of ``assistant``; its buttons trigger ``actions``."""
 
     def __init__(
         self,
@@ -76,7 +76,7 @@ class AgentPanel(QWidget):
         self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.bar.set_theme(theme)
         self.hints.set_theme(theme)
@@ -84,16 +84,16 @@ class AgentPanel(QWidget):
 
     @property
     def rollouts(self) -> int:
-        """Runs of *Best of*."""
+        """Number of runs of *Best of*."""
         return int(self.rollouts_box.value())
 
     @property
     def seconds(self) -> float:
-        """Seconds of *Search*."""
+        """Time limit of *Search* in seconds."""
         return float(self.seconds_box.value())
 
     def offer(self, path: str, kind: str) -> None:
-        """Offer a policy file from now on, too, where meshes are of its kind."""
+        """Add a policy file for meshes of ``kind`` to the list, also in later sessions."""
         self._files = [path, *(one for one in self._files if one != path)][:MOST_FILES]
         self._settings.put(FILES, self._files)
         if kind == self._document.kind:
@@ -156,7 +156,7 @@ class AgentPanel(QWidget):
         self._clock.timeout.connect(self._on_tick)
 
     def _button(self, name: str, text: str) -> QPushButton:
-        """A button for an action that leaves the keyboard to the canvas."""
+        """A button for an action; a click leaves the keyboard focus with the canvas."""
         action: QAction = self._actions[name]
         made = QPushButton(text)
         made.setToolTip(action.toolTip())
@@ -208,14 +208,14 @@ class AgentPanel(QWidget):
     # Following
 
     def _on_replaced(self) -> None:
-        """Another mesh: offer the policies of its kind."""
+        """List the policies for the kind of the new mesh."""
         names = self._fill()
         if self._assistant.policy not in names:
             self._assistant.policy = names[0] if names else ""
         self._on_assistant_changed()
 
     def _fill(self) -> list[str]:
-        """The policies on offer, which the box lists from now on."""
+        """Fill the box with the policies for the kind of the mesh, and return their names."""
         kind = self._document.kind
         names = shipped(kind) if kind else []
         names += [path for path in self._files if kind and _is_for(path, kind)]
@@ -234,7 +234,7 @@ class AgentPanel(QWidget):
         return names
 
     def _select(self) -> None:
-        """Let the box show the policy that is followed."""
+        """Show the policy in use."""
         at = self.policy.findData(self._assistant.policy)
         if at >= 0 and at != self.policy.currentIndex():
             with QSignalBlocker(self.policy):
@@ -284,7 +284,7 @@ class AgentPanel(QWidget):
 
 
 def activity(assistant: Assistant) -> str:
-    """What the assistant is doing, in a few words."""
+    """The state of the assistant in a few words."""
     progress = assistant.progress
     decisions = progress.counted
     best = "" if progress.best is None else f", best s {progress.best}"
@@ -308,7 +308,7 @@ def activity(assistant: Assistant) -> str:
 
 
 def _is_for(path: str, kind: str) -> bool:
-    """Whether there is a policy file for this kind of mesh; it may have gone since it was used."""
+    """Whether the file still exists and holds a policy for this kind of mesh."""
     try:
         return kind_of(path) == kind
     except (ValueError, OSError):

@@ -1,4 +1,4 @@
-"""The hints as rows of the agent panel: number, operation, probability, change of s."""
+"""The list of hints in the agent panel: number, operation, probability, change of s."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST = 5
 
 
 class HintRow(QPushButton):
-    """One hint; a click takes it."""
+    """One hint; a click applies it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -78,7 +78,7 @@ class HintList(QWidget):
         self.hide()
 
     def show_hints(self, hints: tuple[Hint, ...]) -> None:
-        """Show these, or nothing."""
+        """Show ``hints``; an empty tuple hides the list."""
         self._hints = hints[:MOST]
         for index, row in enumerate(self.rows):
             row.setVisible(index < len(self._hints))
@@ -87,7 +87,7 @@ class HintList(QWidget):
         self.setVisible(bool(self._hints))
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.show_hints(self._hints)
 

@@ -1,4 +1,4 @@
-"""Hints in the window: asked for, shown as numbered ghosts, taken by key or click."""
+"""Hints of the policy: numbered previews, applied by key or click."""
 
 from __future__ import annotations
 
@@ -56,24 +56,24 @@ class HintsController(Controller):
     # Commands
 
     def ask_or_hide(self) -> None:
-        """Ask for hints in the part that is seen; hide those that are shown."""
+        """Request hints for the visible part of the mesh, or hide those that are shown."""
         if self.shown or self._assistant.hinting.asking:
             self.hide()
         else:
             self.ask()
 
     def ask(self) -> None:
-        """Ask for hints in the part that is seen, the nearest to the mouse first."""
+        """Request hints for the visible part of the mesh, those near the mouse first."""
         self._assistant.hint(self._near())
 
     def hide(self) -> None:
-        """Take the hints away."""
+        """Hide the hints, and drop a request that is under way."""
         if self.shown:
             self._status.show_message("")
         self._assistant.hinting.forget()
 
     def take(self, index: int) -> None:
-        """Do what a hint says, and ask for the next ones."""
+        """Apply a hint, and request the next ones."""
         if not 0 <= index < len(self.shown):
             return
         choice, document = self._choices[index], self._document
@@ -87,7 +87,7 @@ class HintsController(Controller):
             self.ask()
 
     def click(self, click: Click) -> bool:
-        """Take the hint whose badge is clicked; False if there is none."""
+        """Apply the hint whose badge is clicked; False if there is none."""
         if click.button != Qt.MouseButton.LeftButton:
             return False
         index = self.layer.at(click.at)
@@ -97,7 +97,7 @@ class HintsController(Controller):
     # Implementation
 
     def _near(self) -> np.ndarray | None:
-        """The irregular vertices in view, those near the mouse first; None if there are none."""
+        """(n,) visible irregular vertices, those near the mouse first; None if there are none."""
         mesh, canvas = self._document.mesh, self._canvas
         if mesh is None:
             return None

@@ -1,4 +1,4 @@
-"""What the settings say about the whole window, applied to it now and whenever they change."""
+"""Applies the settings to the window, at the start and when they change."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ class PreferencesController(Controller):
             self._settings.geometry = self._window.saveGeometry()
 
     def restore_place(self) -> None:
-        """Put the window where it was when it was closed last, if that is known."""
+        """Restore the position at which the window was closed last, if it is known."""
         geometry = self._settings.geometry
         if not geometry.isEmpty():
             self._window.restoreGeometry(geometry)
 
     def toggle_theme(self) -> None:
-        """The other theme; from then on the desktop's is not followed."""
+        """Switch between light and dark; the desktop's theme is no longer followed."""
         self._settings.theme = "light" if theme_name(self._settings) == "dark" else "dark"
 
     def toggle_auto_smooth(self) -> None:
@@ -69,7 +69,7 @@ class PreferencesController(Controller):
         )
 
     def show(self) -> None:
-        """Open the dialog."""
+        """Open the preferences dialog."""
         from meshwright.desktop.application.preferences_dialog import PreferencesDialog
 
         dialog = PreferencesDialog(self._settings, self._window)
@@ -103,6 +103,6 @@ def theme_name(settings: Settings) -> str:
 
 
 def system_theme() -> str:
-    """The desktop's theme; light where it does not say."""
+    """The desktop's theme; light where it is unknown."""
     dark = QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
     return "dark" if dark else "light"

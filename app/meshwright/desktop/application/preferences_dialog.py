@@ -1,4 +1,4 @@
-"""The dialog of preferences; every change takes effect, and is kept, at once."""
+"""The preferences dialog; every change is applied and saved at once."""
 
 from collections.abc import Callable
 

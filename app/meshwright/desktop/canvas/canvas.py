@@ -1,4 +1,4 @@
-"""The canvas: the mesh on the screen, the camera over it, and what lies under the mouse."""
+"""The canvas: the mesh on the screen, the camera, and the half-edge under the mouse."""
 
 from collections.abc import Callable
 
@@ -20,9 +20,9 @@ from meshwright.graphics.viewport import Viewport
 from meshwright.graphics.vtk_scene import CROWD
 
 VERTEX_REACH = 12
-"""Pixels around a vertex that count as on it."""
+"""Distance in pixels at which a vertex counts as under the mouse."""
 QUICK = 5000
-"""Elements up to which it is found at once, after a change, what lies under the mouse."""
+"""Up to this many elements the hovered half-edge is found again before the frame after a change."""
 
 
 class Canvas(QWidget):
@@ -81,7 +81,9 @@ class Canvas(QWidget):
 
     @property
     def plotter(self) -> QWidget:
-        """The widget that takes mouse and keys: the plotter once it is there, else the canvas."""
+        """The widget that receives mouse and key events: the plotter, before :meth:`build` the
+         canvas.
+        """
         return self.view.widget
 
     @property
@@ -107,11 +109,11 @@ class Canvas(QWidget):
         self.view = MeshView(self)
 
     def focus(self) -> None:
-        """Give the keyboard to the canvas."""
+        """Give the canvas the keyboard focus."""
         self.plotter.setFocus()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.overlay.set_theme(theme)
         self.view.set_theme(theme, self.document.mesh)
@@ -120,7 +122,7 @@ class Canvas(QWidget):
     # Camera
 
     def fit(self) -> None:
-        """Show the whole mesh, and keep doing so while the window changes its size."""
+        """Fit the view to the mesh, and refit it when the canvas is resized."""
         mesh = self.document.mesh
         self._fitted = True
         if mesh is not None:
@@ -128,7 +130,7 @@ class Canvas(QWidget):
             self._look()
 
     def see(self, viewport: Viewport) -> None:
-        """Look elsewhere; the mesh is not fitted into the window any more."""
+        """Change the view; it is no longer refitted when the canvas is resized."""
         self._fitted = False
         self.viewport = viewport
         self._look()
@@ -181,7 +183,7 @@ class Canvas(QWidget):
         self.drawn.emit()
 
     def _on_point_again(self) -> None:
-        """Another half-edge may lie under the mouse than before the mesh changed."""
+        """Find the half-edge under the mouse again after a change of the mesh."""
         if self._frozen or self.mouse.dragging:
             return
         if self._at is not None:
@@ -193,8 +195,8 @@ class Canvas(QWidget):
 
     @property
     def under_mouse(self) -> int:
-        """The half-edge under the mouse now, or the one that the keyboard points at, -1 for none;
-        looks at the mesh as it is now.
+        """The half-edge under the mouse, or the one pinned by keyboard, in the current mesh; -1 for
+         none.
         """
         if self._at is None:
             mesh = self.document.mesh
@@ -202,7 +204,7 @@ class Canvas(QWidget):
         return self._halfedge_at(self._at)
 
     def pin(self, halfedge: int) -> None:
-        """Point at a half-edge by keyboard, until the mouse moves; -1: at none."""
+        """Hover ``halfedge`` until the mouse moves, for navigation by keyboard; -1 for none."""
         mesh = self.document.mesh
         self._at = None
         self._pinned = halfedge if mesh is not None and mesh.live(halfedge) else -1
@@ -211,14 +213,14 @@ class Canvas(QWidget):
         self.hovered.emit(None)
 
     def freeze(self, frozen: bool) -> None:
-        """Keep the half-edge that is shown while a menu is open."""
+        """Keep the hovered half-edge, whatever the mouse does, while a menu is open."""
         self._frozen = frozen
         if not frozen:
             self._at = None
             self.point_at(QPointF(self.mapFromGlobal(self.cursor().pos())), check=True)
 
     def refuse(self, reason: str) -> None:
-        """Show beside the mouse why something is not allowed."""
+        """Show a reason for refusal beside the mouse."""
         at = self._at.toPoint() if self._at is not None else self.rect().center()
         self.overlay.card.show(reason, at, warns=True, fades=True)
 
@@ -234,7 +236,7 @@ class Canvas(QWidget):
         return picker.halfedge(*self.viewport.to_plane(at.x(), at.y())) if picker else -1
 
     def vertex_at(self, at: QPointF) -> int:
-        """The vertex within reach of pixel ``at``, -1 for none."""
+        """The vertex near pixel ``at``, -1 for none."""
         picker = self._pick()
         if picker is None:
             return -1
@@ -242,7 +244,7 @@ class Canvas(QWidget):
         return picker.vertex(*self.viewport.to_plane(at.x(), at.y()), reach)
 
     def point_at(self, at: QPointF, check: bool = False) -> None:
-        """The mouse is at ``at``; ``check`` that this is on the canvas at all."""
+        """Hover what is at pixel ``at``; with ``check`` nothing if that is outside the canvas."""
         if check and not self.rect().contains(at.toPoint()):
             self.leave()
             return
@@ -252,7 +254,7 @@ class Canvas(QWidget):
         self.hovered.emit(at)
 
     def leave(self) -> None:
-        """The mouse is gone; while a menu is open that says nothing."""
+        """Hover nothing; ignored while the hover is frozen."""
         if self._frozen:
             return
         self._at = None
@@ -291,7 +293,7 @@ class Canvas(QWidget):
     # Events of Qt
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Keep the overlay over the plotter, and the mesh in view."""
+        """Resize overlay and view."""
         super().resizeEvent(event)
         self.overlay.setGeometry(self.rect())
         self.viewport = self.viewport.resized(self.width(), self.height())
@@ -300,5 +302,5 @@ class Canvas(QWidget):
         self._look()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Take the plotter's mouse and keys: VTK's own 3-D interaction is not wanted."""
+        """Handle the plotter's mouse and key events instead of VTK's 3-D interaction."""
         return self.mouse.handle(event)

@@ -48,7 +48,7 @@ class Overlay(QWidget):
         return layer
 
     def set_theme(self, theme: Theme) -> None:
-        """Paint in other colours."""
+        """Paint in the colours of ``theme``."""
         for layer in self.layers:
             layer.set_theme(theme)
         self.update()

@@ -53,7 +53,7 @@ class OperationsPanel(QWidget):
         self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         for row in self.rows:
             row.set_theme(theme)
@@ -138,7 +138,7 @@ class OperationButton(QAbstractButton):
             self.update()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 

@@ -157,7 +157,7 @@ class Tour(QObject):
         return self._at
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.callout.set_theme(theme)
 
     def end(self) -> None:

@@ -237,7 +237,7 @@ class HistoryPanel(QFrame):
         layout.addLayout(body, 1)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._delegate.theme = theme
         self.list.viewport().update()
 

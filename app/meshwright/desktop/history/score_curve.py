@@ -83,7 +83,7 @@ class ScoreCurve(QWidget):
     # What is shown
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self._redraw()
 

@@ -113,7 +113,7 @@ class LevelBar(QFrame):
         return made
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.stars.set_theme(theme)
         self.leave.setIcon(icons.icon("close", theme))
 

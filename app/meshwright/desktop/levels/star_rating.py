@@ -40,7 +40,7 @@ class Stars(QWidget):
         return QSize(MOST_STARS * (self._size + 2), self._size + 2)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 

@@ -30,7 +30,7 @@ class LeftColumn(QFrame):
         layout.addStretch(1)  # takes the height while ``rest`` is hidden
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.section.set_theme(theme)
 
     def reveal(self) -> None:

@@ -100,7 +100,7 @@ class Sidebar(QFrame):
         layout.addWidget(self._area)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         for section in self.sections.values():
             section.set_theme(theme)
 

@@ -40,7 +40,7 @@ class Histogram(QWidget):
         self.setAccessibleName("Quality histogram")
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 

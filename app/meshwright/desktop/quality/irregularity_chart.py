@@ -41,7 +41,7 @@ class Tally(QWidget):
         self.setAccessibleName("Irregular vertices by irregularity")
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 

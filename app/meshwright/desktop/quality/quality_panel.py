@@ -51,7 +51,7 @@ class QualityPanel(QWidget):
         self.show_measured()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.histogram.set_theme(theme)
 
     @property

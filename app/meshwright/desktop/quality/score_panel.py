@@ -57,7 +57,7 @@ class ScorePanel(QWidget):
         self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         for part in (self.bar, self.optimal, self.tally):
             part.set_theme(theme)
 

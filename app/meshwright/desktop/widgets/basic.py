@@ -82,7 +82,7 @@ class Bar(QWidget):
         self.update()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 
@@ -180,7 +180,7 @@ class NoticeBar(QFrame):
         self.show()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._close.setIcon(icons.icon("close", theme))
 
 
@@ -207,5 +207,5 @@ class Optimal(QFrame):
         self.set_theme(theme)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._mark.setPixmap(icons.pixmap("check", theme.accent, 16, self.devicePixelRatioF()))

@@ -115,7 +115,7 @@ class HintBadges(Layer):
         self._roots: list[QPointF] = []
 
     def look(self, viewport: Viewport) -> None:
-        """The view has moved."""
+        """Follow a change of the view."""
         super().look(viewport)
         self.place()
 

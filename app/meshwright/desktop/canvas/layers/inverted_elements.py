@@ -38,7 +38,7 @@ class HatchLayer(Layer):
             self.changed()
 
     def look(self, viewport: Viewport) -> None:
-        """The view has moved."""
+        """Follow a change of the view."""
         super().look(viewport)
         corners = viewport.to_screen(self._corners)
         middles = corners.mean(axis=1) if len(corners) else np.zeros((0, 2))

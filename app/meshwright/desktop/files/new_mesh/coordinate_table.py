@@ -61,7 +61,7 @@ class Coordinates(QTableWidget):
         self._fill()
 
     def release(self) -> None:
-        """Let go of the sketch."""
+        """Disconnect from the sketch."""
         self.sketch.changed.disconnect(self._fill)
 
     def select(self, loop: int, corner: int) -> None:

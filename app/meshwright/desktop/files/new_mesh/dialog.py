@@ -142,7 +142,7 @@ class NewMeshDialog(QDialog):
         self._on_changed()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.setStyleSheet(_style(theme))
         self.options.set_theme(theme)

@@ -118,13 +118,13 @@ class DrawPage(Page):
         self.area.setFocus()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.area.set_theme(theme)
         self.undo.setIcon(icons.icon("undo", theme))
         self.redo.setIcon(icons.icon("redo", theme))
 
     def release(self) -> None:
-        """Let go of the sketch."""
+        """Disconnect from the sketch."""
         self.sketch.changed.disconnect(self._on_sketch_changed)
         self.area.release()
         self.table.release()

@@ -73,11 +73,11 @@ class DrawingArea(QWidget):
         sketch.changed.connect(self._on_changed)
 
     def release(self) -> None:
-        """Let go of the sketch."""
+        """Disconnect from the sketch."""
         self.sketch.changed.disconnect(self._on_changed)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 

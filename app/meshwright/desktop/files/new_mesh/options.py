@@ -135,7 +135,7 @@ class Options(QWidget):
             self.size_of.set_range(_FINEST * size, _COARSEST * size, 0.1 * size)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.preview.set_theme(theme)
 
     def _on_kind_changed(self) -> None:

@@ -51,7 +51,7 @@ class Page(QWidget):
         """Show what takes a while to be made."""
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
 
     def release(self) -> None:
         """Let go of everything."""

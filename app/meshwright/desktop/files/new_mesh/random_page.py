@@ -94,7 +94,7 @@ class RandomPage(Page):
         self.seed.setValue(int(self.pictures.key))
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.dice.setIcon(icons.icon("dice", theme))
         if self.pictures.count():
