@@ -11,7 +11,7 @@ from qtpy.QtGui import QDropEvent
 from qtpy.QtWidgets import QApplication
 
 from meshwright.desktop.files.new_mesh import NewMeshDialog
-from meshwright.desktop.files.new_mesh.mesh_process import Maker
+from meshwright.desktop.files.new_mesh.mesh_process import MeshProcess
 from meshwright.graphics.theme import theme
 from meshwright.sources import mesh_worker
 from meshwright_core import MeshError, read, write
@@ -389,7 +389,7 @@ def test_the_window_takes_the_drawn_mesh(qtbot, open_window):
 
 
 def test_a_process_that_dies_is_told_and_replaced(qtbot):
-    maker = Maker()
+    maker = MeshProcess()
     maker.start()
     maker.ask({**REQUEST, "max_edge": 1.5e-3}, at_once=True)
     qtbot.waitUntil(lambda: maker._asked is not None, timeout=WAIT)

@@ -125,15 +125,13 @@ def test_escape_leaves_the_dialog_without_a_level(qtbot, window):
 
 
 def test_what_is_not_played_in_a_level_is_refused_with_a_reason(qtbot, window):
-    from meshwright.desktop.editing.vertex_menu import vertex_menu
-
     window.levels.open("three-blocks")
     window.actions_by_id["clean_all"].trigger()
     assert "one by one" in window.status.message
     window.editing.submit("chord_collapse", window.document.mesh.halfedge(0, 1))
     assert "beyond the paper" in window.status.message
     assert len(window.document.history) == 0
-    menu = vertex_menu(window, 0)
+    menu = window.selection_tools.menus.of_vertex(0)
     titles = {action.text(): action.isEnabled() for action in menu.actions()}
     assert titles["Locked (nothing changes it)"] is False
     menu.deleteLater()

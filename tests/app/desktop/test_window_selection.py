@@ -8,7 +8,7 @@ from driving import WAIT, beside, pixel, press
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QApplication
 
-from meshwright.desktop.editing.vertex_menu import GONE_ON
+from meshwright.desktop.editing.vertex_menu import OUTDATED
 from meshwright.document.vertex_drag import CORNER, LOCK
 from meshwright_core import HalfEdgeMesh
 
@@ -228,7 +228,7 @@ def test_a_menu_of_a_mesh_that_has_gone_on_does_nothing(qtbot, open_window, grid
     window.document.submit("collapse", grid.halfedge(17, 24), "greedy")
     for text in ("Smooth here", "Locked", "Corner"):
         entry(menu, text).trigger()
-        assert window.status.message == GONE_ON
+        assert window.status.message == OUTDATED
     menu.close()
     assert window.document.history.cursor == 2
 

@@ -101,7 +101,7 @@ class AgentController(Controller):
 
     def finish_region(self) -> None:
         """Search in the selected region for the time set in the panel; the rest of the mesh is
-         unchanged.
+        unchanged.
         """
         mesh = self._document.mesh
         elements = self._document.selection.elements

@@ -25,7 +25,7 @@ from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.controller import Connections
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.action_set import ActionSet
-from meshwright.desktop.widgets.basic import Bar, named
+from meshwright.desktop.widgets.basic import ShareBar, named
 from meshwright.desktop.widgets.number_box import IntegerBox
 from meshwright.document.document import Document
 from meshwright.graphics.theme import GRID, Theme
@@ -60,7 +60,9 @@ class AgentPanel(QWidget):
         self._settings = settings
         self._theme = theme
         self._files = settings.texts(FILES)
-        self._drawn: tuple[bool, Theme] | None = None  # what the icons are for
+        self._drawn: tuple[bool, Theme] | None = (
+            None  # whether playing, and the theme, when the icons were drawn
+        )
         self._make_policy()
         self._make_buttons()
         self._make_progress()
@@ -99,7 +101,7 @@ class AgentPanel(QWidget):
         if kind == self._document.kind:
             self._fill()
 
-    # Making
+    # Construction
 
     def _make_policy(self) -> None:
         self.policy = QComboBox()
@@ -145,7 +147,7 @@ class AgentPanel(QWidget):
         self.speed.valueChanged.connect(self._on_speed_moved)
 
     def _make_progress(self) -> None:
-        self.bar = Bar(self._theme)
+        self.bar = ShareBar(self._theme)
         self.bar.hide()
         self.progress = named("", "Hint")
         self.progress.setWordWrap(True)
@@ -244,7 +246,7 @@ class AgentPanel(QWidget):
         name = self.policy.itemData(index)
         if name:
             self._assistant.choose(name)
-            self._select()  # what is chosen is followed only once it is loaded
+            self._select()  # the chosen policy is in use only once it is loaded
 
     def _on_speed_moved(self, index: int) -> None:
         self._set_speed(index)

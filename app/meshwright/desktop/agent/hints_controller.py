@@ -50,7 +50,7 @@ class HintsController(Controller):
         overlay.add(self.layer.badges, below=overlay.card)
         canvas.hovered.connect(self._on_hovered)
         panel.hints.taken.connect(self.take)
-        panel.hints.hovered.connect(self.layer.mean)
+        panel.hints.hovered.connect(self.layer.make_current)
         self._connections.add(assistant.hinting.changed, self._on_changed)
 
     # Commands
@@ -137,7 +137,7 @@ class HintsController(Controller):
         try:
             seen = ghost(mesh, choice.operation, choice.halfedge)
         except OperationRefused:
-            return None  # the person's mesh has a degree cap that the policy does not know
+            return None  # the mesh has a degree cap that the policy does not take into account
         ends = [mesh.origin(choice.halfedge), mesh.target(choice.halfedge)]
         place = mesh.points[ends, :2].mean(axis=0)
         title = title_of(choice.operation, mesh.kind)
@@ -146,4 +146,4 @@ class HintsController(Controller):
     def _on_hovered(self, at: QPointF | None) -> None:
         self._mouse = at
         if self.shown and at is not None:
-            self.layer.mean(self.layer.at(at))
+            self.layer.make_current(self.layer.at(at))

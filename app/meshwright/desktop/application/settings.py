@@ -33,7 +33,7 @@ class Settings:
             )
         )
 
-    # What is kept
+    # Properties
 
     @property
     def theme(self) -> str:
@@ -103,7 +103,7 @@ class Settings:
     @property
     def geometry(self) -> QByteArray:
         """Position and size of the window as returned by ``QWidget.saveGeometry``; empty if
-         unknown.
+        unknown.
         """
         return self.raw("window/geometry")
 

@@ -50,16 +50,16 @@ class Canvas(QWidget):
         self.overlay = Overlay(self, theme)
         self._theme = theme
         self._picker: Picker | None = None
-        self._delta = np.empty(0, dtype=int)  # of the mesh that the picker was made for
+        self._delta = np.empty(0, dtype=int)  # irregularities of the picker's mesh
         self._fitted = True
         self._stale = False
-        self._at: QPointF | None = None  # where the mouse is
-        self._pinned = -1  # the half-edge that the keyboard points at
+        self._at: QPointF | None = None  # the position of the mouse
+        self._pinned = -1  # the half-edge hovered by keyboard
         self.mouse = MouseInput(self)
         self.gesture_at: Callable[[QPointF, Qt.KeyboardModifier], Gesture | None]
         self.gesture_at = lambda at, modifiers: None
         self._frozen = False
-        # a posted call comes before Qt paints what else has changed: one picture, not two
+        # a queued call runs before Qt paints other changes: one frame, not two
         self._refresh.connect(self._on_refresh, Qt.ConnectionType.QueuedConnection)
         self._point_again = QTimer(self)
         self._point_again.setSingleShot(True)
@@ -72,7 +72,7 @@ class Canvas(QWidget):
         self._connections.add(document.changed, self._on_changed)
         self._connections.add(document.hover_changed, self._on_hover_changed)
 
-    # Making and ending
+    # Construction and release
 
     @property
     def built(self) -> bool:
@@ -82,7 +82,7 @@ class Canvas(QWidget):
     @property
     def plotter(self) -> QWidget:
         """The widget that receives mouse and key events: the plotter, before :meth:`build` the
-         canvas.
+        canvas.
         """
         return self.view.widget
 
@@ -95,7 +95,7 @@ class Canvas(QWidget):
         """Import VTK and show the mesh; needs a display and takes about a second."""
         self.view = VtkView(self, self._theme, self)
         self._layout.addWidget(self.plotter)
-        self.plotter.show()  # at once, so that it can take the keyboard
+        self.plotter.show()  # at once, so that it can take the keyboard focus
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())
         self._on_replaced()
@@ -165,7 +165,7 @@ class Canvas(QWidget):
         self.mouse.interrupt()
         self._picker = None
         self.overlay.card.hide()
-        if not self._stale:  # many changes in one turn of the event loop are one frame
+        if not self._stale:  # all changes in one turn of the event loop are drawn in one frame
             self._stale = True
             self._refresh.emit()
 
@@ -178,7 +178,7 @@ class Canvas(QWidget):
         if mesh.n_elements <= QUICK:
             self._on_point_again()
         else:
-            self._point_again.start()  # after the frame: the search tree takes longer
+            self._point_again.start()  # after the frame: building the search tree takes longer
         self._look()
         self.drawn.emit()
 
@@ -196,7 +196,7 @@ class Canvas(QWidget):
     @property
     def under_mouse(self) -> int:
         """The half-edge under the mouse, or the one pinned by keyboard, in the current mesh; -1 for
-         none.
+        none.
         """
         if self._at is None:
             mesh = self.document.mesh
@@ -250,7 +250,7 @@ class Canvas(QWidget):
             return
         self._at, self._pinned = at, -1
         self.document.hover = self._halfedge_at(at)
-        self._tell_vertex(at)
+        self._show_vertex_card(at)
         self.hovered.emit(at)
 
     def leave(self) -> None:
@@ -263,7 +263,7 @@ class Canvas(QWidget):
             self.document.hover = -1
             self.hovered.emit(None)
 
-    def _tell_vertex(self, at: QPointF) -> None:
+    def _show_vertex_card(self, at: QPointF) -> None:
         mesh = self.document.mesh
         vertex = self.vertex_at(at)
         if mesh is None or vertex < 0 or self._delta[vertex] == 0:
@@ -290,7 +290,7 @@ class Canvas(QWidget):
             self.viewport.to_screen(mesh.points[np.array(corners)]), halfedge % mesh.k
         )
 
-    # Events of Qt
+    # Qt events
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
         """Resize overlay and view."""

@@ -21,7 +21,7 @@ NEAR = 3.0
 
 class Gesture:
     """One drag, from the moment when the mouse has moved too far for a click. The base does
-     nothing.
+    nothing.
     """
 
     cursor = Qt.CursorShape.ArrowCursor
@@ -111,7 +111,7 @@ class MoveVertices(Gesture):
     ) -> None:
         self._canvas = canvas
         self._layer = layer
-        self._offset = grabbed - start  # the vertex stays under the mouse as it was taken
+        self._offset = grabbed - start  # from the mouse to the vertex, kept during the drag
         self._drag = drag
         self._done = done
         layer.begin(drag.segments, drag.places[:, :2].copy())

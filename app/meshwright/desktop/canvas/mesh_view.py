@@ -1,4 +1,4 @@
-"""The mesh as VTK draws it, and what stands in for it until VTK has been imported."""
+"""The view of the mesh by VTK, and the empty view before VTK is imported."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from meshwright_core import HalfEdgeMesh
 
 
 class MeshView:
-    """Draws nothing: the view before VTK is there. ``widget`` takes mouse and keys."""
+    """The empty view, used before VTK is imported. ``widget`` receives mouse and key events."""
 
     built = False
     """Whether the mesh is drawn."""

@@ -1,7 +1,7 @@
-"""The overlay: what is drawn over the mesh without a frame of VTK's.
+"""The overlay: marks over the mesh that need no new frame of VTK.
 
-A transparent widget whose layers are painted by QPainter: a hover repaints a few hundred pixels, at
-any size of mesh.
+It is a transparent widget whose layers are painted by QPainter: a hover repaints a few hundred
+pixels, whatever the size of the mesh.
 """
 
 from typing import TypeVar
@@ -23,7 +23,7 @@ AnyLayer = TypeVar("AnyLayer", bound=Layer)
 
 
 class Overlay(QWidget):
-    """Paints its ``layers`` from the lowest to the highest; mouse events fall through it."""
+    """Paints its ``layers`` from the lowest to the highest; it receives no mouse events."""
 
     def __init__(self, parent: QWidget, theme: Theme) -> None:
         super().__init__(parent)
@@ -41,7 +41,7 @@ class Overlay(QWidget):
         self.card = self.add(CardLayer(theme, self.font(), self))
 
     def add(self, layer: AnyLayer, below: Layer | None = None) -> AnyLayer:
-        """Paint ``layer`` too: just below another one, or above all; returned for keeping."""
+        """Add ``layer`` just below another one, or on top, and return it."""
         place = len(self.layers) if below is None else self.layers.index(below)
         self.layers.insert(place, layer)
         layer.repaint = self._repaint
@@ -54,7 +54,7 @@ class Overlay(QWidget):
         self.update()
 
     def look(self, viewport: Viewport) -> None:
-        """The view has moved: every layer is painted again."""
+        """Follow a change of the view, and repaint all layers."""
         for layer in self.layers:
             layer.look(viewport)
         self.update()
@@ -73,10 +73,10 @@ class Overlay(QWidget):
         self.arrow.show(element, side)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint what touches the region that Qt asks for."""
+        """Paint the part inside the region that Qt requests."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        try:  # a painter that is left open takes the whole process down at the next paint
+        try:  # an unfinished painter crashes the process at the next paint
             for layer in self.layers:
                 if layer.visible:
                     painter.save()

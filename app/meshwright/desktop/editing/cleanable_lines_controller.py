@@ -1,6 +1,4 @@
-"""The global lines that can be cleaned up: they glow while a switch is on, and a click deletes
-one.
-"""
+"""Removable global lines: highlighted while the switch is on, removed by a click."""
 
 from __future__ import annotations
 
@@ -26,15 +24,15 @@ if TYPE_CHECKING:
     from meshwright_core.analysis.cleanable_lines import Line
 
 LINES = "editing/lines"
-"""The setting that makes lines glow."""
+"""The setting that shows removable lines."""
 PAUSE = 60
-"""Milliseconds from a change to the search for lines."""
+"""Milliseconds between a change and the search for lines."""
 REACH = 7.0
-"""Pixels beside a line that count as on it."""
+"""Distance in pixels at which a line counts as under the mouse."""
 
 
 class CleanableLinesController(Controller):
-    """Finds the lines a moment after an edit, so that no operation waits for the search."""
+    """Finds the lines shortly after an edit, so that operations do not wait for the search."""
 
     def __init__(
         self,
@@ -74,11 +72,11 @@ class CleanableLinesController(Controller):
 
     @property
     def shown(self) -> bool:
-        """Whether lines glow."""
+        """Whether removable lines are shown."""
         return self._settings.flag(LINES, False)
 
     def toggle(self) -> None:
-        """Let them glow, or not."""
+        """Show or hide the removable lines."""
         self._settings.put(LINES, not self.shown)
         if not self.shown:
             self._status.show_message("Removable lines hidden.")
@@ -90,7 +88,7 @@ class CleanableLinesController(Controller):
             self._status.show_message("Click a highlighted line to remove it, or use Clean all.")
 
     def find(self) -> None:
-        """Look for lines now."""
+        """Find and show the lines of the current mesh."""
         self._pause.stop()
         mesh = self._document.mesh
         self._lines = []
@@ -115,7 +113,7 @@ class CleanableLinesController(Controller):
         self._edges, self._line_of = keys[order], rows[order, 2]
 
     def click(self, click: Click) -> bool:
-        """Delete the glowing line under a click; False if there is none."""
+        """Remove the highlighted line under a click; False if there is none."""
         current = self.layer.current
         if current < 0 or click.button != Qt.MouseButton.LeftButton:
             return False
@@ -124,10 +122,10 @@ class CleanableLinesController(Controller):
 
     def _on_hovered(self, at: QPointF | None) -> None:
         if self._lines:
-            self.layer.point(self._line_at(at))
+            self.layer.highlight(self._line_at(at))
 
     def _line_at(self, at: QPointF | None) -> int:
-        """The line within reach of pixel ``at``: of it is the edge that is pointed at."""
+        """The line near pixel ``at`` that contains the hovered edge; -1 for none."""
         mesh, halfedge = self._document.mesh, self._document.hover
         if mesh is None or at is None or halfedge < 0 or self._pause.isActive():
             return -1

@@ -1,4 +1,4 @@
-"""Editing by hand: operations at the mouse, their menu, and what concerns the whole mesh."""
+"""Edits by the user: operations on the hovered half-edge, their menu, edits of the whole mesh."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class EditController(Controller):
     # Operations
 
     def operate(self, operation: Operation) -> None:
-        """Do ``operation`` on the half-edge under the mouse, or say why not."""
+        """Apply ``operation`` to the half-edge under the mouse, or show why that is impossible."""
         halfedge = self._canvas.under_mouse
         if halfedge < 0:
             self._status.show_message(POINT_FIRST)
@@ -92,7 +92,7 @@ class EditController(Controller):
                 self.submit(meant.operation, halfedge)
 
     def offer(self, halfedge: int, where: QPoint) -> None:
-        """Open the menu of operations of ``halfedge`` at ``where`` on the screen."""
+        """Open the menu of operations of ``halfedge`` at the point ``where`` of the screen."""
         document = self._document
         mesh = document.mesh
         if mesh is None or not self.is_ready():
@@ -108,18 +108,20 @@ class EditController(Controller):
         self.menu.popup(where)
 
     def is_ready(self) -> bool:
-        """True if operations can be done; else it says so."""
+        """Whether operations can be applied; if not, a message is shown."""
         if not self._readiness.editing:
             self._status.show_message(PREPARING)
             self._canvas.refuse(PREPARING)
         return self._readiness.editing
 
     def _take(self, operation: Operation, halfedge: int, revision: int) -> None:
-        if revision == self._document.revision:  # an agent may have gone on behind the menu
+        if (
+            revision == self._document.revision
+        ):  # the agent may have changed the mesh while the menu was open
             self.submit(operation, halfedge)
 
     def submit(self, operation: Operation, halfedge: int) -> None:
-        """Do an operation, or say why it is refused."""
+        """Apply an operation, or show why it is refused."""
         document = self._document
         if self._levels.refuses(operation):
             return
@@ -159,7 +161,7 @@ class EditController(Controller):
             self._status.show_message("Mesh smoothed.")
 
     def smooth_here(self) -> None:
-        """Smooth the selected vertices, and no others."""
+        """Smooth the selected vertices only."""
         vertices = self._document.selection.vertices
         if not len(vertices):
             self._status.show_message("Select vertices first: Shift+click, or Shift+drag a box.")
@@ -168,7 +170,7 @@ class EditController(Controller):
             self._status.show_message(f"Smoothed {plural(len(vertices), 'vertex', 'vertices')}.")
 
     def untangle(self) -> None:
-        """Mend the inverted elements, and say how many there were."""
+        """Repair inverted elements, and show how many there were."""
         if not self.is_ready():
             return
         found, left = self._document.untangle()
@@ -183,13 +185,13 @@ class EditController(Controller):
             )
 
     def undo(self) -> None:
-        """Take back one step."""
+        """Undo one step."""
         row = self._document.undo()
         if row is not None:
             self._status.show_message(f"Undone: {row.title}.")
 
     def redo(self) -> None:
-        """Do one step again."""
+        """Redo one step."""
         row = self._document.redo()
         if row is not None:
             self._status.show_message(f"Redone: {row.title}.")

@@ -1,4 +1,4 @@
-"""Pointing: what operations would do at the half-edge under the mouse, and which one is meant."""
+"""The operations possible at the hovered half-edge, and the preview of the current one."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from meshwright.graphics.theme import Theme
 from meshwright_core import HalfEdgeMesh, Operation
 
 GHOSTS = "editing/ghosts"
-"""The setting that shows ghosts."""
+"""The setting that shows previews."""
 LARGE = 5000
-"""In meshes of more elements ghosts from boundary to boundary wait until the mouse rests: they
-would flicker.
+"""In meshes of more elements, previews of global operations wait until the mouse rests, to avoid
+ flicker.
 """
 REST = 60
-"""Milliseconds that count as rest."""
+"""Milliseconds without a move after which the mouse rests."""
 FEW = 2000
-"""The tag of a ghost keeps off irregular vertices while there are no more than this."""
+"""The tag of a preview avoids irregular vertices only up to this many."""
 
 
 class HoverController(Controller):
@@ -86,31 +86,31 @@ class HoverController(Controller):
         self._rest.stop()
         self.panel.release()
 
-    # Which one
+    # The current operation
 
     @property
     def ghosts(self) -> bool:
-        """Whether ghosts are shown."""
+        """Whether operations are previewed."""
         return self._settings.flag(GHOSTS, True)
 
     def toggle_ghosts(self) -> None:
-        """Show ghosts, or none."""
+        """Switch the previews on or off."""
         self._settings.put(GHOSTS, not self.ghosts)
 
     @property
     def current(self) -> Choice | None:
-        """The operation that is meant where one points, None where there is none allowed."""
+        """The current operation at the hovered half-edge; None if none is allowed."""
         wanted = self._previewed or self._picked or self.armed
         if wanted is None:
             return best(self.choices)
         return next((c for c in self.choices if c.operation == wanted and c.allowed), None)
 
     def arm(self, operation: Operation) -> None:
-        """From now on a click does this operation; the armed one again: a click opens the menu."""
+        """Apply this operation at every click from now on; arming the armed one disarms it."""
         self._set_armed(None if operation == self.armed else operation)
 
     def disarm(self) -> None:
-        """A click opens the menu again."""
+        """Let clicks open the menu again."""
         self._set_armed(None)
 
     def put_down(self) -> bool:
@@ -121,7 +121,7 @@ class HoverController(Controller):
         return armed
 
     def cycle(self, step: int) -> None:
-        """Mean the next operation that is allowed here, or the one before for -1."""
+        """Make the next operation that is allowed here the current one; the previous one for -1."""
         self.refresh()
         meant = self.current
         chosen = following(self.choices, meant.operation if meant else None, step)
@@ -134,7 +134,7 @@ class HoverController(Controller):
             self.refresh()
 
     def preview(self, operation: Operation | None) -> None:
-        """Show the ghost of this one while a menu points at it; None: as before."""
+        """Preview ``operation`` while its row in a menu is current; None ends this."""
         self._previewed = operation
         self.refresh()
 
@@ -146,7 +146,7 @@ class HoverController(Controller):
     # Following
 
     def refresh(self, *_: object) -> None:
-        """Show what is meant now; costs nothing where nothing has changed."""
+        """Update choices and preview; returns at once if nothing has changed."""
         mesh = self._document.mesh
         halfedge = self._document.hover
         if mesh is None or not self._readiness.editing or halfedge < 0 or not mesh.live(halfedge):
@@ -175,7 +175,7 @@ class HoverController(Controller):
             self._draw_ghost()
 
     def _draw_ghost(self) -> None:
-        """Show the ghost of what is meant now."""
+        """Show the preview of the current operation."""
         mesh, meant, halfedge = self._document.mesh, self.current, self._at[1]
         if mesh is None or meant is None or self._at[0] != self._document.revision:
             return
@@ -198,7 +198,7 @@ class HoverController(Controller):
             self._clear()
 
     def _on_changed(self) -> None:
-        self._rest.stop()  # what was a ghost is there now, or can be no more
+        self._rest.stop()  # the previewed operation is applied now, or outdated
         self.layer.show(None)
         self._shown = (-1, -1, None)
 

@@ -1,4 +1,4 @@
-"""Inverted elements in plain sight: hatched on the canvas."""
+"""Hatching of inverted elements on the canvas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Going about by keyboard: the view, the irregular vertices, and from half-edge to half-edge."""
+"""Navigation by keyboard: view, irregular vertices, and from half-edge to half-edge."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from meshwright.graphics.markers import label
 from meshwright.graphics.theme import Theme
 
 STRIDE = 64.0
-"""Pixels that an arrow key moves the picture."""
+"""Pixels by which an arrow key pans."""
 ZOOM = 1.25
 SIZE = 120.0
-"""Pixels that the elements around a vertex are wide at least when it has been walked to."""
+"""Minimum size in pixels of the elements around a vertex that the view moves to."""
 _BITS = 16
 
 
 class KeyboardNavigation(Controller):
-    """Moves the view and the half-edge that counts as hovered, by keys."""
+    """Moves the view and the hovered half-edge by keyboard."""
 
     def __init__(
         self,
@@ -43,12 +43,12 @@ class KeyboardNavigation(Controller):
     # The view
 
     def pan(self, right: float, up: float) -> None:
-        """Look further right or up by so many strides."""
+        """Pan to the right and up by multiples of :data:`STRIDE`."""
         canvas = self._canvas
         canvas.see(canvas.viewport.panned(-STRIDE * right, STRIDE * up))
 
     def zoom(self, closer: bool) -> None:
-        """Zoom in at the centre of the view, or from farther away, at the middle of the view."""
+        """Zoom in or out at the centre of the view."""
         canvas = self._canvas
         width, height = canvas.viewport.size
         factor = ZOOM if closer else 1.0 / ZOOM
@@ -57,9 +57,9 @@ class KeyboardNavigation(Controller):
     # Irregular vertices
 
     def to_irregular(self, step: int) -> None:
-        """Look at the next irregular vertex (1) or the one before (-1) and point at an edge of it.
+        """Go to the next (1) or previous (-1) irregular vertex, and hover one of its half-edges.
 
-        They come in an order in which those near each other follow one another.
+        The order is such that neighbours in it are close to each other in the plane.
         """
         mesh = self._document.mesh
         if mesh is None:
@@ -88,7 +88,7 @@ class KeyboardNavigation(Controller):
     # Half-edges
 
     def turn(self, step: int) -> None:
-        """Point at the next half-edge around the origin of this one (1), or back (-1)."""
+        """Hover the next (1) or previous (-1) half-edge around the origin of this one."""
         mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
@@ -98,7 +98,7 @@ class KeyboardNavigation(Controller):
         self._keep_in_view()
 
     def along(self) -> None:
-        """Point at the next half-edge of the element."""
+        """Hover the next half-edge of the element."""
         mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
@@ -107,7 +107,7 @@ class KeyboardNavigation(Controller):
         self._keep_in_view()
 
     def across(self) -> None:
-        """Point at the twin half-edge."""
+        """Hover the twin half-edge."""
         mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
@@ -118,7 +118,7 @@ class KeyboardNavigation(Controller):
             self._keep_in_view()
 
     def _begin(self) -> None:
-        """Point at the half-edge nearest to the middle of the view."""
+        """Hover a half-edge of the element nearest to the centre of the view."""
         mesh, canvas = self._document.mesh, self._canvas
         if mesh is None:
             return
@@ -130,7 +130,7 @@ class KeyboardNavigation(Controller):
         self._keep_in_view()
 
     def _keep_in_view(self) -> None:
-        """Move the picture where what is pointed at lies beside it."""
+        """Pan so that the hovered half-edge is in view."""
         mesh, canvas = self._document.mesh, self._canvas
         halfedge = canvas.under_mouse
         if mesh is None or halfedge < 0:
@@ -145,11 +145,11 @@ class KeyboardNavigation(Controller):
 
 
 def _curve(places: np.ndarray) -> np.ndarray:
-    """(n,) places (n, 2) as numbers along a curve that fills the plane, in Morton's order."""
+    """(n,) Morton codes of ``places`` (n, 2): positions along a space-filling curve."""
     low = places.min(axis=0)
     size = max(float((places.max(axis=0) - low).max()), 1e-300)
     cells = ((places - low) / size * (2**_BITS - 1)).astype(np.int64)
-    cells[:, 1] = 2**_BITS - 1 - cells[:, 1]  # from the top down, as one reads
+    cells[:, 1] = 2**_BITS - 1 - cells[:, 1]  # from top to bottom, as in reading
     code = np.zeros(len(places), np.int64)
     for bit in range(_BITS):
         code |= (cells[:, 0] >> bit & 1) << 2 * bit | (cells[:, 1] >> bit & 1) << 2 * bit + 1

@@ -1,4 +1,4 @@
-"""The menu at the cursor: the operations of one half-edge, and why some are not allowed."""
+"""The context menu of a half-edge: its operations, and why some are not allowed."""
 
 from qtpy.QtCore import QPoint, Qt, Signal
 from qtpy.QtGui import QCloseEvent, QKeyEvent, QMouseEvent
@@ -67,7 +67,7 @@ class OperationMenu(QFrame):
         self.show()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Arrows and Return walk and choose; a key of an operation chooses it."""
+        """Arrows and Return select and apply a row; the key of an operation applies it."""
         if event.key() in (Qt.Key.Key_Down, Qt.Key.Key_Up):
             self._walk(1 if event.key() == Qt.Key.Key_Down else -1)
         elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self._current:
@@ -81,7 +81,7 @@ class OperationMenu(QFrame):
             super().keyPressEvent(event)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Say that the menu is gone."""
+        """Emit ``closed``."""
         super().closeEvent(event)
         self.closed.emit()
 
@@ -107,7 +107,7 @@ class OperationMenu(QFrame):
 
 
 class OperationRow(QFrame):
-    """One operation: title, change of s and key, below them the reason where it is not allowed."""
+    """One operation: title, change of s, key, and the reason if it is not allowed."""
 
     taken = Signal(object)
     entered = Signal(object)
@@ -149,7 +149,7 @@ class OperationRow(QFrame):
             self.setToolTip(sentence(info.summary))
 
     def set_current(self, current: bool) -> None:
-        """Mark the row that Return would take."""
+        """Mark the row that Return would apply."""
         self.setProperty("current", current and self.allowed)
         self.style().unpolish(self)
         self.style().polish(self)
@@ -159,6 +159,6 @@ class OperationRow(QFrame):
         self.entered.emit(self)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """A click takes the row."""
+        """A click applies the row's operation."""
         if self.rect().contains(event.position().toPoint()):
             self.taken.emit(self.info.operation)

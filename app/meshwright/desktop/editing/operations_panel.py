@@ -1,4 +1,4 @@
-"""The operations of the mesh's kind: keys, what each would change here, and which is armed."""
+"""The panel of operations for the kind of mesh: keys, change of s, armed operation."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ EMPTY = "Operations are listed here when there is a mesh."
 
 
 class OperationsPanel(QWidget):
-    """A row for each operation; ``chosen(operation)`` when one is clicked on."""
+    """A row for each operation; ``chosen(operation)`` when one is clicked."""
 
     chosen = Signal(object)
 
@@ -59,13 +59,13 @@ class OperationsPanel(QWidget):
             row.set_theme(theme)
 
     def offer(self, choices: tuple[Choice, ...], current: Operation | None) -> None:
-        """Show what is allowed at the half-edge that is pointed at; (): nothing is."""
+        """Show what is allowed at the hovered half-edge; an empty tuple without one."""
         by_operation = {choice.operation: choice for choice in choices}
         for row in self.rows:
             row.offer(by_operation.get(row.info.operation), row.info.operation == current)
 
     def arm(self, operation: Operation | None) -> None:
-        """Mark the operation that a click would do, if any."""
+        """Mark the armed operation; None for none."""
         self._armed = operation
         for row in self.rows:
             row.setChecked(row.info.operation == operation)
@@ -104,7 +104,7 @@ class OperationsPanel(QWidget):
 
 
 class OperationButton(QAbstractButton):
-    """One row: key, title, and how s would change at the half-edge that is pointed at."""
+    """One row: key, title, and the change of s at the hovered half-edge."""
 
     def __init__(self, info: OperationInfo, theme: Theme) -> None:
         super().__init__()
@@ -121,17 +121,17 @@ class OperationButton(QAbstractButton):
 
     @property
     def change(self) -> str:
-        """What the row says of s: a signed number, empty where nothing can be said."""
+        """The change of s as a signed number; empty if it is unknown."""
         change = self._choice.change if self._choice is not None else None
         return "" if change is None else label(change)
 
     @property
     def allowed(self) -> bool:
-        """False where the half-edge that is pointed at refuses it."""
+        """False if the operation is not allowed at the hovered half-edge."""
         return self._choice is None or self._choice.allowed
 
     def offer(self, choice: Choice | None, current: bool) -> None:
-        """What is known of it where one points; ``current`` is the one whose ghost is shown."""
+        """Set the choice at the hovered half-edge; ``current``: this operation is previewed."""
         if choice != self._choice or current != self._current:
             self._choice, self._current = choice, current
             self._describe()

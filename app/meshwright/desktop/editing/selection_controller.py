@@ -1,4 +1,4 @@
-"""Selecting and dragging vertices: the tools of the mouse, the selection's layer and its menu."""
+"""Selecting and dragging vertices: mouse tools, layers of the selection, context menus."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from meshwright.signals import Signal
 from meshwright_core.core.arrays import FLAGS, LOCKED, ORIGIN
 
 LOCK_RADIUS = 17.0
-"""Pixels of the ring around a selected vertex that is locked."""
+"""Radius in pixels of the ring around a locked vertex that is selected."""
 EDIT, BOX, LASSO = "edit", "box", "lasso"
 REACH = 10.0
-"""Pixels around a vertex where a drag takes hold of it."""
+"""Distance in pixels at which a drag grabs a vertex."""
 SHARE = 0.3
-"""A drag takes hold of a vertex within this share of its shortest edge only."""
+"""A drag grabs a vertex only within this fraction of its shortest edge."""
 ROOM = 16.0
-"""Vertices are dragged where their shortest edge is longer than this in pixels; else one pans."""
+"""A drag pans if the shortest edge of the vertex is shorter than this in pixels."""
 
 
 class SelectionController(Controller):
@@ -59,7 +59,7 @@ class SelectionController(Controller):
         self.tool_changed = Signal()
         self._document, self._canvas = document, canvas
         self._readiness, self._status = readiness, status
-        self._menus = VertexMenus(document, levels, readiness, actions, status, parent)
+        self.menus = VertexMenus(document, levels, readiness, actions, status, parent)
         self.tool = EDIT
         self.layer = SelectionLayer(theme)
         self.region = RegionLayer(theme)
@@ -78,7 +78,7 @@ class SelectionController(Controller):
     # Tools
 
     def use(self, tool: str) -> None:
-        """Take a tool in hand."""
+        """Switch to a tool."""
         self.tool = tool
         self._status.show_message(
             {
@@ -90,7 +90,9 @@ class SelectionController(Controller):
         self.tool_changed.emit()
 
     def put_down(self) -> bool:
-        """Back to editing, or else empty the selection; False if there was nothing to do."""
+        """Switch to the edit tool, or else clear the selection; False if there was nothing
+        to do.
+        """
         if self.tool != EDIT:
             self.use(EDIT)
         elif len(self._document.selection):
@@ -102,7 +104,7 @@ class SelectionController(Controller):
     # Clicks
 
     def click(self, click: Click) -> bool:
-        """Use a click on the canvas; False if it is not for selecting."""
+        """Handle a click that selects, or opens a vertex menu; False for any other."""
         if click.button == Qt.MouseButton.RightButton:
             return self._open_menu(click)
         selection = self._document.selection
@@ -124,9 +126,9 @@ class SelectionController(Controller):
             return False
         region = click.halfedge >= 0 and click.halfedge // mesh.k in selection.elements
         if len(selection) > 1 and (click.vertex in selection or (click.vertex < 0 and region)):
-            menu = self._menus.of_selection()
+            menu = self.menus.of_selection()
         elif click.vertex >= 0:
-            menu = self._menus.of_vertex(click.vertex)
+            menu = self.menus.of_vertex(click.vertex)
         else:
             return False
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -151,7 +153,9 @@ class SelectionController(Controller):
         return self._grab(at)
 
     def _grab(self, at: QPointF) -> Gesture | None:
-        """Take hold of the vertex at ``at``; None where there is none, or no room to see it."""
+        """The drag of the vertex at ``at``; None if there is none, or if its edges are too
+        short.
+        """
         canvas, mesh = self._canvas, self._document.mesh
         vertex = canvas.vertex_at(at)
         if mesh is None or vertex < 0 or not self._readiness.editing:
@@ -231,7 +235,7 @@ class SelectionController(Controller):
         self.layer.show(points[selection.vertices], self._radii)
 
     def _radii(self, viewport: Viewport) -> np.ndarray:
-        """(n,) radii of the rings around the selected vertices: outside of the discs there are."""
+        """(n,) radii of the rings around the selected vertices, which enclose their discs."""
         vertices = self._document.selection.vertices
         radii = np.full(len(vertices), RADIUS)
         marks = self._canvas.markers
@@ -240,7 +244,7 @@ class SelectionController(Controller):
             marked = marks.vertices[places] == vertices
             radii[marked] = marks.radii(viewport)[places[marked]] + 3.5
         mesh = self._document.mesh
-        if mesh is not None:  # locked ones have a ring already
+        if mesh is not None:  # outside the ring of locked vertices
             locked = (mesh.arrays.vertex[vertices, FLAGS] & LOCKED) > 0
             radii[locked] = np.maximum(radii[locked], LOCK_RADIUS)
         return radii

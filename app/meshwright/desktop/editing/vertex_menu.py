@@ -1,6 +1,4 @@
-"""The menus of one vertex and of the selection: desired degree, corner, lock, and what else there
-is to do with them.
-"""
+"""The context menus of a vertex and of the selection: desired degree, corner, lock, smoothing."""
 
 from __future__ import annotations
 

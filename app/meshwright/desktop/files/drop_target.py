@@ -1,4 +1,4 @@
-"""Files dropped on the window."""
+"""Opening files that are dropped on the window."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ class DropTarget(QObject):
         window.installEventFilter(self)
 
     def release(self) -> None:
-        """Take no more files."""
+        """Stop accepting files."""
         self._window.removeEventFilter(self)
         self._window.setAcceptDrops(False)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Show what would happen while a file is over the window; open it when it is let go."""
+        """Show the veil while a file is dragged over the window, and open it when it is dropped."""
         if isinstance(event, QDragEnterEvent):
             path = dropped(event.mimeData())
             if path:
@@ -64,7 +64,7 @@ class DropTarget(QObject):
 
 
 class DropVeil(QWidget):
-    """Over the whole window: the name of what would be opened."""
+    """A veil over the whole window with the name of the file that would be opened."""
 
     def __init__(self, window: QWidget, theme: Theme) -> None:
         super().__init__(window)
@@ -76,7 +76,7 @@ class DropVeil(QWidget):
 
     @property
     def text(self) -> str:
-        """What it says."""
+        """The text on the veil."""
         return f"Drop to open {self._name}"
 
     def set_theme(self, theme: Theme) -> None:
@@ -92,7 +92,7 @@ class DropVeil(QWidget):
         self.show()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """A dashed frame with words in its middle."""
+        """Paint a dashed frame with the text in its middle."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         ground = QColor(self._theme.background)
@@ -114,5 +114,5 @@ class DropVeil(QWidget):
 
 
 def dropped(data: QMimeData) -> str:
-    """Path of the first file in what is dragged, empty if there is none."""
+    """The path of the first dragged file; empty if there is none."""
     return next((url.toLocalFile() for url in data.urls() if url.isLocalFile()), "")

@@ -1,4 +1,4 @@
-"""Meshes that come and go: what the window does about files and shapes."""
+"""New, open, save and recover."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from meshwright_core.io import formats, mesh_files
 
 MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"
 USUAL = ".vtk"
-"""The ending of a mesh file whose name is typed without one."""
+"""The suffix of a mesh file whose name is typed without one."""
 
 
 class FileController(Controller):
@@ -114,7 +114,7 @@ class FileController(Controller):
     # Another mesh
 
     def new(self, file: str = "") -> None:
-        """Ask for a shape and how it is meshed, beginning with ``file`` if one is given."""
+        """Show the dialog for new meshes, on ``file`` if one is given."""
         from meshwright.desktop.files.new_mesh import NewMeshDialog
 
         if not self.may_drop():
@@ -165,7 +165,7 @@ class FileController(Controller):
         self.show_all()
 
     def show_all(self) -> None:
-        """Look at the mesh as a project says, else at all of it."""
+        """Restore view and policy saved in a project; else fit the view to the mesh."""
         self._canvas.fit()
         kept = self._document.settings
         view = kept.get("view")
@@ -185,13 +185,13 @@ class FileController(Controller):
     # Saving
 
     def save(self) -> bool:
-        """Save the mesh to its file, or ask for one; whether it is written."""
+        """Save the mesh to its file, or ask for one; returns whether it was saved."""
         if self._document.path is None:
             return self.save_as()
         return self._save(None)
 
     def save_as(self) -> bool:
-        """Ask for a file and write the mesh to it, or all of the work to a project."""
+        """Ask for a file and save the mesh to it, or mesh and history to a project."""
         document = self._document
         start = str(document.path or f"{document.name or 'mesh'}{USUAL}")
         chosen = PROJECTS if document.path and is_project(document.path) else MESHES
@@ -228,7 +228,7 @@ class FileController(Controller):
 
 @contextmanager
 def waiting() -> Iterator[None]:
-    """The mouse pointer says that it takes a moment."""
+    """Show the wait cursor while the block runs."""
     QApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
     try:
         yield
@@ -237,13 +237,13 @@ def waiting() -> Iterator[None]:
 
 
 def to_open() -> str:
-    """The groups of files that can be opened."""
+    """The filters of the Open dialog."""
     groups = {MESHES: mesh_files.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
     return _filters({"All supported files": sum(groups.values(), ()), **groups})
 
 
 def to_save() -> str:
-    """The groups of files that can be written."""
+    """The filters of the Save dialog."""
     return _filters({MESHES: mesh_files.endings(), PROJECTS: (ENDING,)})
 
 
@@ -253,7 +253,7 @@ def _filters(groups: dict[str, tuple[str, ...]]) -> str:
 
 
 def left_out(path: Path) -> str:
-    """What a mesh file of this kind does not keep, as a sentence; empty if nothing."""
+    """What this mesh format does not store, as a sentence; empty if it stores everything."""
     if is_project(path) or formats.of(path).data:
         return ""
     title = formats.of(path).title
@@ -265,7 +265,7 @@ def _is_length(value: Any) -> bool:
 
 
 def one_line(error: Exception) -> str:
-    """What went wrong with a file, as one sentence."""
+    """The error as one sentence."""
     if isinstance(error, OSError) and error.strerror:
         name = Path(error.filename).name if error.filename else "The file"
         return f"{name}: {error.strerror}."

@@ -1,4 +1,4 @@
-"""The dialog that offers what a process left behind when it died."""
+"""The dialog that offers work of a process that ended without saving."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -25,7 +25,7 @@ STORY = (
     " recovered, with the whole history."
 )
 SHOWN = 4
-"""Works that are seen at once; with more of them the list scrolls."""
+"""Number of works that are visible at once; the list scrolls if there are more."""
 CARD = 92
 """Height of one work in pixels."""
 
@@ -105,7 +105,7 @@ class RecoveryDialog(QDialog):
 
 
 class LostWorkCard(QFrame):
-    """One work: what it was called, when its last step was, how far it had come."""
+    """One work: name, progress, time of the last step."""
 
     def __init__(self, work: Lost) -> None:
         super().__init__()
@@ -139,13 +139,13 @@ class LostWorkCard(QFrame):
             self.setToolTip(str(work.file))
 
     def make_sure(self) -> None:
-        """The next click on *Discard* means it."""
+        """Ask for a second click on *Discard*."""
         self.sure = True
         self.discard.setText("Delete permanently?")
 
 
 def progress(work: Lost) -> str:
-    """``12 steps, s 8 (optimum 4), 1,024 quads``, as far as it is known."""
+    """``12 steps, s 8 (optimum 4), 1,024 quads``, as far as known."""
     now = {key: value for key, value in work.now.items() if isinstance(value, int | str)}
     parts = []
     if "steps" in now:
@@ -167,7 +167,7 @@ def moment(when: float) -> str:
 
 
 def origin(work: Lost) -> str:
-    """Where it was saved last."""
+    """The file of the work, or that it was never saved."""
     if work.file is None:
         return "never saved to a file"
     there = "" if Path(work.file).exists() else ", which no longer exists"

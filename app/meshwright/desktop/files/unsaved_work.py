@@ -1,4 +1,4 @@
-"""The guard of a person's work: autosave, recovery, and the question before something is lost."""
+"""Protection of unsaved work: autosave, recovery, and the question before work is discarded."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Guard(Protocol):
         ...
 
     def ask_for_lost(self) -> None:
-        """As :meth:`offer`, and say so if there is none."""
+        """As :meth:`offer`; shows a message if there is none."""
         ...
 
     def release(self) -> None:
@@ -110,14 +110,14 @@ class UnsavedWorkGuard:
             self.autosave.close()
 
     def leave(self) -> None:
-        """Close the window without a question; the next start offers what was not saved."""
+        """Close the window without a question; unsaved work is offered at the next start."""
         self._leaving = True
         if self._question is not None:
             self._question.reject()
         self._window.close()
 
     def may_drop(self) -> bool:
-        """Whether the mesh may give way: nothing is unsaved, or the person has decided."""
+        """Whether the mesh may be discarded: nothing is unsaved, or the user has agreed."""
         document = self._document
         if self._leaving or document.empty or not document.modified:
             return True
@@ -140,13 +140,13 @@ class UnsavedWorkGuard:
         return answer == "drop" or self._leaving
 
     def offer(self) -> None:
-        """Offer what was lost, if anything was."""
+        """Offer unsaved work of ended processes, if there is any."""
         works = recovery.lost(self._folder) if self._window.isVisible() else []
         if works:
             self._offer(works)
 
     def ask_for_lost(self) -> None:
-        """As :meth:`offer`, for a person who asks."""
+        """As :meth:`offer`; shows a message if there is none."""
         works = recovery.lost(self._folder)
         if works:
             self._offer(works)

@@ -1,4 +1,4 @@
-"""About Meshwright: what it is, its version, and the licences of all that it is made of."""
+"""The About dialog: version, citation and licences."""
 
 import platform
 from importlib.metadata import PackageNotFoundError, version
@@ -66,7 +66,7 @@ class AboutDialog(QDialog):
         layout.addLayout(self._buttons())
 
     def details(self) -> str:
-        """What a report of a problem should tell: versions, one a line."""
+        """Versions for a bug report, one per line."""
         lines = [f"Meshwright {own_version()}", f"Python {platform.python_version()}"]
         lines += [platform.platform(), f"{API_NAME} with Qt {QT_VERSION}"]
         telling = ("numpy", "numba", "torch", "vtk", "pyvista", "pyside6-essentials")

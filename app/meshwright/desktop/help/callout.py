@@ -1,4 +1,4 @@
-"""A callout: a small card beside a place of the window, with an arrow to it."""
+"""A callout: a small card with an arrow to a place in the window."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 320
 _TIP = 12
-"""Pixels that the arrow stands out, and half of its width."""
+"""Length and half width of the arrow in pixels."""
 _GAP = 6
 """Pixels between the arrow's tip and what it points at."""
 _SHADE = 3
@@ -72,7 +72,7 @@ class Callout(QWidget):
         made = QPushButton(text)
         made.setObjectName(name)
         made.setToolTip(tooltip)
-        made.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keyboard to the canvas
+        made.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the focus with the canvas
         return made
 
     def set_theme(self, theme: Theme) -> None:
@@ -81,7 +81,7 @@ class Callout(QWidget):
         self.update()
 
     def show_step(self, number: int, total: int, heading: str, text: str, done: str = "") -> None:
-        """Show step ``number`` of ``total``, from 1; ``done`` says that it has been done."""
+        """Show step ``number`` of ``total``, from 1; ``done`` confirms that it was done."""
         self.count.setText(f"{number} of {total}")
         self.heading.setText(heading)
         self.text.setText(text)
@@ -93,8 +93,8 @@ class Callout(QWidget):
         self.setAccessibleDescription(text)
 
     def point_at(self, target: QRect, sides: Sequence[str]) -> None:
-        """Stand beside ``target``, in the parent's pixels: at the first of ``sides`` that has the
-        room ("left", "right", "above", "below"), else where there is most of it.
+        """Move beside ``target``, a rectangle in the parent's pixels: to the first of ``sides``
+        ("left", "right", "above", "below") with enough room, else to the one with most room.
         """
         self._card.adjustSize()
         width, height = self._card.width() + 2 * _TIP, self._card.height() + 2 * _TIP
@@ -127,7 +127,7 @@ class Callout(QWidget):
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """The card, its arrow and a soft shade."""
+        """Paint the card, its arrow and a soft shadow."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         card = QRectF(self._card.geometry())

@@ -44,16 +44,16 @@ from meshwright.graphics.theme import GRID, Theme
 WIDTH = 560
 ROW = 34
 ROWS = 10
-"""Rows that are seen at once."""
+"""Number of rows that are visible at once."""
 _ELSEWHERE = 12.0
-"""What a match in menu and title together is worth less than one in the title."""
+"""How much lower a match of menu and title is ranked than one of the title alone."""
 _ENTRY = int(Qt.ItemDataRole.UserRole)
 _PLACES = _ENTRY + 1
 
 
 @dataclass(frozen=True)
 class PaletteEntry:
-    """One row: an action's id, what it is called and where, its key, and why it is not possible."""
+    """One row: an action's id, title, menu, shortcut, and the reason if it is disabled."""
 
     id: str
     title: str
@@ -64,8 +64,8 @@ class PaletteEntry:
 
 
 def rank(query: str, entries: Sequence[PaletteEntry]) -> list[tuple[PaletteEntry, tuple[int, ...]]]:
-    """The entries that ``query`` finds, best first, each with the letters of its title that were
-    meant. Those that are not possible now come after equals.
+    """The entries that match ``query``, best first, each with the matched positions in its title.
+    Disabled ones come after equally good ones.
     """
     found: list[tuple[float, int, PaletteEntry, tuple[int, ...]]] = []
     for number, entry in enumerate(entries):
@@ -87,10 +87,10 @@ def rank(query: str, entries: Sequence[PaletteEntry]) -> list[tuple[PaletteEntry
 
 
 class CommandPalette(QFrame):
-    """A box over the window, with the keyboard until it is closed.
+    """A box over the window that has the keyboard focus until it is closed.
 
-    ``chosen(id)`` comes with an entry that is possible, ``closed()`` when the box goes away. It is
-    a part of the window, not a window itself: nothing depends on a window manager.
+    ``chosen(id)`` for an entry that is enabled; ``closed()``. It is a child widget, not a window,
+    so that it does not depend on a window manager.
     """
 
     chosen = Signal(str)
@@ -135,14 +135,14 @@ class CommandPalette(QFrame):
         return [self.list.item(row).data(_ENTRY) for row in range(self.list.count())]
 
     def popup(self) -> None:
-        """Show the box and take the keyboard."""
+        """Show the box and give it the keyboard focus."""
         self._place()
         self.show()
         self.raise_()
         self.field.setFocus(Qt.FocusReason.PopupFocusReason)
 
     def dismiss(self) -> None:
-        """Close the box and give the keyboard back."""
+        """Close the box and give the keyboard focus back."""
         if self.isHidden():
             return
         self.field.removeEventFilter(self)
@@ -154,7 +154,9 @@ class CommandPalette(QFrame):
         self.deleteLater()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Keys that walk and choose; the box stays in the middle, and goes when left."""
+        """Handle keys that select and choose; follow the window's size; close when the focus is
+        lost.
+        """
         if watched is self._window:
             if event.type() == QEvent.Type.Resize:
                 self._place()
@@ -177,7 +179,7 @@ class CommandPalette(QFrame):
             and kind == QEvent.Type.FocusOut
             and event.reason() not in _ELSEWHERE_FOR_NOW
         ):
-            self._before = None  # the keyboard has gone where the person put it
+            self._before = None  # the user has moved the focus
             self.dismiss()
         return False
 
@@ -222,7 +224,7 @@ class CommandPalette(QFrame):
         self._place()
 
     def _place(self) -> None:
-        """In the middle, near the top."""
+        """Place the box in the middle, near the top."""
         room = self._window.rect()
         self.setFixedWidth(min(WIDTH, room.width() - 4 * GRID))
         self.adjustSize()
@@ -244,7 +246,7 @@ def _is_ours(event: QKeyEvent) -> bool:
 
 
 class _Row(QStyledItemDelegate):
-    """Title with the letters that were meant, menu, and at the right the key or the reason."""
+    """Title with the matched letters, menu, and at the right the shortcut or the reason."""
 
     def __init__(self, theme: Theme, parent: QObject) -> None:
         super().__init__(parent)
@@ -256,7 +258,7 @@ class _Row(QStyledItemDelegate):
         option: QStyleOptionViewItem,
         index: QModelIndex | QPersistentModelIndex,
     ) -> None:
-        """One row."""
+        """Paint one row."""
         entry, places = index.data(_ENTRY), index.data(_PLACES)
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -290,7 +292,7 @@ class _Row(QStyledItemDelegate):
         ink: QColor,
         font: QFont,
     ) -> int:
-        """Paint the title, letters that were meant bold; returns where it ends."""
+        """Paint the title with matched letters in bold; returns the x coordinate of its end."""
         bold = QFont(font)
         bold.setWeight(QFont.Weight.Bold)
         x = box.x()

@@ -1,4 +1,4 @@
-"""Guidance: the tour, the palette, the page of keys, and what this program is."""
+"""Tour, command palette, shortcuts and About."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class HelpController(Controller):
         self.places, self._window = places, places.window
         self._awaits_mesh = False
         self.tour: Tour | None = None
-        """The tour while it is shown; so with the other two."""
+        """The tour while it is shown; likewise the palette and the page of shortcuts."""
         self.palette: CommandPalette | None = None
         self.keys: ShortcutsDialog | None = None
         self._connections.add(document.replaced, self._on_replaced)
@@ -56,7 +56,7 @@ class HelpController(Controller):
     # The tour
 
     def welcome(self) -> None:
-        """Show whoever has not seen it the tour, as soon as there is a mesh to show it on."""
+        """Start the tour as soon as there is a mesh, unless it has been shown before."""
         if self._settings.toured:
             return
         if self._document.empty:
@@ -65,7 +65,7 @@ class HelpController(Controller):
             self.show_tour()
 
     def show_tour(self) -> None:
-        """Begin the tour, again if it is under way; without a mesh, once there is one."""
+        """Start or restart the tour; without a mesh it starts when there is one."""
         self.end_tour()
         if self._document.empty:
             self._awaits_mesh = True
@@ -79,7 +79,7 @@ class HelpController(Controller):
         self.tour.ended.connect(self._on_tour_ended)
 
     def end_tour(self) -> None:
-        """Take the tour away, if it is there."""
+        """End the tour, if it is shown."""
         if self.tour is not None:
             self.tour.end()
 
@@ -104,7 +104,7 @@ class HelpController(Controller):
         self.palette.popup()
 
     def entries(self) -> list[PaletteEntry]:
-        """All actions of the menus as rows of the palette, as possible as they are now."""
+        """The actions of all menus as rows of the palette, with their current state."""
         made = []
         for menu, members in self._actions.menus(self._document.kind):
             for entry in members:
@@ -130,7 +130,7 @@ class HelpController(Controller):
     # Pages
 
     def show_keys(self) -> None:
-        """All keys, and what the mouse does, beside the window."""
+        """Show the page of shortcuts and mouse gestures."""
         if self.keys is not None:
             self.keys.close()
         self.keys = ShortcutsDialog(self._actions.menus(self._document.kind), self._window)
@@ -143,7 +143,7 @@ class HelpController(Controller):
             self.keys = None
 
     def show_about(self) -> None:
-        """Version and licences."""
+        """Show the About dialog."""
         from meshwright.desktop.help.about_dialog import (
             AboutDialog,  # looks through the installed packages
         )

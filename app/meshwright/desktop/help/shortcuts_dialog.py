@@ -1,4 +1,4 @@
-"""The page of keys: all that the table of actions binds, and what the mouse does."""
+"""The page of shortcuts: all keys of the action table, and the mouse gestures."""
 
 from collections.abc import Sequence
 
@@ -19,9 +19,9 @@ from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
 WIDE = 1240
-"""Pixels of a window that has room for four columns; others get three."""
+"""Width in pixels from which there are four columns; otherwise there are three."""
 Block = tuple[str, list[tuple[str, str, str]]]
-"""A heading, and for each line the keys, what they do, and the whole story as a tooltip."""
+"""A heading, and for each line the keys, the title of the action, and its tooltip."""
 
 MOUSE = (
     ("Move", "Point at a half-edge"),
@@ -80,7 +80,7 @@ class ShortcutsDialog(QDialog):
 
 
 def key_blocks(groups: Sequence[tuple[str, Sequence[ActionEntry]]]) -> list[Block]:
-    """What the page shows: a block for each menu with keys, then the mouse."""
+    """The blocks of the page: one for each menu that has shortcuts, then the mouse."""
     blocks: list[Block] = []
     for menu, members in groups:
         lines = [
@@ -95,7 +95,7 @@ def key_blocks(groups: Sequence[tuple[str, Sequence[ActionEntry]]]) -> list[Bloc
 
 
 def spread(blocks: Sequence[Block], columns: int) -> list[list[Block]]:
-    """The blocks in their order in ``columns`` columns, the highest as low as can be."""
+    """The blocks, in order, in ``columns`` columns of which the highest is as low as possible."""
     heights = [len(lines) + 2 for _, lines in blocks]
     low, high = max(heights), sum(heights)
     while low < high:

@@ -1,4 +1,4 @@
-"""The tour: five callouts over the real window, for whoever opens it for the first time."""
+"""The tour: five callouts over the window, shown at the first start."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class TourPlaces:
     window: QWidget
     canvas: Canvas
     pages: QWidget
-    """What stands in the middle: the canvas, or a page while there is no mesh."""
+    """The middle of the window: the canvas, or a page while there is no mesh."""
     columns: tuple[QWidget, ...]
     """The columns beside it, which hold the panels."""
     operations: QWidget
@@ -161,7 +161,7 @@ class Tour(QObject):
         self.callout.set_theme(theme)
 
     def end(self) -> None:
-        """Take the callout away."""
+        """Remove the callout, and emit ``ended``."""
         self._places.window.removeEventFilter(self)
         self._connections.close()
         self.callout.hide()
@@ -170,7 +170,7 @@ class Tour(QObject):
         self.deleteLater()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Stay beside what it points at while the window changes its size."""
+        """Follow the place that is pointed at when the window is resized."""
         if event.type() in (QEvent.Type.Resize, QEvent.Type.LayoutRequest):
             self._place()
         return False
@@ -194,7 +194,7 @@ class Tour(QObject):
         self._show()
 
     def _do(self, number: int) -> None:
-        """The person has done what step ``number`` asks for, while it asks."""
+        """Confirm step ``number`` if it is the current one."""
         if number == self._at and not self._did[number]:
             self._did[number] = True
             self._show()
@@ -208,7 +208,7 @@ class Tour(QObject):
         self._place()
 
     def _place(self) -> None:
-        """Beside the target; in the middle of the canvas where that is not to be seen."""
+        """Place the callout beside the target, or in the middle of the canvas if that is hidden."""
         step = self._steps[self._at]
         target = step.target(self._places)
         if target is None:

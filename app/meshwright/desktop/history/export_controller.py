@@ -1,4 +1,4 @@
-"""Exporting: the dialog, then a thread that writes, with a bar that tells how far it is."""
+"""Export of videos and images: dialog, writing thread, progress bar."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class ExportBar(QFrame):
 
     @property
     def words(self) -> str:
-        """What the bar says."""
+        """The text of the bar."""
         return str(self._words.text())
 
     def show_progress(self, name: str, done: int, total: int) -> None:
@@ -71,7 +71,7 @@ class ExportBar(QFrame):
 
 
 class ExportController(Controller):
-    """Asks what to export and writes it, one file at a time, off the main thread."""
+    """Asks what to export and writes it in a thread, one file at a time."""
 
     def __init__(
         self,
@@ -98,7 +98,7 @@ class ExportController(Controller):
         return self._thread is not None
 
     def ask(self) -> None:
-        """Show the dialog, ask for a file, begin."""
+        """Show the dialog, ask for a file, and start."""
         from meshwright.desktop.history.export_dialog import ExportDialog
         from meshwright.graphics.export.film import Film
 
@@ -132,7 +132,7 @@ class ExportController(Controller):
         return str(path)
 
     def start(self, film: Film, order: Order, path: str) -> None:
-        """Write ``order`` to ``path`` in the background; ends in one sentence."""
+        """Write ``order`` to ``path`` in the background; a message is shown at the end."""
         self._stop.clear()
         self.bar.show_progress(Path(path).name, 0, 1)
         self._thread = threading.Thread(
@@ -141,7 +141,7 @@ class ExportController(Controller):
         self._thread.start()
 
     def cancel(self) -> None:
-        """Write no further; nothing is left of the file."""
+        """Cancel the export; the incomplete file is removed."""
         self._stop.set()
 
     def close(self) -> None:
@@ -153,7 +153,7 @@ class ExportController(Controller):
             self._thread = None
 
     def _work(self, film: Film, order: Order, path: str) -> None:
-        """In the thread: everything that is said goes through the dispatcher."""
+        """Write the file; runs in the thread and reports through the dispatcher."""
         name = Path(path).name
 
         def progress(done: int, total: int) -> None:
@@ -167,7 +167,7 @@ class ExportController(Controller):
             self._dispatch(partial(self._finish, f"Cancelled: {name} was not written.", False))
         except MeshError as error:
             self._dispatch(partial(self._finish, str(error), True))
-        except Exception as error:  # whatever it is, the bar must not stay for ever
+        except Exception as error:  # a thread boundary: the bar must disappear in any case
             _log.exception("an export broke off")
             words = f"{name} was not written: {type(error).__name__}: {error}"
             self._dispatch(partial(self._finish, words, True))

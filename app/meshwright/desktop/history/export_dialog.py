@@ -1,4 +1,4 @@
-"""The dialog that asks what to export: film or picture, its size, its pace, what is in it."""
+"""The export dialog: format, size, frame rate and content."""
 
 from dataclasses import replace
 
@@ -39,9 +39,9 @@ PARTS = (
 )
 PREVIEW = (480, 360)
 LARGE = 20_000
-"""Elements beyond which a preview would make one wait."""
+"""There is no preview of meshes with more elements than this."""
 LATER = 80
-"""Milliseconds after a change until the preview follows."""
+"""Milliseconds between a change and the update of the preview."""
 
 
 class ExportDialog(QDialog):
@@ -56,7 +56,7 @@ class ExportDialog(QDialog):
         self._state = film.state
         self._moment = film.moment(film.state)
         if len(film.rows) == 0 and order.moving:
-            order = replace(order, ending=".png")  # there is nothing that moves
+            order = replace(order, ending=".png")  # there is nothing to animate
         self.order = order
         self._group = QButtonGroup(self)
         self.formats: dict[str, QPushButton] = {}
@@ -167,7 +167,7 @@ class ExportDialog(QDialog):
         layout.addLayout(buttons)
 
     def _on_changed(self) -> None:
-        """Take over what the fields say."""
+        """Update the order from the fields."""
         ending = next(e for e, button in self.formats.items() if button.isChecked())
         self.order = replace(
             self.order,
@@ -191,7 +191,7 @@ class ExportDialog(QDialog):
         self._later.start()
 
     def _words(self) -> str:
-        """How long a film will be."""
+        """Number of frames and duration of the video, or the state of the image."""
         if not self.order.moving:
             return f"The state after step {self._state:,}." if self._state else "The start."
         if len(self._film.rows) == 0:
@@ -202,7 +202,7 @@ class ExportDialog(QDialog):
         return f"{frames:,} frames, {inside + ends:.0f} seconds."
 
     def _draw(self) -> None:
-        """Show the present state as the export will."""
+        """Draw the preview: the current state as exported."""
         if self._film.mesh.n_elements > LARGE:
             self.preview.setText("No preview of so many elements.")
             return

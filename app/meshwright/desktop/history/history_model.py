@@ -1,4 +1,4 @@
-"""The history as a list of lines: the start, every step, and the branches where they fork."""
+"""The history as a Qt list model: the start, every step, and branches where they fork."""
 
 from bisect import bisect_left
 from dataclasses import dataclass
@@ -20,7 +20,9 @@ class HistoryLine:
 
 
 class HistoryModel(QAbstractListModel):
-    """Follows a history; a line is found by arithmetic, so that 10,000 cost as much as ten."""
+    """A list model of a history; lines are computed, so that the cost does not grow with their
+    number.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -28,19 +30,19 @@ class HistoryModel(QAbstractListModel):
         self._branches: Branches = ()
         self._order: list[int] = []
         self._places: list[int] = []
-        self._rows: list[Row] = []  # its own: the history may have gone on since the last look
+        self._rows: list[Row] = []  # a copy: the history may have changed since the last update
         self._empty = True
         self.highest = 0
         """The highest score in the list."""
 
     def rowCount(self, parent: QModelIndex | QPersistentModelIndex | None = None) -> int:  # noqa: N802
-        """Lines there are; a line has none below it."""
+        """The number of lines."""
         if self._empty or (parent is not None and parent.isValid()):
             return 0
         return len(self._rows) + 1 + len(self._places)
 
     def line(self, place: int) -> HistoryLine:
-        """What stands at a place of the list."""
+        """The line at a position in the list."""
         before = bisect_left(self._places, place)
         if before < len(self._places) and self._places[before] == place:
             branch = self._order[before]
@@ -49,12 +51,12 @@ class HistoryModel(QAbstractListModel):
         return HistoryLine(state, self._rows[state - 1] if state else None)
 
     def place(self, state: int) -> int:
-        """Where in the list a state stands."""
+        """The position of a state in the list."""
         return state + sum(1 for branch in self._branches if branch.at < state)
 
     @property
     def history(self) -> History:
-        """What is shown."""
+        """The history that is shown."""
         return self._history
 
     @property
@@ -64,7 +66,7 @@ class HistoryModel(QAbstractListModel):
 
     @property
     def current(self) -> bool:
-        """False while the history has other branches than those that are shown."""
+        """Whether the branches that are shown are those of the history."""
         return self._branches is self._history.branches
 
     def data(
@@ -86,7 +88,9 @@ class HistoryModel(QAbstractListModel):
         return f"Step {line.state:,}: {step_words(line.row)}, s {line.row.after:,}"
 
     def follow(self, history: History, empty: bool) -> None:
-        """Take over what ``history`` holds now, with no more fuss than it needs."""
+        """Update the list from ``history``; appends lines where that is enough, else resets the
+        model.
+        """
         known, count = len(self._rows), len(history)
         same = history is self._history and empty == self._empty
         same = same and self._branches is history.branches

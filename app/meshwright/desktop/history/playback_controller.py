@@ -1,4 +1,4 @@
-"""The film: the history as something to walk through, to play and to export."""
+"""Navigation, playback and export of the history."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from meshwright.document.score_series import Track
 from meshwright.graphics.theme import Theme
 
 PAUSE = 100
-"""Milliseconds after a change until list and curve follow: the mesh is drawn before."""
+"""Milliseconds between a change and the update of list and curve, which follow the mesh."""
 
 
 class PlaybackController(Controller):
@@ -46,7 +46,7 @@ class PlaybackController(Controller):
         if self._speed not in SPEEDS:
             self._speed = 4
         self._wanted = 0
-        self._ours = False  # a change of the history that this controller makes itself
+        self._ours = False  # whether this controller is changing the history itself
         self._late = QTimer(parent, singleShot=True, interval=PAUSE)
         self._late.timeout.connect(self._show)
         self._soon = QTimer(parent, singleShot=True, interval=0)
@@ -81,7 +81,7 @@ class PlaybackController(Controller):
             timer.stop()
         self.exporting.close()
 
-    # Walking
+    # Navigation
 
     @property
     def playing(self) -> bool:
@@ -89,22 +89,22 @@ class PlaybackController(Controller):
         return self._clock.isActive()
 
     def go_to(self, state: int) -> None:
-        """Show a state of the history; a film that plays is held."""
+        """Go to a state of the history; stops playback."""
         self.hold()
         self._go(state)
 
     def walk(self, steps: int) -> None:
-        """Go so many steps forward, or back."""
+        """Go forward by a number of steps; back if it is negative."""
         self.go_to(self._document.history.cursor + steps)
 
     def go_to_best(self) -> None:
-        """Show the first state with the lowest score under the present desired degrees."""
+        """Go to the first state with the lowest score under the current desired degrees."""
         track = Track()
         track.follow(self._document.history)
         self.go_to(score_series.best_state(track.scores, track.optima))
 
     def take_branch(self, index: int) -> None:
-        """Go to the end of a branch; the steps that are left for it become a branch."""
+        """Switch to the end of a branch; the steps that are left become a branch."""
         self.hold()
         if not self._is_ready():
             return
@@ -116,13 +116,13 @@ class PlaybackController(Controller):
             )
 
     def take_last_branch(self) -> None:
-        """Take the branch that was left last."""
+        """Switch to the branch that was left last."""
         branches = self._document.history.branches
         if branches:
             self.take_branch(max(range(len(branches)), key=lambda i: branches[i].made))
 
     def play_or_hold(self) -> None:
-        """Play from here, or from the start where this is the end; or hold."""
+        """Play from here, or from the start if this is the end; or pause."""
         if self.playing:
             self.hold()
             return
@@ -135,7 +135,7 @@ class PlaybackController(Controller):
         self.timeline.show_playing(True)
 
     def hold(self) -> None:
-        """Stop playing, here."""
+        """Pause playback."""
         if self.playing:
             self._clock.stop()
             self.timeline.show_playing(False)
@@ -163,12 +163,12 @@ class PlaybackController(Controller):
     def _on_state_requested(self, state: int) -> None:
         self.hold()
         self._wanted = state
-        self._soon.start()  # a drag asks for more states than can be drawn: the last one counts
+        self._soon.start()  # a drag requests more states than can be drawn: the last counts
 
     def _arrive(self) -> None:
         self.go_to(self._wanted)
         if not self._late.isActive():
-            self._show()  # nothing has changed: the curve must not stay where the mouse was
+            self._show()  # the state is unchanged: the cursor of the curve must return to it
 
     def _on_speed_chosen(self, speed: int) -> None:
         self._speed = speed
@@ -176,7 +176,7 @@ class PlaybackController(Controller):
         if self.playing:
             self._clock.start(round(1000 / speed))
 
-    # What is seen
+    # Visibility
 
     def show_list(self, shown: bool) -> None:
         """Show or hide the list."""
@@ -191,7 +191,7 @@ class PlaybackController(Controller):
         self._arrange()
 
     def export(self) -> None:
-        """Ask what to write, then write it in the background."""
+        """Ask what to export, then write it in the background."""
         self.exporting.ask()
 
     def _arrange(self) -> None:
@@ -214,7 +214,7 @@ class PlaybackController(Controller):
         document = self._document
         self._late.stop()
         if self._soon.isActive():
-            self._late.start()  # the line is where the mouse is, and the mesh will be there soon
+            self._late.start()  # the cursor is at the mouse already, and the mesh follows soon
             return
         if self.panel.isVisibleTo(self._parent):
             self.panel.show_history(document.history, document.empty)

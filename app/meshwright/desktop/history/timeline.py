@@ -1,4 +1,4 @@
-"""The timeline under the canvas: buttons that walk through the history, and the score curve."""
+"""The timeline under the canvas: playback buttons and the score curve."""
 
 from qtpy.QtCore import QSignalBlocker, QSize, Qt, Signal
 from qtpy.QtWidgets import QComboBox, QFrame, QHBoxLayout, QToolButton, QVBoxLayout
@@ -9,7 +9,7 @@ from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.graphics.theme import GRID, Theme
 
 SPEEDS = (1, 2, 4, 8, 15, 30, 60)
-"""Steps per second that a film can be played at."""
+"""Playback speeds in steps per second."""
 BUTTONS = (
     ("history.first", "first"),
     ("history.back", "back"),
@@ -87,13 +87,13 @@ class TimelineBar(QFrame):
         self.show_playing(self._playing)
 
     def show_playing(self, playing: bool) -> None:
-        """The button in the middle holds the film while it plays."""
+        """Show the pause icon while playing, else the play icon."""
         self._playing = playing
         icon = icons.icon("pause" if playing else "play", self._theme)
         self.buttons["history.play"].setIcon(icon)
 
     def show_speed(self, speed: int) -> None:
-        """Say which speed is chosen."""
+        """Select a speed."""
         with QSignalBlocker(self.speed):
             self.speed.setCurrentIndex(SPEEDS.index(speed))
 

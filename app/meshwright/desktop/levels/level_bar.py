@@ -1,4 +1,4 @@
-"""The level bar over the canvas: what is to be done, with how many operations, and what is won."""
+"""The level bar over the canvas: goal, operations used, and stars."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from meshwright.puzzles.agent_opponent import Standing
 from meshwright.puzzles.play import LevelPlay
 
 WIDE = 1120
-"""Pixels from which on two lines of text are enough; else there are three."""
+"""Width in pixels from which two lines of text are enough; otherwise there are three."""
 
 
 class LevelFigure(QWidget):
-    """A number after its name."""
+    """A name and a number."""
 
     def __init__(self, title: str, tooltip: str) -> None:
         super().__init__()
@@ -35,14 +35,14 @@ class LevelFigure(QWidget):
 
     @property
     def text(self) -> str:
-        """What the number says."""
+        """The number as text."""
         return str(self._value.text())
 
     def show_value(self, text: str) -> None:
         """Show another number."""
         self._value.setText(text)
         self._value.ensurePolished()
-        self._value.setMinimumWidth(0)  # else the hint is as wide as the widest text so far
+        self._value.setMinimumWidth(0)  # else the size hint is that of the widest text so far
         self._value.setMinimumWidth(self._value.sizeHint().width())
         self.setAccessibleName(f"{self._title}: {text}")
 
@@ -118,7 +118,7 @@ class LevelBar(QFrame):
         self.leave.setIcon(icons.icon("close", theme))
 
     def refresh(self) -> None:
-        """Show what is true now."""
+        """Update the bar from the state of the game."""
         play, level = self._play, self._play.level
         self.setVisible(level is not None)
         if level is None:
@@ -140,12 +140,12 @@ class LevelBar(QFrame):
         self._keep_height()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """A narrow bar has more lines."""
+        """Adapt the number of lines to the width."""
         super().resizeEvent(event)
         self._keep_height()
 
     def _keep_height(self) -> None:
-        """As high in every state, so that the mesh stays where it is."""
+        """Keep the height the same in all states, so that the mesh does not move."""
         lines = 2 if self.width() > WIDE else 3
         self.text.setFixedHeight(lines * self.text.fontMetrics().lineSpacing())
 
@@ -170,7 +170,7 @@ class LevelBar(QFrame):
         )
 
     def _refresh_looks(self, name: str) -> None:
-        """The colours of a level that is done, and of one that is not."""
+        """Update the colours, which depend on whether the level is won."""
         won = self._play.done and self._play.stars > 0
         last = levels.after(name) is None
         self.next.setEnabled(not last)

@@ -1,4 +1,4 @@
-"""Levels in the window: chosen in a dialog, played on the document, told of in a bar."""
+"""Levels: chosen in a dialog, played on the document, shown in a bar."""
 
 from __future__ import annotations
 
@@ -65,10 +65,10 @@ class LevelController(Controller):
         """The level that is being played."""
         return self.play.level
 
-    # What a person asks for
+    # Commands
 
     def choose(self) -> None:
-        """Show all levels, and play the one that is chosen."""
+        """Show the dialog of levels, and start the chosen one."""
         from meshwright.desktop.levels.level_dialog import LevelDialog
 
         try:
@@ -82,7 +82,7 @@ class LevelController(Controller):
             self.open(chosen)
 
     def open(self, level: str | Level) -> None:
-        """Play a level, unless the mesh that is here must not be dropped."""
+        """Start a level, unless the user keeps the current mesh."""
         if self._files.may_drop():
             self._try(lambda: self.play.open(level))
             self._canvas.fit()
@@ -97,7 +97,7 @@ class LevelController(Controller):
         self._canvas.fit()
 
     def answer(self) -> None:
-        """Ask the agent; once it has answered show its way."""
+        """Let the agent solve the level; once it has, show its solution."""
         play = self.play
         asked = play.rival is not None and play.rival.standing is Standing.DONE
         if asked or (play.level is not None and play.level.most):
@@ -106,7 +106,7 @@ class LevelController(Controller):
             self._try(play.ask_agent)
 
     def show_way(self) -> None:
-        """Begin again with the way ahead, and play it."""
+        """Restart the level with a solution as steps to redo, and play them."""
         try:
             said = self.play.show_answer()
         except MeshError as error:
@@ -116,11 +116,11 @@ class LevelController(Controller):
         self._playback.play_or_hold()
 
     def leave(self) -> None:
-        """Go on without the level."""
+        """Leave the level and keep the mesh."""
         self.play.leave()
 
     def refuses(self, action: str) -> bool:
-        """Whether a step is not played in the level; if so it says why."""
+        """Whether the level forbids an action; if so a message says why."""
         why = self.play.refusal(action)
         if why:
             self._status.show_message(why)
@@ -133,7 +133,7 @@ class LevelController(Controller):
         except MeshError as error:
             self._notice.show_message(str(error))
 
-    # What the play says
+    # Following the game
 
     def _on_action_requested(self, action: str) -> None:
         requests = {
@@ -153,7 +153,7 @@ class LevelController(Controller):
 
 
 def _assistant(document: Document) -> Assistant:
-    """The agent on a mesh of its own."""
+    """An assistant on another document."""
     return Assistant(document, Dispatcher())
 
 

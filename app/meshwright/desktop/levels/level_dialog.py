@@ -104,7 +104,7 @@ class LevelDialog(QDialog):
         return line
 
     def _focus_next(self, progress: Progress) -> None:
-        """The first level without a star has the keyboard."""
+        """Give the first level without a star the keyboard focus."""
         fresh = [card for card in self.cards if not progress.best(card.level.name).stars]
         for card in (fresh or self.cards)[:1]:
             card.setFocus()
@@ -115,7 +115,7 @@ class LevelDialog(QDialog):
 
 
 class LevelCard(QPushButton):
-    """One level; a click plays it. ``focused(card)`` is called when it gets the keyboard."""
+    """One level; a click starts it. ``focused(card)`` is called when it gets the keyboard focus."""
 
     def __init__(
         self,
@@ -154,14 +154,14 @@ class LevelCard(QPushButton):
             part.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
 
     def focusInEvent(self, event: QFocusEvent) -> None:  # noqa: N802
-        """Scroll to it."""
+        """Scroll to the card."""
         super().focusInEvent(event)
         self._focused(self)
 
 
 @cache
 def picture(name: str, theme: Theme, ratio: float) -> QPixmap:
-    """The start of a level."""
+    """A picture of the start of a level."""
     from meshwright.graphics.drawing import raster
     from meshwright.graphics.mesh_figure import Look, figure
 

@@ -1,4 +1,4 @@
-"""Stars: how well a level was done, as three stars, filled or hollow."""
+"""A rating of up to three stars."""
 
 import math
 
@@ -36,7 +36,7 @@ class Stars(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:  # noqa: N802
-        """Three stars with a little room between."""
+        """The preferred size."""
         return QSize(MOST_STARS * (self._size + 2), self._size + 2)
 
     def set_theme(self, theme: Theme) -> None:
@@ -45,7 +45,7 @@ class Stars(QWidget):
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint them side by side."""
+        """Paint the stars side by side."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for number in range(MOST_STARS):

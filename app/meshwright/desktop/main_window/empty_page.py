@@ -1,4 +1,4 @@
-"""What is shown in the place of a mesh while there is none."""
+"""The page shown while there is no mesh."""
 
 from collections.abc import Callable
 from functools import partial
@@ -14,7 +14,7 @@ from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
 MOST = 5
-"""Recent files that are offered."""
+"""Number of recent files that are listed."""
 
 
 class EmptyPage(QWidget):

@@ -1,4 +1,4 @@
-"""What stands left of the canvas: the operations, and below them the history."""
+"""The column left of the canvas: operations, and below them the history."""
 
 from qtpy.QtWidgets import QFrame, QVBoxLayout, QWidget
 

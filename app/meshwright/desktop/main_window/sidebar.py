@@ -1,4 +1,4 @@
-"""The panels at the right, one above the other, each under a heading that folds it away."""
+"""The sidebar: panels one above the other, each under a heading that folds it."""
 
 from collections.abc import Sequence
 
@@ -14,9 +14,10 @@ WIDTH = 312
 
 
 class Section(QWidget):
-    """A heading and ``panel`` below it; a click on the heading folds the panel, and that is kept.
+    """A heading with ``panel`` below it; a click on the heading folds the panel, and the setting is
+     saved.
 
-    ``beside`` stands at the right of the heading, and is folded away with the panel.
+    ``beside`` is placed at the right of the heading, and is folded with the panel.
     """
 
     def __init__(
@@ -55,11 +56,11 @@ class Section(QWidget):
 
     @property
     def panel(self) -> QWidget:
-        """What is under the heading."""
+        """The panel under the heading."""
         return self._panel
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw the mark of the fold again."""
+        """Draw the fold icon in the colours of ``theme``."""
         self.heading.setIcon(icons.fold(theme))
 
     def _on_toggled(self, shown: bool) -> None:
@@ -71,7 +72,7 @@ class Section(QWidget):
 
 
 class Sidebar(QFrame):
-    """A column of sections with a thin line between them; it scrolls in a low window."""
+    """A column of sections with thin lines between them, which scrolls if it does not fit."""
 
     def __init__(self, sections: Sequence[Section]) -> None:
         super().__init__()

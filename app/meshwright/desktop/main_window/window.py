@@ -1,4 +1,4 @@
-"""The window: makes the controllers, gives each what it needs, and lays out their widgets."""
+"""The main window: constructs the controllers and lays out their widgets."""
 
 from qtpy.QtCore import QSize, Qt, QTimer, Signal
 from qtpy.QtGui import QCloseEvent, QShowEvent
@@ -54,12 +54,11 @@ from meshwright.puzzles.level import Level
 
 
 class MainWindow(QMainWindow):
-    """A view on ``document``, which alone changes the mesh.
+    """The main window on ``document``.
 
-    The window is the composition root: nothing else refers to it as more than a QWidget. The
-    controllers are made in an order in which each needs only those before it. ``ready`` says that
-    the kernels are loaded already. ``opened()`` follows when the mesh is drawn, shortly after the
-    window itself has appeared.
+    The window is the composition root: no other module imports it, and each controller needs only
+    objects that are constructed before it. ``ready``: the kernels are loaded already. ``opened()``
+    is emitted when the mesh is drawn, shortly after the window itself has appeared.
     """
 
     opened = Signal()
@@ -97,7 +96,7 @@ class MainWindow(QMainWindow):
         self._connections.add(document.replaced, self._on_replaced)
         self._on_replaced()
 
-    # The parts
+    # Composition
 
     def _make_controllers(self) -> None:
         document, assistant, settings = self.document, self.assistant, self.settings
@@ -305,11 +304,11 @@ class MainWindow(QMainWindow):
             for entry in members:
                 menu.addAction(self.actions_by_id[entry.id])
 
-    # Life
+    # Session
 
     def start_session(self) -> None:
-        """For a window that a user has started: restore its position, save every step and offer
-        work that was lost, and show the tour to who has not seen it.
+        """Restore the position, save every step, offer unsaved work, and show the tour at the first
+        start: for a window that a user has started.
         """
         self.preferences.restore_place()
         self.files.watch()
@@ -363,7 +362,7 @@ class MainWindow(QMainWindow):
         super().closeEvent(event)
 
     def createPopupMenu(self) -> QMenu | None:  # noqa: N802
-        """No menu that hides the toolbar."""
+        """Disable Qt's menu that hides the toolbar."""
         return None
 
     # Appearance

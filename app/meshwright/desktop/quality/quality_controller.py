@@ -1,4 +1,4 @@
-"""The dashboard: score and quality of one window, and the ways from a number to its place."""
+"""Panels of score and quality, and navigation from their numbers to vertices and elements."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class QualityController(Controller):
         self.monitor.release()
 
     def go_to_next(self, delta: int) -> None:
-        """Look at the next vertex of irregularity ``delta``, or beyond it at the tally's end."""
+        """Go to the next vertex of irregularity ``delta``, or beyond it for an outermost column."""
         mesh = self._document.mesh
         if mesh is None:
             return
@@ -82,13 +82,13 @@ class QualityController(Controller):
         )
 
     def go_to_inverted(self) -> None:
-        """Look at the next inverted element."""
+        """Go to the next inverted element."""
         summary = self.monitor.summary
         if summary is not None and len(summary.inverted):
             self.go_to_element(_after(summary.inverted, self._element))
 
     def go_to_element(self, element: int) -> None:
-        """Look at an element."""
+        """Go to an element."""
         mesh = self._document.mesh
         if mesh is None or not mesh.live(element * mesh.k):
             return
@@ -105,6 +105,6 @@ class QualityController(Controller):
 
 
 def _after(ids: np.ndarray, last: int) -> int:
-    """The first of ``ids``, ascending, that is larger than ``last``; round to the first."""
+    """The first of the ascending ``ids`` that is larger than ``last``, or else the first."""
     place = int(np.searchsorted(ids, last, side="right"))
     return int(ids[place % len(ids)])

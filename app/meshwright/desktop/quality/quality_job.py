@@ -1,4 +1,4 @@
-"""Quality measured beside the editing: after a pause, on a copy of the mesh, in a thread."""
+"""Measures quality in the background: after a pause, in a thread, on a copy of the mesh."""
 
 import threading
 import time
@@ -13,18 +13,19 @@ from meshwright.document.quality_summary import QualitySummary, summarise
 from meshwright_core import HalfEdgeMesh
 
 PAUSE = 120
-"""Milliseconds from a change to the measuring; more changes meanwhile do not put it off."""
+"""Milliseconds between a change and the measurement; further changes do not delay it."""
 LATE = 400
-"""Milliseconds without a new measure after which the old one is called stale, so that a played run
-does not make the panels flicker."""
+"""Milliseconds after a change until old values are marked as stale; avoids flicker during
+playback.
+"""
 
 
 class QualityMonitor(QObject):
-    """Follows ``document``. ``measured()`` when :attr:`summary` is new or none, ``aged()`` when it
-    has been of an earlier state of the mesh for a while.
+    """Measures the quality of the mesh of ``document`` after changes.
 
-    A change costs the editing a timer's start and nothing else; the copy of the mesh is made in
-    the pause. One thread at a time: a change while it works calls it off.
+    ``measured()`` when :attr:`summary` is new or None; ``aged()`` when it has become stale. A
+    change only starts a timer; the mesh is copied when that has elapsed. There is one thread at a
+    time; a change cancels it.
     """
 
     aged = Signal()
@@ -35,9 +36,9 @@ class QualityMonitor(QObject):
         self._document = document
         self.summary: QualitySummary | None = None
         self.fresh = False
-        """True while :attr:`summary` is that of the mesh as it is."""
+        """Whether :attr:`summary` is that of the current mesh."""
         self.stale = True
-        """True while it is not, and has not been for a while."""
+        """Whether :attr:`summary` has been out of date for a while."""
         self._dispatch = Dispatcher()
         self._thread: threading.Thread | None = None
         self._cancel = threading.Event()
@@ -87,7 +88,7 @@ class QualityMonitor(QObject):
     def _on_pause(self) -> None:
         mesh = self._document.mesh
         if self._thread is not None or mesh is None:
-            return  # the thread that is being called off starts the next one when it is done
+            return  # _finish of the cancelled thread starts the next one
         self._cancel = threading.Event()
         self._thread = threading.Thread(
             target=self._measure, args=(mesh.copy(), self._cancel), name="quality", daemon=True
@@ -103,7 +104,7 @@ class QualityMonitor(QObject):
 
     def _finish(self, summary: QualitySummary | None, cancel: threading.Event) -> None:
         if self._thread is None:
-            return  # released meanwhile
+            return  # released in the meantime
         self._thread.join()
         self._thread = None
         if cancel.is_set():
@@ -116,6 +117,6 @@ class QualityMonitor(QObject):
 
 
 def _give_way(cancel: threading.Event) -> bool:
-    """Whether to stop; lets the window have the interpreter between two parts of the work."""
+    """Whether to stop; releases the interpreter for the window between two parts of the work."""
     time.sleep(0.001)
     return cancel.is_set()

@@ -1,4 +1,4 @@
-"""The quality panel: how the elements spread over a measure of shape, and which is the worst."""
+"""The quality panel: histogram of a quality measure, and the worst element."""
 
 import math
 
@@ -8,7 +8,7 @@ from qtpy.QtWidgets import QButtonGroup, QHBoxLayout, QPushButton, QVBoxLayout, 
 from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.quality.histogram import Histogram
 from meshwright.desktop.quality.quality_job import QualityMonitor
-from meshwright.desktop.widgets.basic import Link
+from meshwright.desktop.widgets.basic import ValueLink
 from meshwright.document.quality_summary import QualitySummary, Spread
 from meshwright.graphics.theme import Theme
 
@@ -30,8 +30,8 @@ class QualityPanel(QWidget):
         self._monitor = monitor
         self._settings = settings
         self.histogram = Histogram(theme)
-        self.worst = Link("Worst element", "The lowest value; click to go to the element")
-        self.measures = QWidget()  # stands beside the heading
+        self.worst = ValueLink("Worst element", "The lowest value; click to go to the element")
+        self.measures = QWidget()  # placed beside the heading
         self.switches: dict[str, QPushButton] = {}
         self._group = QButtonGroup(self)
         for name, word, tooltip, _ in _MEASURES:
@@ -60,7 +60,7 @@ class QualityPanel(QWidget):
         return next(name for name, switch in self.switches.items() if switch.isChecked())
 
     def show_measured(self) -> None:
-        """Show what the monitor knows, pale while it is of an earlier state of the mesh."""
+        """Show the latest measurement, pale while it is stale."""
         summary = self._monitor.summary
         self.histogram.stale = self._monitor.stale
         if summary is None:

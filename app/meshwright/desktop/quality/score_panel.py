@@ -1,12 +1,19 @@
-"""The dashboard: s, s*, the gap between them, irregular vertices, and the counts of the mesh."""
+"""The score panel: s, s*, their difference, irregular vertices, and counts of the mesh."""
 
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from meshwright.desktop.controller import Connections
-from meshwright.desktop.quality.irregularity_chart import Tally
+from meshwright.desktop.quality.irregularity_chart import IrregularityChart
 from meshwright.desktop.quality.quality_job import QualityMonitor
-from meshwright.desktop.widgets.basic import Bar, Fact, Link, Optimal, named, tabular
+from meshwright.desktop.widgets.basic import (
+    OptimumBadge,
+    ShareBar,
+    ValueLine,
+    ValueLink,
+    named,
+    tabular,
+)
 from meshwright.document.document import Document
 from meshwright.graphics.theme import GRID, Theme
 
@@ -15,10 +22,11 @@ _STALE = "\u2026"
 
 
 class ScorePanel(QWidget):
-    """Follows the document's score at once, and what ``monitor`` measures when it is there.
+    """Shows the score of ``document`` at once, and measurements of ``monitor`` when they are
+     available.
 
-    ``delta_chosen(delta)`` when a column of the tally is clicked, ``inverted_chosen()`` when the
-    count of inverted elements is.
+    ``delta_chosen(delta)`` when a column of the chart is clicked, ``inverted_chosen()`` when the
+    number of inverted elements is.
     """
 
     delta_chosen = Signal(int)
@@ -34,15 +42,17 @@ class ScorePanel(QWidget):
         self.goal = named("", "Value")
         self.goal.setToolTip("s*: no connectivity can have a lower score")
         self.gap = named("", "Label")
-        self.bar = Bar(theme)
+        self.bar = ShareBar(theme)
         self.bar.setToolTip("Progress from the start score to the optimum")
-        self.optimal = Optimal(theme)
-        self.irregular = Fact("Irregular vertices", "Vertices whose degree is not the desired one")
-        self.tally = Tally(theme)
-        self.gained = Fact("Normalised return", "(start \u2212 best) / (start \u2212 optimum)")
-        self.way = Fact("Start and best", "Score at the start, and the lowest score since")
-        self.elements = Fact("Elements", "Elements; quads form blocks, each a regular grid")
-        self.inverted = Link("Inverted elements", "Reversed orientation; click to go to them")
+        self.optimal = OptimumBadge(theme)
+        self.irregular = ValueLine(
+            "Irregular vertices", "Vertices whose degree is not the desired one"
+        )
+        self.tally = IrregularityChart(theme)
+        self.gained = ValueLine("Normalised return", "(start \u2212 best) / (start \u2212 optimum)")
+        self.way = ValueLine("Start and best", "Score at the start, and the lowest score since")
+        self.elements = ValueLine("Elements", "Elements; quads form blocks, each a regular grid")
+        self.inverted = ValueLink("Inverted elements", "Reversed orientation; click to go to them")
         self._arrange()
         self.tally.chosen.connect(self.delta_chosen)
         self.inverted.clicked.connect(self.inverted_chosen)
@@ -114,7 +124,7 @@ class ScorePanel(QWidget):
         self.tally.show_deltas(mesh.irregularity())
 
     def _on_measured(self) -> None:
-        """Blocks and inverted elements; an ellipsis while they are not yet of this mesh."""
+        """Show blocks and inverted elements; an ellipsis while they are being measured."""
         mesh, summary = self._document.mesh, self._monitor.summary
         if mesh is None:
             self.elements.text = _NONE

@@ -1,4 +1,4 @@
-"""The user's actions as QActions by id: what menus, toolbar, panels and palette share."""
+"""The user's actions as QActions by id, for menus, toolbar, panels and palette."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def pen(colour: str, width: float, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -
 
 def inside(rows: np.ndarray, viewport: Viewport, slack: float = 24.0) -> np.ndarray:
     """The rows of ``rows`` (n, m) whose first two columns, in pixels, lie in the view enlarged by
-     ``slack``.
+    ``slack``.
     """
     x, y = rows[:, 0], rows[:, 1]
     width, height = viewport.size

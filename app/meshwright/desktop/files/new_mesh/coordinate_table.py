@@ -1,4 +1,4 @@
-"""The table of a sketch's coordinates, typed and in step with the drawing."""
+"""The table of a sketch's coordinates, which can be edited and follows the drawing."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ NEW = "New"
 NOT_A_NUMBER = "{text!r} is not a number."
 
 
-class Coordinates(QTableWidget):
+class CoordinateTable(QTableWidget):
     """A view on a :class:`meshwright.sources.polygon_sketch.Sketch`: one row for each corner, one
     more while a loop is
     open, to type the next corner in. ``picked(loop, corner)``; ``told(sentence)``.
     """
 
     picked = Signal(int, int)
-    told = Signal(str)
+    message = Signal(str)
 
     def __init__(self, sketch: Sketch, parent: QWidget | None = None) -> None:
         super().__init__(0, 3, parent)
@@ -55,7 +55,7 @@ class Coordinates(QTableWidget):
         self._rows: list[tuple[int, int]] = []
         self._began: list[float | None] = [None, None]
         sketch.changed.connect(self._fill)
-        # later: while a cell is being edited its table must not change
+        # later: the table must not change while a cell is being edited
         self.cellChanged.connect(self._on_typed, Qt.ConnectionType.QueuedConnection)
         self.currentCellChanged.connect(self._on_current_changed)
         self._fill()
@@ -65,7 +65,7 @@ class Coordinates(QTableWidget):
         self.sketch.changed.disconnect(self._fill)
 
     def select(self, loop: int, corner: int) -> None:
-        """Mark a corner's row."""
+        """Select the row of a corner."""
         if (loop, corner) in self._rows:
             with QSignalBlocker(self):
                 self.setCurrentCell(self._rows.index((loop, corner)), 1)
@@ -103,10 +103,10 @@ class Coordinates(QTableWidget):
         number = _number(text)
         if number is None:
             if text:
-                self.told.emit(NOT_A_NUMBER.format(text=text[:20]))
+                self.message.emit(NOT_A_NUMBER.format(text=text[:20]))
             self._fill()
             return
-        self.told.emit("")
+        self.message.emit("")
         if row < len(self._rows):
             loop, corner = self._rows[row]
             self.sketch.set(loop, corner, _with(self._place(loop, corner), axis, number))
@@ -142,7 +142,7 @@ def _text(number: float) -> str:
 
 
 def _number(text: str) -> float | None:
-    """A number, written with a point or a comma; None if it is none."""
+    """The number in ``text``, with decimal point or comma; None if it is not a number."""
     try:
         number = float(text.replace("\u2212", "-").replace(",", "."))
     except ValueError:

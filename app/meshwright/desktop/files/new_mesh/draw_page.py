@@ -8,7 +8,7 @@ from qtpy.QtCore import Qt
 from qtpy.QtGui import QKeySequence, QShortcut
 from qtpy.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QVBoxLayout
 
-from meshwright.desktop.files.new_mesh.coordinate_table import Coordinates
+from meshwright.desktop.files.new_mesh.coordinate_table import CoordinateTable
 from meshwright.desktop.files.new_mesh.drawing_area import DrawingArea
 from meshwright.desktop.files.new_mesh.page_base import Page
 from meshwright.desktop.widgets import icons
@@ -26,7 +26,7 @@ class DrawPage(Page):
         super().__init__()
         self.sketch = Sketch()
         self.area = DrawingArea(self.sketch, theme)
-        self.table = Coordinates(self.sketch)
+        self.table = CoordinateTable(self.sketch)
         self.hole = _button("Add hole", "Start a hole: click its corners inside the outline")
         self.undo = _button("", "Undo the last change (Ctrl+Z)")
         self.redo = _button("", "Redo the change that was undone last (Ctrl+Shift+Z)")
@@ -77,8 +77,8 @@ class DrawPage(Page):
 
     def _connect(self) -> None:
         self.sketch.changed.connect(self._on_sketch_changed)
-        self.area.told.connect(self.told.emit)
-        self.table.told.connect(self.told.emit)
+        self.area.message.connect(self.message.emit)
+        self.table.message.connect(self.message.emit)
         self.area.picked.connect(self.table.select)
         self.table.picked.connect(self._on_row_picked)
         self.hole.clicked.connect(self._on_hole)
@@ -105,16 +105,16 @@ class DrawPage(Page):
 
     @property
     def words(self) -> str:
-        """What is wrong, or what comes next."""
+        """What is wrong with the polygon, or what to do next."""
         return self.sketch.words
 
     @property
     def is_wrong(self) -> bool:
-        """Whether something is crossed, outside, or without area."""
+        """Whether loops cross, lie outside or have no area."""
         return self.sketch.problem is not None
 
     def fill(self) -> None:
-        """Take the keys."""
+        """Give the drawing area the keyboard focus."""
         self.area.setFocus()
 
     def set_theme(self, theme: Theme) -> None:

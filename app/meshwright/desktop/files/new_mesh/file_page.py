@@ -1,4 +1,4 @@
-"""The page that takes a mesh file or the file of a shape."""
+"""The page that opens a mesh file or a geometry file."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SHAPE_WORDS = "The shape in the file is meshed."
 
 
 class FilePage(Page):
-    """A file, and how its corners and curves are read."""
+    """A file, and options for reading its corners and curves."""
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -106,7 +106,7 @@ class FilePage(Page):
 
     @property
     def source(self) -> dict[str, Any] | None:
-        """The file, and how to read it."""
+        """The file and the options for reading it."""
         if not self._asked:
             return None
         return {
@@ -117,12 +117,12 @@ class FilePage(Page):
 
     @property
     def words(self) -> str:
-        """What there is to do."""
+        """A request to choose a file; empty once there is one."""
         return "" if self._asked else NO_FILE
 
     @property
     def takes_settings(self) -> bool:
-        """A mesh file has its elements already."""
+        """False for mesh files, which are opened unchanged."""
         return not self._asked or drawings.is_geometry(self._asked)
 
     def take(self, path: str) -> None:
@@ -159,18 +159,18 @@ class FilePage(Page):
             self.take(path)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
-        """Take one file."""
+        """Accept the drag of one file."""
         urls = event.mimeData().urls()
         if len(urls) == 1 and urls[0].isLocalFile():
             event.acceptProposedAction()
             self._light(True)
 
     def dragLeaveEvent(self, event: QDragLeaveEvent) -> None:  # noqa: N802
-        """It went elsewhere."""
+        """Reset the look of the drop zone."""
         self._light(False)
 
     def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802
-        """Read what was dropped."""
+        """Read the dropped file."""
         self._light(False)
         self.take(event.mimeData().urls()[0].toLocalFile())
 

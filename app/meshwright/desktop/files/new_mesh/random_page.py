@@ -1,4 +1,4 @@
-"""The page of random shapes: pictures of several seeds, of which one is taken."""
+"""The page of random shapes: pictures of several seeds to choose from."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from meshwright_core.domains import gallery, random_parts
 from meshwright_core.domains.domain import Domain
 
 SHOWN = 20
-"""Seeds that are shown at a time."""
+"""Number of seeds that are shown at a time."""
 FEWEST, MOST = 3, 60
 FEWEST_OF_PART = 4
 LAST_SEED = 999_999_999
@@ -89,7 +89,7 @@ class RandomPage(Page):
             self._draw()
 
     def roll(self) -> None:
-        """Show other seeds, and take the first of them."""
+        """Show other seeds, and choose the first of them."""
         self._draw_from((self.seed.value() // SHOWN + 1) * SHOWN % LAST_SEED)
         self.seed.setValue(int(self.pictures.key))
 
@@ -101,7 +101,7 @@ class RandomPage(Page):
             self._draw()
 
     def release(self) -> None:
-        """Draw nothing more."""
+        """Stop drawing pictures."""
         self._pause.stop()
 
     def _draw(self) -> None:
@@ -115,7 +115,7 @@ class RandomPage(Page):
             self._mark()
 
     def _mark(self) -> None:
-        """Mark the picture of the seed, or the first."""
+        """Select the picture of the seed, or the first one."""
         self.pictures.setCurrentRow(max(0, self.seed.value() - self._first()))
 
     def _first(self) -> int:
