@@ -1,4 +1,4 @@
-"""The command palette: found by letters, driven by keys, honest about what is not possible."""
+"""The command palette: matching, keys, and reasons of disabled actions."""
 
 from driving import WAIT, find, point_at, press
 from qtpy.QtCore import Qt
@@ -19,7 +19,7 @@ def open_palette(qtbot, window):
     return palette
 
 
-def test_it_lists_all_actions_of_the_menus_with_their_keys(qtbot, open_window, star):
+def test_palette_lists_all_menu_actions_with_their_shortcuts(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
     listed = [a for _, members in window.actions_by_id.menus(window.document.kind) for a in members]
@@ -30,7 +30,7 @@ def test_it_lists_all_actions_of_the_menus_with_their_keys(qtbot, open_window, s
     assert not any(entry.id.startswith("tri.") for entry in palette.shown)
 
 
-def test_a_few_letters_and_return_do_it(qtbot, open_window, star):
+def test_typed_letters_and_return_run_an_action(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
     qtbot.keyClicks(palette.field, "dark")
@@ -41,7 +41,7 @@ def test_a_few_letters_and_return_do_it(qtbot, open_window, star):
     assert window.canvas.plotter.hasFocus()
 
 
-def test_an_operation_is_done_where_the_mouse_pointed_before(qtbot, open_window, star):
+def test_operation_from_palette_applies_to_previously_hovered_half_edge(qtbot, open_window, star):
     window = open_window(star)
     halfedge = find(star, "flip_left")
     point_at(qtbot, window, halfedge)
@@ -52,7 +52,7 @@ def test_an_operation_is_done_where_the_mouse_pointed_before(qtbot, open_window,
     assert window.document.history.last.halfedge == halfedge
 
 
-def test_what_is_not_possible_tells_why_and_stays(qtbot, open_window, star):
+def test_disabled_action_shows_its_reason_and_keeps_palette_open(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
     qtbot.keyClicks(palette.field, "undo")
@@ -61,7 +61,7 @@ def test_what_is_not_possible_tells_why_and_stays(qtbot, open_window, star):
     assert palette.isVisible()
 
 
-def test_arrows_walk_round_and_escape_gives_the_keyboard_back(qtbot, open_window, star):
+def test_arrows_wrap_around_and_escape_restores_the_focus(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
     qtbot.keyClick(palette.field, Qt.Key.Key_Up)
@@ -75,7 +75,7 @@ def test_arrows_walk_round_and_escape_gives_the_keyboard_back(qtbot, open_window
     assert QApplication.focusWidget() is window.canvas.plotter
 
 
-def test_typing_does_not_edit_the_mesh(qtbot, open_window, star):
+def test_typing_in_the_palette_does_not_edit_the_mesh(qtbot, open_window, star):
     window = open_window(star)
     point_at(qtbot, window, find(star, "flip_left"))
     palette = open_palette(qtbot, window)
@@ -85,7 +85,7 @@ def test_typing_does_not_edit_the_mesh(qtbot, open_window, star):
     assert palette.nothing.isVisible()
 
 
-def test_a_click_takes_a_row_and_a_click_elsewhere_closes(qtbot, open_window, star):
+def test_click_runs_a_row_and_click_elsewhere_closes_the_palette(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
     qtbot.keyClicks(palette.field, "tour")
@@ -98,7 +98,7 @@ def test_a_click_takes_a_row_and_a_click_elsewhere_closes(qtbot, open_window, st
     qtbot.waitUntil(lambda: window.help.palette is None, timeout=WAIT)
 
 
-def test_the_same_key_closes_it_and_so_does_the_window(qtbot, open_window, star):
+def test_shortcut_and_closing_the_window_close_the_palette(qtbot, open_window, star):
     window = open_window(star)
     palette = open_palette(qtbot, window)
     qtbot.keyClick(palette.field, Qt.Key.Key_K, CONTROL)
@@ -108,7 +108,7 @@ def test_the_same_key_closes_it_and_so_does_the_window(qtbot, open_window, star)
     assert window.help.palette is None
 
 
-def test_every_action_that_can_be_impossible_has_its_reason():
+def test_every_action_that_can_be_disabled_has_a_reason():
     always = Action.__dataclass_fields__["enabled"].default
     silent = [
         action.id
@@ -121,7 +121,7 @@ def test_every_action_that_can_be_impossible_has_its_reason():
     assert all(action.requirement.endswith(".") for action in registry.ACTIONS)
 
 
-def test_matches_in_the_title_come_first_and_the_possible_before_the_impossible():
+def test_title_matches_rank_first_and_enabled_before_disabled():
     entries = [
         PaletteEntry("a", "Fit", "View"),
         PaletteEntry("b", "First step", "History", reason="No."),

@@ -1,11 +1,11 @@
-"""What the window needs before it is there, measured in a process of its own."""
+"""What is imported and compiled before the first paint, measured in a separate process."""
 
 from meshwright.benchmarks import desktop
 from meshwright.benchmarks.desktop.display import display
 from meshwright_core.core import compilation
 
 
-def test_the_window_is_there_before_torch_and_kernels():
+def test_first_paint_needs_neither_torch_nor_kernels():
     compilation.warm()
     with display() as environment:
         started = desktop._probe("start", environment)

@@ -1,4 +1,4 @@
-"""The dashboard: what its numbers say, and the ways from a number to its place."""
+"""The panels of score and quality, and navigation from their numbers."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_numbers_are_those_of_the_mesh(qtbot, open_window, star):
     assert panel.tally.columns == [-2, -1, 1, 2]
 
 
-def test_an_operation_changes_them(qtbot, open_window, star):
+def test_operation_updates_score_and_quality(qtbot, open_window, star):
     window = open_window(star)
     measured(qtbot, window)
     halfedge = find(star, "flip_left")
@@ -71,7 +71,7 @@ def test_without_a_mesh_there_are_dashes(qtbot, open_window):
     assert window.quality.quality.worst.text == "\u2013"
 
 
-def test_inverted_elements_are_counted_and_lead_to_their_place(qtbot, open_window, star):
+def test_click_on_inverted_count_goes_to_the_element(qtbot, open_window, star):
     window = open_window(star)
     link = measured(qtbot, window).score.inverted
     assert not link.button.isEnabled()
@@ -89,7 +89,7 @@ def test_inverted_elements_are_counted_and_lead_to_their_place(qtbot, open_windo
         assert str(element) in window.status.message
 
 
-def test_the_worst_element_is_a_click_away_in_either_measure(qtbot, open_window, star):
+def test_click_on_worst_value_goes_to_the_element(qtbot, open_window, star):
     window = open_window(star)
     panel = measured(qtbot, window).quality
     window.sidebar.reveal(panel)
@@ -105,7 +105,7 @@ def test_the_worst_element_is_a_click_away_in_either_measure(qtbot, open_window,
     assert panel.histogram.words(panel.histogram.width() - 1.0).startswith("85.5\u00b0 to 90\u00b0")
 
 
-def test_a_click_on_a_column_walks_through_its_vertices(qtbot, open_window, star):
+def test_clicks_on_a_column_cycle_through_its_vertices(qtbot, open_window, star):
     window = open_window(star)
     tally = window.quality.score.tally
     vertices = np.flatnonzero(star.irregularity() == -1)
@@ -121,7 +121,7 @@ def test_a_click_on_a_column_walks_through_its_vertices(qtbot, open_window, star
     assert window.status.message == said
 
 
-def test_the_outermost_columns_hold_all_that_is_beyond(qtbot, open_window, star):
+def test_outermost_columns_include_larger_irregularities(qtbot, open_window, star):
     window = open_window(star)
     tally = window.quality.score.tally
     tally.show_deltas(np.array([0, 9, 4, -7, 1, 1]))
@@ -130,14 +130,14 @@ def test_the_outermost_columns_hold_all_that_is_beyond(qtbot, open_window, star)
     assert "\u2265+4: 2" in tally.accessibleDescription()
 
 
-def test_at_the_optimum_it_says_that_this_is_a_proof(qtbot, open_window, strip):
+def test_optimum_badge_is_shown_at_the_optimum(qtbot, open_window, strip):
     window = open_window(strip)
     assert strip.score == strip.optimum
     assert window.quality.score.optimal.isVisible()
     assert not window.quality.score.bar.isVisible()
 
 
-def test_quick_edits_are_measured_once_and_a_closed_window_leaves_no_thread(qtbot, open_window):
+def test_quick_edits_are_measured_once_and_the_thread_ends_with_the_window(qtbot, open_window):
     x, y = np.meshgrid(np.arange(151.0), np.arange(151.0))
     corner = (np.arange(150)[:, None] * 151 + np.arange(150)).ravel()
     quads = np.column_stack((corner, corner + 1, corner + 152, corner + 151))
@@ -157,7 +157,7 @@ def test_quick_edits_are_measured_once_and_a_closed_window_leaves_no_thread(qtbo
     assert monitor._thread is None
 
 
-def test_sections_fold_away_and_that_is_kept(qtbot, open_window, star):
+def test_folded_sections_are_remembered(qtbot, open_window, star):
     window = open_window(star)
     section = window.sidebar.sections[window.agent_panel]
     assert window.agent_panel.isVisible()
@@ -175,7 +175,7 @@ def test_large_counts_are_short(number, text):
     assert short(number) == text
 
 
-def test_the_marks_say_in_words_what_is_under_the_mouse(qtbot, open_window, star):
+def test_tooltips_describe_the_column_under_the_mouse(qtbot, open_window, star):
     window = open_window(star)
     histogram = measured(qtbot, window).quality.histogram
     assert histogram.words(2.0) == "0 inverted elements"

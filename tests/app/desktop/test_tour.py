@@ -1,4 +1,4 @@
-"""The tour: five callouts that follow what a person does and leave the keyboard to the canvas."""
+"""The tour: five callouts that confirm the user's actions and leave the focus with the canvas."""
 
 import pytest
 from driving import WAIT, find, point_at, press
@@ -11,11 +11,11 @@ def click(qtbot, button):
     qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
 
 
-def test_the_window_alone_shows_no_tour(open_window, star):
+def test_unguided_window_shows_no_tour(open_window, star):
     assert open_window(star).help.tour is None
 
 
-def test_it_is_shown_once_and_again_when_asked_for(qtbot, open_window, star):
+def test_tour_is_shown_once_and_on_request(qtbot, open_window, star):
     window = open_window(star)
     window.help.welcome()
     callout = window.help.tour.callout
@@ -29,7 +29,7 @@ def test_it_is_shown_once_and_again_when_asked_for(qtbot, open_window, star):
     assert window.help.tour.at == 0
 
 
-def test_without_a_mesh_it_waits_for_one(qtbot, open_window, star):
+def test_tour_waits_for_a_mesh(qtbot, open_window, star):
     window = open_window()
     window.help.welcome()
     assert window.help.tour is None
@@ -38,9 +38,7 @@ def test_without_a_mesh_it_waits_for_one(qtbot, open_window, star):
 
 
 @pytest.mark.parametrize("size", [(880, 560), (1280, 800), (1900, 1000)])
-def test_five_steps_each_inside_the_window_and_beside_what_they_show(
-    qtbot, open_window, star, size
-):
+def test_each_callout_is_inside_the_window_beside_its_target(qtbot, open_window, star, size):
     window = open_window(star)
     window.resize(*size)
     qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
@@ -59,7 +57,7 @@ def test_five_steps_each_inside_the_window_and_beside_what_they_show(
     assert window.help.tour is None
 
 
-def test_it_sees_what_the_person_does_and_takes_no_keys(qtbot, open_window, star):
+def test_tour_confirms_actions_and_leaves_the_focus_with_the_canvas(qtbot, open_window, star):
     window = open_window(star)
     window.help.show_tour()
     callout = window.help.tour.callout
@@ -79,7 +77,7 @@ def test_it_sees_what_the_person_does_and_takes_no_keys(qtbot, open_window, star
     assert window.canvas.plotter.hasFocus()
 
 
-def test_it_unfolds_what_it_points_at(qtbot, open_window, star):
+def test_tour_unfolds_the_panel_it_points_at(qtbot, open_window, star):
     window = open_window(star)
     window.sidebar.sections[window.agent_panel].heading.setChecked(False)
     window.help.show_tour()
@@ -88,7 +86,7 @@ def test_it_unfolds_what_it_points_at(qtbot, open_window, star):
     assert window.agent_panel.isVisible()
 
 
-def test_closing_the_window_ends_it(open_window, star):
+def test_closing_the_window_ends_the_tour(open_window, star):
     window = open_window(star)
     window.help.show_tour()
     window.close()
@@ -96,7 +94,7 @@ def test_closing_the_window_ends_it(open_window, star):
     assert window.settings.toured
 
 
-def test_what_is_hidden_is_not_pointed_at(open_window, star):
+def test_tour_does_not_point_at_hidden_widgets(open_window, star):
     window = open_window(star)
     last = STEPS[-1]
     timeline = last.target(window.help.places)

@@ -1,4 +1,4 @@
-"""The window, driven by real mouse and key events under a virtual screen."""
+"""The window, driven by real mouse and key events."""
 
 import subprocess
 import sys
@@ -30,7 +30,7 @@ def test_hover_finds_every_half_edge(qtbot, open_window, kind, star, triangles):
     assert window.status.halfedge == ""
 
 
-def test_a_key_does_the_operation_and_ctrl_z_undoes_it(qtbot, open_window, star):
+def test_key_applies_an_operation_and_ctrl_z_undoes_it(qtbot, open_window, star):
     window = open_window(star)
     elements = star.elements()
     halfedge = find(star, "flip_left")
@@ -79,14 +79,14 @@ def test_a_refused_key_shows_the_reason(qtbot, open_window, star):
     assert window.document.history.cursor == 0
 
 
-def test_a_key_beside_the_mesh_says_what_to_do(qtbot, open_window, star):
+def test_operation_key_without_a_half_edge_shows_a_message(qtbot, open_window, star):
     window = open_window(star)
     qtbot.mouseMove(window.canvas.plotter, QPoint(4, 4))
     press(qtbot, window, Qt.Key.Key_F)
     assert window.status.message == POINT_FIRST
 
 
-def test_a_click_offers_all_operations_with_reasons(qtbot, open_window, star):
+def test_click_opens_the_menu_with_reasons(qtbot, open_window, star):
     window = open_window(star)
     boundary = next(h for h in range(star.k * star.n_elements) if star.twin(h) < 0)
     point_at(qtbot, window, boundary)
@@ -125,7 +125,7 @@ def test_the_menu_by_keyboard(qtbot, open_window, star):
         qtbot.waitUntil(lambda: not window.editing.menu, timeout=WAIT)
 
 
-def test_hover_over_an_irregular_vertex_tells_its_degree(qtbot, open_window, star):
+def test_hover_over_an_irregular_vertex_shows_its_degree(qtbot, open_window, star):
     window = open_window(star)
     vertex = int(np.flatnonzero(star.irregularity() == 2)[0])
     qtbot.mouseMove(window.canvas.plotter, pixel(window, star.points[vertex]) + QPoint(2, 2))
@@ -199,7 +199,7 @@ def test_escape_stops_and_an_edit_takes_over(qtbot, open_window, star):
     assert window.document.can_redo
 
 
-def test_the_window_closes_in_mid_run(qtbot, open_window, star):
+def test_window_closes_during_a_run(qtbot, open_window, star):
     window = open_window(star, bad_steps=500, longest=500)
     window.assistant.search()
     qtbot.waitUntil(lambda: window.document.history.cursor >= 1, timeout=WAIT)
@@ -207,7 +207,7 @@ def test_the_window_closes_in_mid_run(qtbot, open_window, star):
     assert not window.assistant.running
 
 
-def test_before_the_kernels_are_ready_operations_say_so(qtbot, open_window, star, monkeypatch):
+def test_operations_show_a_message_until_kernels_are_ready(qtbot, open_window, star, monkeypatch):
     monkeypatch.setattr(
         "meshwright.desktop.application.kernel_warmup.Warmup.start", lambda self: None
     )
@@ -231,13 +231,13 @@ def test_before_the_kernels_are_ready_operations_say_so(qtbot, open_window, star
     assert window.document.history.cursor == 1
 
 
-def test_the_kernels_are_made_ready_behind_the_window(qtbot, open_window, star):
+def test_kernels_are_loaded_after_the_window_opens(qtbot, open_window, star):
     window = open_window(star, ready=False)
     qtbot.waitUntil(lambda: window.readiness.editing, timeout=60_000)
     assert window.status.preparation == ""
 
 
-def test_a_wrong_file_is_one_sentence(qtbot, open_window, star, tmp_path):
+def test_invalid_file_is_reported_in_one_sentence(qtbot, open_window, star, tmp_path):
     window = open_window(star)
     broken = tmp_path / "broken.vtk"
     broken.write_text("this is no mesh")
@@ -299,7 +299,7 @@ def test_themes(qtbot, open_window, star):
     assert window.theme.name == "light"
 
 
-def test_the_mesh_is_seen(qtbot, open_window, star):
+def test_the_mesh_is_drawn(qtbot, open_window, star):
     window = open_window(star)
 
     def is_painted(point, wanted):
@@ -316,7 +316,7 @@ def test_the_mesh_is_seen(qtbot, open_window, star):
     assert is_painted(spot, window.theme.plus)
 
 
-def test_qt_calls_do_not_eat_references_of_none(qtbot):
+def test_qt_calls_keep_the_reference_count_of_none(qtbot):
     """A release of PySide6 lost one reference of None per call and died after some thousands."""
     code = (
         "from PySide6.QtWidgets import QApplication, QWidget\n"

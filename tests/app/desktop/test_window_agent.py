@@ -22,7 +22,7 @@ def middle_of(box) -> QPoint:
     return box.center().toPoint()
 
 
-def test_hints_are_shown_as_ghosts_badges_and_rows(qtbot, open_window, star):
+def test_hints_are_shown_as_previews_badges_and_rows(qtbot, open_window, star):
     window = open_window(star)
     hints = hinted(qtbot, window)
     layer = window.hints.layer
@@ -39,7 +39,7 @@ def test_hints_are_shown_as_ghosts_badges_and_rows(qtbot, open_window, star):
     assert not window.hints.shown and not window.agent_panel.hints.isVisibleTo(window)
 
 
-def test_a_key_takes_a_hint_and_the_next_ones_come(qtbot, open_window, star):
+def test_key_applies_a_hint_and_requests_the_next(qtbot, open_window, star):
     window = open_window(star)
     second = hinted(qtbot, window)[1]
     press(qtbot, window, Qt.Key.Key_2)
@@ -51,7 +51,7 @@ def test_a_key_takes_a_hint_and_the_next_ones_come(qtbot, open_window, star):
     assert not window.actions_by_id["agent.take_1"].isEnabled()
 
 
-def test_a_click_on_a_badge_takes_its_hint(qtbot, open_window, star):
+def test_click_on_a_badge_applies_its_hint(qtbot, open_window, star):
     window = open_window(star)
     hints = hinted(qtbot, window)
     layer = window.hints.layer
@@ -64,14 +64,14 @@ def test_a_click_on_a_badge_takes_its_hint(qtbot, open_window, star):
     assert window.editing.menu is None
 
 
-def test_a_row_of_the_panel_takes_its_hint(qtbot, open_window, star):
+def test_click_on_a_panel_row_applies_its_hint(qtbot, open_window, star):
     window = open_window(star)
     hints = hinted(qtbot, window)
     qtbot.mouseClick(window.agent_panel.hints.rows[1], Qt.MouseButton.LeftButton)
     assert window.document.history.last.halfedge == hints[1].ghost.halfedge
 
 
-def test_hints_go_when_the_mesh_changes_and_with_the_view(qtbot, open_window, star):
+def test_hints_disappear_when_the_mesh_changes(qtbot, open_window, star):
     window = open_window(star)
     hinted(qtbot, window)
     before = [box.center() for box in window.hints.layer.badges.boxes]
@@ -82,7 +82,7 @@ def test_hints_go_when_the_mesh_changes_and_with_the_view(qtbot, open_window, st
     assert not window.hints.shown and not window.hints.layer.hints
 
 
-def test_watching_shows_each_decision_before_it_is_taken(qtbot, open_window, star):
+def test_watching_shows_each_decision_in_advance(qtbot, open_window, star):
     window = open_window(star)
     press(qtbot, window, Qt.Key.Key_W)
     field = window.agent.field
@@ -95,12 +95,12 @@ def test_watching_shows_each_decision_before_it_is_taken(qtbot, open_window, sta
         qtbot.waitUntil(lambda n=count: window.document.history.cursor == n, timeout=WAIT)
         assert window.document.history.last.halfedge == wanted.halfedge
         qtbot.waitUntil(lambda: field.sight is not None, timeout=WAIT)
-    assert window.grab().width() == window.width()  # it paints
+    assert window.grab().width() == window.width()  # paint it
     press(qtbot, window, Qt.Key.Key_W)
     assert field.sight is None and not window.agent_panel.watch.isChecked()
 
 
-def test_the_region_button_wants_a_selection_and_searches_in_it(qtbot, open_window, star):
+def test_region_button_needs_a_selection_and_searches_in_it(qtbot, open_window, star):
     window = open_window(star)
     button = window.agent_panel.region
     assert not button.isEnabled()
@@ -126,7 +126,7 @@ def test_a_finished_region_is_still_selected(qtbot, open_window, star):
     assert "The region is finished" in window.status.message
 
 
-def test_numbers_of_the_panel_are_used_and_kept(qtbot, open_window, star):
+def test_numbers_of_the_panel_are_used_and_stored(qtbot, open_window, star):
     window = open_window(star)
     panel, efforts = window.agent_panel, []
     window.assistant.search = efforts.append
@@ -163,7 +163,7 @@ def policy_file(path, kind):
     return str(path)
 
 
-def test_a_policy_file_is_chosen_and_offered_again(qtbot, open_window, star, tmp_path, monkeypatch):
+def test_policy_file_is_loaded_and_remembered(qtbot, open_window, star, tmp_path, monkeypatch):
     path = policy_file(tmp_path / "mine.safetensors", "quad")
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (path, ""))
     window = open_window(star)
@@ -178,7 +178,7 @@ def test_a_policy_file_is_chosen_and_offered_again(qtbot, open_window, star, tmp
 
 
 @pytest.mark.parametrize("kind", ["tri", "", None])
-def test_a_wrong_policy_file_is_one_sentence(open_window, star, tmp_path, kind):
+def test_invalid_policy_file_is_reported_in_one_sentence(open_window, star, tmp_path, kind):
     window = open_window(star)
     path = tmp_path / "other.safetensors"
     if kind is not None:

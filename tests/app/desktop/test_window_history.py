@@ -1,4 +1,4 @@
-"""History list, timeline, film and export, by real mouse and key events."""
+"""History list, timeline, playback and export, by real mouse and key events."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def walked(qtbot, open_window, star, greedy):
 
 
 def settle(qtbot, window) -> None:
-    """Wait until list and curve have followed."""
+    """Wait until list and curve are up to date."""
     history = window.document.history
     qtbot.waitUntil(
         lambda: (
@@ -75,7 +75,7 @@ def test_a_click_on_a_line_goes_there_and_back(qtbot, walked):
     qtbot.waitUntil(lambda: document.history.cursor == len(document.history) - 2, timeout=WAIT)
 
 
-def test_lines_say_what_who_and_how_much(walked):
+def test_list_lines_state_title_author_and_change(walked):
     model = walked.playback.panel.model
     words = [model.data(model.index(place)) for place in range(model.rowCount())]
     assert words[0] == "Start, s 12"
@@ -130,7 +130,7 @@ def test_wheel_and_keys_on_the_curve(qtbot, walked):
     qtbot.waitUntil(lambda: document.history.cursor == last - 1, timeout=WAIT)
 
 
-def test_keys_walk_from_the_canvas(qtbot, walked):
+def test_history_keys_work_on_the_canvas(qtbot, walked):
     window, document = walked, walked.document
     last = len(document.history)
     best = min(range(1, last + 1), key=lambda state: (document.history[state - 1].after, state))
@@ -146,13 +146,13 @@ def test_keys_walk_from_the_canvas(qtbot, walked):
         assert document.history.cursor == wanted
 
 
-def test_the_film_plays_at_its_speed_and_is_held(qtbot, walked):
+def test_playback_follows_the_speed_and_can_be_paused(qtbot, walked):
     window, document, film = walked, walked.document, walked.playback
     film.timeline.speed.setCurrentIndex(film.timeline.speed.count() - 1)
     assert window.settings.number("film/speed", 0) == 60
     qtbot.mouseClick(film.timeline.buttons["history.play"], LEFT)
     assert film.playing
-    assert document.history.cursor <= 1  # it was at its end: it begins again
+    assert document.history.cursor <= 1  # it was at its end, so playback restarts
     qtbot.waitUntil(lambda: not film.playing, timeout=WAIT)
     assert document.history.cursor == len(document.history)
     film.timeline.speed.setCurrentIndex(0)
@@ -162,11 +162,11 @@ def test_the_film_plays_at_its_speed_and_is_held(qtbot, walked):
     assert not film.playing
     press(qtbot, window, Qt.Key.Key_Space, SHIFT)
     press(qtbot, window, Qt.Key.Key_Y, Qt.KeyboardModifier.ControlModifier)
-    assert not film.playing  # whoever takes a step takes over
+    assert not film.playing  # a step by the user stops playback
     assert window.assistant.state is State.IDLE
 
 
-def test_branches_are_seen_and_taken(qtbot, walked, greedy):
+def test_branches_are_listed_and_can_be_switched_to(qtbot, walked, greedy):
     window, document, film = walked, walked.document, walked.playback
     former = [row.serial for row in document.history]
     end = document.mesh.points.tobytes()
@@ -192,7 +192,7 @@ def test_branches_are_seen_and_taken(qtbot, walked, greedy):
     document.mesh.validate()
 
 
-def test_list_and_timeline_can_be_hidden_and_stay_so(qtbot, walked):
+def test_hidden_list_and_timeline_are_remembered(qtbot, walked):
     window, film = walked, walked.playback
     height = window.canvas.height()
     press(qtbot, window, Qt.Key.Key_F3)
@@ -209,7 +209,7 @@ def test_list_and_timeline_can_be_hidden_and_stay_so(qtbot, walked):
     assert window.actions_by_id["history.list"].isChecked()
 
 
-def test_a_history_that_begins_again(qtbot, walked, triangles):
+def test_history_of_a_new_mesh_replaces_the_list(qtbot, walked, triangles):
     window, film = walked, walked.playback
     window.document.replace(triangles, "triangles")
     settle(qtbot, window)
@@ -221,7 +221,7 @@ def test_a_history_that_begins_again(qtbot, walked, triangles):
     assert not film.timeline.isVisible()
 
 
-def test_a_mark_under_the_mouse_goes_with_its_state(qtbot, walked, triangles):
+def test_hovered_state_that_disappears_is_no_longer_marked(qtbot, walked, triangles):
     window = walked
     curve = window.playback.timeline.curve
     qtbot.mouseMove(curve, on_curve(window, 3))
@@ -251,13 +251,13 @@ def test_ten_thousand_steps_are_listed_and_hovered_cheaply(qtbot, open_window, s
     assert curve.builds == builds
     document.undo()
     settle(qtbot, window)
-    assert curve.builds == builds  # the cursor has moved, the curve has not
+    assert curve.builds == builds  # only the cursor has moved
     qtbot.mouseClick(film.panel.list.viewport(), LEFT, pos=on_list(window, 9_998))
     qtbot.waitUntil(lambda: document.history.cursor == 9_998, timeout=WAIT)
 
 
 def ask(qtbot, window, choose, monkeypatch, path) -> None:
-    """Open the dialog by its key, ``choose(dialog)`` in it, and name ``path``."""
+    """Open the export dialog by its key, call ``choose(dialog)``, and enter ``path``."""
     monkeypatch.setattr(
         "meshwright.desktop.history.export_controller.QFileDialog.getSaveFileName",
         lambda *arguments: (str(path), ""),
@@ -268,14 +268,14 @@ def ask(qtbot, window, choose, monkeypatch, path) -> None:
         choose(dialog)
         qtbot.mouseClick(dialog.export, LEFT)
 
-    window.activateWindow()  # the dialog before took that away
+    window.activateWindow()  # the previous dialog deleted it
     qtbot.waitUntil(window.isActiveWindow, timeout=WAIT)
     QTimer.singleShot(200, answer)
     press(qtbot, window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
 
 
 @pytest.mark.parametrize("number", range(4))
-def test_export_writes_what_was_asked_for(qtbot, walked, monkeypatch, tmp_path, number):
+def test_export_writes_the_chosen_format(qtbot, walked, monkeypatch, tmp_path, number):
     window = walked
     chosen = []
 
@@ -297,7 +297,7 @@ def test_export_writes_what_was_asked_for(qtbot, walked, monkeypatch, tmp_path, 
         assert f"{len(window.document.history) + 1} frames" in window.status.message
 
 
-def test_export_can_be_cancelled_and_says_what_is_wrong(qtbot, walked, monkeypatch, tmp_path):
+def test_export_can_be_cancelled_and_reports_errors(qtbot, walked, monkeypatch, tmp_path):
     window, exporting = walked, walked.playback.exporting
     choose = lambda dialog: None  # noqa: E731
     ask(qtbot, window, choose, monkeypatch, tmp_path / "star.gif")

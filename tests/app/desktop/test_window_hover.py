@@ -1,4 +1,4 @@
-"""Ghosts, what each operation would change, arming: by real mouse and keys."""
+"""Previews, changes of s, armed operations and navigation, by real mouse and keys."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_hover_shows_what_each_operation_would_change(qtbot, open_window, kind, 
     assert {row.change for row in window.hover.panel.rows} == {""}
 
 
-def test_tab_walks_through_what_is_allowed_and_return_does_it(qtbot, open_window, star):
+def test_tab_cycles_allowed_operations_and_return_applies_one(qtbot, open_window, star):
     window = open_window(star)
     halfedge = next(h for h in range(96) if sum(c.allowed for c in choices(star, h)) > 3)
     point_at(qtbot, window, halfedge)
@@ -62,7 +62,7 @@ def test_tab_walks_through_what_is_allowed_and_return_does_it(qtbot, open_window
     assert (row.action, row.change, row.halfedge) == (met[1].value, change, halfedge)
 
 
-def test_what_was_chosen_with_tab_is_for_this_half_edge_only(qtbot, open_window, star):
+def test_choice_by_tab_is_for_one_half_edge_only(qtbot, open_window, star):
     window = open_window(star)
     first = find(star, "collapse")
     second = next(h for h in range(first + 1, 96) if best(choices(star, h)))
@@ -73,7 +73,7 @@ def test_what_was_chosen_with_tab_is_for_this_half_edge_only(qtbot, open_window,
     assert meant == best(choices(star, second)).operation
 
 
-def test_an_armed_operation_is_done_by_a_click(qtbot, open_window, star):
+def test_click_applies_the_armed_operation(qtbot, open_window, star):
     window = open_window(star)
     row = row_of(window, "split")
     qtbot.mouseClick(row, Qt.MouseButton.LeftButton)
@@ -94,7 +94,7 @@ def test_an_armed_operation_is_done_by_a_click(qtbot, open_window, star):
     window.editing.menu.close()
 
 
-def test_escape_puts_the_armed_operation_down(qtbot, open_window, star):
+def test_escape_disarms_the_operation(qtbot, open_window, star):
     window = open_window(star)
     qtbot.mouseClick(row_of(window, "collapse"), Qt.MouseButton.LeftButton)
     press(qtbot, window, Qt.Key.Key_Escape)
@@ -102,7 +102,7 @@ def test_escape_puts_the_armed_operation_down(qtbot, open_window, star):
     assert not any(row.isChecked() for row in window.hover.panel.rows)
 
 
-def test_a_row_of_the_menu_shows_its_ghost_and_number(qtbot, open_window, star):
+def test_menu_row_previews_its_operation(qtbot, open_window, star):
     window = open_window(star)
     halfedge = find(star, "collapse")
     click_at(qtbot, window, halfedge)
@@ -118,7 +118,7 @@ def test_a_row_of_the_menu_shows_its_ghost_and_number(qtbot, open_window, star):
     assert window.document.history.cursor == 0
 
 
-def test_the_ghost_of_a_global_split_reaches_the_boundary(qtbot, open_window, star):
+def test_preview_of_a_global_split_reaches_the_boundary(qtbot, open_window, star):
     window = open_window(star)
     halfedge = find(star, "global_split")
     point_at(qtbot, window, halfedge)
@@ -131,7 +131,7 @@ def test_the_ghost_of_a_global_split_reaches_the_boundary(qtbot, open_window, st
     assert ends <= seen
 
 
-def test_ghosts_can_be_switched_off(qtbot, open_window, star):
+def test_previews_can_be_switched_off(qtbot, open_window, star):
     window = open_window(star)
     point_at(qtbot, window, find(star, "collapse"))
     assert window.hover.layer.ghost is not None
@@ -142,7 +142,9 @@ def test_ghosts_can_be_switched_off(qtbot, open_window, star):
     assert window.hover.layer.ghost is not None
 
 
-def test_a_ghost_through_a_large_mesh_waits_for_rest(qtbot, open_window, monkeypatch, grid):
+def test_global_preview_in_a_large_mesh_waits_for_a_resting_mouse(
+    qtbot, open_window, monkeypatch, grid
+):
     monkeypatch.setattr(hover_controller, "LARGE", 4)
     window = open_window(grid)
     window.hover.arm("cleanup")
@@ -160,7 +162,7 @@ def grid() -> HalfEdgeMesh:
     return HalfEdgeMesh.from_elements(points, [(c, c + 1, c + 8, c + 7) for c in corners])
 
 
-def test_lines_glow_and_a_click_removes_one(qtbot, open_window, grid):
+def test_click_removes_a_highlighted_line(qtbot, open_window, grid):
     window = open_window(grid)
     press(qtbot, window, Qt.Key.Key_L)
     assert window.lines.layer.count == 8
@@ -199,7 +201,7 @@ def test_keys_move_the_view(qtbot, open_window, star):
     assert canvas.viewport.pixels == pytest.approx(pixels)
 
 
-def test_a_key_walks_through_the_irregular_vertices(qtbot, open_window, star):
+def test_key_cycles_through_irregular_vertices(qtbot, open_window, star):
     window = open_window(star)
     irregular = set(np.flatnonzero(star.irregularity()).tolist())
     met = []

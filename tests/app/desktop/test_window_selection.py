@@ -52,7 +52,7 @@ def entry(menu, text):
     return next(action for action in menu.actions() if action.text().startswith(text))
 
 
-def test_shift_click_selects_and_takes_out(qtbot, open_window, grid):
+def test_shift_click_adds_and_removes(qtbot, open_window, grid):
     window = open_window(grid)
     selection = window.document.selection
     for vertex in (8, 9, 15, 16):
@@ -101,7 +101,7 @@ def test_the_tools_of_the_toolbar(qtbot, open_window, grid):
     assert len(window.document.selection) == 0
 
 
-def test_select_by_what_vertices_are(qtbot, open_window, star):
+def test_select_by_degree_and_irregularity(qtbot, open_window, star):
     window = open_window(star)
     selection = window.document.selection
     window.actions_by_id["select.irregular"].trigger()
@@ -131,14 +131,14 @@ def test_a_vertex_is_dragged_and_the_drag_undone(qtbot, open_window, grid):
     assert grid.points[16].tolist() == [2.0, 2.0, 0.0]
 
 
-def test_boundary_vertices_keep_to_their_side(qtbot, open_window, grid):
+def test_boundary_vertices_stay_on_their_side(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 0), (2.3, 0.8))
     assert grid.points[2, 1] == 0.0
     assert grid.points[2, 0] == pytest.approx(2.3, abs=0.02)
 
 
-def test_corners_and_locked_vertices_stay_and_say_so(qtbot, open_window, grid):
+def test_dragging_fixed_vertices_shows_a_reason(qtbot, open_window, grid):
     window = open_window(grid)
     before = grid.points.copy()
     drag(qtbot, window, (0, 0), (0.3, 0.3))
@@ -150,7 +150,7 @@ def test_corners_and_locked_vertices_stay_and_say_so(qtbot, open_window, grid):
     assert np.array_equal(grid.points, before)
 
 
-def test_folded_elements_are_seen_while_dragging_and_after(qtbot, open_window, grid):
+def test_inverted_elements_are_hatched_during_and_after_a_drag(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 2), (3.4, 3.4), release=False)
     assert window.selection_tools.rubber.folded > 0
@@ -166,7 +166,7 @@ def test_folded_elements_are_seen_while_dragging_and_after(qtbot, open_window, g
     assert window.status.message == "No element is inverted."
 
 
-def test_escape_calls_a_drag_off(qtbot, open_window, grid):
+def test_escape_cancels_a_drag(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 2), (2.4, 2.4), release=False)
     press(qtbot, window, Qt.Key.Key_Escape)
@@ -178,7 +178,7 @@ def test_escape_calls_a_drag_off(qtbot, open_window, grid):
     assert window.editing.menu is None
 
 
-def test_an_edit_of_the_agent_calls_a_drag_off(qtbot, open_window, grid):
+def test_an_edit_by_the_agent_cancels_a_drag(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 2), (2.4, 2.4), release=False)
     window.document.submit("collapse", grid.halfedge(16, 17), "greedy")
@@ -221,7 +221,7 @@ def test_the_menu_of_a_whole_selection(qtbot, open_window, grid):
     menu.close()
 
 
-def test_a_menu_of_a_mesh_that_has_gone_on_does_nothing(qtbot, open_window, grid):
+def test_menu_of_an_outdated_mesh_changes_nothing(qtbot, open_window, grid):
     window = open_window(grid)
     menu = open_menu(qtbot, window, pixel(window, grid.points[16]) + QPoint(1, 1))
     window.document.submit("collapse", grid.halfedge(9, 16), "greedy")
@@ -247,7 +247,7 @@ def test_the_menu_of_one_vertex_smooths_and_selects(qtbot, open_window, grid):
     assert 16 in window.document.selection
 
 
-def test_small_elements_are_not_grabbed_the_picture_moves(qtbot, open_window, grid):
+def test_drag_over_small_elements_pans(qtbot, open_window, grid):
     window = open_window(grid)
     for _ in range(12):
         press(qtbot, window, Qt.Key.Key_Minus)
