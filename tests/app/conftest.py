@@ -232,6 +232,6 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
         window.close()
         assert not [t for t in window.findChildren(QTimer) if t.isActive()]
     for thread in threading.enumerate():
-        if thread.name.startswith(("assistant", "warmup", "quality")):
+        if thread.name.startswith(("assistant", "kernel-preparation", "quality")):
             thread.join(10)
             assert not thread.is_alive()

@@ -12,7 +12,6 @@ from qtpy.QtWidgets import QApplication, QWidget
 
 from meshwright.assistant.assistant import State
 from meshwright.desktop.actions import registry
-from meshwright.desktop.application.kernel_warmup import AGENT_FIRST
 from meshwright.desktop.application.readiness import PREPARING
 from meshwright.desktop.editing.edit_controller import POINT_FIRST
 from meshwright_core.operations.catalogue import of_kind
@@ -209,24 +208,18 @@ def test_window_closes_during_a_run(qtbot, open_window, star):
 
 def test_operations_show_a_message_until_kernels_are_ready(qtbot, open_window, star, monkeypatch):
     monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.Warmup.start", lambda self: None
+        "meshwright.desktop.application.kernel_warmup.KernelWarmup.start", lambda self: None
     )
-    monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.Warmup._run", lambda self, module, then: None
-    )
-    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.agent_is_warm", lambda: False)
     window = open_window(star, ready=False)
     halfedge = find(star, "flip_left")
     point_at(qtbot, window, halfedge)
     press(qtbot, window, Qt.Key.Key_F)
     assert window.status.message == PREPARING
     assert not window.agent_panel.step.isEnabled()
-    window.warmup._finish()
+    window.readiness.editing = True
     assert not window.agent_panel.step.isEnabled()
-    assert window.status.preparation == AGENT_FIRST
-    window.warmup.agent_ready.emit()
+    window.readiness.agent = True
     assert window.agent_panel.step.isEnabled()
-    assert window.status.preparation == ""
     press(qtbot, window, Qt.Key.Key_F)
     assert window.document.history.cursor == 1
 

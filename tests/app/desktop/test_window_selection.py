@@ -160,7 +160,7 @@ def test_inverted_elements_are_hatched_during_and_after_a_drag(qtbot, open_windo
     assert "inverted" in window.status.message
     qtbot.waitUntil(lambda: window.inverted.layer.count > 0, timeout=WAIT)
     press(qtbot, window, Qt.Key.Key_U, Qt.KeyboardModifier.ControlModifier)
-    assert window.status.message.startswith("Untangled")
+    assert window.status.message.startswith("Repaired")
     qtbot.waitUntil(lambda: window.inverted.layer.count == 0, timeout=WAIT)
     press(qtbot, window, Qt.Key.Key_U, Qt.KeyboardModifier.ControlModifier)
     assert window.status.message == "No element is inverted."
@@ -242,7 +242,7 @@ def test_the_menu_of_one_vertex_smooths_and_selects(qtbot, open_window, grid):
     menu.close()
     assert grid.points[16, :2] == pytest.approx([2.0, 2.0], abs=0.02)
     menu = open_menu(qtbot, window, pixel(window, grid.points[16]) + QPoint(1, 1))
-    entry(menu, "Add to the selection").trigger()
+    entry(menu, "Add to selection").trigger()
     menu.close()
     assert 16 in window.document.selection
 

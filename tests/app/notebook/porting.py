@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.notebook.kernel_warmup import Preparation, Stage
+from meshwright.assistant.kernel_preparation import KernelPreparation, Stage
 from meshwright.notebook.protocol.mesh_sync import Frame, Packet, Slots
 from meshwright.notebook.session import Session
 from meshwright_core import HalfEdgeMesh
@@ -143,9 +143,9 @@ def script_agent(monkeypatch: Any, greedy: Any) -> None:
     )
 
 
-def _ready() -> Preparation:
+def _ready() -> KernelPreparation:
     """Kernels are compiled in the tests' own process: nothing is to be made ready behind them."""
-    preparation = Preparation()
+    preparation = KernelPreparation()
     preparation._stage = Stage.READY
     return preparation
 

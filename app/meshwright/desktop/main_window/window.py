@@ -22,7 +22,7 @@ from meshwright.desktop.actions.dispatcher import ActionDispatcher
 from meshwright.desktop.agent.agent_controller import AgentController
 from meshwright.desktop.agent.agent_panel import AgentPanel
 from meshwright.desktop.agent.hints_controller import HintsController
-from meshwright.desktop.application.kernel_warmup import Warmup
+from meshwright.desktop.application.kernel_warmup import KernelWarmup
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.application.preferences_controller import PreferencesController, theme_name
 from meshwright.desktop.application.readiness import Readiness
@@ -82,17 +82,16 @@ class MainWindow(QMainWindow):
         self.actions_by_id = ActionSet(
             registry.ACTIONS, registry.MENUS, self, self.canvas, self.theme
         )
-        self.warmup = Warmup(self)
+        self.warmup = KernelWarmup(self.readiness, self.status, self.notice, self.theme)
         self._connections = Connections()
         self._connections.add(document.replaced, self._clear_messages)
-        self.controllers: list[Controller] = []
+        self.controllers: list[Controller] = [self.warmup]
         self._make_controllers()
         self._arrange()
         self._make_help()
         self.dispatcher = ActionDispatcher(self.actions_by_id, self._action_context(), self.theme)
         self.controllers.append(self.dispatcher)
         self.setStyleSheet(style_sheet(self.theme))
-        self._connect_warmup()
         self._connections.add(document.replaced, self._on_replaced)
         self._on_replaced()
 
@@ -225,12 +224,6 @@ class MainWindow(QMainWindow):
             close=self.close,
         )
 
-    def _connect_warmup(self) -> None:
-        self.warmup.noted.connect(self.status.show_preparation)
-        self.warmup.ready.connect(self._on_ready)
-        self.warmup.agent_ready.connect(self._on_agent_ready)
-        self.warmup.failed.connect(self._on_warmup_failed)
-
     # Layout
 
     def _arrange(self) -> None:
@@ -317,8 +310,8 @@ class MainWindow(QMainWindow):
         self.opened.connect(lambda: QTimer.singleShot(0, self.files.offer_lost))
 
     def prepare_agent(self) -> None:
-        """Load the policy as soon as the kernels are loaded."""
-        self.warmup.ready.connect(self.assistant.prepare)
+        """Load the policy as soon as the kernels of the editor are loaded."""
+        self._connections.add(self.readiness.changed, self._on_readiness_changed)
 
     def play_level(self, level: Level) -> None:
         """Start a level; no question is asked about the mesh that it replaces."""
@@ -330,7 +323,7 @@ class MainWindow(QMainWindow):
 
     def stop_preparing(self) -> None:
         """End the processes and threads that compile or load kernels."""
-        self.warmup.stop()
+        self.warmup.close()
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
         """Build the canvas once the window has been painted."""
@@ -353,7 +346,6 @@ class MainWindow(QMainWindow):
         if not self.files.may_drop():
             event.ignore()
             return
-        self.warmup.stop()
         self._connections.close()
         for controller in self.controllers:
             controller.close()
@@ -383,7 +375,7 @@ class MainWindow(QMainWindow):
         else:
             self.sidebar.reveal(panel)
 
-    # Following document and warm-up
+    # Following the document and the kernels
 
     def _clear_messages(self) -> None:
         self.notice.hide()
@@ -393,16 +385,9 @@ class MainWindow(QMainWindow):
         self._fill_menus()
         self.pages.setCurrentWidget(self.empty if self.document.empty else self.canvas)
 
-    def _on_ready(self) -> None:
-        self.readiness.editing = True
-
-    def _on_agent_ready(self) -> None:
-        self.readiness.agent = True
-        self.status.show_preparation("")
-
-    def _on_warmup_failed(self, sentence: str) -> None:
-        self.status.show_preparation("")
-        self.notice.show_message(sentence)
+    def _on_readiness_changed(self) -> None:
+        if self.readiness.editing and not self.assistant.loading:
+            self.assistant.prepare()
 
 
 def _column(owner: QWidget, *members: QWidget) -> QVBoxLayout:
