@@ -1,4 +1,4 @@
-"""The states of the window that the contact sheet shows: a caption and a play for each."""
+"""The states of the window on the contact sheet: a caption and a function for each."""
 
 from collections.abc import Callable
 from functools import partial
@@ -37,7 +37,7 @@ def tour() -> Image.Image:
 
 
 def hover(theme: str, kind: str, size: tuple[int, int], name: str) -> Image.Image:
-    """After the first step of two that lower s: the ghost of the second, and every change of s."""
+    """After the first of two operations that lower s: preview of the second, with all changes."""
     stage = Stage(shape(name, kind), name, size, theme)
     document = stage.window.document
     first = next(
@@ -60,14 +60,14 @@ def gains(mesh: HalfEdgeMesh) -> list[int]:
 
 
 def gains_after(mesh: HalfEdgeMesh, operation: str, halfedge: int) -> bool:
-    """Whether an operation opens the way to one that lowers s."""
+    """Whether an operation makes another one possible that lowers s."""
     mesh = mesh.copy()
     mesh.apply(operation, halfedge)
     return bool(gains(mesh))
 
 
 def menu() -> Image.Image:
-    """The menu of a half-edge, with the ghost of the row under the mouse."""
+    """The menu of a half-edge, with the preview of the entry below the pointer."""
     stage = Stage(shape("double-notch"), "double-notch", SMALL, "dark")
     halfedge = allowed(stage.window.document.mesh, "split")[0]
     stage.point_at(halfedge)
@@ -117,7 +117,7 @@ def nearest(stage: Stage, place: np.ndarray) -> QPoint:
 
 
 def dragging() -> Image.Image:
-    """A vertex on its way, with the elements that would fold there."""
+    """A vertex that is dragged, with the elements that would be inverted."""
     stage = Stage(shape("cross", "tri"), "cross", SMALL, "dark")
     mesh = stage.window.document.mesh
     inside = [v for v in mesh.vertices().tolist() if not mesh.boundary()[v]]
@@ -133,7 +133,7 @@ def dragging() -> Image.Image:
 
 
 def lines() -> Image.Image:
-    """Lines that can be cleaned up, and one under the mouse."""
+    """Lines that can be cleaned up, one of them below the pointer."""
     mesh = cut(fewest("cross"), 2)
     stage = Stage(mesh, "cross", SMALL, "light")
     stage.window.actions_by_id["lines"].trigger()
@@ -156,7 +156,7 @@ def fewest(name: str) -> HalfEdgeMesh:
 
 
 def cut(mesh: HalfEdgeMesh, levels: int) -> HalfEdgeMesh:
-    """Every quad cut into four, so many times."""
+    """Each quad divided into four, several times."""
     from meshwright_core.domains import quadrangulation
     from meshwright_core.geometry import smoothing
 
@@ -169,7 +169,7 @@ def cut(mesh: HalfEdgeMesh, levels: int) -> HalfEdgeMesh:
 
 
 def hints() -> Image.Image:
-    """The policy's best few operations as numbered ghosts."""
+    """Hints: the most probable operations as numbered previews."""
     stage = Stage(shape("double-notch"), "double-notch", LARGE, "light")
     use_policy(stage)
     stage.window.actions_by_id["agent.hint"].trigger()
@@ -179,7 +179,7 @@ def hints() -> Image.Image:
 
 
 def agent() -> Image.Image:
-    """The policy at play: what it looks at and what it wants."""
+    """A running policy: its template and its probabilities."""
     stage = Stage(shape("cross"), "cross", SMALL, "dark")
     use_policy(stage)
     assistant = stage.window.assistant
@@ -192,7 +192,7 @@ def agent() -> Image.Image:
 
 
 def history() -> Image.Image:
-    """Scrubbing through the film of a run, with a branch beside it."""
+    """Moving through the history of a run, with a branch beside it."""
     stage = Stage(shape("gear"), "gear", LARGE, "light")
     search(stage, 3.0)
     document = stage.window.document
@@ -217,7 +217,7 @@ def optimum() -> Image.Image:
 
 
 def quality() -> Image.Image:
-    """Inverted elements in plain sight, and the histogram."""
+    """Inverted elements, hatched, and the histogram of qualities."""
     mesh = scrambled(shape("bracket"), 0)
     stage = Stage(mesh, "bracket", LARGE, "light")
     document = stage.window.document
@@ -262,7 +262,7 @@ def new_mesh(page: str, theme: str) -> Image.Image:
 
 
 def draw(stage: Stage, area: object) -> None:
-    """Click an outline, and begin a hole."""
+    """Draw an outline by clicks, and begin a hole."""
     places = [(-0.9, -0.6), (0.9, -0.6), (0.9, 0.1), (0.3, 0.1), (0.3, 0.6), (-0.9, 0.6)]
     hole = [(-0.6, -0.3), (-0.1, -0.3), (-0.1, 0.2), (-0.6, 0.2)]
     dialog = area.window()
@@ -278,7 +278,7 @@ def draw(stage: Stage, area: object) -> None:
 
 
 def dialog(show: Callable[[Stage], Callable[[], None]], theme: str, keys: str = "") -> Image.Image:
-    """A window with what ``show`` opens over it."""
+    """A window with the dialog that ``show`` opens."""
     stage = Stage(shape("bracket"), "bracket", SMALL, theme)
     search(stage, 1.0)
     taken: list[Image.Image] = []
@@ -318,13 +318,13 @@ def scrambled(mesh: HalfEdgeMesh, seed: int, count: int = 10) -> HalfEdgeMesh:
 
 
 def use_policy(stage: Stage) -> None:
-    """Have the agent ready."""
+    """Wait until the agent is ready."""
     stage.window.assistant.policy = shipped(stage.window.document.kind)[0]
     stage.window.readiness.agent = True
 
 
 def search(stage: Stage, seconds: float) -> None:
-    """Let the agent search so long, and go where it has found."""
+    """Let the agent search for some seconds and apply the result."""
     from meshwright.assistant.search_runner import Effort
 
     use_policy(stage)
@@ -334,7 +334,7 @@ def search(stage: Stage, seconds: float) -> None:
 
 
 def shot(stage: Stage) -> Image.Image:
-    """A picture, and the window closed."""
+    """Take a picture and close the window."""
     image = stage.picture()
     stage.close()
     return image

@@ -1,4 +1,4 @@
-"""The recipes of the levels: perfect meshes that random operations have spoilt, and shapes."""
+"""Recipes of the levels: regular meshes after random operations, and shapes of the gallery."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ Suits = Callable[[HalfEdgeMesh, Sequence[Found]], bool]
 
 @dataclass(frozen=True)
 class Recipe:
-    """What to make, and what of it to keep: ways of ``par`` operations, among them ``uses``."""
+    """How to make a level, and which meshes to keep: those with shortest solutions of ``par``
+    operations that contain ``uses``.
+    """
 
     name: str
     title: str
@@ -28,16 +30,16 @@ class Recipe:
     par: tuple[int, int] = (0, 99)
     uses: tuple[str, ...] = ()
     only: bool = False
-    """Whether every shortest way has ``uses``."""
+    """Whether every shortest solution must contain ``uses``."""
     most: int = 0
-    """Elements that the mesh may have at the goal, 0 for any number."""
+    """The most elements at the goal, 0 for any number."""
     suits: Suits = lambda mesh, ways: True
-    """What else must hold of the start, and of the shortest ways that were found."""
+    """A further condition on the start and its shortest solutions."""
     nodes: int = 60_000
-    """States of the exhaustive search."""
+    """The most states of the exhaustive search."""
 
 
-# Perfect meshes
+# Regular meshes
 
 
 def lattice(places: Sequence[tuple[int, int]]) -> HalfEdgeMesh:
@@ -65,7 +67,7 @@ def regular(side: int) -> HalfEdgeMesh:
 
 
 def triangle(side: int, cut: int = 0) -> HalfEdgeMesh:
-    """A large triangle, with its tips cut off ``cut`` edges deep."""
+    """A large triangle of triangles whose tips are cut off ``cut`` edges deep."""
     span = range(side + 1)
     return lattice([
         (i, j) for j in span for i in span
@@ -81,7 +83,7 @@ def rhombus(columns: int, rows: int) -> HalfEdgeMesh:
 def squares(
     columns: int, rows: int, inside: Callable[[int, int], bool] | None = None
 ) -> HalfEdgeMesh:
-    """A grid of unit squares, those alone that are ``inside`` (column, row)."""
+    """A grid of unit squares, restricted to those that are ``inside`` (column, row)."""
     cells = [(i, j) for j in range(rows) for i in range(columns) if inside is None or inside(i, j)]
     rings = [((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)) for i, j in cells]
     places = sorted({corner for ring in rings for corner in ring}, key=lambda at: at[::-1])
@@ -97,12 +99,12 @@ def inside(mesh: HalfEdgeMesh) -> bool:
 
 
 def shaped(name: str, kind: str, max_edge: float | None = None) -> Make:
-    """A shape of the gallery as the meshers leave it."""
+    """A shape of the gallery as the mesh generators make it."""
     return lambda rng: mesh_domain(gallery.shape(name), kind, max_edge=max_edge)
 
 
 def polygon(kind: str, sides: int, max_edge: float | None = None) -> Make:
-    """A random polygon of the benchmark, as there or with triangles as large as ``max_edge``."""
+    """A random polygon as in the benchmark, or with triangles as large as ``max_edge``."""
     if max_edge is None:
         return lambda rng: benchmark_mesh(kind, sides, rng)
     return lambda rng: mesh_domain(
@@ -111,7 +113,7 @@ def polygon(kind: str, sides: int, max_edge: float | None = None) -> Make:
 
 
 def spoilt(start: Callable[[], HalfEdgeMesh], *operations: str) -> Make:
-    """A perfect mesh after these operations at random places."""
+    """A regular mesh after these operations at random places."""
 
     def make(rng: np.random.Generator) -> HalfEdgeMesh:
         mesh = start()
@@ -128,7 +130,7 @@ def spoilt(start: Callable[[], HalfEdgeMesh], *operations: str) -> Make:
     return make
 
 
-# What there is
+# The recipes
 
 
 def _ell(column: int, row: int) -> bool:

@@ -1,11 +1,11 @@
-"""Opens the window in many states by real mouse and key events, and puts pictures of them together.
+"""Takes pictures of the window in many states, which real mouse and key events bring about.
 
     python docs/make_contact_sheet.py [FOLDER [STATE ...]]
 
 writes one PNG a state into FOLDER (build/contact-sheet if none is named), and contact-sheet.png
 with all of them; pictures that README shows go to docs/images. A display of at least 1920x1080
 pixels is needed: ``xvfb-run -s "-screen 0 1920x1200x24" python docs/make_contact_sheet.py``.
-Nobody's settings are read or written.
+No settings of the user are read or written.
 """
 
 import sys
@@ -29,7 +29,7 @@ COLUMNS, THUMB = 4, 640
 
 
 def main(folder: Path, names: list[str]) -> None:
-    """Make every picture, or those named, then the sheet."""
+    """Make all pictures or those named, then the sheet."""
     folder.mkdir(parents=True, exist_ok=True)
     application()
     compilation.warm()

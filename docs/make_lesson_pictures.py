@@ -4,7 +4,7 @@
     python docs/make_lesson_pictures.py 01 03        only those of these lessons
     python docs/make_lesson_pictures.py --out FOLDER write PNG files, leave the notebooks alone
 
-A notebook refers to a picture as ``attachment:NAME.png``; only those that are referred to are made.
+A notebook refers to a picture as ``attachment:NAME.png``; no others are made.
 Pictures are drawn twice as large as they are shown.
 """
 
@@ -32,7 +32,7 @@ from meshwright.graphics.drawing import (
     text_width,
 )
 from meshwright.graphics.export.filmstrip import side_by_side
-from meshwright.graphics.mesh_figure import Look, edges, figure
+from meshwright.graphics.mesh_figure import FigureOptions, edges, figure
 from meshwright.graphics.theme import LIGHT
 from meshwright.graphics.viewport import Viewport
 from meshwright.teaching import patch
@@ -42,23 +42,23 @@ from meshwright_core.domains import gallery
 from meshwright_core.geometry import smoothing
 
 ARROW, NUMBER, UNIT = 5.0, 24.0, 1.6
-"""Pixels: width of arrows, height of letters; and what lines are scaled by."""
+"""Width of arrows and height of letters in pixels; scale of lines."""
 
 ROUND = 24
-"""Pixels by which the corners of a picture are rounded: it is a card on any page."""
+"""Radius of the corners of a picture in pixels."""
 COLOURS = 63
-"""In a picture; the next number is what is transparent."""
+"""Colours of a picture; the next index of its palette is transparent."""
 
 
 def view_of(mesh: HalfEdgeMesh, size: tuple[int, int], margin: float = 56.0) -> Viewport:
-    """The view that shows the whole mesh."""
+    """The viewport that shows the whole mesh."""
     return Viewport(size=size).fitted(mesh.points[mesh.vertices()], margin)
 
 
 def picture(mesh: HalfEdgeMesh, size: tuple[int, int], view: Viewport | None = None) -> Drawing:
-    """The mesh with its irregular vertices, without words."""
+    """The mesh with its irregular vertices, without text."""
     view = view or view_of(mesh, size)
-    return figure(mesh, Look(size, score=False, unit=UNIT), viewport=view)
+    return figure(mesh, FigureOptions(size, score=False, unit=UNIT), viewport=view)
 
 
 def arrow(
@@ -69,7 +69,7 @@ def arrow(
     words: str = "",
     colour: str = LIGHT.arrow,
 ) -> None:
-    """The arrow of half-edge h on its own side of the edge, with words beside it."""
+    """Draw the arrow of half-edge h on its side of the edge, with text beside it."""
     a, b = view.to_screen(mesh.points[[mesh.origin(h), mesh.target(h)]])
     length = float(np.hypot(*(b - a)))
     along = (b - a) / length
@@ -126,7 +126,7 @@ def turn() -> Any:
 
 
 def corners_of_star() -> Any:
-    """The outline of the star; at each corner the edges it wants, and the edges it is given."""
+    """The outline of the star; at each corner the exact and the rounded desired degree."""
     domain, size = gallery.shape("star"), (960, 800)
     outline = np.asarray(domain.outline, dtype=float)
     view = Viewport(size=size).fitted(outline, 112.0)
@@ -137,20 +137,20 @@ def corners_of_star() -> Any:
     for i, here in enumerate(seen):
         come, go = outline[i] - outline[i - 1], outline[(i + 1) % len(outline)] - outline[i]
         turned = np.degrees(np.arctan2(come[0] * go[1] - come[1] * go[0], come @ go))
-        wants = (180.0 - turned) / 90.0 + 1.0
-        gets = max(int(np.floor(wants + 0.5)), 2)
+        exact = (180.0 - turned) / 90.0 + 1.0
+        desired = max(int(np.floor(exact + 0.5)), 2)
         out = (here - middle) / np.linalg.norm(here - middle)
         aside = 54.0 + 34.0 * abs(float(out[0]))
         x, y = (here + aside * out).tolist()
         drawing.add(
             Disc(tuple(here.tolist()), 8.0, LIGHT.boundary),
-            Text(f"{wants:.1f} \u2192 {gets}", (x, y), 26.0, LIGHT.text, "middle", True),
+            Text(f"{exact:.1f} \u2192 {desired}", (x, y), 26.0, LIGHT.text, "middle", True),
         )
     return raster(drawing)
 
 
 def before_after(mesh: HalfEdgeMesh, operation: str, h: int, size: tuple[int, int]) -> Any:
-    """A patch with an arrow, and what the operation makes of it."""
+    """A patch with an arrow, and the patch after the operation."""
     view = view_of(mesh, size, 28.0)
     first = picture(mesh, size, view)
     arrow(first, view, mesh, h)
@@ -172,7 +172,7 @@ def stacked(rows: list[Any], between: int = 8) -> Any:
 
 
 def titled(image: Any, words: str) -> Any:
-    """A picture with a word above it."""
+    """A picture with a caption above it."""
     head = Drawing((image.width, 56), LIGHT.background)
     head.add(Text(words, (28.0, 32.0), 26.0, LIGHT.text, "left", True))
     return stacked([raster(head), image], 0)
@@ -232,7 +232,7 @@ def trap_with_numbers() -> Any:
 
 
 def quad_operations() -> Any:
-    """A vertex split and the collapse that undoes it."""
+    """A vertex split and the inverse collapse."""
     mesh = quads(4, 3)
     rows = [
         titled(before_after(mesh, name, most_central(mesh, name), (480, 380)), name)

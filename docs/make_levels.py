@@ -1,13 +1,12 @@
-"""Makes the levels in assets/levels/ anew, each with the fewest operations that a search finds.
+"""Makes the levels in meshwright_assets/levels, with the fewest operations that are found.
 
     python docs/make_levels.py              all of them
     python docs/make_levels.py star two-*   only these
 
-What to make is in level_recipes.py. The start is drawn without a fold, and so is the end of the way
-that is kept. How few operations will do is looked for exhaustively
-(``meshwright_agent.search.exhaustive``) and, where
-that does not come to an end, by a beam of the best states and by the solver, whose ways are
-shortened from their ends. ``meshwright bench --suite levels`` checks what is kept.
+The levels are described in level_recipes.py. No element is inverted at the start, nor at the end of
+the stored solution. The fewest operations are found by exhaustive search
+(``meshwright_agent.search.exhaustive``); where that takes too long, by beam search and by the
+solver, whose solutions are shortened. ``meshwright bench --suite levels`` checks the result.
 """
 
 from __future__ import annotations
@@ -39,19 +38,19 @@ from meshwright_core.geometry.smoothing import relax
 from meshwright_core.operations.catalogue import CODES, Operation
 
 TRIES = 400
-"""Meshes that are drawn for one recipe."""
+"""The most random meshes tried for one recipe."""
 DIGITS = 6
 SEEDS, SECONDS = 6, 1.0
-"""Runs of the solver, and the time of each, where the exhaustive search has no end."""
+"""Number and seconds of runs of the solver if the exhaustive search does not end."""
 WIDTH, DEPTH = 150, 14
-"""States that the beam keeps, and operations that it goes."""
+"""States that the beam search keeps, and its depth in operations."""
 
 
-# Ways
+# Solutions
 
 
 def drawn(mesh: HalfEdgeMesh, way: Found) -> bool:
-    """Whether nothing is folded at the end, when it is played as a person plays it."""
+    """Whether no element is inverted at the end, with smoothing as in the window."""
     document = Document(mesh.copy())
     for operation, halfedge in way:
         document.submit(operation, halfedge)
@@ -59,7 +58,7 @@ def drawn(mesh: HalfEdgeMesh, way: Found) -> bool:
 
 
 def best(mesh: HalfEdgeMesh, recipe: Recipe) -> tuple[Found, int, Answer] | None:
-    """A shortest way whose end can be drawn, how many operations will not do, all that is known."""
+    """A shortest solution without inverted elements at its end, a lower bound, all solutions."""
     goal = mesh.optimum
     answer = fewest(mesh, goal, recipe.most, nodes=recipe.nodes)
     ways = [list(way) for way in answer.sequences]
@@ -75,7 +74,7 @@ def best(mesh: HalfEdgeMesh, recipe: Recipe) -> tuple[Found, int, Answer] | None
 
 
 def solved(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
-    """Ways of the agent."""
+    """Solutions of the agent."""
     policy = load(shipped(mesh.kind)[0])
     found = [
         solve(mesh, policy, seconds=SECONDS, seed=seed, coarsen=False) for seed in range(SEEDS)
@@ -84,7 +83,7 @@ def solved(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
 
 
 def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
-    """Ways that go on from the best states only, depth by depth; those of the first depth that
+    """Beam search: solutions from the best states of each depth; those of the first depth that
     reaches the goal.
     """
     beam: list[Found] = [[]]
@@ -111,14 +110,14 @@ def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
 
 
 def allowed(mesh: HalfEdgeMesh) -> Iterator[tuple[Operation, int]]:
-    """All that can be done, but for the collapse of strips, and lines without use for the score."""
+    """All allowed operations but chord collapses and clean-ups of lines."""
     names = [name for name in CODES[mesh.k] if name not in ("chord_collapse", "cleanup")]
     halfedges = (mesh.element_ids()[:, None] * mesh.k + np.arange(mesh.k)).ravel().tolist()
     yield from ((Operation(name), h) for h in halfedges for name in names if mesh.check(name, h))
 
 
 def fingerprint(mesh: HalfEdgeMesh) -> tuple[int, ...]:
-    """The same for the same connectivity, and for little else."""
+    """A hash of degrees and irregularities that depends on the connectivity only."""
     delta, degree = mesh.irregularity(), mesh.degree()
     vertices = mesh.vertices()
     sums = [sum(1000 * int(degree[w]) + int(delta[w]) for w in mesh.neighbours(int(v)))
@@ -128,7 +127,7 @@ def fingerprint(mesh: HalfEdgeMesh) -> tuple[int, ...]:
 
 
 def shorter(mesh: HalfEdgeMesh, way: Found, goal: int) -> Found:
-    """The way with its end replaced by shorter ones, from every state on it, while that helps."""
+    """The solution with its end, from any of its states, replaced by shorter ones."""
     way = shorten(mesh, way, seconds=0.5)
     at = len(way)
     while at > 0:
@@ -148,14 +147,14 @@ def shorter(mesh: HalfEdgeMesh, way: Found, goal: int) -> Found:
 
 
 def sound(mesh: HalfEdgeMesh) -> bool:
-    """Whether the start can be looked at: nothing folded, no angle too flat or too sharp."""
+    """Whether no element of the start is inverted and no angle is too flat or too sharp."""
     if len(relax(mesh)) or mesh.n_elements > 60:
         return False
     return float(quality.scaled_jacobian(mesh).min()) > 0.25
 
 
 def fits(recipe: Recipe, mesh: HalfEdgeMesh, ways: Sequence[Found], length: int) -> bool:
-    """Whether it is what the recipe wants."""
+    """Whether the mesh and its solutions fulfil the recipe."""
     if not recipe.par[0] <= length <= recipe.par[1]:
         return False
     wanted = Counter(recipe.uses)
@@ -167,7 +166,7 @@ def fits(recipe: Recipe, mesh: HalfEdgeMesh, ways: Sequence[Found], length: int)
 
 
 def rounded(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
-    """The mesh as a file keeps it: without gaps, few digits."""
+    """The mesh as it is stored: ids without gaps, rounded coordinates."""
     mesh = mesh.copy()
     mesh.compact()
     return HalfEdgeMesh.from_elements(
@@ -176,7 +175,7 @@ def rounded(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
 
 
 def made(recipe: Recipe, number: int) -> Level | None:
-    """The level of a recipe: the first of its meshes that fits; None if none does."""
+    """The level of a recipe: the first of its meshes that fulfils it, or None."""
     for seed in range(TRIES):
         rng = np.random.default_rng((number, seed))
         mesh = recipe.make(rng)
@@ -202,7 +201,7 @@ def made(recipe: Recipe, number: int) -> Level | None:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Make the levels that were asked for."""
+    """Make the levels named on the command line."""
     parser = argparse.ArgumentParser(description="Make the levels in assets/levels/ anew.")
     parser.add_argument("names", nargs="*", help="names or patterns; left out: all")
     wanted = parser.parse_args(arguments).names or ["*"]
@@ -225,7 +224,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def written(record: dict[str, object]) -> str:
-    """JSON with one line for each entry, so that a change of a level can be read."""
+    """JSON with one line for each entry, for legible diffs."""
     lines = [f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in record.items()]
     return "{\n" + ",\n".join(lines) + "\n}\n"
 

@@ -22,11 +22,11 @@ IMAGES = Path(__file__).parent / "images"
 SIZE = (1180, 860)
 COLOURS = 192
 SETTLE = 800
-"""Milliseconds after which nothing moves any more."""
+"""Milliseconds until all animations have ended."""
 
 
 def notebook(page: Page, server: Server) -> None:
-    """A run on the star, half-way back in its history, with the ghost of an operation."""
+    """A run on the star at an earlier state of its history, with the preview of an operation."""
     book = LabNotebook(page, server)
     _plain(page)
     book.show(
@@ -43,7 +43,7 @@ def notebook(page: Page, server: Server) -> None:
 
 
 def levels(page: Page, server: Server) -> None:
-    """A level that was won, beside the agent's answer."""
+    """A solved level, beside the solution of the agent."""
     book = LabNotebook(page, server)
     _plain(page)
     book.show('import meshwright as mw\n\nwidget = mw.MeshWidget(level="two-turns")\nwidget')
@@ -62,7 +62,7 @@ PICTURES: dict[str, Callable[[Page, Server], None]] = {"notebook": notebook, "le
 
 
 def _plain(page: Page) -> None:
-    """Without the list of files."""
+    """Hide the list of files."""
     page.evaluate("() => jupyterapp.commands.execute('application:toggle-left-area')")
     page.wait_for_timeout(SETTLE)
 
@@ -100,7 +100,7 @@ def _make(name: str, started: Browser, server: Server) -> None:
 
 
 def main(names: list[str]) -> int:
-    """Make the pictures that are named, or all."""
+    """Make the pictures named on the command line, or all."""
     unknown = sorted(set(names) - set(PICTURES))
     if unknown:
         sys.stderr.write(f"There is no picture {unknown[0]!r}; there are {', '.join(PICTURES)}.\n")

@@ -4,7 +4,7 @@
     python docs/make_pictures.py operations   only these: demo, operations, gallery, parts,
                                               window
 
-No display is needed except for the window, which wants one: under a virtual screen run
+Only the window needs a display; with a virtual screen run
 ``xvfb-run -s "-screen 0 1920x1200x24" python docs/make_pictures.py window``.
 """
 
@@ -20,7 +20,7 @@ from PIL import Image, ImageDraw
 
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export.filmstrip import side_by_side
-from meshwright.graphics.mesh_figure import Look, figure, fitted
+from meshwright.graphics.mesh_figure import FigureOptions, figure, fitted
 from meshwright.graphics.theme import LIGHT
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, Operation
@@ -32,7 +32,7 @@ from meshwright_core.operations.catalogue import CATALOGUE, OperationInfo
 
 IMAGES = Path(__file__).parent / "images"
 RENDER = 1500
-"""Pixels of the square that is drawn; discs are sized for it, then the middle is cut out."""
+"""Size in pixels of the square figure from whose middle the picture is cropped."""
 PANEL = (560, 460)
 GAP = 120
 PARTS_SEED, PARTS_SECONDS = 1, 10.0
@@ -97,8 +97,8 @@ def most_central(mesh: HalfEdgeMesh, operation: Operation) -> int:
 
 
 def plain(mesh: HalfEdgeMesh, size: tuple[int, int], view: Viewport | None = None) -> Any:
-    """Return the picture of a mesh without words."""
-    return raster(figure(mesh, Look(size, score=False), viewport=view))
+    """Return the picture of a mesh without text."""
+    return raster(figure(mesh, FigureOptions(size, score=False), viewport=view))
 
 
 def panel(mesh: HalfEdgeMesh, view: Viewport, arrow: int | None = None) -> Any:
@@ -130,7 +130,7 @@ def draw_arrow(image: Any, a: np.ndarray, b: np.ndarray, colour: str = LIGHT.arr
 
 
 def gap(height: int) -> Any:
-    """Return the space between before and after: an arrow in a quiet colour."""
+    """Return the image between before and after: an arrow."""
     fine = 4
     image = Image.new("RGB", (GAP * fine, height * fine), LIGHT.background)
     draw = ImageDraw.Draw(image)
@@ -142,7 +142,7 @@ def gap(height: int) -> Any:
 
 
 def operation_picture(info: OperationInfo) -> Any:
-    """Return before and after of one operation on its patch."""
+    """Return the pictures of a patch before and after an operation, side by side."""
     mesh = patch(info)
     view = Viewport(size=PANEL).fitted(mesh.points, 44.0)
     view = Viewport(view.centre, view.pixels, (RENDER, RENDER))
@@ -176,7 +176,6 @@ def make_gallery() -> None:
 
 def make_parts() -> None:
     """Random parts as generated and, below, at the optimum, cut into their blocks."""
-    from meshwright.cli.commands.improve import replay
     from meshwright_agent.policy import policy_files
     from meshwright_agent.search.solver import solve
 
@@ -188,7 +187,7 @@ def make_parts() -> None:
         if number % columns == 0:
             tiles += [[], []]
         tiles[-2].append(plain(mesh, size))
-        replay(mesh, solve(mesh, policy, seconds=PARTS_SECONDS))
+        solve(mesh, policy, seconds=PARTS_SECONDS).replay(mesh)
         smoothing.relax(mesh)
         tiles[-1].append(with_blocks(mesh, size))
     whole = Image.new("RGB", (columns * size[0], len(tiles) * size[1]), LIGHT.background)
@@ -201,7 +200,7 @@ def with_blocks(mesh: HalfEdgeMesh, size: tuple[int, int]) -> Any:
     """Return the picture of a quad mesh with the lines between its blocks drawn stronger."""
     drawn = plain(mesh, size)
     fine = 4
-    view = fitted(mesh, Look(size, score=False))
+    view = fitted(mesh, FigureOptions(size, score=False))
     overlay = Image.new("RGBA", (fine * size[0], fine * size[1]), LIGHT.boundary + "00")
     draw = ImageDraw.Draw(overlay)
     for h in np.flatnonzero(blocks.separatrices(mesh)).tolist():
@@ -213,7 +212,7 @@ def with_blocks(mesh: HalfEdgeMesh, size: tuple[int, int]) -> Any:
 
 
 def make_demo() -> None:
-    """The run of ``meshwright demo -o``."""
+    """The picture of ``meshwright demo -o``."""
     from meshwright.cli import main
 
     code = main(["demo", "-o", str(IMAGES / "demo.png")])
@@ -247,7 +246,7 @@ def make_window() -> None:
 
 
 def save(image: Any, path: Path) -> None:
-    """Write a PNG with a palette: these pictures have few colours, and a clone should be small."""
+    """Write a PNG with a palette, as these pictures have few colours."""
     image.quantize(colors=256, dither=Image.Dither.NONE).save(path, optimize=True)
     sys.stdout.write(f"{path}\n")
 
@@ -262,7 +261,7 @@ MAKERS: dict[str, Callable[[], None]] = {
 
 
 def main() -> None:
-    """Make the pictures that are asked for."""
+    """Make the pictures named on the command line, or all."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("what", nargs="*", help=f"of {', '.join(MAKERS)}; all if none is named")
     names = parser.parse_args().what or list(MAKERS)

@@ -1,6 +1,6 @@
-"""A window, driven by real mouse and key events, and a camera in front of it.
+"""A window that is driven by mouse and key events and photographed.
 
-Importing this sends settings and autosaves of this process to a folder of its own.
+Importing this directs settings and autosaves of the process to a temporary folder.
 """
 
 import os
@@ -31,7 +31,7 @@ CONTROL = Qt.KeyboardModifier.ControlModifier
 
 
 class Stage:
-    """One window of one size and theme, and a camera in front of it."""
+    """A window with a size and a theme, its input events, and screenshots of it."""
 
     def __init__(
         self, mesh: HalfEdgeMesh | None, name: str, size: tuple[int, int], theme: str
@@ -47,18 +47,18 @@ class Stage:
 
     @property
     def plotter(self) -> Any:
-        """The widget that takes the mouse."""
+        """The widget that receives mouse events."""
         return self.window.canvas.plotter
 
     def rest(self, seconds: float) -> None:
-        """Let the window go on for a while."""
+        """Process events for some seconds."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             QApplication.processEvents()
             time.sleep(0.005)
 
     def until(self, condition: Callable[[], bool], seconds: float = 120.0) -> None:
-        """Let the window go on until ``condition()``."""
+        """Process events until ``condition()``."""
         end = time.monotonic() + seconds
         while not condition():
             if time.monotonic() > end:
@@ -66,7 +66,7 @@ class Stage:
             self.rest(0.02)
 
     def pixel(self, place: Any) -> QPoint:
-        """Where a place of the plane is on the canvas."""
+        """The pixel of the canvas at a point of the plane."""
         x, y = self.window.canvas.viewport.to_screen(np.asarray(place, float)).tolist()
         return QPoint(round(x), round(y))
 
@@ -79,14 +79,14 @@ class Stage:
         return self.pixel(middle + 0.2 * (corners.mean(axis=0) - middle))
 
     def point_at(self, halfedge: int) -> None:
-        """Move the mouse there."""
+        """Move the pointer to a pixel."""
         where = self.beside(halfedge)
         QTest.mouseMove(self.plotter, where + QPoint(2, 0))
         QTest.mouseMove(self.plotter, where)
         self.rest(0.3)
 
     def drag(self, places: list[QPoint], modifier: Any = NONE, release: bool = True) -> None:
-        """Press at the first place, move along, and let go at the last."""
+        """Press at the first pixel, move along the others, and release at the last."""
         QTest.mouseMove(self.plotter, places[0])
         QTest.mousePress(self.plotter, Qt.MouseButton.LeftButton, modifier, places[0])
         for place in places[1:]:
@@ -115,7 +115,7 @@ class Stage:
         self.rest(0.1)
 
     def picture(self) -> Image.Image:
-        """What is on the screen where the window is."""
+        """A screenshot of the window."""
         QApplication.processEvents()
         size = self.window.size()
         return _pillow(
@@ -123,7 +123,7 @@ class Stage:
         )
 
     def picture_of(self, dialog: Any) -> Image.Image:
-        """A dialog before a plain ground of the window's size, for there is no frame around it."""
+        """A dialog on a plain background of the size of the window."""
         taken = _pillow(dialog.grab())
         size = self.window.size()
         ground = Image.new("RGB", (size.width(), size.height()), self.window.theme.pressed)
@@ -133,7 +133,7 @@ class Stage:
         return ground
 
     def close(self) -> None:
-        """Close the window; nothing is asked."""
+        """Close the window without a question about unsaved changes."""
         self.window.document.replace(None)
         self.window.close()
         self.rest(0.1)

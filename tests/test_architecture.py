@@ -1,6 +1,6 @@
-"""The house: arrows run one way, and what is opened often is light.
+"""Imports follow the layers, light modules import no heavy libraries, functions are annotated.
 
-What an import brings along is looked up in a fresh interpreter, since this one has seen it all.
+What an import loads is measured in a fresh interpreter, as this one has loaded everything.
 """
 
 import ast
@@ -68,6 +68,74 @@ def test_import_contracts() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+ROOTS = {"meshwright_core": "meshcore", "meshwright_agent": "agent", "meshwright": "app"}
+
+
+def module_files() -> dict[str, Path]:
+    """The file of every module of the three packages, by dotted name."""
+    files = {}
+    for package, root in ROOTS.items():
+        for path in (ROOT / root / package).rglob("*.py"):
+            parts = path.relative_to(ROOT / root).with_suffix("").parts
+            files[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return files
+
+
+def imported(tree: ast.Module) -> list[tuple[str, int]]:
+    """Dotted names that a module imports, with their lines: also inside functions and under
+    TYPE_CHECKING."""
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found += [(alias.name, node.lineno) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            assert node.level == 0, "imports are absolute"
+            found += [(f"{node.module}.{alias.name}", node.lineno) for alias in node.names]
+    return found
+
+
+def room_imports(package: str, files: dict[str, Path]) -> dict[tuple[str, str], list[str]]:
+    """The import lines between the rooms (direct children) of a package, by pair of rooms."""
+    edges: dict[tuple[str, str], list[str]] = {}
+    prefix = f"{package}."
+    for module, path in files.items():
+        if not module.startswith(prefix):
+            continue
+        room = module.removeprefix(prefix).partition(".")[0]
+        for name, line in imported(ast.parse(path.read_text())):
+            if not name.startswith(prefix):
+                continue
+            other = name.removeprefix(prefix).partition(".")[0]
+            # names that the package's own __init__ defines belong to no room
+            if other != room and f"{prefix}{other}" in files:
+                text = f"{path.relative_to(ROOT)}:{line} imports {name}"
+                edges.setdefault((room, other), []).append(text)
+    return edges
+
+
+def reachable(start: str, edges: dict[tuple[str, str], list[str]]) -> set[str]:
+    """All rooms that a room imports, directly or through others."""
+    found: set[str] = set()
+    pending = [start]
+    while pending:
+        room = pending.pop()
+        following = {b for a, b in edges if a == room} - found
+        found |= following
+        pending += following
+    return found
+
+
+@pytest.mark.parametrize("package", [*ROOTS, "meshwright.desktop"])
+def test_no_rooms_import_each_other(package: str) -> None:
+    edges = room_imports(package, module_files())
+    assert edges
+    reached = {room: reachable(room, edges) for room in {a for a, _ in edges}}
+    circular = [
+        line for (a, b), lines in edges.items() if a in reached.get(b, set()) for line in lines
+    ]
+    assert not circular, "imports that close a circle of rooms:\n" + "\n".join(sorted(circular))
+
+
 def unannotated(path: Path) -> list[str]:
     """Functions and methods that leave out a type, but for compiled kernels, which have none."""
     found = []
@@ -92,9 +160,3 @@ def test_functions_are_annotated(package: str) -> None:
         name for path in sorted((ROOT / package).rglob("*.py")) for name in unannotated(path)
     ]
     assert missing == []
-
-
-@pytest.mark.parametrize("package", ["meshcore", "agent", "app"])
-def test_a_file_is_one_noun(package: str) -> None:
-    lengths = {path: len(path.read_text().splitlines()) for path in (ROOT / package).rglob("*.py")}
-    assert {str(path.relative_to(ROOT)): n for path, n in lengths.items() if n > 450} == {}

@@ -1,6 +1,6 @@
-"""Makes the environments known to Gymnasium when it is imported, which is cheap.
+"""Registers the environments with Gymnasium; runs when ``meshwright_agent`` is imported.
 
-``gymnasium.make("meshwright_agent.registration:meshwright/Quads-v0")`` imports it by itself.
+The environment class itself is imported by ``gymnasium.make`` when it creates one.
 """
 
 import gymnasium

@@ -1,9 +1,13 @@
-"""Meshwright in Python and in notebooks: one import for what people use most.
+"""Meshwright in Python and in notebooks: the names that are used most, from one import.
 
     import meshwright as mw
-    mw.MeshWidget("star")
 
-Each name is fetched when it is first used, so that importing this package imports nothing else.
+    mesh = mw.mesh("star")
+    solved = mw.solve(mesh, seconds=3)
+    mw.write("star.vtk", solved.mesh)
+    mw.MeshWidget(solved.mesh)
+
+Each name is imported when it is first used: importing this package imports nothing else.
 """
 
 from __future__ import annotations
@@ -33,17 +37,18 @@ _HOMES = {
     "shape": "meshwright_core.domains.gallery",
     "side_by_side": "meshwright.experiments",
     "small_multiples": "meshwright.experiments",
+    "solve": "meshwright.assistant.solve",
     "table_row": "meshwright.experiments",
     "write": "meshwright_core",
 }
-"""The module that each name comes from."""
+"""The module that defines each name."""
 
 _OTHER_NAMES = {
     "block_grids": ("meshwright_core.analysis.block_grids", "grids"),
     "levels": ("meshwright.puzzles.level", "all"),
     "shapes": ("meshwright_core.domains.gallery", "names"),
 }
-"""Names that are called otherwise at home."""
+"""Names that are different in their module: module and name there."""
 
 __all__ = sorted([*_HOMES, *_OTHER_NAMES])
 

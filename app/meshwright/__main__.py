@@ -1,4 +1,4 @@
-"""``python -m app``: the console command without its script, as ``torchrun`` starts it."""
+"""Runs the console command as ``python -m meshwright``, which is how ``torchrun`` starts it."""
 
 import sys
 

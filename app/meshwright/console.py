@@ -1,9 +1,9 @@
-"""What a command says: its result on stdout, everything else on stderr.
+"""Output of commands: the result on stdout, everything else on stderr.
 
 With ``--json`` stdout carries exactly one JSON object, the result or ``{"error": ...}``.
-Progress and remarks go to stderr, and only when that is a terminal, so that a pipe or a log
-never fills with them; a training, which takes hours, writes a line now and then all the same. An
-error is one line on stderr.
+Progress and remarks go to stderr, and only when it is a terminal, so that pipes and logs stay
+free of them; a training, which takes hours, also writes occasional lines to a log. An error is one
+line on stderr.
 """
 
 from __future__ import annotations
@@ -11,28 +11,35 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any, TextIO
+from typing import Any, Protocol, TextIO
 
 
 class UserError(Exception):
     """Wrong use or bad input: ends the command with one line on stderr and exit code 2."""
 
 
-Update = Callable[[int, str], None]
-"""Called as ``update(done, remark)`` while a long piece of work goes on."""
+class Update(Protocol):
+    """Called while a long piece of work goes on, to move its progress bar."""
+
+    def __call__(self, done: int, remark: str = "") -> None:
+        """``done`` pieces of work are done; ``remark`` is shown beside the bar."""
+
+
+def no_update(done: int, remark: str = "") -> None:
+    """Show no progress; an :class:`Update`."""
 
 
 class Report:
-    """The two streams that a command writes to.
+    """Writes the result, remarks and errors of a command.
 
     ``as_json`` chooses the form of the result. The streams are looked up when they are used, so
     that a test may replace ``sys.stdout`` and ``sys.stderr``.
     """
 
     def __init__(self, as_json: bool = False) -> None:
-        """Report as text, or as one JSON object."""
+        """as_json: write the result as one JSON object rather than as text."""
         self.as_json = as_json
 
     @property
@@ -46,22 +53,22 @@ class Report:
         return sys.stderr
 
     def result(self, values: Mapping[str, Any], text: str) -> None:
-        """Write the result: ``values`` as one JSON object, or ``text``, whichever is wanted."""
+        """Write the result: ``values`` as one JSON object, or ``text``."""
         self.out.write((as_json(values) if self.as_json else text.rstrip("\n")) + "\n")
         self.out.flush()
 
     def say(self, sentence: str) -> None:
-        """Write a remark to stderr if a person is looking at it."""
+        """Write a remark to stderr if it is a terminal."""
         if self.err.isatty():
             self.note(sentence)
 
     def note(self, sentence: str) -> None:
-        """Write a remark to stderr that a log should keep too."""
+        """Write a remark to stderr, also if it is a log."""
         self.err.write(one_line(sentence) + "\n")
         self.err.flush()
 
     def error(self, command: str, sentence: str) -> None:
-        """Write what went wrong as one line on stderr, and as an object where JSON is wanted."""
+        """Write an error as one line on stderr, and with ``--json`` as an object on stdout too."""
         sentence = one_line(sentence)
         self.err.write(f"{command}: {sentence}\n")
         self.err.flush()
@@ -71,9 +78,9 @@ class Report:
 
     @contextmanager
     def progress(self, title: str, total: int | None = None) -> Iterator[Update]:
-        """Show a bar on a terminal while the block runs; yield the function that moves it.
+        """Show a progress bar on a terminal while the block runs; yield the function that moves it.
 
-        ``total`` is the number of pieces of work; None where only the remark is known.
+        ``total`` is the number of pieces of work, None if it is not known.
         """
         if not self.err.isatty():
             yield lambda done, remark="": None
@@ -97,7 +104,7 @@ class Report:
 
 
 def one_line(text: str) -> str:
-    """Return the text with every run of white space, line ends too, made one blank."""
+    """Return the text with every run of white space, including line ends, replaced by one space."""
     return " ".join(text.split())
 
 

@@ -1,4 +1,4 @@
-"""A signal: views connect to it, the document emits it. Plain Python, one thread."""
+"""Signals: functions connect to them and are called when they are emitted; no threads, no Qt."""
 
 from collections.abc import Callable
 from typing import Any
@@ -7,7 +7,7 @@ Slot = Callable[..., Any]
 
 
 class Signal:
-    """An ordered list of slots that :meth:`emit` calls in turn, in the caller's thread."""
+    """A list of slots, which :meth:`emit` calls in order, in the caller's thread."""
 
     def __init__(self) -> None:
         self._slots: list[Slot] = []
@@ -18,11 +18,11 @@ class Signal:
         return slot
 
     def disconnect(self, slot: Slot) -> None:
-        """Forget ``slot``; a slot that is not connected is no error."""
+        """Remove ``slot``; nothing happens if it is not connected."""
         if slot in self._slots:
             self._slots.remove(slot)
 
     def emit(self, *arguments: Any) -> None:
-        """Call every slot; slots connected or disconnected meanwhile count from the next emit."""
+        """Call every slot; slots connected or removed during the call count from the next emit."""
         for slot in tuple(self._slots):
             slot(*arguments)

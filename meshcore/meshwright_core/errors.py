@@ -7,3 +7,14 @@ class MeshError(ValueError):
 
 class OperationRefused(MeshError):
     """An operation was applied where :meth:`HalfEdgeMesh.check` does not allow it."""
+
+
+def sentence(text: str) -> str:
+    """The text with a capital letter and a full stop, unless it ends in a mark already."""
+    text = capitalised(text)
+    return text if text.endswith((".", "\u2026", "!", "?")) else text + "."
+
+
+def capitalised(text: str) -> str:
+    """The text with a capital letter at its beginning; the other letters stay as they are."""
+    return text[:1].upper() + text[1:]

@@ -14,7 +14,9 @@ from meshwright_agent.env.potential import forget, solve_potential
 from meshwright_agent.env.task import Scratch, Task, choose_candidates, transition
 from meshwright_core.core.arrays import JOURNALLING
 from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.domains.meshing import benchmark_mesh
+from meshwright_core.errors import MeshError
 from meshwright_core.mesh import HalfEdgeMesh
 
 
@@ -93,10 +95,13 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """Start from a random polygon that is not at its optimum, or from ``options["mesh"]``."""
+        """Start from a random polygon that is not at its optimum, or from ``options["mesh"]``.
+
+        Raises MeshError if that mesh is of the other kind, TypeError if it is no HalfEdgeMesh.
+        """
         super().reset(seed=seed)
         given = (options or {}).get("mesh")
-        mesh = given.copy() if given is not None else self._draw()
+        mesh = self._draw() if given is None else self._copy_of(given)
         mesh.arrays.counters[JOURNALLING] = 0
         size = mesh.n_elements
         mesh.reserve(2 * size + 64, 2 * size + 64)
@@ -105,6 +110,18 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
         self._limit, self._bounds = self.task.step_limit(size), self.task.bounds(size)
         self._scratch = Scratch(self.task, len(mesh.arrays.edge), len(mesh.arrays.vertex))
         return self._observe(), self._info()
+
+    def _copy_of(self, given: object) -> HalfEdgeMesh:
+        if not isinstance(given, HalfEdgeMesh):
+            raise TypeError(
+                f"reset options: the mesh must be a HalfEdgeMesh, not {type(given).__name__}"
+            )
+        if given.kind != self.task.kind:
+            raise MeshError(
+                f"reset options: this environment edits {KIND_NOUN[self.task.kind]}, but the mesh"
+                f" is of {KIND_NOUN[given.kind]}"
+            )
+        return given.copy()
 
     def _draw(self) -> HalfEdgeMesh:
         low, high = self.sides

@@ -33,6 +33,7 @@ from meshwright_core.core.arrays import (
     enlarge,
 )
 from meshwright_core.core.compilation import kernel
+from meshwright_core.core.score import normalised_return
 from meshwright_core.domains.meshing import benchmark_mesh
 from meshwright_core.domains.random_parts import part_mesh
 from meshwright_core.mesh import HalfEdgeMesh
@@ -316,7 +317,7 @@ class Batch:
             ~acted | (after <= optima) | (self.steps >= self._limits[self.source])
         )
         returns = np.full(len(actions), np.nan)
-        returns[ended] = ((starts - self.best) / np.maximum(starts - optima, 1))[ended]
+        returns[ended] = normalised_return(starts, self.best, optima)[ended]
         if self.endless:
             for b in np.flatnonzero(ended):
                 self._begin(int(b), int(self.rng.choice(self.useful)))

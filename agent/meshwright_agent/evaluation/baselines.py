@@ -16,6 +16,7 @@ from meshwright_agent.env.task import Task
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import anneal, greedy, random_walk
 from meshwright_agent.search.solver import solve
+from meshwright_core.core.score import normalised_return
 from meshwright_core.mesh import HalfEdgeMesh
 
 BASELINES = ("greedy", "plateaus", "annealing", "random walk")
@@ -104,12 +105,13 @@ def baselines(
     rows = {}
     for method in BASELINES:
         found = _attempts(method, meshes, policy, seconds, seed, progress)
-        gains = np.array([m.score - a.score for m, a in zip(meshes, found, strict=True)], float)
-        gaps = np.array([mesh.score - mesh.optimum for mesh in meshes], float)
+        scores = np.array([one.score for one in found])
+        optima = np.array([mesh.optimum for mesh in meshes])
+        returns = normalised_return(np.array([mesh.score for mesh in meshes]), scores, optima)
         rows[method.replace(" ", "_")] = {
-            "mean": float((gains / gaps).mean()),
-            "std": float((gains / gaps).std()),
-            "at_optimum": float((gains == gaps).mean()),
+            "mean": float(returns.mean()),
+            "std": float(returns.std()),
+            "at_optimum": float((scores == optima).mean()),
             "seconds": float(np.mean([one.seconds for one in found])),
         }
     return rows

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshwright_agent.evaluation.paper_results import single as paper_single
+from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.io.atomic_write import replacing
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ def returns_by_steps(
         axes.set_title(title, loc="left", fontsize=10, color=INK)
         axes.set(ylim=(0.0, 1.02), xlim=(0, steps[-1]), xlabel="operations")
     panels[0].set_ylabel("normalised return")
-    _share_legend(figure, panels[0], f"{_noun(kind)}: single rollouts")
+    _share_legend(figure, panels[0], f"{KIND_NOUN[kind].capitalize()}: single rollouts")
     _write(figure, path)
 
 
@@ -154,7 +155,7 @@ def shares_by_seconds(
         axes.set_title(title, loc="left", fontsize=10, color=INK)
         axes.set(ylim=(0.0, 1.02), xlim=(first, seconds), xlabel="seconds a mesh, one core")
     panels[0].set_ylabel("share at the optimum")
-    _share_legend(figure, panels[0], _noun(kind))
+    _share_legend(figure, panels[0], KIND_NOUN[kind].capitalize())
     _write(figure, path)
 
 
@@ -197,10 +198,6 @@ def _share_legend(figure: Any, axes: Any, title: str) -> None:
         handlelength=2.6,
     )
     figure.suptitle(title, x=0.01, ha="left", fontsize=12, color=INK)
-
-
-def _noun(kind: str) -> str:
-    return "Triangles" if kind == "tri" else "Quads"
 
 
 def _write(figure: Any, path: str | Path) -> None:

@@ -14,10 +14,11 @@ import torch
 from meshwright_agent.env.task import MOST_CLEANUPS, Task, transition
 from meshwright_agent.env.vector_env import Batch, start_meshes
 from meshwright_agent.evaluation import paper_results
+from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy, load, shipped
 from meshwright_agent.policy.rollout import Step
-from meshwright_agent.training.ppo import decide
 from meshwright_core.core.arrays import ELEMENTS, JOURNALLING
+from meshwright_core.core.score import normalised_return
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 
@@ -96,8 +97,7 @@ def roll_out(
         batch = Batch(policy.task, meshes, len(meshes), rng, endless=False)
         elements, trace = _play(batch, policy, generator)
         result.gaps[:, i] = batch.best - batch.optima
-        start_gaps = batch.start_scores - batch.optima
-        result.returns[:, i] = 1.0 - result.gaps[:, i] / start_gaps
+        result.returns[:, i] = normalised_return(batch.start_scores, batch.best, batch.optima)
         result.operations[:, i] = batch.best_step
         result.elements[:, i] = elements / batch.start_elements
         result.traces.append(trace)

@@ -14,9 +14,9 @@ import torch
 from meshwright_agent.env.candidates import LOOKED_AT
 from meshwright_agent.env.task import Observation, Scratch, Task, observe
 from meshwright_agent.policy.explanation_types import Choice, Insight
+from meshwright_agent.policy.inference import tensors
 from meshwright_agent.policy.network import PolicyNetwork
-from meshwright_agent.policy.policy_files import Policy, PolicyError
-from meshwright_agent.training.ppo import tensors
+from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_core.core.arrays import IRREGULAR, ORIGIN, TWIN, MeshArrays, preceding
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
@@ -75,10 +75,7 @@ def hints(
     noise, so that the same question gets the same answer. Raises PolicyError if the policy is for
     the other kind of mesh.
     """
-    if mesh.kind != policy.kind:
-        raise PolicyError(
-            f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
-        )
+    require_kind(policy, mesh.kind)
     task = replace(policy.task, selection="shortlist", candidates=WEIGHED, noise=0.0)
     arrays = mesh.arrays
     scratch = Scratch(task, len(arrays.edge), len(arrays.vertex))

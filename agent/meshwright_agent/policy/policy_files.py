@@ -19,6 +19,7 @@ from safetensors.torch import save
 
 from meshwright_agent.env.task import Task
 from meshwright_agent.policy.network import Architecture, PolicyNetwork
+from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.io.atomic_write import replacing
 
 FORMAT = 1
@@ -47,6 +48,18 @@ class Policy:
     def kind(self) -> str:
         """The kind of mesh it is for, "tri" or "quad"."""
         return self.task.kind
+
+
+def require_kind(policy: Policy, kind: str, name: str | None = None) -> None:
+    """Raise PolicyError unless the policy was trained for meshes of this kind.
+
+    name: what the message calls the policy, by default its own name.
+    """
+    if policy.kind != kind:
+        raise PolicyError(
+            f"{policy.name if name is None else name}: this policy is for"
+            f" {KIND_NOUN[policy.kind]}, the mesh is of {KIND_NOUN[kind]}"
+        )
 
 
 def _shipped_folder() -> Path:

@@ -9,8 +9,8 @@ from meshwright_agent.env.candidates import LONGEST_CUT
 from meshwright_agent.env.task import Observation, Scratch, observe, transition
 from meshwright_agent.policy.explanation import insight
 from meshwright_agent.policy.explanation_types import Insight
-from meshwright_agent.policy.policy_files import Policy, PolicyError
-from meshwright_agent.training.ppo import decide
+from meshwright_agent.policy.inference import decide
+from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_core.core.arrays import JOURNALLING
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
@@ -30,10 +30,7 @@ class Runner:
 
         Raises PolicyError if the policy is for the other kind of mesh.
         """
-        if mesh.kind != policy.kind:
-            raise PolicyError(
-                f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
-            )
+        require_kind(policy, mesh.kind)
         self.mesh = mesh.copy()
         self.mesh.arrays.counters[JOURNALLING] = 0
         self.policy, self._task = policy, policy.task

@@ -14,7 +14,7 @@ from meshwright_agent.env.candidates import gather, masks
 from meshwright_agent.env.local_patch import LARGEST, Patches
 from meshwright_agent.env.task import Observation, Scratch, Task, choose_candidates, look
 from meshwright_agent.policy.explanation import weigh
-from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.policy.policy_files import Policy, PolicyError, require_kind
 from meshwright_core.core.arrays import ORIGIN, MeshArrays
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -99,10 +99,7 @@ def candidates(mesh: HalfEdgeMesh, policy: Policy, h: int = -1, seed: int = 0) -
 
 
 def _require(mesh: HalfEdgeMesh, policy: Policy, halfedges: np.ndarray) -> None:
-    if mesh.kind != policy.kind:
-        raise PolicyError(
-            f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
-        )
+    require_kind(policy, mesh.kind)
     slots = mesh.k * len(mesh.arrays.element_mark)
     for h in np.asarray(halfedges).tolist():
         if not 0 <= h < slots or mesh.arrays.edge[h, ORIGIN] < 0:

@@ -24,7 +24,8 @@ import torch
 from meshwright_agent.env.candidates import LOOKED_AT
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
-from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.policy.inference import decide
+from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_agent.search.patch_extraction import (
     MOST_TAKEN,
     cut_out,
@@ -41,7 +42,6 @@ from meshwright_agent.search.repair_queue import (
     enlist,
     settle,
 )
-from meshwright_agent.training.ppo import decide
 from meshwright_core.core.arrays import JOURNALLING, ORIGIN, STEP_COLUMNS, allocate
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
@@ -138,10 +138,7 @@ def improve_large(
     change; their rim must be locked. floor: elements that each patch keeps, relative to its start,
     where the policy asks for less. Raises PolicyError if the policy is for the other kind of mesh.
     """
-    if mesh.kind != policy.kind:
-        raise PolicyError(
-            f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
-        )
+    require_kind(policy, mesh.kind)
     began = time.perf_counter()
     work = _Work(mesh, policy, seed, floor)
     if within is not None:

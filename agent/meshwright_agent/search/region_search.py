@@ -16,14 +16,14 @@ import torch
 
 from meshwright_agent.env.task import MOST_CLEANUPS, transition
 from meshwright_agent.env.vector_env import Batch
-from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.policy.inference import decide
+from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_agent.search.annealing import WEIGHTS, Annealer, Operations, with_room
 from meshwright_agent.search.patch_extraction import MOST_TAKEN, cut_out, mask_rim
 from meshwright_agent.search.patchwise import improve_large
 from meshwright_agent.search.repair_queue import agenda
 from meshwright_agent.search.shortening import shorten
 from meshwright_agent.search.solver import prepare
-from meshwright_agent.training.ppo import decide
 from meshwright_core.analysis.submesh import enclose
 from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
@@ -92,10 +92,7 @@ def solve_within(
     `progress(rollouts done, best s of the whole mesh)` is called now and then. Raises PolicyError
     if the policy is for the other kind of mesh, MeshError if no vertex lies inside the part.
     """
-    if mesh.kind != policy.kind:
-        raise PolicyError(
-            f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
-        )
+    require_kind(policy, mesh.kind)
     prepare(policy)
     search = _Search(mesh, policy, elements, rollouts, seconds, seed, progress, cancelled)
     search.repair()

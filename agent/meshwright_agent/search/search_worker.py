@@ -14,11 +14,11 @@ import torch
 
 from meshwright_agent.env.task import Scratch, transition
 from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.policy.rollout import Runner
 from meshwright_agent.search.annealing import SLICE, Annealer, Operations, with_room
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.training.ppo import decide
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 

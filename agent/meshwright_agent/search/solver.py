@@ -18,7 +18,7 @@ import numpy as np
 
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
-from meshwright_agent.policy.policy_files import Policy, PolicyError
+from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_agent.search.annealing import Operations, anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
@@ -66,6 +66,16 @@ class Solution:
         elements = self.elements if self.coarse else 0
         return self.score, self.inverted, elements, len(self.operations)
 
+    def replay(self, mesh: HalfEdgeMesh) -> None:
+        """Apply the operations to `mesh`, the mesh that they were found for.
+
+        Raises RuntimeError if the score reached is not :attr:`score`.
+        """
+        for operation, halfedge in self.operations:
+            mesh.apply(operation, halfedge)
+        if mesh.score != self.score:
+            raise RuntimeError(f"the replay ends at s = {mesh.score}, the search at {self.score}")
+
     @property
     def perfect(self) -> bool:
         """At the optimum, which is a proof that s cannot be lower, and drawn without a fold."""
@@ -101,10 +111,7 @@ def solve(
 
     Raises PolicyError if the policy is for the other kind of mesh.
     """
-    if mesh.kind != policy.kind:
-        raise PolicyError(
-            f"{policy.name}: this policy is for {policy.kind} meshes, not {mesh.kind}"
-        )
+    require_kind(policy, mesh.kind)
     prepare(policy)
     mesh = _anchored(mesh)
     if is_large(mesh):

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
-from torch import Tensor
 
 from meshwright_agent.env.local_patch import Patches, assemble
 from meshwright_agent.env.task import Observation
 from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.network import PolicyNetwork
 from meshwright_agent.training.distributed import Processes
 
@@ -70,36 +70,6 @@ class Collected:
     """Which decisions had anything to choose."""
     returns: np.ndarray
     """Normalised returns of the runs that ended meanwhile."""
-
-
-def tensors(
-    observation: Observation,
-) -> tuple[Tensor, list[Tensor], Tensor, Tensor, Tensor, Tensor]:
-    """The arguments of :meth:`PolicyNetwork.forward` for all decisions of an observation."""
-    features, tables = assemble(observation.patches, np.arange(len(observation.mask)))
-    return (
-        torch.from_numpy(features),
-        [torch.from_numpy(table) for table in tables],
-        torch.from_numpy(observation.chosen >= 0),
-        torch.from_numpy(observation.mask),
-        torch.from_numpy(observation.changes),
-        torch.from_numpy(observation.state),
-    )
-
-
-@torch.no_grad()
-def decide(
-    network: PolicyNetwork, observation: Observation, generator: torch.Generator
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sample an action (B,) for each decision, -1 where nothing is permitted; log-probabilities and
-    values (B,).
-    """
-    logits, values = network(*tensors(observation))
-    log_probabilities = torch.log_softmax(logits, dim=1)
-    actions = torch.multinomial(log_probabilities.exp(), 1, generator=generator)
-    taken = log_probabilities.gather(1, actions).squeeze(1).numpy()
-    possible = observation.mask.any(axis=(1, 2))
-    return np.where(possible, actions.squeeze(1).numpy(), -1), taken, values.numpy()
 
 
 def normalised_advantages(

@@ -30,6 +30,7 @@ from meshwright_agent.training.configuration import (
 from meshwright_agent.training.distributed import DeviceError, Processes, joined
 from meshwright_agent.training.ppo import collect, update
 from meshwright_agent.training.tensorboard import Events
+from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.io.atomic_write import replacing
 
 __all__ = [
@@ -300,7 +301,7 @@ def finish(trainer: Trainer) -> dict[str, Any]:
         with replacing(folder / name) as temporary:
             temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
     sides_text = f"{sides[0]} to {sides[1]} sides"
-    title = f"{'Triangles' if kind == 'tri' else 'Quads'}, polygons of {sides_text}"
+    title = f"{KIND_NOUN[kind].capitalize()}, polygons of {sides_text}"
     learning_curve(trainer.progress.curve, kind, title, folder / "curve.png")
     row["evaluation_seconds"] = row.pop("seconds")
     return {"policy": str(folder / "policy.safetensors"), **asdict(trainer.progress), **row}

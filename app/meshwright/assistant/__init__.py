@@ -1,1 +1,1 @@
-"""Runs a policy on a document, in a thread of its own."""
+"""Runs a policy on a document, in a separate thread."""

@@ -1,8 +1,8 @@
-"""The assistant: a policy's runs on the document, and its hints.
+"""Runs a policy on the document and shows its hints.
 
-Neither Qt nor torch is imported here; the first run brings torch in, on the worker's thread. The
-worker (:mod:`meshwright.assistant.worker`) plays on a copy of the mesh; what it decides is applied
-here, in the thread that owns the document.
+Qt and torch are not imported here; the first run imports torch, on the worker's thread. The worker
+(:mod:`meshwright.assistant.worker`) works on a copy of the mesh; its decisions are applied here, in
+the thread that owns the document.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshwright.assistant.hints import Hinting
-from meshwright.assistant.insight import Sight
+from meshwright.assistant.insight import InsightStore
 from meshwright.assistant.policy_catalogue import label
-from meshwright.assistant.progress import Progress
-from meshwright.assistant.run import Decided, Question, Run, Runner, State
+from meshwright.assistant.progress import RunProgress
+from meshwright.assistant.run import AgentRun, Decision, HintRequest, RunnerProtocol, State
 from meshwright.assistant.search_runner import Effort, SearchRunner
-from meshwright.assistant.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, Worker
+from meshwright.assistant.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, PolicyWorker
 from meshwright.document.document import Document
 from meshwright.signals import Signal
 from meshwright_core import MeshError
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Choice, Insight
 
 APPLY_BUDGET = 0.02
-"""Seconds of applying operations after which the window gets its turn."""
+"""Seconds of applying operations after which the event loop runs."""
 SLOWEST, FASTEST = 0.5, 60.0
 """Bounds of :attr:`Assistant.speed` in decisions per second."""
 
@@ -37,14 +37,14 @@ __all__ = ["FASTEST", "SLOWEST", "Assistant", "State"]
 
 
 class Assistant:
-    """Runs a policy on ``document``, and asks it for hints.
+    """Runs a policy on ``document``, and requests hints from it.
 
     ``dispatch(call)`` must call ``call()`` in the document's thread, soon and in order; the other
-    parameters are those of :class:`meshwright.assistant.worker.Worker`.
+    parameters are those of :class:`meshwright.assistant.worker.PolicyWorker`.
 
-    Events, emitted in the document's thread: ``changed()`` state, policy or progress differ;
-    ``looked()`` :attr:`insight` is another; ``said(sentence)`` something a person wants to know;
-    ``failed(sentence)`` a run broke off.
+    Events, emitted in the document's thread: ``changed()`` state, policy or progress changed;
+    ``insight_changed()`` :attr:`insight` changed; ``message(sentence)`` a message to show;
+    ``failed(sentence)`` a run has failed.
     """
 
     def __init__(
@@ -57,11 +57,11 @@ class Assistant:
         ask: Ask | None = None,
     ) -> None:
         self.changed = Signal()
-        self.said = Signal()
+        self.message = Signal()
         self.failed = Signal()
         self._document = document
         self._dispatch = dispatch
-        self._worker = Worker(self, dispatch, load, make_runner, make_search, ask)
+        self._worker = PolicyWorker(self, dispatch, load, make_runner, make_search, ask)
         self._state = State.IDLE
         self._policy = self._chosen = ""
         self._speed = 4.0
@@ -69,17 +69,17 @@ class Assistant:
         self._loading = False
         self._watch = False
         self._look_due = False
-        self._run: Run | None = None
-        self._runner: Runner | None = None
+        self._run: AgentRun | None = None
+        self._runner: RunnerProtocol | None = None
         self._runner_at = -1
         self._applying = False
-        self._sight = Sight(document)
-        self.looked = self._sight.changed
-        self.progress = Progress()
+        self._sight = InsightStore(document)
+        self.insight_changed = self._sight.changed
+        self.progress = RunProgress()
         self.hinting = Hinting(document, self._worker)
         document.changed.connect(self._on_document_changed)
 
-    # What it is doing
+    # State
 
     @property
     def state(self) -> State:
@@ -88,12 +88,12 @@ class Assistant:
 
     @property
     def running(self) -> bool:
-        """True while a run is under way; a paused one is not."""
+        """True during a run; a paused run does not count."""
         return self._run is not None
 
     @property
     def loading(self) -> bool:
-        """True while the policy is being loaded (the first time that takes seconds)."""
+        """True while a policy is being loaded, which takes seconds the first time."""
         return self._loading
 
     @property
@@ -126,7 +126,7 @@ class Assistant:
 
     @property
     def watch(self) -> bool:
-        """Whether :attr:`insight` follows the policy, and the person's edits."""
+        """Whether :attr:`insight` is kept up to date during runs and after edits."""
         return self._watch
 
     @watch.setter
@@ -144,10 +144,10 @@ class Assistant:
 
     @property
     def insight(self) -> Insight | None:
-        """What the policy sees in the present state, and will do next; None if not known."""
+        """The policy's view of the present state and its next step; None if not known."""
         return self._sight.insight
 
-    # What a person asks for
+    # Commands
 
     def prepare(self) -> None:
         """Load the policy ahead of the first run."""
@@ -157,7 +157,7 @@ class Assistant:
             self.changed.emit()
 
     def choose(self, name: str) -> None:
-        """Load a policy, and take it once it is there; if it cannot be had nothing else changes."""
+        """Load a policy and switch to it once it is loaded; nothing changes if loading fails."""
         if self._worker.has(name):
             self.policy = name
             return
@@ -166,9 +166,9 @@ class Assistant:
         self.changed.emit()
 
     def hint(self, near: np.ndarray | None = None) -> None:
-        """Ask the policy for its best few operations, near vertices (n,) if given.
+        """Request the policy's best operations, near vertices (n,) if given.
 
-        A run that plays is held; one that searches goes on, and nothing is asked.
+        Pauses a run that plays; during a search the request is ignored.
         """
         if self._state is State.SEARCHING:
             return
@@ -186,25 +186,25 @@ class Assistant:
         self._begin(State.STEPPING)
 
     def play(self, hurry: bool = False) -> None:
-        """Decide at :attr:`speed`, or as fast as it can, until finished, paused or cancelled."""
+        """Decide at :attr:`speed`, or as fast as possible, until finished, paused or cancelled."""
         self._begin(State.PLAYING)
         if hurry and self._run is not None:
             self._run.speed = float("inf")
             self._run.wake.set()
 
     def pause(self) -> None:
-        """Hold a played run; :meth:`play` goes on, :meth:`step` takes one decision more."""
+        """Pause a run; :meth:`play` continues it, :meth:`step` takes one more decision."""
         run = self._run
         if run is not None and run.state is State.PLAYING:
             self._end(State.PAUSED)
             self._tidy(run)
 
     def search(self, effort: Effort | None = None) -> None:
-        """Look for the best state within `effort` and go there by the shortest way found."""
+        """Search for the best state within `effort` and apply the operations that lead there."""
         self._begin(State.SEARCHING, effort or Effort())
 
     def stop(self) -> None:
-        """End the run now; a search still does what it has found, unless asked once more."""
+        """End the run now; a search still applies its result, unless this is called again."""
         run = self._run
         if run is not None and run.state is State.SEARCHING and not run.enough.is_set():
             run.enough.set()
@@ -216,7 +216,7 @@ class Assistant:
 
     @property
     def stopping(self) -> bool:
-        """True once a search has been told to come to its end."""
+        """True once a search has been asked to end early."""
         return self._run is not None and self._run.enough.is_set()
 
     def cancel(self) -> None:
@@ -225,7 +225,7 @@ class Assistant:
             self._end(State.IDLE)
 
     def close(self) -> None:
-        """Cancel, and let the worker thread end. The assistant cannot run again."""
+        """Cancel, and end the worker thread. The assistant cannot run again."""
         self._document.changed.disconnect(self._on_document_changed)
         self._watch = False
         self.hinting.forget()
@@ -233,16 +233,16 @@ class Assistant:
             self._end(State.IDLE)
         self._worker.close()
 
-    # Beginning and ending
+    # Start and end of runs
 
     def _can_work(self) -> bool:
-        """Whether there is something to do, and somebody to do it; else it says so."""
+        """Whether there are a mesh that can improve and a policy; emits a message if not."""
         if self._document.mesh is None:
-            self.said.emit("There is no mesh to work on.")
+            self.message.emit("There is no mesh to work on.")
         elif not self._policy:
-            self.said.emit("Choose a policy.")
+            self.message.emit("Choose a policy.")
         elif self._document.at_optimum:
-            self.said.emit("Already at the optimum: nothing is left to improve.")
+            self.message.emit("Already at the optimum: nothing is left to improve.")
         else:
             return True
         return False
@@ -251,7 +251,7 @@ class Assistant:
         if self._run is not None:
             if self._run.state is state:
                 return
-            # one run gives way to the next, its progress is kept
+            # the new run replaces this one and keeps its progress
             looks = self._run.state is State.LOOKING
             self._end(self._run.after if looks else State.PAUSED)
         mesh = self._document.mesh
@@ -262,13 +262,13 @@ class Assistant:
             held = self._held(effort)
         except MeshError as error:
             self._finish_state(State.IDLE)
-            self.said.emit(str(error))
+            self.message.emit(str(error))
             return
         synced = self._runner is not None and self._runner_at == self._document.revision
         if self._runner is None or not synced or self._runner.finished or effort is not None:
             self._runner = None
             self._seed += 1
-        run = Run(
+        run = AgentRun(
             state=state,
             policy=self._policy,
             seed=self._seed,
@@ -288,7 +288,7 @@ class Assistant:
         self.changed.emit()
 
     def _held(self, effort: Effort | None) -> np.ndarray | None:
-        """The vertices that stay where they are, where only a region is worked on."""
+        """The vertices that keep their positions when only a region may change."""
         mesh = self._document.mesh
         if mesh is None or effort is None or effort.elements is None:
             return None
@@ -309,7 +309,7 @@ class Assistant:
         self.changed.emit()
 
     def _look_soon(self) -> None:
-        """Look again once the event loop has had its turn; many edits are one look."""
+        """Compute the insight once the event loop has run; several edits share one."""
         if self._watch and not self._look_due:
             self._look_due = True
             self._dispatch(self._look)
@@ -324,39 +324,39 @@ class Assistant:
         self.hinting.forget()
         self._sight.see(None)
         if not self._applying:
-            self.cancel()  # a person took over; the next run starts from what is there then
-            self._runner_at = -1  # no runner knows of this edit, whenever its run has ended
+            self.cancel()  # the user has edited: the next run starts from the new state
+            self._runner_at = -1  # the runner has not seen this edit and cannot be reused
             self._look_soon()
 
-    # What the worker says (:class:`meshwright.assistant.worker.Listener`)
+    # Results of the worker (:class:`meshwright.assistant.worker.Listener`)
 
     def loaded(self, name: str) -> None:
-        """A policy is there."""
+        """A policy has been loaded."""
         self._loading = False
         if self._run is not None:
-            self._run.began = self._run.due = time.monotonic()  # loading is no work on the mesh
+            self._run.began = self._run.due = time.monotonic()  # do not count the time of loading
         if name == self._chosen:
             self._chosen = ""
             self.policy = name
         self.changed.emit()
 
-    def broke(self, cause: Run | Question | None, sentence: str) -> None:
-        """A run, a question, or the loading of a policy came to nothing."""
-        if isinstance(cause, Run):
+    def broke(self, cause: AgentRun | HintRequest | None, sentence: str) -> None:
+        """A run, a request, or the loading of a policy has failed."""
+        if isinstance(cause, AgentRun):
             if cause is not self._run:
                 return
             self._end(State.IDLE)
             self._runner = None
         else:
-            if isinstance(cause, Question) and not self.hinting.close(cause):
+            if isinstance(cause, HintRequest) and not self.hinting.close(cause):
                 return
             self._chosen = ""
             self._loading = False
             self.changed.emit()
         self.failed.emit(sentence)
 
-    def looked_at(self, run: Run, insight: Insight | None) -> None:
-        """What the policy sees before its first decision."""
+    def looked_at(self, run: AgentRun, insight: Insight | None) -> None:
+        """The policy's view before its first decision."""
         if run is not self._run:
             return
         if run.state is State.LOOKING:
@@ -364,22 +364,22 @@ class Assistant:
         if self._watch:
             self._sight.see(insight)
 
-    def progressed(self, run: Run, done: int, best: int) -> None:
-        """So many rollouts are done, and this is the lowest s so far."""
+    def progressed(self, run: AgentRun, done: int, best: int) -> None:
+        """A search has done ``done`` rollouts, and its lowest score is ``best``."""
         if run is self._run and self.progress.found(done, best):
             self.changed.emit()
 
-    def answered(self, question: Question, choices: tuple[Choice, ...]) -> None:
-        """The policy's best few operations."""
+    def answered(self, question: HintRequest, choices: tuple[Choice, ...]) -> None:
+        """A request for hints has been answered."""
         if not self.hinting.close(question):
             return
         self.hinting.show(choices)
         self.changed.emit()
         if not choices:
-            self.said.emit("The policy finds no operation that it may do here.")
+            self.message.emit("The policy finds no allowed operation here.")
 
-    def decided(self, run: Run, decided: Decided) -> None:
-        """Submit what the worker decided; gives the event loop its turn in between."""
+    def decided(self, run: AgentRun, decided: Decision) -> None:
+        """Apply the worker's decision; lets the event loop run in between."""
         if run is not self._run:
             return
         deadline = time.monotonic() + APPLY_BUDGET
@@ -392,7 +392,7 @@ class Assistant:
                     halfedge,
                     by=label(run.policy),
                     held=run.held,
-                    thorough=run.state is State.STEPPING,  # the others are tidied up at the end
+                    thorough=run.state is State.STEPPING,  # other runs are smoothed at the end
                 )
                 if decided.operations and time.monotonic() > deadline:
                     self._dispatch(partial(self.decided, run, decided))
@@ -416,30 +416,30 @@ class Assistant:
             run.applied.set()
             self.changed.emit()
 
-    def _finish(self, run: Run) -> None:
+    def _finish(self, run: AgentRun) -> None:
         document = self._document
         reason = run.runner.reason if run.runner is not None else ""
         self._end(State.IDLE)
         self._tidy(run)
         where = "" if run.held is None else "The region is finished: "
         if document.at_optimum:
-            self.said.emit(f"At the optimum after {self.progress.counted}.")
+            self.message.emit(f"At the optimum after {self.progress.counted}.")
         elif where:
-            self.said.emit(f"{where}s {document.score}{'; ' + reason if reason else ''}.")
+            self.message.emit(f"{where}s {document.score}{'; ' + reason if reason else ''}.")
         else:
-            self.said.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
+            self.message.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
 
-    def _tidy(self, run: Run) -> None:
-        """What smoothing around each operation has folded on the way, the whole unfolds."""
-        from meshwright.document.position_repair import after_run
+    def _tidy(self, run: AgentRun) -> None:
+        """Smooth or untangle what the operations of the run have left inverted."""
+        from meshwright.assistant.run_cleanup import clean_up
 
         if not run.decisions:
             return
         seen = self._sight.last
         self._applying = True
         try:
-            after_run(self._document, label(run.policy), run.held, run.effort is not None)
+            clean_up(self._document, label(run.policy), run.held, run.effort is not None)
         finally:
             self._applying = False
-        self._runner_at = self._document.revision  # vertices have moved, no edge has
+        self._runner_at = self._document.revision  # only positions have changed
         self._sight.see(seen)

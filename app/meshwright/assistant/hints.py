@@ -1,4 +1,4 @@
-"""Hints: what the policy would do in the present state, asked for by a person."""
+"""Hints: the policy's best operations in the present state of the document."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright.assistant.run import Question
-from meshwright.assistant.worker import Worker
+from meshwright.assistant.run import HintRequest
+from meshwright.assistant.worker import PolicyWorker
 from meshwright.document.document import Document
 from meshwright.signals import Signal
 
@@ -16,50 +16,50 @@ if TYPE_CHECKING:
 
 
 class Hinting:
-    """One question at a time, whose answer holds until the document changes.
+    """Requests hints from the policy, one request at a time; they hold until the document changes.
 
-    ``changed()`` is emitted when :attr:`hints` are others.
+    ``changed()`` is emitted when :attr:`hints` change.
     """
 
-    def __init__(self, document: Document, worker: Worker) -> None:
+    def __init__(self, document: Document, worker: PolicyWorker) -> None:
         self.changed = Signal()
         self._document, self._worker = document, worker
-        self._question: Question | None = None
+        self._question: HintRequest | None = None
         self._hints: tuple[Choice, ...] = ()
 
     @property
     def hints(self) -> tuple[Choice, ...]:
-        """The policy's best few operations in the present state; empty before it is asked."""
+        """The policy's best few operations in the present state; empty before the first request."""
         return self._hints
 
     @property
     def asking(self) -> bool:
-        """True while the policy is asked."""
+        """True while a request is pending."""
         return self._question is not None
 
     def ask(self, policy: str, near: np.ndarray | None) -> None:
-        """Ask the policy; the document must have a mesh."""
+        """Request hints, near vertices (n,) if given; nothing happens without a mesh."""
         self.forget()
         mesh = self._document.mesh
         if mesh is not None:
-            self._question = Question(policy, mesh.copy(), near, self._document.revision)
+            self._question = HintRequest(policy, mesh.copy(), near, self._document.revision)
             self._worker.answer(self._question)
 
     def forget(self) -> None:
-        """Take the hints away, and do not wait for those that are on their way."""
+        """Remove the hints and ignore the answer to a pending request."""
         self._question = None
         if self._hints:
             self._hints = ()
             self.changed.emit()
 
-    def close(self, question: Question) -> bool:
-        """The question is answered, or cannot be; False if nobody waits for that any more."""
+    def close(self, question: HintRequest) -> bool:
+        """End a request; False if it is no longer the pending one."""
         if question is not self._question:
             return False
         self._question = None
         return True
 
     def show(self, choices: tuple[Choice, ...]) -> None:
-        """These are the hints now."""
+        """Set the hints."""
         self._hints = choices
         self.changed.emit()

@@ -1,4 +1,4 @@
-"""Sight: what the policy sees in the present state, as it was told last."""
+"""The policy's latest view of the document, and whether it is still valid."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
 
 
-class Sight:
-    """An insight, and the state of the document that it is of.
+class InsightStore:
+    """Stores an insight together with the revision of the document that it describes.
 
-    ``changed()`` is emitted when there is another, or none any more.
+    ``changed()`` is emitted when it is set or cleared.
     """
 
     def __init__(self, document: Document) -> None:
@@ -25,16 +25,16 @@ class Sight:
 
     @property
     def insight(self) -> Insight | None:
-        """What the policy sees in the present state; None if not known."""
+        """The insight for the present state; None if there is none."""
         return self._last if self._at == self._document.revision else None
 
     @property
     def last(self) -> Insight | None:
-        """What was seen last, whatever has moved since then."""
+        """The insight set last, even if the document has changed since."""
         return self._last
 
     def see(self, insight: Insight | None) -> None:
-        """This is what the policy sees in the present state; None: that is not known."""
+        """Set the insight for the present state; None clears it."""
         if insight is not None or self._last is not None:
             self._last, self._at = insight, self._document.revision
             self.changed.emit()

@@ -1,4 +1,4 @@
-"""Policies found without torch: those that travel with the program, and files of one's own."""
+"""Lists shipped policies and reads the kind of policy files, without importing torch."""
 
 import json
 from importlib.resources import files
@@ -24,7 +24,7 @@ def shipped(kind: str) -> list[str]:
 
 
 def kind_of(path: str | Path) -> str:
-    """The kind of mesh, "tri" or "quad", that a policy file is for; the file may be bad further on.
+    """The kind of mesh, "tri" or "quad", that a policy file is for; only its header is read.
 
     Raises ValueError or OSError with one sentence where it is no policy file at all.
     """
@@ -43,7 +43,7 @@ def kind_of(path: str | Path) -> str:
 
 
 def label(name: str) -> str:
-    """What a person calls a policy: a shipped one by its name, a file without folder and ending."""
+    """The name to show for a policy: for a file, its name without folder and ending."""
     return Path(name).name.removesuffix(ENDING) if name.endswith(ENDING) else name
 
 
@@ -53,7 +53,7 @@ def _kind_of(entry: Traversable | Path) -> str:
 
 
 def _header(entry: Traversable | Path) -> tuple[int, dict[str, Any]]:
-    """Bytes of the file's header, and what it says of each entry; nothing if it has none."""
+    """Bytes of the file's header, and its entries; (0, {}) if it has no valid header."""
     with entry.open("rb") as stream:
         length = int.from_bytes(stream.read(8), "little")
         if length > _LONGEST_HEADER:
@@ -67,7 +67,7 @@ def _header(entry: Traversable | Path) -> tuple[int, dict[str, Any]]:
 
 
 def _body(header: dict[str, Any]) -> int:
-    """Bytes that follow the header, as it says; whoever reads the file checks it in full."""
+    """Bytes that follow the header according to it; the full check is done when it is loaded."""
     spans = [one.get("data_offsets") for one in header.values()]
     ends = [span[1] for span in spans if isinstance(span, list) and len(span) == 2]
     return max((end for end in ends if type(end) is int), default=0)

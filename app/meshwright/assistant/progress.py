@@ -1,15 +1,15 @@
-"""How far the assistant's run is: decisions, time, the best so far."""
+"""Progress of the assistant's run: decisions, time, lowest score."""
 
 from __future__ import annotations
 
 import time
 
-from meshwright.assistant.run import Run
+from meshwright.assistant.run import AgentRun
 from meshwright.assistant.search_runner import Effort
 
 
-class Progress:
-    """Of the run under way, or of the last one; a run that is held and goes on counts on."""
+class RunProgress:
+    """Progress of the current run, or of the last one; a paused run continues its counts."""
 
     def __init__(self) -> None:
         self.decisions = 0
@@ -19,28 +19,28 @@ class Progress:
         self.best: int | None = None
         """The lowest s found; None before anything is."""
         self._spent = 0.0
-        self._run: Run | None = None
+        self._run: AgentRun | None = None
 
-    def begin(self, run: Run, afresh: bool) -> None:
-        """A run begins; `afresh` if it does not go on from one that was held."""
+    def begin(self, run: AgentRun, afresh: bool) -> None:
+        """Start counting; `afresh` unless the run continues a paused one."""
         if afresh:
             self.decisions = self.rollouts = 0
             self.best, self._spent = None, 0.0
         self._run = run
 
     def end(self) -> None:
-        """The run is over, or held."""
+        """Stop the clock: the run has ended or is paused."""
         self._spent = self.elapsed
         self._run = None
 
     def done(self, decisions: int, score: int) -> None:
-        """So many more decisions are applied, and s is `score` now."""
+        """Add applied decisions; `score` is the present s."""
         self.decisions += decisions
         if self.effort is None:
             self.best = score if self.best is None else min(self.best, score)
 
     def found(self, rollouts: int, best: int) -> bool:
-        """A search has come so far; False if that is no news."""
+        """Set the progress of a search; False if nothing has changed."""
         news = (rollouts, best) != (self.rollouts, self.best)
         self.rollouts, self.best = rollouts, best
         return news
@@ -52,7 +52,7 @@ class Progress:
 
     @property
     def effort(self) -> Effort | None:
-        """How hard the search under way tries; None without one."""
+        """Limits of the current search; None without one."""
         return self._run.effort if self._run is not None else None
 
     @property
@@ -62,7 +62,7 @@ class Progress:
 
     @property
     def share(self) -> float | None:
-        """How much of its effort the search under way has spent, 0 to 1; None without one."""
+        """Fraction of its limit that the current search has used, 0 to 1; None without one."""
         effort = self.effort
         if effort is None:
             return None

@@ -1,4 +1,4 @@
-"""What the assistant and its worker share: a run, and a question; no Qt, no torch."""
+"""Data that the assistant and its worker thread share; no Qt, no torch."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from meshwright_core import HalfEdgeMesh, Operation
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
 
-Step = list[tuple[Operation, int]]
+DecisionStep = list[tuple[Operation, int]]
 
 
 class State(StrEnum):
@@ -30,12 +30,12 @@ class State(StrEnum):
     SEARCHING = "searching"
 
 
-class Runner(Protocol):
-    """What the assistant needs of ``meshwright_agent.policy.rollout.Runner``."""
+class RunnerProtocol(Protocol):
+    """The part of ``meshwright_agent.policy.rollout.Runner`` that the assistant uses."""
 
     @property
     def finished(self) -> bool:
-        """True once there is nothing more to decide."""
+        """True once no more decisions follow."""
         ...
 
     @property
@@ -44,33 +44,33 @@ class Runner(Protocol):
         ...
 
     def look(self) -> Insight | None:
-        """What the policy sees now, and will do at the next step; None where that means nothing."""
+        """The policy's view of the present state and its next step; None if there is none."""
         ...
 
-    def step(self) -> Step:
+    def step(self) -> DecisionStep:
         """The next operation and the clean-ups that follow it; empty when finished."""
         ...
 
 
 @dataclass
-class Run:
-    """One run: shared by the document's thread and the worker; ``lock`` guards ``in_step``."""
+class AgentRun:
+    """One run, shared by the document's thread and the worker; ``lock`` guards ``in_step``."""
 
     state: State
     policy: str
     seed: int
     mesh: HalfEdgeMesh | None
-    """The runner's copy until the runner has it."""
+    """The copy for the runner; None once the runner has taken it."""
     speed: float
     """Decisions per second while playing."""
     watch: bool
-    """Whether each decision is looked at before it is taken."""
-    runner: Runner | None = None
+    """Whether an insight is computed before each decision."""
+    runner: RunnerProtocol | None = None
     effort: Effort | None = None
     held: np.ndarray | None = None
-    """Vertices that stay where they are, where only a region is worked on."""
+    """Vertices that keep their positions when only a region may change."""
     after: State = State.IDLE
-    """What follows a look."""
+    """The state to return to after LOOKING."""
     in_step: bool = False
     decisions: int = 0
     began: float = field(default_factory=time.monotonic)
@@ -83,7 +83,7 @@ class Run:
     enough: threading.Event = field(default_factory=threading.Event)
 
     def end(self) -> bool:
-        """Stop the worker; True if the runner stands exactly where the document stands."""
+        """Stop the worker; True if the runner is in the same state as the document."""
         with self.lock:
             self.stop.set()
             in_step = self.in_step
@@ -94,22 +94,22 @@ class Run:
 
 
 @dataclass
-class Decided:
-    """What the worker hands over: the operations of one decision, or of a batch of them."""
+class Decision:
+    """The operations of one decision, or of several, from the worker."""
 
-    operations: Step
+    operations: DecisionStep
     decisions: int
     finished: bool
     insight: Insight | None
-    """What the policy sees once they are done, if it is watched."""
+    """The policy's view after these operations, if it is shown."""
 
 
 @dataclass(frozen=True)
-class Question:
-    """What would the policy do? Asked about one state of the document."""
+class HintRequest:
+    """A request for the policy's best operations in one state of the document."""
 
     policy: str
     mesh: HalfEdgeMesh
     near: np.ndarray | None
-    """Vertices to look near, the most interesting first."""
+    """Vertices near which to look, the most important first."""
     revision: int

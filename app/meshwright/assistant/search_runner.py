@@ -1,6 +1,6 @@
-"""A search in the clothes of a run: it looks for the best operations first, then hands them out.
+"""Adapts the solver to the runner interface: searches, then returns its operations one by one.
 
-Neither Qt nor torch is imported here; the first step brings torch in, on the assistant's worker.
+Qt and torch are not imported here; the first step imports torch, on the assistant's thread.
 """
 
 import os
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
 
 COMPLETE_SECONDS = 3.0
-"""How long *Complete* searches when the optimum does not come sooner."""
+"""Time limit, in seconds, of the command *Complete*."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard to search: so many rollouts, or so many seconds; and where."""
+    """Limits of a search: rollouts or seconds, and the region that may change."""
 
     rollouts: int | None = None
     seconds: float | None = COMPLETE_SECONDS
@@ -33,8 +33,8 @@ class Effort:
 
 
 class SearchRunner:
-    """What ``meshwright.assistant.assistant.Runner`` asks for, with the answer of
-    ``meshwright_agent.search.solver.solve`` as its steps.
+    """A :class:`meshwright.assistant.run.RunnerProtocol` whose steps are the operations that
+    ``meshwright_agent.search.solver.solve`` has found.
     """
 
     def __init__(
@@ -56,15 +56,15 @@ class SearchRunner:
 
     @property
     def finished(self) -> bool:
-        """Whether all operations have been handed out."""
+        """Whether all operations have been returned."""
         return self._left is not None and not self._left
 
     def look(self) -> "Insight | None":
-        """Nothing: a search is not one policy's decision."""
+        """None: a search has no insight to show."""
         return None
 
     def step(self) -> list[tuple[Operation, int]]:
-        """The next operation, once the search is over; the first call waits for that."""
+        """The next operation; the first call runs the search."""
         if self._left is None:
             self._left = self._search()
         return [self._left.pop(0)] if self._left else []

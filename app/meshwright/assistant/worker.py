@@ -1,8 +1,8 @@
-"""The assistant's worker: a thread on which policies are loaded, played and asked.
+"""The thread on which policies are loaded and run.
 
-It never touches the document. What it finds is handed over by ``dispatch``, which makes the calls
-in the document's thread; after a decision it waits until that has been applied, so that decisions
-never pile up and a cancelled run leaves nothing behind.
+It never accesses the document. Results are passed to a listener by ``dispatch``, which makes the
+calls in the document's thread. After each decision the thread waits until the decision has been
+applied, so that decisions do not queue up and a cancelled run leaves none behind.
 """
 
 from __future__ import annotations
@@ -18,7 +18,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from meshwright.assistant.run import Decided, Question, Run, Runner, State, Step
+from meshwright.assistant.run import (
+    AgentRun,
+    Decision,
+    DecisionStep,
+    HintRequest,
+    RunnerProtocol,
+    State,
+)
 from meshwright.assistant.search_runner import Effort, SearchRunner
 from meshwright_core import HalfEdgeMesh
 
@@ -26,17 +33,17 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Choice, Insight
 
 LEAVE_SECONDS = 10.0
-"""Seconds that the end of the program waits for the thread, at most."""
+"""Time limit, in seconds, for which the exiting program waits for the thread."""
 CATCH_UP = 0.2
-"""Seconds by which a played decision may be late without putting off those after it."""
+"""Seconds by which a played decision may be late without delaying later ones."""
 BATCH_SECONDS = 0.03
-"""Seconds for which a search gathers its operations before it hands them over."""
+"""Seconds for which operations of a search are collected before they are passed on."""
 
 Dispatch = Callable[[Callable[[], None]], None]
 Load = Callable[[str], Any]
-MakeRunner = Callable[[HalfEdgeMesh, Any, int], Runner]
+MakeRunner = Callable[[HalfEdgeMesh, Any, int], RunnerProtocol]
 MakeSearch = Callable[
-    [HalfEdgeMesh, Any, int, Effort, threading.Event, Callable[[int, int], None]], Runner
+    [HalfEdgeMesh, Any, int, Effort, threading.Event, Callable[[int, int], None]], RunnerProtocol
 ]
 Ask = Callable[[HalfEdgeMesh, Any, "np.ndarray | None"], "tuple[Choice, ...]"]
 
@@ -44,39 +51,40 @@ _log = logging.getLogger(__name__)
 
 
 class Listener(Protocol):
-    """What the worker has to say; called in the document's thread."""
+    """Receives the results of the worker, in the document's thread."""
 
     def loaded(self, name: str) -> None:
-        """A policy is there."""
+        """A policy has been loaded."""
         ...
 
-    def broke(self, cause: Run | Question | None, sentence: str) -> None:
-        """A run, a question, or the loading of a policy (None) came to nothing."""
+    def broke(self, cause: AgentRun | HintRequest | None, sentence: str) -> None:
+        """A run, a request, or the loading of a policy (None) has failed."""
         ...
 
-    def looked_at(self, run: Run, insight: Insight | None) -> None:
+    def looked_at(self, run: AgentRun, insight: Insight | None) -> None:
         """What the policy sees before its first decision."""
         ...
 
-    def decided(self, run: Run, decided: Decided) -> None:
+    def decided(self, run: AgentRun, decided: Decision) -> None:
         """Operations to apply; the worker waits until ``run.applied`` is set."""
         ...
 
-    def progressed(self, run: Run, done: int, best: int) -> None:
-        """So many rollouts are done, and this is the lowest s so far."""
+    def progressed(self, run: AgentRun, done: int, best: int) -> None:
+        """A search has done ``done`` rollouts, and its lowest score is ``best``."""
         ...
 
-    def answered(self, question: Question, choices: tuple[Choice, ...]) -> None:
-        """The policy's best few operations."""
+    def answered(self, question: HintRequest, choices: tuple[Choice, ...]) -> None:
+        """A request for hints has been answered with the policy's best operations."""
         ...
 
 
-class Worker:
-    """One thread, begun when it is first needed.
+class PolicyWorker:
+    """Loads and runs policies on one thread, which starts with the first task.
 
     ``load(name)`` returns a policy, ``make_runner(mesh, policy, seed)`` a runner that works on its
-    own copy, ``make_search`` one as :class:`meshwright.assistant.search_runner.SearchRunner` is,
-    ``ask(mesh, policy, near)`` the policy's best few operations; all are called on the thread.
+    own copy, ``ask(mesh, policy, near)`` the policy's best operations. ``make_search`` takes the
+    arguments of :class:`meshwright.assistant.search_runner.SearchRunner`. All are called on the
+    thread.
     """
 
     def __init__(
@@ -97,7 +105,7 @@ class Worker:
         self._tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._thread: threading.Thread | None = None
         self._closed = threading.Event()
-        self._run: Run | None = None
+        self._run: AgentRun | None = None
 
     # In the document's thread
 
@@ -109,30 +117,30 @@ class Worker:
         """Load a policy."""
         self._submit(partial(self._policy_of, name), None)
 
-    def begin(self, run: Run) -> None:
+    def begin(self, run: AgentRun) -> None:
         """Work on a run until it is over or stopped."""
         self._run = run
         self._submit(partial(self._work, run), run)
 
-    def answer(self, question: Question) -> None:
-        """Answer a question."""
+    def answer(self, question: HintRequest) -> None:
+        """Request hints."""
         self._submit(partial(self._answer, question), question)
 
     def close(self) -> None:
-        """Let the thread end, without waiting for it; what has not been begun is left undone."""
+        """End the thread, without waiting for it; tasks that have not started are dropped."""
         self._closed.set()
         self._tasks.put(None)
 
-    def _submit(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
+    def _submit(self, task: Callable[[], Any], cause: AgentRun | HintRequest | None) -> None:
         if self._thread is None:
-            # a daemon: a program that breaks off does not wait for decisions that nobody applies
+            # a daemon thread: an exiting program must not wait for decisions to be applied
             self._thread = threading.Thread(target=self._serve, name="assistant", daemon=True)
             self._thread.start()
             atexit.register(self._leave)
         self._tasks.put(partial(self._guarded, task, cause))
 
     def _leave(self) -> None:
-        """The program ends: a thread in compiled code must not outlive the interpreter."""
+        """Stop the thread at exit: compiled code must not run after the interpreter has ended."""
         self.close()
         if self._run is not None:
             self._run.end()
@@ -146,10 +154,10 @@ class Worker:
             task()
         atexit.unregister(self._leave)
 
-    def _guarded(self, task: Callable[[], Any], cause: Run | Question | None) -> None:
+    def _guarded(self, task: Callable[[], Any], cause: AgentRun | HintRequest | None) -> None:
         try:
             task()
-        except Exception as error:  # a thread's boundary: whatever broke is told to the person
+        except Exception as error:  # the outermost frame of the thread: every error is reported
             self._dispatch(partial(self._listener.broke, cause, _sentence(error)))
 
     def _policy_of(self, name: str) -> Any:
@@ -158,12 +166,12 @@ class Worker:
             self._dispatch(partial(self._listener.loaded, name))
         return self._policies[name]
 
-    def _answer(self, question: Question) -> None:
+    def _answer(self, question: HintRequest) -> None:
         policy = self._policy_of(question.policy)
         choices = self._ask(question.mesh, policy, question.near)
         self._dispatch(partial(self._listener.answered, question, choices))
 
-    def _work(self, run: Run) -> None:
+    def _work(self, run: AgentRun) -> None:
         if run.stop.is_set():
             return
         policy = self._policy_of(run.policy)
@@ -179,7 +187,7 @@ class Worker:
         while run.state is not State.LOOKING and self._decide(run, runner):
             pass
 
-    def _runner_of(self, run: Run, mesh: HalfEdgeMesh, policy: Any) -> Runner:
+    def _runner_of(self, run: AgentRun, mesh: HalfEdgeMesh, policy: Any) -> RunnerProtocol:
         if run.effort is None:
             return self._make_runner(mesh, policy, run.seed)
 
@@ -188,7 +196,7 @@ class Worker:
 
         return self._make_search(mesh, policy, run.seed, run.effort, run.enough, progress)
 
-    def _decide(self, run: Run, runner: Runner) -> bool:
+    def _decide(self, run: AgentRun, runner: RunnerProtocol) -> bool:
         """Take one decision, or a batch of them, and wait until applied; False when over."""
         begun = time.monotonic()
         with run.lock:
@@ -196,7 +204,7 @@ class Worker:
                 return False
             run.in_step = True
             run.applied.clear()
-        operations: Step = []
+        operations: DecisionStep = []
         decisions = 0
         while not runner.finished and not run.stop.is_set():
             step = runner.step()
@@ -206,17 +214,17 @@ class Worker:
                 break
         finished = runner.finished
         insight = runner.look() if run.watch and not finished else None
-        decided = Decided(operations, decisions, finished, insight)
+        decided = Decision(operations, decisions, finished, insight)
         self._dispatch(partial(self._listener.decided, run, decided))
         run.applied.wait()
         self._wait(run)
         return not run.stop.is_set() and not finished
 
-    def _wait(self, run: Run) -> None:
+    def _wait(self, run: AgentRun) -> None:
         """While playing, wait until it is time for the next decision.
 
-        Decisions are due at equal distances. Those after one that comes late catch up, unless it
-        is so late that they would come all at once.
+        Decisions are due at equal intervals. After a late decision the following ones catch up,
+        unless it was more than CATCH_UP late.
         """
         before, now = run.due, time.monotonic()
         while run.state is State.PLAYING and not run.stop.is_set():
@@ -243,7 +251,7 @@ def _load_policy(name: str) -> Any:
     return policy_files.load(name)
 
 
-def _make_runner(mesh: HalfEdgeMesh, policy: Any, seed: int) -> Runner:
+def _make_runner(mesh: HalfEdgeMesh, policy: Any, seed: int) -> RunnerProtocol:
     from meshwright_agent.policy.rollout import Runner as PolicyRunner
 
     return PolicyRunner(mesh, policy, seed)

@@ -1,7 +1,7 @@
 """The suites of ``meshwright bench``, one module each; a new module here is a new suite.
 
 A suite has a ``SUMMARY`` and ``run(seed, quick, update)``, which returns the numbers by name.
-``quick`` asks for a small share of the work, to see that the suite runs; ``update`` is called as
+``quick`` does a small part of the work, as a check that the suite runs; ``update`` is called as
 ``update(done, remark)`` and may be ignored.
 
 A suite that searches has ``SECONDS`` too, the time for each mesh, and takes ``seconds`` as a fourth
@@ -18,7 +18,7 @@ from meshwright.console import Update
 
 
 class Suite(Protocol):
-    """What a module of a suite offers."""
+    """Interface of a suite's module."""
 
     SUMMARY: str
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -99,7 +100,7 @@ def by_size(size: int, rounds: int, share: int, rng: np.random.Generator) -> dic
             ),
         }
         for name, measure in measures.items():
-            row[f"{name}, {place}"] = median(rounds, lambda m=measure, n=span: m(n))
+            row[f"{name}, {place}"] = median(rounds, partial(measure, span))
     return row
 
 

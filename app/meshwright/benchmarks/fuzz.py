@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from meshwright.console import Update
@@ -16,7 +17,8 @@ QUICK = 300
 def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
     """Fuzz both kinds; the first violation ends it as an error."""
     count = QUICK if quick else OPERATIONS
-    return {
-        kind: fuzz(kind, count, seed, lambda done, kind=kind: update(done, f"{kind} {done:,}"))
-        for kind in ("tri", "quad")
-    }
+
+    def show(kind: str, done: int) -> None:
+        update(done, f"{kind} {done:,}")
+
+    return {kind: fuzz(kind, count, seed, partial(show, kind)) for kind in ("tri", "quad")}

@@ -9,19 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.cli import mesh_output
-from meshwright.cli.commands.improve import ROLLOUTS, replay
 from meshwright.console import Update
+from meshwright.document.position_repair import settle
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
-from meshwright_core import HalfEdgeMesh, read
+from meshwright_core import HalfEdgeMesh, read, write
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality
 
 SUMMARY = "every shape of the gallery, meshed and improved file to file: s, corners, folds"
 
 QUICK = ("star", "annulus")
+ROLLOUTS = 10
+"""Of each shape, as many as ``meshwright improve`` does by default."""
 
 
 def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
@@ -50,14 +51,14 @@ def improved(name: str, kind: str, policy: Policy, rollouts: int, seed: int) -> 
     with tempfile.TemporaryDirectory() as folder:
         first, last = Path(folder) / "in.vtk", Path(folder) / "out.vtk"
         made = meshing.mesh_domain(gallery.shape(name), kind)
-        mesh_output.settle(made)
-        mesh_output.write_mesh(first, made)
+        settle(made)
+        write(first, made)
         mesh = read(first)
         before = mesh.copy()
         solution = solver.solve(mesh, policy, rollouts=rollouts, seed=seed)
-        replay(mesh, solution)
-        mesh_output.settle(mesh)
-        mesh_output.write_mesh(last, mesh)
+        solution.replay(mesh)
+        settle(mesh)
+        write(last, mesh)
         after = read(last)
         after.validate()
     return {

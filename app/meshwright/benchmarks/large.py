@@ -39,7 +39,7 @@ LOCAL = {"tri": catalogue.CODES[3].values(), "quad": tuple(catalogue.CODES[4].va
 
 
 def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
-    """Measure everything; ``quick`` keeps to small meshes."""
+    """Measure everything; ``quick`` uses small meshes only."""
     from meshwright_agent.policy.policy_files import decide_on_one_thread
 
     decide_on_one_thread()

@@ -22,15 +22,15 @@ from meshwright_core.geometry import quality
 
 SUMMARY = "every level: par, proof that no fewer operations will do, the agent's operations"
 SECONDS = 2.0
-"""Time of the agent for each level."""
+"""Time limit of the agent for each level, in seconds."""
 
 NODES = 300_000
-"""States that the proof looks at."""
+"""Limit on the states that the proof visits."""
 QUICK, QUICK_NODES, QUICK_SECONDS = 4, 3_000, 0.3
 
 
 def run(seed: int, quick: bool, update: Update, seconds: float = SECONDS) -> dict[str, Any]:
-    """Check all levels; quick: the first few, with a glance at their ways."""
+    """Check all levels; quick: the first few, with a short proof search."""
     found = {}
     for number, level in enumerate(levels.all()[:QUICK] if quick else levels.all()):
         update(number, level.name)
@@ -40,7 +40,7 @@ def run(seed: int, quick: bool, update: Update, seconds: float = SECONDS) -> dic
 
 
 def checked(level: Level, nodes: int, seconds: float, seed: int) -> dict[str, Any]:
-    """One row; MeshError if the level is not what its file says."""
+    """One row; MeshError if the level does not match its file."""
     began = time.perf_counter()
     mesh = level.mesh()
     mesh.validate()
@@ -70,7 +70,7 @@ def checked(level: Level, nodes: int, seconds: float, seed: int) -> dict[str, An
 
 
 def played(level: Level) -> int:
-    """Inverted elements when the solution is played as a person plays it, at the end."""
+    """Inverted elements at the end of the solution, with smoothing after each operation."""
     document = Document(level.mesh(), level.title)
     for operation, (a, b) in level.solution:
         document.submit(operation, levels.halfedge_of(document.mesh or level.mesh(), a, b))

@@ -1,8 +1,8 @@
-"""A monkey at the window: random mouse and key events, and whether anything breaks.
+"""Monkey test of the window: sends random mouse and key events and reports failures.
 
-The monkey moves, clicks, drags and turns the wheel at random places, and presses the keys of the
-table of actions and others, in the window, its dialogs and menus, while the agent may be running.
-It never quits and never names a file.
+Moves, clicks, drags and wheel turns at random positions, and the keys of the action table and
+others, go to the window, its dialogs and menus, while the agent may be running. The program is
+never quit and no file is chosen.
 """
 
 from __future__ import annotations
@@ -21,22 +21,20 @@ from typing import Any
 import numpy as np
 
 from meshwright.benchmarks.desktop.display import display
-from meshwright.console import Update
+from meshwright.console import Update, no_update
 
 SUMMARY = "random mouse and key events at the window: exceptions, threads, timers, the mesh"
 EVENTS, QUICK_EVENTS = 20_000, 400
 LONGEST = 3600.0
 LARGEST = 4000
-"""A mesh that has grown beyond this many elements gives way to the star."""
+"""A mesh with more elements than this is replaced by the star."""
 STUCK = 20.0
-"""Seconds without a turn of the event loop after which the window counts as dead."""
+"""Seconds without an iteration of the event loop after which the window counts as hung."""
 ENDING = 30.0
-"""Seconds that threads get to end after the window was closed."""
+"""Time limit, in seconds, for threads to end after the window was closed."""
 
 
-def run(
-    seed: int = 0, quick: bool = False, update: Update = lambda done, remark: None
-) -> dict[str, Any]:
+def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[str, Any]:
     """Send 20,000 events (``quick``: 400) to a window on the star and report what went wrong.
 
     Keys: ``events``, ``exceptions`` (their last lines), ``steps`` (of the history, by hand or
@@ -44,7 +42,7 @@ def run(
     ``slowest_ms`` (the longest time that an event took, and ``slowest_was``: which), ``threads``
     and ``timers`` that outlived the window, ``valid`` (is the mesh valid at the end?), ``undone``
     (did undoing everything lead back to the first state?). Raises RuntimeError without a display
-    and if the window dies.
+    and if the window crashes.
     """
     with display() as environment, tempfile.TemporaryDirectory() as home:
         apart = {**environment, "XDG_CONFIG_HOME": home, "XDG_STATE_HOME": home}
@@ -79,7 +77,7 @@ class Monkey:
         self.steps = 0
         self.over = 0  # events that went to a dialog or a menu
         self.busy: list[Any] = []  # the dialog or menu that was open when each event was sent
-        window.document.noted.connect(self._count)
+        window.document.recorded.connect(self._count)
         self.shortcuts = [
             keys for action in ACTIONS for keys in action.shortcuts if action.id != "quit"
         ]
@@ -87,7 +85,7 @@ class Monkey:
         self.keys += list("0123456789abcxyz-.,")
 
     def shoot(self) -> None:
-        """Order the next shot, then send one event if the last one has been dealt with."""
+        """Schedule the next call, then send one event if the last one has been processed."""
         from qtpy.QtCore import QTimer
         from qtpy.QtWidgets import QApplication
 
@@ -237,7 +235,7 @@ class Monkey:
         from qtpy.QtGui import QKeySequence
         from qtpy.QtTest import QTest
 
-        combination = QKeySequence(name)[0]
+        combination: Any = QKeySequence(name)[0]  # type: ignore[index]
         self.doing = f"key {name}, {self.window.document.mesh.n_elements} elements"
         widget = target.focusWidget() or target
         if widget.isVisible():
@@ -251,7 +249,7 @@ def _star(kind: str) -> Any:
 
 
 def _play(seed: int, events: int) -> dict[str, Any]:
-    """Open a window, let the monkey at it, close it, and look what is left."""
+    """Open a window, send the events, close it, and check what is left."""
     from qtpy.QtCore import QTimer
     from qtpy.QtWidgets import QApplication
 
@@ -302,7 +300,7 @@ def _play(seed: int, events: int) -> dict[str, Any]:
 
 
 def _watch(beat: list[float], monkey: Monkey) -> None:
-    """End the process if the event loop stands still."""
+    """End the process if the event loop hangs."""
     import faulthandler
     import os
 
@@ -319,7 +317,7 @@ def _ended(app: Any, window: Any, before: set[str]) -> dict[str, Any]:
     """Close the window without saving; threads and timers that are still there afterwards."""
     from qtpy.QtCore import QTimer
 
-    window.document.replace(None)  # nothing is unsaved, so nothing is asked
+    window.document.replace(None)  # nothing is unsaved, so no question appears
     window.close()
     end = time.monotonic() + ENDING
     ours = before | {"watch", "MainThread"}

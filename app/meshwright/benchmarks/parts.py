@@ -11,9 +11,8 @@ from statistics import median
 from typing import Any
 
 from meshwright.benchmarks.gallery import corners
-from meshwright.cli import mesh_output
-from meshwright.cli.commands.improve import replay
 from meshwright.console import Update
+from meshwright.document.position_repair import settle
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
@@ -26,7 +25,7 @@ from meshwright_core.geometry import quality
 
 SUMMARY = "gallery and random parts as quads: s, s*, elements, blocks, shapes after so many seconds"
 SECONDS = 10.0
-"""Search time for each shape where nothing else is asked for."""
+"""Default search time for each shape, in seconds."""
 
 PARTS = 40
 ROWS = ((8, 24), (25, 50))
@@ -59,8 +58,8 @@ def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[st
     began = time.perf_counter()
     solution = solver.solve(mesh, policy, seconds=seconds, seed=seed)
     took = time.perf_counter() - began
-    replay(mesh, solution)
-    mesh_output.settle(mesh)
+    solution.replay(mesh)
+    settle(mesh)
     mesh.validate()
     return {
         "corners": sum(int(flags.sum()) for flags in domain.loop_corners),
@@ -112,13 +111,13 @@ def text(results: dict[str, Any]) -> str:
     for group, found in results.items():
         rows = [["shape", *next(iter(found["shapes"].values()))]]
         rows += [[name, *map(_shown, row.values())] for name, row in found["shapes"].items()]
-        told = [
+        lines = [
             f"{name}: {value} of {found['meshes']}"
             for name, value in found.items()
             if isinstance(value, int) and name != "meshes"
         ]
-        told += [f"{name}: {value:.3g}" for name, value in found.items() if "," in name]
-        tables.append("\n".join([group, _aligned(rows), *told]))
+        lines += [f"{name}: {value:.3g}" for name, value in found.items() if "," in name]
+        tables.append("\n".join([group, _aligned(rows), *lines]))
     return "\n\n".join(tables)
 
 

@@ -1,6 +1,6 @@
 """Untangling against averaging on meshes that random operations have reached.
 
-Two walks: over any allowed operations, which soon reach meshes that nobody can draw with straight
+Two walks: over any allowed operations, which soon reach meshes that cannot be drawn with straight
 edges (a doublet, a flat corner, an edge between two corners that do not see each other); and one
 that takes back every operation after which :func:`drawable` sees such an obstacle. What passes that
 test need not be drawable either: it looks at single corners and edges.
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from meshwright.console import Update
+from meshwright.console import Update, no_update
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality, smoothing, untangling
@@ -32,13 +32,11 @@ LARGEST = 300
 
 
 def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
-    """Compare on as many meshes as the suite asks for, half of them triangles."""
+    """Compare on the meshes of the suite, half of them triangles."""
     return compare(QUICK if quick else MESHES, seed, update)
 
 
-def compare(
-    meshes: int = MESHES, seed: int = 0, update: Update = lambda done, remark: None
-) -> dict[str, Any]:
+def compare(meshes: int = MESHES, seed: int = 0, update: Update = no_update) -> dict[str, Any]:
     """Shares of meshes without inverted elements and times, by walk and kind of mesh."""
     walks: dict[str, Any] = {}
     for walk in ("drawable", "any"):
@@ -62,7 +60,7 @@ def _start(kind: str, polygon: bool, rng: np.random.Generator) -> HalfEdgeMesh:
 
 
 def edited(start: HalfEdgeMesh, rng: np.random.Generator, careful: bool) -> HalfEdgeMesh:
-    """A copy of `start` after 30 to 100 random operations, positions left as they fall.
+    """A copy of `start` after 30 to 100 random operations, without smoothing.
 
     `careful`: operations whose result is not :func:`drawable` are taken back, and degrees are
     capped as the agent caps them.
@@ -89,7 +87,7 @@ def edited(start: HalfEdgeMesh, rng: np.random.Generator, careful: bool) -> Half
 
 
 def _domain(mesh: HalfEdgeMesh) -> shapely.Geometry:
-    """The domain of a mesh, a hair wider, so that segments along its boundary count as inside."""
+    """The domain of a mesh, slightly enlarged: segments along its boundary count as inside."""
     loops = sorted(
         (shapely.Polygon(points[:, :2]) for _, points in mesh.outline), key=lambda loop: -loop.area
     )
@@ -99,7 +97,7 @@ def _domain(mesh: HalfEdgeMesh) -> shapely.Geometry:
 
 
 def drawable(mesh: HalfEdgeMesh, domain: shapely.Geometry) -> bool:
-    """Whether no obstacle to a drawing with straight edges is plain to see.
+    """Whether no simple obstacle to a drawing with straight edges is found.
 
     No hopeless corner; no edge between corners that leaves the domain; no edge inside that joins
     two vertices of one straight side.

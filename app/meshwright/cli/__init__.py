@@ -1,10 +1,10 @@
 """The console command ``meshwright``.
 
-Nothing heavy is imported here nor by the modules that describe the subcommands: each imports what
-it needs when it runs, so that ``meshwright --help`` answers at once.
+Neither this module nor the modules of the subcommands import heavy packages at their top: each
+imports what it needs when it runs, so that ``meshwright --help`` answers at once.
 
-Exit codes: 0 done; 1 a bug of ours; 2 wrong use, bad input, or stopped by Ctrl-C; 141 the reader
-of stdout went away.
+Exit codes: 0 done; 1 internal error; 2 wrong use, bad input, or stopped by Ctrl-C; 141 stdout was
+closed by its reader.
 """
 
 from __future__ import annotations
@@ -39,18 +39,18 @@ examples:
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that raises UserError in place of printing two lines and leaving."""
+    """An argument parser that raises UserError instead of printing two lines and exiting."""
 
     def error(self, message: str) -> NoReturn:
-        """Raise the message with a hint where to read more."""
+        """Raise UserError with a hint to ``--help``."""
         raise UserError(f"{message} (see {self.prog} --help)")
 
 
 class Version(argparse.Action):
-    """Print the installed version and leave."""
+    """Print the installed version and exit."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object, **__: object) -> None:
-        """Look the version up only now: the package metadata takes time to read."""
+        """Read the version only now: reading the package metadata takes time."""
         from importlib.metadata import PackageNotFoundError, version
 
         try:
@@ -71,7 +71,7 @@ def build_parser() -> Parser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action=Version, nargs=0, help="print the version and leave")
+    parser.add_argument("--version", action=Version, nargs=0, help="print the version and exit")
     subparsers = parser.add_subparsers(
         dest="command", metavar="COMMAND", title="commands", parser_class=Parser
     )
@@ -96,8 +96,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _noted_interrupts() -> Iterator[threading.Event]:
-    """Note Ctrl-C besides raising it: libraries that are at work may turn it into an error of
-    their own, as numba does while it compiles.
+    """Record Ctrl-C in an event besides raising KeyboardInterrupt: a library may turn the exception
+    into another one, as numba does while it compiles.
     """
     noted = threading.Event()
     if threading.current_thread() is not threading.main_thread():
@@ -149,7 +149,9 @@ def _run(words: list[str], report: Report, interrupted: threading.Event) -> int:
         if interrupted.is_set():
             return _interrupted(report, name)
         shown = _traceback_if_wanted()
-        hint = "" if shown else f"; run again with {DEBUG}=1 for the traceback, and please tell us"
+        hint = (
+            "" if shown else f"; run again with {DEBUG}=1 for the traceback, and please report it"
+        )
         report.error(name, f"internal error: {type(error).__name__}: {error}{hint}")
         return BUG
     return DONE
@@ -161,7 +163,7 @@ def _interrupted(report: Report, name: str) -> int:
 
 
 def _with_command(words: list[str]) -> list[str]:
-    """Return the words with ``view`` put first where the user left the command out."""
+    """Return the words, with ``view`` first if they begin with no command."""
     if not words or words == ["--json"] or (words[0][:1] != "-" and words[0] not in COMMANDS):
         return ["view", *words]
     return words
@@ -175,7 +177,7 @@ def _traceback_if_wanted() -> bool:
 
 
 def _silence_stdout() -> None:
-    """Keep the interpreter from complaining again when it flushes stdout at its end."""
+    """Redirect stdout, so that the interpreter reports no second error when it exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

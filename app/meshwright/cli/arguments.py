@@ -1,8 +1,8 @@
-"""What a command is given: meshes, shapes, policies, numbers.
+"""Reads and checks the inputs of commands: meshes, shapes, policies, numbers.
 
-Everything that can be wrong with an input is found here and raised as UserError or, for a number
-on the command line, as argparse's own error. A MeshError that comes later, while a command works,
-is therefore a bug of ours and is reported as one.
+Every problem of an input is raised here as UserError or, for a number on the command line, as
+argparse's own error. A MeshError raised later, while a command works, is therefore reported as an
+internal error.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from meshwright.console import Report, UserError
+from meshwright.sources.naming import looks_like_path
 
 if TYPE_CHECKING:
     from meshwright.document.document import Document
@@ -23,54 +24,56 @@ if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh
     from meshwright_core.domains.domain import Domain
 
-KIND_NOUN = {"tri": "triangles", "quad": "quads"}
-
 
 def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
-    """Return the mesh in a file, or raise UserError that says what is wrong with it.
+    """Return the mesh in a mesh file or a project, or raise UserError with the reason.
 
     ``corner_angle`` in degrees: a boundary vertex where the boundary turns by more is a corner. A
-    project knows its corners.
+    project stores its corners.
     """
     _require_file(path)
-    import meshwright_core
-    from meshwright.document.storage import project_file
-
-    with _bad_input(path):
-        if project_file.is_project(path):
-            return project_file.read(path).mesh.copy()
-        if corner_angle is None:
-            return meshwright_core.read(path)
-        return meshwright_core.read(path, corner_angle=corner_angle)
-
-
-def read_project(path: str) -> Document:
-    """Return the document in a project file, its history with it, or raise UserError."""
-    _require_file(path)
     from meshwright.document.document import Document
+    from meshwright.sources import resolve
+    from meshwright_core.io import file_checks, formats
 
-    document = Document()
     with _bad_input(path):
-        document.open(path)
-    return document
+        found = resolve.resolve(Path(path), corner_angle=corner_angle)
+        if not isinstance(found, Document) or found.mesh is None:
+            with file_checks.naming(Path(path)):
+                formats.of(path)  # refuses a drawing
+            raise AssertionError(path)
+        return found.mesh.copy()
+
+
+def read_document(word: str, kind: str, corner_angle: float | None = None) -> Document:
+    """Return the document for a file or the name of a shape, or raise UserError with the reason.
+
+    A shape is meshed with elements of ``kind``; a project brings its history. ``corner_angle`` as
+    for :func:`read_mesh`.
+    """
+    from meshwright.document.document import Document
+    from meshwright.sources import resolve
+
+    if resolve.names_file(word):
+        _require_file(word)
+    with _bad_input(word):
+        found = resolve.resolve(word, corner_angle=corner_angle)
+    if isinstance(found, Document):
+        return found
+    return Document(make_mesh(found, kind), found.name or Path(word).stem)
 
 
 def read_domain(shape: str, corner_angle: float | None = None) -> Domain:
-    """Return the domain with this name in the gallery, or in this geometry file.
+    """Return the domain with this name in the gallery, or in this drawing.
 
     ``corner_angle`` in degrees: a point where the boundary turns by more is a corner.
     """
-    from meshwright_core.domains import gallery
-    from meshwright_core.io import drawings
+    from meshwright.sources import resolve
 
-    if looks_like_path(shape) or Path(shape).exists():
+    if resolve.names_file(shape):
         _require_file(shape)
-        with _bad_input(shape):
-            if corner_angle is None:
-                return drawings.read_domain(shape)
-            return drawings.read_domain(shape, corner_angle)
     with _bad_input(shape):
-        return gallery.shape(shape)
+        return resolve.domain(shape, corner_angle=corner_angle)
 
 
 def make_mesh(
@@ -84,7 +87,7 @@ def make_mesh(
 
 
 def prepare_agent(report: Report) -> None:
-    """Compile what an agent needs where that was never done, and say so: it takes a while."""
+    """Compile the kernels of the agent if they are not in the cache yet, with a message."""
     from meshwright_agent import warm_up
 
     if not warm_up.is_warm_on_disk():
@@ -93,8 +96,9 @@ def prepare_agent(report: Report) -> None:
 
 
 def read_policy(name: str | None, kind: str) -> Policy:
-    """Return a policy for meshes of this kind: by name, from a file, or the one we ship."""
+    """Return a policy for meshes of this kind: by name, from a file, or the shipped one."""
     from meshwright_agent.policy import policy_files
+    from meshwright_core.core.kinds import KIND_NOUN
 
     policy_files.decide_on_one_thread()
     if name is None:
@@ -106,10 +110,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
         _require_file(name)
     with _bad_input(name, policy_files.PolicyError):
         policy = policy_files.load(name)
-    if policy.kind != kind:
-        raise UserError(
-            f"{name}: this policy is for {KIND_NOUN[policy.kind]}, the mesh is of {KIND_NOUN[kind]}"
-        )
+        policy_files.require_kind(policy, kind, name)
     return policy
 
 
@@ -129,15 +130,10 @@ def read_configuration(path: str | None, kind: str) -> Training:
 
 
 def one_of(word: str, known: Sequence[str], option: str) -> str:
-    """Return the word if it is a known one, or raise UserError with those that are."""
+    """Return the word if it is a known one, or raise UserError with the list of known ones."""
     if word not in known:
-        raise UserError(f"{option} {word}: there is no such one; choose from {', '.join(known)}")
+        raise UserError(f"{option} {word}: unknown; choose from {', '.join(known)}")
     return word
-
-
-def looks_like_path(text: str) -> bool:
-    """Tell whether the user meant a file: it has an ending or a folder."""
-    return bool(Path(text).suffix) or "/" in text or "\\" in text
 
 
 def positive_int(text: str) -> int:
@@ -210,8 +206,9 @@ def _bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
     """Turn a MeshError, or one of ``more``, into a UserError whose sentence names the input."""
     from meshwright_core.errors import MeshError
 
+    refused: tuple[type[Exception], ...] = (MeshError, *more)
     try:
         yield
-    except (MeshError, *more) as error:
+    except refused as error:
         sentence = str(error)
         raise UserError(sentence if name in sentence else f"{name}: {sentence}") from error

@@ -1,6 +1,6 @@
-"""Whether a window can be opened here, found out without risking this process.
+"""Checks whether a window can be opened on this machine.
 
-Qt ends the whole process where it cannot open its display, so a child process tries first.
+Qt aborts the process if it cannot open its display, so a child process tries first.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ import sys
 TRY = "from qtpy.QtWidgets import QApplication; QApplication([])"
 
 PATIENCE = 30.0
-"""Seconds after which a display that does not answer counts as none."""
+"""Time limit, in seconds, for the display to answer."""
 
 
-class Probe:
-    """A child process that opens Qt while this one goes on with its work.
+class DisplayProbe:
+    """A child process that opens Qt while this process continues.
 
-    Without a display named in the environment no child is started. Elsewhere than on Linux and
-    the BSDs a display is taken for granted.
+    Without a display named in the environment no child is started. On Windows and macOS a display
+    is assumed to exist.
     """
 
     def __init__(self) -> None:
@@ -43,12 +43,12 @@ class Probe:
         if self._child is None:
             return self._problem
         try:
-            _, said = self._child.communicate(timeout=PATIENCE)
+            _, errors = self._child.communicate(timeout=PATIENCE)
         except subprocess.TimeoutExpired:
             self._child.kill()
             self._child.communicate()
             return f"the display did not answer within {PATIENCE:.0f} seconds"
         if self._child.returncode == 0:
             return ""
-        lines = [line for line in said.splitlines() if line.strip()]
+        lines = [line for line in errors.splitlines() if line.strip()]
         return "Qt cannot open the display" + (f" ({lines[0].strip()})" if lines else "")

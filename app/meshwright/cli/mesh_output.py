@@ -1,4 +1,4 @@
-"""The mesh file that a command writes: its ending, the last care for positions, the writing."""
+"""Checks and writes the mesh file of a command, and names inverted elements in its report."""
 
 from __future__ import annotations
 
@@ -17,29 +17,16 @@ SHOWN_IDS = 20
 
 def checked_mesh_output(path: str, kind: str | None = None) -> Path:
     """Return the path if a mesh of this kind, or of any, can be written there; else UserError."""
+    from meshwright_core.core.kinds import ELEMENT_NOUN
     from meshwright_core.io import formats
 
-    noun = {"tri": "triangle", "quad": "quad"}.get(kind or "")
+    noun = ELEMENT_NOUN.get(kind or "")
     fit = [ending for ending, form in formats.FORMATS.items() if not noun or noun in form.kinds]
     return checked_output(path, tuple(fit))
 
 
-def settle(mesh: HalfEdgeMesh) -> list[int]:
-    """Smooth and untangle the whole mesh; return the elements that stay inverted.
-
-    An element is named by its row in ``mesh.elements()``, which is its place in the written file,
-    counted from 0.
-    """
-    import numpy as np
-
-    from meshwright_core.geometry import smoothing
-
-    inverted = smoothing.relax(mesh)
-    return [int(row) for row in np.flatnonzero(np.isin(mesh.element_ids(), inverted))]
-
-
 def write_mesh(path: Path, mesh: HalfEdgeMesh) -> None:
-    """Write the mesh whole or not at all; what the system refuses becomes a UserError."""
+    """Write the mesh atomically; raise UserError if the system refuses."""
     import meshwright_core
     from meshwright_core.errors import MeshError
 

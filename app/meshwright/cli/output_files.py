@@ -1,4 +1,4 @@
-"""Files that a command writes: checked before the work begins, written whole or not at all."""
+"""Output files of commands: checked before the work begins, written atomically."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def checked_output(path: str, endings: tuple[str, ...] = (), option: str = "-o")
     """Return the path if a file can be written there, or raise UserError that says why not.
 
     ``endings`` are the allowed ones in lower case with their dot; empty allows any. Commands call
-    this before they begin to work, so that nobody waits for a result that has nowhere to go.
+    this before they begin to work, so that a wrong path is reported at once.
     """
     target = Path(path)
     folder = target.parent
@@ -46,9 +46,9 @@ def checked_folder(path: str, option: str = "-o") -> Path:
 
 @contextmanager
 def replacing(target: Path) -> Iterator[Path]:
-    """Yield a path beside ``target`` to write to; it takes the target's place when all went well.
+    """Yield a temporary path beside ``target``; it replaces the target if the block succeeds.
 
-    If the block fails, whatever stood at ``target`` is untouched and nothing is left beside it.
+    If the block fails, an existing target is unchanged and the temporary file is removed.
     An operating system error becomes a UserError that names the target.
     """
     from meshwright_core.errors import MeshError

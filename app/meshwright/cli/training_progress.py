@@ -1,4 +1,4 @@
-"""How a training shows that it goes on: a bar on a terminal, a line now and then in a log."""
+"""Progress display of a training: a bar on a terminal, occasional lines in a log."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ COLUMNS = ("update", "decisions", "a second", "self-play", "single", "at s*", "e
 _WIDTHS = (9, 13, 10, 11, 8, 7, 9, 9)
 
 
-class Line:
-    """The numbers of a training as the cells of one line."""
+class NumberRow:
+    """Formats the numbers of a training as the cells of one table row."""
 
     def __init__(self, minutes: float | None = None) -> None:
-        """minutes: after which the training ends, if not before."""
+        """minutes: time limit of the training, None for none."""
         self._began = time.perf_counter()
         self._minutes = minutes
         self._first: int | None = None
@@ -48,7 +48,7 @@ class Line:
 
 
 def row(cells: tuple[str, ...] | list[str]) -> str:
-    """The cells as one line of a table, each against the right of its column."""
+    """The cells as one line of a table, aligned right."""
     return "".join(f"{cell:>{width}}" for cell, width in zip(cells, _WIDTHS, strict=True))
 
 
@@ -59,33 +59,33 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{whole % 60:02}" if hours else f"{minutes}:{whole % 60:02}"
 
 
-class Display:
-    """What a training tells."""
+class TrainingDisplay:
+    """Receives the progress of a training and writes it."""
 
     def __init__(self, write: Write, minutes: float | None) -> None:
-        """write: puts a line where it belongs; minutes: after which the training ends."""
-        self._write, self._line, self._done = write, Line(minutes), 0
+        """write: writes one row; minutes: time limit of the training, None for none."""
+        self._write, self._line, self._done = write, NumberRow(minutes), 0
 
     def update(self, done: int, total: int, numbers: Mapping[str, float]) -> None:
-        """An update is made."""
+        """Show the numbers after an update."""
         self._done = done
         self._write(done, self._line.cells(done, total, numbers), "mean" in numbers)
 
     def finish(self) -> None:
-        """No more updates come: the result is evaluated, which takes a while."""
+        """Show that the training is over and the result is being evaluated."""
         self._write(self._done, None, False)
 
 
 @contextmanager
-def shown(stream: TextIO, total: int, minutes: float | None = None) -> Iterator[Display]:
-    """Show a training on `stream` while the block runs; yield what is to be told.
+def shown(stream: TextIO, total: int, minutes: float | None = None) -> Iterator[TrainingDisplay]:
+    """Show a training on `stream` while the block runs; yield the object to report progress to.
 
-    A terminal gets a bar with the numbers of now, and above it a table that grows by a line with
-    each evaluation; anything else only that table.
+    A terminal gets a bar with the present numbers, and above it a table with a line for each
+    evaluation; other streams get the table only.
     """
     form = _bar if stream.isatty() else _log
     with form(stream, total) as write:
-        yield Display(write, minutes)
+        yield TrainingDisplay(write, minutes)
 
 
 @contextmanager

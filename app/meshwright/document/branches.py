@@ -1,37 +1,37 @@
-"""Branches: what was undone when something else was done, kept so that one can go there again."""
+"""Branches of the history: undone steps that a new step has replaced, kept for later."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from meshwright.document.history import Row
+    from meshwright.document.history import HistoryStep
     from meshwright_core.history.packed_steps import Steps
 
 MOST_BRANCHES = 50
-"""Branches that a history keeps, branches of branches included; the oldest go."""
+"""Limit on the branches of a history, branches of branches included; the oldest are dropped."""
 MOST_BYTES = 512 << 20
-"""Bytes of steps in branches beyond which the oldest go too."""
+"""Limit on the bytes of steps in branches, beyond which the oldest are dropped."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Branch:
-    """Rows that lead on from the state at cursor ``at``, and are not on the present line.
+    """Steps that follow the state at cursor ``at`` and do not belong to the present history.
 
-    ``steps`` are the mesh's own record of them, undone. ``branches`` fork on these rows; their
-    ``at``, too, counts from the start of the history, and is greater than ``at`` here. ``made``
-    grows from branch to branch.
+    ``rows`` are the steps, ``steps`` the mesh's own record of them, undone. ``branches`` start at
+    one of these steps; their ``at`` also counts from the start of the history, and is greater than
+    ``at`` here. ``made`` numbers the branches in the order of their making.
     """
 
     at: int
-    rows: "tuple[Row, ...]"
+    rows: "tuple[HistoryStep, ...]"
     steps: "tuple[Steps, ...]"
     branches: "tuple[Branch, ...]"
     made: int
 
     @property
     def end(self) -> int:
-        """The cursor at its last row."""
+        """The cursor after its last step."""
         return self.at + len(self.rows)
 
     @property
@@ -44,16 +44,16 @@ Branches = tuple[Branch, ...]
 
 
 def every(branches: Branches) -> Iterator[Branch]:
-    """All branches, those that fork on them included."""
+    """All branches, including branches of branches."""
     for branch in branches:
         yield branch
         yield from every(branch.branches)
 
 
 def pruned(branches: Branches, kept: int) -> Branches:
-    """Without the oldest ones as long as they are too many; the one made as ``kept`` stays.
+    """The branches without the oldest, so that both limits hold; number ``kept`` stays.
 
-    A branch goes only after all that fork on it.
+    A branch is dropped only after all its own branches.
     """
     while True:
         here = list(every(branches))

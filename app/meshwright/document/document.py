@@ -1,28 +1,31 @@
-"""The document: the mesh, its history and its events. Views and the assistant submit to it.
+"""The document: the mesh that is edited, its history, and the events that views connect to.
 
-It knows neither Qt nor torch. One call that changes the mesh is one step of the mesh's journal and
-one row of the history, so that both undo together.
+Imports neither Qt nor torch nor the agent. One call that changes the mesh is one step of the
+history.
 """
 
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from meshwright.document.history import YOU, History
+from meshwright.document.history import YOU, History, HistoryStep
 from meshwright.document.selection import Selection
-from meshwright.document.storage import project_file
-from meshwright.document.storage.document_state import Kept
+from meshwright.document.storage import document_file, project_file
+from meshwright.document.storage.document_state import DocumentState
 from meshwright.document.timeline import NO_MESH as NO_MESH
-from meshwright.document.timeline import Timeline
+from meshwright.document.timeline import UndoTimeline
+from meshwright.signals import Signal
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 from meshwright_core.analysis.submesh import holding
-from meshwright_core.core.notebook_display import Bundle
-from meshwright_core.io import mesh_files
-from meshwright_core.io.formats import SHAPES
+from meshwright_core.core.notebook_display import Bundle, bundle
+from meshwright_core.core.score import normalised_return
+from meshwright_core.history.packed_steps import Steps
 from meshwright_core.operations.catalogue import CATALOGUE
+
+Result = TypeVar("Result")
 
 
 def title_of(operation: Operation | str, kind: str) -> str:
@@ -34,57 +37,132 @@ def title_of(operation: Operation | str, kind: str) -> str:
     return value.value
 
 
-class Document(Timeline):
+class Document:
     """A mesh being edited, or none yet.
 
-    Events, all emitted in the caller's thread: ``replaced()`` another mesh is here;
+    Events, all emitted in the caller's thread: ``replaced()`` the document holds another mesh;
     ``changed()`` connectivity, positions or flags changed; ``score_changed()``;
     ``history_changed()``; ``saved_changed()`` name, path or :attr:`modified` may differ;
-    ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others. Before the others,
-    too, comes ``noted(event, number)``, for who keeps a record: ``"step"`` a row was appended,
-    ``"go"`` the cursor is at that number now, ``"branch"`` that branch was taken, ``"saved"``.
+    ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others. Before the others
+    comes ``recorded(event, number)``, for autosave: ``"step"`` a step was appended to the history,
+    ``"go"`` the cursor moved to that number, ``"branch"`` that branch was taken, ``"saved"``.
     """
-
-    _name: str
-    _path: Path | None
-    _saved: tuple[int, int]
-    _passing: bool
 
     def __init__(
         self, mesh: HalfEdgeMesh | None = None, name: str = "", path: str | Path | None = None
     ) -> None:
-        super().__init__()
+        self.replaced = Signal()
+        self.changed = Signal()
+        self.score_changed = Signal()
+        self.history_changed = Signal()
+        self.saved_changed = Signal()
+        self.hover_changed = Signal()
+        self.recorded = Signal()
+        self.revision = 0
+        """Grows with every change of the mesh."""
         self.auto_smooth = True
+        """Whether the vertices around an operation are smoothed."""
         self.bar: Callable[[str], str] | None = None
-        """Why a step is not offered here now, a sentence, or empty: of who plays on the mesh."""
+        """Returns why an operation is not offered now, as a sentence, or an empty text; set while
+        a level is played."""
         self.settings: dict[str, Any] = {}
-        """What the views want to find again in a project: plain values that JSON can hold."""
-        self._adopt(mesh, name, path)
+        """What the views store in a project: plain values that JSON can hold."""
+        self._timeline = UndoTimeline(mesh)
+        self._name = name
+        self._path = Path(path) if path is not None else None
+        self._hover = -1
+        self._saved = (0, 0)
+        self._passing = False
         self.selection = Selection(self)
 
-    # What is here
+    # What it holds
+
+    @property
+    def mesh(self) -> HalfEdgeMesh | None:
+        """The mesh, for reading only; None while the document is empty."""
+        return self._timeline.mesh
+
+    @property
+    def history(self) -> History:
+        """The steps that were done and undone."""
+        return self._timeline.history
+
+    @property
+    def empty(self) -> bool:
+        """True while there is no mesh."""
+        return self.mesh is None
+
+    @property
+    def kind(self) -> str:
+        """``"tri"`` or ``"quad"``; empty string without a mesh."""
+        return self.mesh.kind if self.mesh is not None else ""
+
+    @property
+    def hover(self) -> int:
+        """The half-edge under the mouse, -1 for none."""
+        return self._hover
+
+    @hover.setter
+    def hover(self, halfedge: int) -> None:
+        if halfedge != self._hover:
+            self._hover = halfedge
+            self.hover_changed.emit(halfedge)
+
+    # Scores
+
+    @property
+    def score(self) -> int:
+        """s of the mesh now; 0 without a mesh."""
+        return self.mesh.score if self.mesh is not None else 0
+
+    @property
+    def optimum(self) -> int:
+        """s*, the lowest score that any connectivity can have; 0 without a mesh."""
+        return self.mesh.optimum if self.mesh is not None else 0
+
+    @property
+    def start_score(self) -> int:
+        """The score where this document began (or where desired degrees last changed)."""
+        return self.history.start_score
+
+    @property
+    def best_score(self) -> int:
+        """The lowest score on the way from the start to here."""
+        return self.history.best_score
+
+    @property
+    def normalised_return(self) -> float:
+        """(start - best) / (start - s*) so far, 1 when there was nothing to gain."""
+        return normalised_return(self.start_score, self.best_score, self.optimum)
+
+    @property
+    def at_optimum(self) -> bool:
+        """True if s = s*: no connectivity is better under these desired degrees."""
+        return self.mesh is not None and self.mesh.score == self.mesh.optimum
+
+    # Where it is saved
 
     @property
     def name(self) -> str:
-        """What the window's title says."""
+        """The name in the window's title."""
         return self._name
 
     @property
     def path(self) -> Path | None:
-        """The file that *Save* writes, None if never saved."""
+        """The file that *Save* writes, None if there is none yet."""
         return self._path
 
     @property
     def passing(self) -> bool:
-        """True while nothing of it is worth keeping, as in a level; saving it ends that."""
+        """True while changes need not be saved, as in a level; saving ends that."""
         return self._passing
 
     @property
     def modified(self) -> bool:
-        """True if the mesh differs from the file, or from the shape it began as.
+        """True if the mesh differs from its file, or from the state it began in.
 
-        A project keeps the history too: there a step counts even when it has been undone. A mesh
-        that is :attr:`passing` never counts as modified.
+        A project stores the history too: there an undone step counts as a change. A document that
+        is :attr:`passing` never counts as modified.
         """
         if self._passing:
             return False
@@ -94,11 +172,11 @@ class Document(Timeline):
 
     @property
     def saved_state(self) -> tuple[int, int]:
-        """Two numbers that tell the present state from others: where it is, and all there is."""
+        """Serials of the last step done and of the last step made: identify the present state."""
         return self.history.mark, self.history.given[0]
 
     def keep(self) -> None:
-        """A mesh that was passing is worth keeping from now on; as it is, it counts as saved."""
+        """End :attr:`passing`; the present state counts as saved."""
         if self._passing:
             self._passing, self._saved = False, self.saved_state
             self.saved_changed.emit()
@@ -112,42 +190,32 @@ class Document(Timeline):
         path: str | Path | None = None,
         passing: bool = False,
     ) -> None:
-        """Put ``mesh`` in the place of the present one; the history starts again.
+        """Replace the mesh; the history starts again.
 
-        ``passing``: nobody needs to be asked before it is dropped, and no step of it is kept.
+        passing: changes need not be saved, and autosave does not record them.
         """
-        self._adopt(mesh, name, path)
+        self._take(UndoTimeline(mesh), name, path)
         self._passing = passing
-        self.revision += 1
-        self.replaced.emit()
-        self._emit_all()
+        self._announce_replacement()
 
     def open(self, path: str | Path) -> None:
-        """Read a mesh file or a project, or mesh the shape in a geometry file.
+        """Read a mesh file or a project, or mesh the shape in a drawing.
 
-        On MeshError or OSError the document stays as it was. A shape gets elements of the kind
-        that is here now, quads if there is none; its file is not where the mesh is saved.
+        A shape gets elements of the present kind, quads if there is no mesh; its file is not where
+        the mesh is saved. On MeshError or OSError the document stays as it was.
         """
-        path = Path(path)
-        if project_file.is_project(path):
-            self.adopt(project_file.read(path))
-        elif path.suffix.lower() in SHAPES:
-            self.replace(_meshed(path, self.kind or "quad"), path.stem)
-        else:
-            self.replace(mesh_files.read(path), path.stem, path)
+        self.adopt(document_file.read_meshed(path, self.kind or "quad"))
 
-    def adopt(self, kept: Kept) -> None:
-        """Go on with what was kept: a mesh with its history, where it had come to."""
-        self._adopt(kept.mesh, kept.name, kept.path)
-        self.history, self._saved = kept.history, kept.saved
-        self.settings = dict(kept.settings)
-        self.revision += 1
-        self.replaced.emit()
-        self._emit_all()
+    def adopt(self, state: DocumentState) -> None:
+        """Continue from a stored state: a mesh with its history, at the cursor it had."""
+        self._take(UndoTimeline(state.mesh, state.history), state.name, state.path)
+        self._saved = state.saved
+        self.settings = dict(state.settings)
+        self._announce_replacement()
 
-    def kept(self) -> Kept:
-        """What there is to keep of the document; its mesh goes on changing."""
-        return Kept(
+    def state(self) -> DocumentState:
+        """All that is stored of the document; the mesh in it is the document's own, not a copy."""
+        return DocumentState(
             self._need(), self.history, self._name, self._path, self._saved, dict(self.settings)
         )
 
@@ -159,36 +227,101 @@ class Document(Timeline):
         target = Path(path) if path is not None else self._path
         if target is None:
             raise MeshError("This mesh has no file yet: choose a name with 'Save as'.")
-        if project_file.is_project(target):
-            project_file.write(target, self.kept())
-        else:
-            mesh_files.write(target, self._need())
+        document_file.write(target, self.state())
         self._path, self._name, self._passing = target, target.stem, False
         self._saved = self.saved_state
-        self.noted.emit("saved", 0)
+        self.recorded.emit("saved", 0)
         self.saved_changed.emit()
         return target
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> Bundle:
-        """A still picture at the end of a notebook's cell."""
-        if self._mesh is None:
+        """A picture of the mesh at the end of a notebook's cell."""
+        if self.mesh is None:
             return {"text/plain": NO_MESH}, {}
-        from meshwright.graphics.export.mimebundle import (
-            mimebundle,  # imported late: who shows no document needs none
-        )
+        return bundle(self.mesh, self._name)
 
-        data, metadata = mimebundle(self._mesh, self._name)
-        return {"text/plain": repr(self._mesh), **data}, metadata
-
-    def _adopt(self, mesh: HalfEdgeMesh | None, name: str, path: str | Path | None) -> None:
-        self._mesh = mesh
+    def _take(self, timeline: UndoTimeline, name: str, path: str | Path | None) -> None:
+        self._timeline = timeline
         self._name = name
         self._path = Path(path) if path is not None else None
         self._hover = -1
-        self.history = History(self.score, self.optimum)
         self._saved = (0, 0)
         self._passing = False
         self.settings = {}
+
+    def _announce_replacement(self) -> None:
+        self.revision += 1
+        self.replaced.emit()
+        self._emit_all()
+
+    # Undo and redo
+
+    @property
+    def can_undo(self) -> bool:
+        """True if there is a step to take back."""
+        return self.history.can_undo
+
+    @property
+    def can_redo(self) -> bool:
+        """True if a step has been taken back."""
+        return self.history.can_redo
+
+    def undo(self) -> HistoryStep | None:
+        """Take back the last step; returns it, None if there is none."""
+        step = self.history.last
+        self.go_to(self.history.cursor - 1)
+        return step
+
+    def redo(self) -> HistoryStep | None:
+        """Do again what was taken back last; returns that step, None if there is none."""
+        if not self.history.can_redo:
+            return None
+        self.go_to(self.history.cursor + 1)
+        return self.history.last
+
+    def go_to(self, cursor: int) -> None:
+        """Undo or redo until ``cursor`` steps are done; beyond either end it stops there."""
+        cursor = min(max(cursor, 0), len(self.history))
+        if cursor != self.history.cursor:
+            self._timeline.go_to(cursor)
+            self._announce("go", cursor)
+
+    def take_branch(self, index: int) -> None:
+        """Go to the end of ``history.branches[index]``; the steps left for it become a branch."""
+        self._timeline.take_branch(index)
+        self._announce("branch", index)
+
+    def replay(self, step: HistoryStep, steps: tuple[Steps, ...]) -> None:
+        """Do a recorded step: ``step`` describes it, ``steps`` are the mesh's own record of it.
+
+        Raises MeshError, and leaves the document as it was, if it does not follow from here.
+        """
+        self._timeline.replay(step, steps)
+        self._announce("step", self.history.cursor)
+
+    def _need(self) -> HalfEdgeMesh:
+        return self._timeline.need_mesh()
+
+    def _do(
+        self, action: str, title: str, halfedge: int, by: str, work: Callable[[], Result]
+    ) -> Result:
+        result, changed = self._timeline.do(action, title, halfedge, by, work)
+        if changed:
+            self._announce("step", self.history.cursor)
+        return result
+
+    def _announce(self, event: str, number: int) -> None:
+        self.revision += 1
+        self.recorded.emit(event, number)
+        if self._hover >= 0 and not self._need().live(self._hover):
+            self.hover = -1
+        self._emit_all()
+
+    def _emit_all(self) -> None:
+        self.changed.emit()
+        self.score_changed.emit()
+        self.history_changed.emit()
+        self.saved_changed.emit()
 
     # Changing the mesh
 
@@ -210,7 +343,7 @@ class Document(Timeline):
     ) -> Edit:
         """Apply one operation and smooth around it, as one step; OperationRefused if refused.
 
-        held (n,): vertices that count as locked meanwhile, and so stay where they are. Smoothing
+        held (n,): vertices that are locked during the step, and so keep their positions. Smoothing
         takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then.
         """
         mesh = self._need()
@@ -243,13 +376,17 @@ class Document(Timeline):
         if vertices is None:
             self._do("smooth", "Smooth", -1, by, lambda: _relax(mesh, None))
         else:
+            from meshwright.document.position_repair import tidy  # imports scipy
+
             chosen = vertices
-            self._do("smooth", "Smooth here", -1, by, lambda: _tidy(mesh, chosen))
+            self._do("smooth", "Smooth here", -1, by, lambda: tidy(mesh, chosen))
 
     def untangle(self, by: str = YOU) -> tuple[int, int]:
-        """Mend inverted elements as one step; returns how many there were, and how many stay."""
+        """Untangle inverted elements as one step; returns their number before and after."""
+        from meshwright.document.position_repair import mend  # imports scipy
+
         mesh = self._need()
-        return self._do("untangle", "Untangle", -1, by, lambda: _mend(mesh))
+        return self._do("untangle", "Untangle", -1, by, lambda: mend(mesh))
 
     def move(self, vertices: np.ndarray, positions: np.ndarray, by: str = YOU) -> None:
         """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step."""
@@ -257,9 +394,9 @@ class Document(Timeline):
         self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions))
 
     def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
-        """Ask for another degree at one vertex or several (n,), as one step.
+        """Set the desired degree of one vertex or several (n,), as one step.
 
-        s* and the normalised return start again.
+        s* changes, and the normalised return starts again.
         """
         mesh = self._need()
         now = mesh.desired()
@@ -268,7 +405,7 @@ class Document(Timeline):
         self._do("desired", title, -1, YOU, lambda: _each(wanted, mesh.set_desired, degree))
 
     def set_geometric(self, vertices: int | np.ndarray, flag: bool) -> None:
-        """Mark one vertex or several (n,) as corners that stay, or no longer, as one step."""
+        """Set or clear the corner flag of one vertex or several (n,), as one step."""
         mesh = self._need()
         now = mesh.geometric()
         wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
@@ -284,33 +421,11 @@ class Document(Timeline):
         self._do("locked", title, -1, YOU, lambda: _each(wanted, mesh.set_locked, flag))
 
 
-def _meshed(path: Path, kind: str) -> HalfEdgeMesh:
-    """Mesh the shape in a file; imported late, for few documents begin so."""
-    from meshwright_core.domains import meshing
-    from meshwright_core.io import drawings
-
-    return meshing.mesh_domain(drawings.read_domain(path), kind)
-
-
 def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None, thorough: bool = True) -> None:
-    """Smooth near ``around`` (vertex ids) or everywhere; imported late, for it pulls in scipy."""
+    """Smooth near ``around`` (vertex ids) or everywhere; imports scipy, so imported late."""
     from meshwright_core.geometry.smoothing import relax
 
     relax(mesh, around, thorough)
-
-
-def _tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
-    """As :func:`_relax` for exactly these vertices; imported late, too."""
-    from meshwright.document.position_repair import tidy
-
-    tidy(mesh, vertices)
-
-
-def _mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
-    """Untangle what is inverted; imported late, too."""
-    from meshwright.document.position_repair import mend
-
-    return mend(mesh)
 
 
 def _ids(vertices: int | np.ndarray) -> list[int]:

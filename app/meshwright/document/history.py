@@ -1,36 +1,37 @@
-"""The history: one row per undoable step, and the scores that follow from the rows."""
+"""The history: the undoable steps of a document, and the scores that follow from them."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from meshwright.document.branches import Branch, Branches, pruned
+from meshwright.document.json_records import WholeNumber
 from meshwright_core.history.packed_steps import Steps
 
 YOU = "you"
-"""Author of the steps that a person takes; a policy's steps carry the policy's name."""
+"""Author of the user's own steps; the steps of a policy carry the policy's name."""
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class HistoryStep(Struct, array_like=True, frozen=True, forbid_unknown_fields=True):
     """One step of the mesh.
 
     ``action`` is an operation's value ("flip_left") or a document action ("clean_all", "smooth",
-    "desired", ...); ``halfedge`` is -1 where no half-edge was meant. ``before`` and ``after`` are
-    scores s; ``optimum`` is s* after the step. ``start`` and ``best`` are the score that the
-    normalised return counts from and the lowest score since: a step that changes desired degrees
-    changes the task, so both start again there.
+    "desired", ...); ``halfedge`` is -1 if there is none. ``before`` and ``after`` are scores s;
+    ``optimum`` is s* after the step. ``start`` is the score from which the normalised return is
+    measured, ``best`` the lowest score since: a step that changes desired degrees changes the
+    task, so both start again there. In files a step is an array of these values.
     """
 
-    serial: int
+    serial: WholeNumber
     action: str
     title: str
-    halfedge: int
+    halfedge: WholeNumber
     by: str
-    before: int
-    after: int
-    optimum: int
-    start: int
-    best: int
+    before: WholeNumber
+    after: WholeNumber
+    optimum: WholeNumber
+    start: WholeNumber
+    best: WholeNumber
 
     @property
     def change(self) -> int:
@@ -39,14 +40,14 @@ class Row:
 
 
 class History:
-    """Rows with a cursor: rows before it are done, rows from it on are undone.
+    """Steps with a cursor: those before it are done, those from it on are undone.
 
-    Rows that were undone when another one was appended are kept as a branch.
+    Steps that were undone when another one was appended are kept as a branch.
     """
 
     def __init__(self, score: int, optimum: int) -> None:
-        """`score` and `optimum` are those of the mesh before its first row."""
-        self._rows: list[Row] = []
+        """`score` and `optimum` are those of the mesh before its first step."""
+        self._rows: list[HistoryStep] = []
         self._branches: Branches = ()
         self._cursor = 0
         self._serial = 0
@@ -59,13 +60,13 @@ class History:
         cls,
         score: int,
         optimum: int,
-        rows: Sequence[Row],
+        rows: Sequence[HistoryStep],
         cursor: int,
         branches: Branches = (),
         serial: int = 0,
         made: int = 0,
     ) -> "History":
-        """A history as it was kept: ``serial`` and ``made`` are the last ones given away."""
+        """A stored history: ``serial`` and ``made`` are the last numbers that it has used."""
         history = cls(score, optimum)
         history._rows, history._cursor, history._branches = list(rows), cursor, branches
         history._serial, history._made = serial, made
@@ -74,45 +75,45 @@ class History:
     def __len__(self) -> int:
         return len(self._rows)
 
-    def __getitem__(self, index: int) -> Row:
+    def __getitem__(self, index: int) -> HistoryStep:
         return self._rows[index]
 
-    def __iter__(self) -> Iterator[Row]:
+    def __iter__(self) -> Iterator[HistoryStep]:
         return iter(self._rows)
 
     @property
     def cursor(self) -> int:
-        """Number of rows that are done."""
+        """Number of steps that are done."""
         return self._cursor
 
     @property
-    def last(self) -> Row | None:
-        """The last row that is done, None at the start."""
+    def last(self) -> HistoryStep | None:
+        """The last step that is done, None at the start."""
         return self._rows[self._cursor - 1] if self._cursor else None
 
     @property
     def mark(self) -> int:
-        """A number that names the present state: the last done row's serial, 0 at the start."""
+        """Serial of the last step that is done, 0 at the start: identifies the state."""
         return self.last.serial if self.last else 0
 
     @property
     def first(self) -> tuple[int, int]:
-        """s and s* before the first row."""
+        """s and s* before the first step."""
         return self._score, self._optimum
 
     @property
     def given(self) -> tuple[int, int]:
-        """The last serial and the last branch's number that were given away."""
+        """The last serial and the last branch number that were used."""
         return self._serial, self._made
 
     @property
     def branches(self) -> Branches:
-        """What was undone and left: rows that fork from the present line."""
+        """Undone steps that were replaced by others."""
         return self._branches
 
     @property
     def start_score(self) -> int:
-        """The score that the normalised return counts from."""
+        """The score from which the normalised return is measured."""
         return self.last.start if self.last else self._score
 
     @property
@@ -122,12 +123,12 @@ class History:
 
     @property
     def can_undo(self) -> bool:
-        """True if a row is done."""
+        """True if a step is done."""
         return self._cursor > 0
 
     @property
     def can_redo(self) -> bool:
-        """True if a row is undone."""
+        """True if a step is undone."""
         return self._cursor < len(self._rows)
 
     def append(
@@ -140,15 +141,15 @@ class History:
         after: int,
         optimum: int,
         undone: tuple[Steps, ...] = (),
-    ) -> Row:
-        """Add a done row at the cursor; rows that were undone become a branch.
+    ) -> HistoryStep:
+        """Add a done step at the cursor; steps that were undone become a branch.
 
-        ``undone`` are the mesh's steps of these rows.
+        ``undone`` is the mesh's own record of the undone steps.
         """
         last = self.last
         same_task = optimum == (last.optimum if last else self._optimum) and action != "desired"
         self._serial += 1
-        row = Row(
+        row = HistoryStep(
             serial=self._serial,
             action=action,
             title=title,
@@ -168,9 +169,9 @@ class History:
         return row
 
     def take(self, index: int, undone: tuple[Steps, ...]) -> tuple[Steps, ...]:
-        """Change the rows from the cursor on for those of a branch that forks there.
+        """Replace the steps after the cursor by those of a branch that starts there.
 
-        ``undone`` are the mesh's steps of the former, the answer those of the latter.
+        ``undone`` is the mesh's own record of the former; returns that of the latter.
         """
         taken = self._branches[index]
         if taken.at != self._cursor:
@@ -185,21 +186,21 @@ class History:
         return taken.steps
 
     def _branches_here(self) -> list[Branch]:
-        """Those that fork at the cursor or before it."""
+        """The branches that start at the cursor or before it."""
         return [branch for branch in self._branches if branch.at <= self._cursor]
 
     def _tail(self, undone: tuple[Steps, ...]) -> Branch:
-        """The undone rows as a branch, with all that fork on them."""
+        """The undone steps as a branch, with the branches that start on them."""
         self._made += 1
         on_it = tuple(branch for branch in self._branches if branch.at > self._cursor)
         return Branch(self._cursor, tuple(self._rows[self._cursor :]), undone, on_it, self._made)
 
     def step_back(self) -> None:
-        """Move the cursor over one row towards the start; the caller has undone the mesh."""
+        """Move the cursor back by one step; the caller has undone it on the mesh."""
         self._cursor -= 1
 
     def step_forward(self) -> None:
-        """Move the cursor over one row towards the end; the caller has redone the mesh."""
+        """Move the cursor forward by one step; the caller has redone it on the mesh."""
         self._cursor += 1
 
     def best_index(self, first: int) -> int:
@@ -207,8 +208,3 @@ class History:
         scores = [self._rows[first].before] if first < self._cursor else []
         scores += [row.after for row in self._rows[first : self._cursor]]
         return first + scores.index(min(scores)) if scores else self._cursor
-
-
-def normalised_return(start: int, best: int, optimum: int) -> float:
-    """Share of the way from ``start`` to ``optimum`` that ``best`` has gone; 1 if no way to go."""
-    return 1.0 if start == optimum else (start - best) / (start - optimum)

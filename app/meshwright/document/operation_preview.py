@@ -1,6 +1,6 @@
-"""What operations would do at a half-edge, before anything is done: ghosts and numbers for views.
+"""Previews of the operations at a half-edge: whether they are allowed, and what they would change.
 
-Knows neither Qt nor torch; the window and the notebook show the same.
+Imports neither Qt nor torch; window and notebook share it.
 """
 
 from __future__ import annotations
@@ -16,55 +16,53 @@ from meshwright_core.operations.dry_run import score_change as tried_change
 from meshwright_core.operations.dry_run import trial
 
 GLOBAL = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
-"""Operations that go from boundary to boundary."""
+"""Operations that change the mesh from boundary to boundary."""
 BARRED = -1
-"""The code of a verdict that is not the mesh's own: what is being played does without it."""
+"""Code of the verdict on an operation that the level being played excludes."""
 
 
 @dataclass(frozen=True)
-class Choice:
+class OperationOffer:
     """One operation of the mesh's kind at one half-edge."""
 
     info: OperationInfo
     verdict: Verdict
     change: int | None
-    """How s would change; None where the operation is refused."""
+    """Change of s; None if the operation is refused."""
 
     @property
     def operation(self) -> Operation:
-        """Which one."""
+        """The operation."""
         return self.info.operation
 
     @property
     def allowed(self) -> bool:
-        """Whether it may be done."""
+        """Whether the operation is allowed."""
         return bool(self.verdict)
 
 
 @dataclass(frozen=True)
 class Ghost:
-    """What would be there and what would go, in the plane of the view."""
+    """Edges and vertices that an operation would add and remove, in the plane of the view."""
 
     operation: Operation
     halfedge: int
     change: int
-    """How s would change."""
+    """Change of s."""
     added: np.ndarray
-    """(n, 2, 2) ends of the edges that there would be."""
+    """(n, 2, 2) ends of the new edges."""
     removed: np.ndarray
-    """(m, 2, 2) ends of the edges that would go."""
+    """(m, 2, 2) ends of the removed edges."""
     gone: np.ndarray
-    """(g, 2) places of the vertices that would go."""
+    """(g, 2) positions of the removed vertices."""
     places: np.ndarray
-    """(p, 2) where vertices would have another Delta than they have now."""
+    """(p, 2) positions of the vertices whose irregularity Delta would change."""
     delta: np.ndarray
-    """(p,) the Delta that they would have; 0 for those that become regular. New vertices that are
-    regular are no news.
-    """
+    """(p,) their new Delta, 0 for those that become regular. New regular vertices are left out."""
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """Least x and y, largest x and y of all there is to see; zeros where there is nothing."""
+        """Bounding box as least x, least y, largest x, largest y; zeros if it is empty."""
         seen = np.concatenate([self.added.reshape(-1, 2), self.removed.reshape(-1, 2), self.places])
         if not len(seen):
             return 0.0, 0.0, 0.0, 0.0
@@ -73,12 +71,12 @@ class Ghost:
 
 
 def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghost:
-    """The ghost of an operation, positions as they are before smoothing.
+    """The preview of an operation, with positions before smoothing.
 
-    The mesh stays as it is, to the bit. Raises OperationRefused where it is not allowed.
+    The mesh is not changed. Raises OperationRefused if the operation is not allowed.
     """
     seen = trial(mesh, operation, halfedge)
-    told = (seen.delta != 0) | ~np.isin(seen.vertices, seen.new_vertices)
+    shown = (seen.delta != 0) | ~np.isin(seen.vertices, seen.new_vertices)
     return Ghost(
         operation=seen.operation,
         halfedge=halfedge,
@@ -86,49 +84,51 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
         added=seen.added[:, :, :2],
         removed=seen.removed[:, :, :2],
         gone=seen.gone[:, :2],
-        places=seen.places[told, :2],
-        delta=seen.delta[told],
+        places=seen.places[shown, :2],
+        delta=seen.delta[shown],
     )
 
 
 def choices(
     mesh: HalfEdgeMesh, halfedge: int, bar: Callable[[str], str] | None = None
-) -> tuple[Choice, ...]:
+) -> tuple[OperationOffer, ...]:
     """Verdict and change of s of every operation at a live half-edge, in the catalogue's order.
 
-    ``bar`` is that of the document: why an operation is not done there, whatever the mesh says.
+    ``bar`` is :attr:`meshwright.document.document.Document.bar`.
     """
     return tuple(_choice(mesh, info, halfedge, bar) for info in of_kind(mesh.kind))
 
 
 def _choice(
     mesh: HalfEdgeMesh, info: OperationInfo, halfedge: int, bar: Callable[[str], str] | None
-) -> Choice:
+) -> OperationOffer:
     why = bar(info.operation.value) if bar is not None else ""
     verdict = Verdict(BARRED, why.rstrip(".")) if why else mesh.check(info.operation, halfedge)
     if not verdict:
-        return Choice(info, verdict, None)
-    if info.operation == Operation.CHORD_COLLAPSE:  # no formula tells what a whole strip changes
-        return Choice(info, verdict, tried_change(mesh, info.operation, halfedge))
+        return OperationOffer(info, verdict, None)
+    if info.operation == Operation.CHORD_COLLAPSE:  # there is no formula for a whole strip
+        return OperationOffer(info, verdict, tried_change(mesh, info.operation, halfedge))
     code = CODES[mesh.k][info.operation]
-    return Choice(info, verdict, int(score_change(mesh.arrays, code, halfedge)))
+    return OperationOffer(info, verdict, int(score_change(mesh.arrays, code, halfedge)))
 
 
-def best(offered: tuple[Choice, ...]) -> Choice | None:
-    """The allowed one with the lowest change of s, the first of equals; None if none is allowed.
+def best(offered: tuple[OperationOffer, ...]) -> OperationOffer | None:
+    """The allowed operation with the lowest change of s, the first of equals; None without any.
 
-    One that changes the mesh from boundary to boundary comes only where no local one is allowed: a
-    person who points at an edge means what lies there.
+    An operation that changes the mesh from boundary to boundary is chosen only if no local one is
+    allowed, since pointing at an edge suggests a local change.
     """
 
-    def rank(choice: Choice) -> tuple[bool, int]:
+    def rank(choice: OperationOffer) -> tuple[bool, int]:
         return choice.operation in GLOBAL, choice.change or 0
 
     return min((choice for choice in offered if choice.allowed), key=rank, default=None)
 
 
-def following(offered: tuple[Choice, ...], current: Operation | None, step: int) -> Choice | None:
-    """The allowed one ``step`` places after the current one, from the last to the first again."""
+def following(
+    offered: tuple[OperationOffer, ...], current: Operation | None, step: int
+) -> OperationOffer | None:
+    """The allowed operation ``step`` places after the current one, in cyclic order."""
     open_to = [choice for choice in offered if choice.allowed]
     if not open_to:
         return None

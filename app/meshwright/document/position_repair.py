@@ -1,10 +1,6 @@
-"""Better positions for chosen vertices, and for what is folded; imported late, for scipy is slow
-to come.
-"""
+"""Smooths chosen vertices and untangles inverted elements; imports scipy, so import it late."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,12 +10,9 @@ from meshwright_core.geometry.region import chosen, elements_at
 from meshwright_core.geometry.smoothing import relax, smooth
 from meshwright_core.geometry.untangling import untangle
 
-if TYPE_CHECKING:
-    from meshwright.document.document import Document
-
 
 def tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
-    """Smooth ``vertices`` (n,), and untangle them where an element at them is folded.
+    """Smooth ``vertices`` (n,), and untangle them where an element at them is inverted.
 
     No other vertex moves; corners and locked ones stay. Writes to the mesh's journal.
     """
@@ -30,9 +23,9 @@ def tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
 
 
 def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
-    """Untangle around the inverted elements, place after place; the rest stays where it is.
+    """Untangle around each inverted element in turn; other vertices stay where they are.
 
-    Returns how many elements were inverted, and how many still are. Writes to the mesh's journal.
+    Returns the number of inverted elements before and after. Writes to the mesh's journal.
     """
     pending = dict.fromkeys(inverted(mesh).tolist())
     count = len(pending)
@@ -41,29 +34,23 @@ def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
         del pending[element]
         halfedges = mesh.k * element + np.arange(mesh.k)
         corners = mesh.arrays.edge[halfedges, 0].astype(np.int64)
-        left = relax(mesh, corners.tolist())  # what stays folded there stays so another time too
+        # what stays inverted now would stay so at a second attempt
+        left = relax(mesh, corners.tolist())
         for seen in (*elements_at(mesh, corners).tolist(), *left.tolist()):
             pending.pop(seen, None)
     return count, len(inverted(mesh)) if count else 0
 
 
+def settle(mesh: HalfEdgeMesh) -> list[int]:
+    """Smooth and untangle the whole mesh; return the elements that stay inverted.
+
+    An element is named by its row in ``mesh.elements()``, which is its place in a written file,
+    counted from 0.
+    """
+    still_inverted = relax(mesh)
+    return [int(row) for row in np.flatnonzero(np.isin(mesh.element_ids(), still_inverted))]
+
+
 def _move(mesh: HalfEdgeMesh, vertices: np.ndarray, positions: np.ndarray) -> None:
     if len(vertices):
         mesh.move(vertices, positions)
-
-
-def after_run(document: Document, by: str, held: np.ndarray | None, searched: bool) -> None:
-    """What an agent's run leaves behind, in better shape, as one step; ``held`` (n,) stay.
-
-    The whole mesh after a search, because its result is looked at; after any other run only what
-    is inverted, and that only where the document smooths by itself.
-    """
-    mesh = document.mesh
-    if mesh is None:
-        return
-    if held is not None:
-        document.smooth(by, np.setdiff1d(mesh.vertices(), held))
-    elif searched:
-        document.smooth(by)
-    elif document.auto_smooth and len(inverted(mesh)):
-        document.untangle(by)

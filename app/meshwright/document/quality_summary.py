@@ -1,5 +1,6 @@
-"""Quality in figures: how the elements of a mesh spread over a measure, which of them are inverted,
-and how many blocks there are. Knows no Qt; the window has it computed on a thread of its own.
+"""Element quality of a mesh: histograms of two measures, inverted elements, number of blocks.
+
+Imports no Qt; the window computes it on a separate thread.
 """
 
 from collections.abc import Callable
@@ -12,13 +13,13 @@ from meshwright_core.geometry.outline import Outline
 from meshwright_core.geometry.quality import TOLERANCE, reference_normals
 
 CHUNK = 1 << 12
-"""Elements that are measured in one go; between two of them the work can be called off."""
+"""Elements measured at a time; the work can be cancelled in between."""
 BINS = 20
 
 
 @dataclass(frozen=True)
 class Spread:
-    """How the sound elements spread over one measure.
+    """Histogram of one measure over the elements that are not inverted.
 
     ``counts`` (bins,) sound elements in bins of one width from ``low`` to ``high``; ``worst`` the
     lowest value among all elements that have one, nan for none, and ``worst_element`` its id.
@@ -31,14 +32,14 @@ class Spread:
     worst_element: int
 
     def edges(self, number: int) -> tuple[float, float]:
-        """The values between which bin ``number`` lies."""
+        """Lower and upper bound of bin ``number``."""
         width = (self.high - self.low) / len(self.counts)
         return self.low + number * width, self.low + (number + 1) * width
 
 
 @dataclass(frozen=True)
 class QualitySummary:
-    """Spreads of the scaled Jacobian and of the smallest angle in degrees; ids of the inverted
+    """Histograms of the scaled Jacobian and of the smallest angle in degrees; ids of the inverted
     elements, ascending; blocks of a quad mesh, None for triangles.
     """
 
@@ -53,7 +54,7 @@ def summarise(
 ) -> QualitySummary | None:
     """Measure ``mesh``; None once ``cancelled()``.
 
-    Nobody may change the mesh meanwhile: give a copy to another thread.
+    The mesh must not change during the call: pass a copy to another thread.
     """
     elements, ids = mesh.elements(), mesh.element_ids()
     points = mesh.points
@@ -66,7 +67,8 @@ def summarise(
         if cancelled():
             return None
         part = slice(first, first + CHUNK)
-        reference = curved[part] if curved is not None else normal
+        reference = normal if curved is None else curved[part]
+        assert reference is not None
         sine, cosine = _corners(points[elements[part]], reference)
         jacobian[part] = sine.min(axis=1)
         angle[part] = np.degrees(np.arctan2(sine, cosine)).min(axis=1)
@@ -86,7 +88,7 @@ def summarise(
     )
 
 
-def _corners(p: np.ndarray, reference: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+def _corners(p: np.ndarray, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Sine and cosine (m, k) at the corners of elements with corners ``p`` (m, k, 3).
 
     The sine is negative where a corner turns clockwise seen against ``reference`` (3,) or (m, 3);
@@ -94,7 +96,7 @@ def _corners(p: np.ndarray, reference: np.ndarray | None) -> tuple[np.ndarray, n
     """
     forward = np.roll(p, -1, axis=1) - p
     backward = np.roll(p, 1, axis=1) - p
-    if reference is not None and reference.ndim == 1 and not reference[:2].any():
+    if reference.ndim == 1 and not reference[:2].any():
         area = forward[..., 0] * backward[..., 1] - forward[..., 1] * backward[..., 0]
         area *= reference[2]
     else:
@@ -110,8 +112,8 @@ def _corners(p: np.ndarray, reference: np.ndarray | None) -> tuple[np.ndarray, n
 def _spread(
     values: np.ndarray, sound: np.ndarray, ids: np.ndarray, high: float, everywhere: bool
 ) -> Spread:
-    """The spread of ``values`` (m,); the worst is looked for ``everywhere``, or among the sound
-    elements only, where the measure says nothing about the others.
+    """The histogram of ``values`` (m,); ``everywhere``: the worst value is that of all elements,
+    not only of those that are not inverted.
     """
     bins = np.clip(np.floor(values[sound] * (BINS / high)).astype(np.int64), 0, BINS - 1)
     counts = np.bincount(bins, minlength=BINS)

@@ -1,28 +1,29 @@
-"""The score curve: s and s* of every state of a history, and lines to draw them with."""
+"""The score curve: s and s* of every state of a history, and the lines that draw them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import overload
 
 import numpy as np
 
-from meshwright.document.history import History, Row
+from meshwright.document.history import History, HistoryStep
 
 FIRST_ROOM = 256
 FAR = 4.0
-"""Times the span of a curve beyond which what is left to the optimum is left out of it."""
+"""A gap to the optimum of more than this many times the span of the curve is cut out."""
 
 
-class Track:
-    """Scores s and optima s* of all states of a history, followed at the cost of what is new.
+class ScoreSeries:
+    """Scores s and optima s* of all states of a history, updated incrementally.
 
-    State 0 is the start, state i the one after row i - 1; undone rows count too.
+    State 0 is the start, state i the one after step i - 1; undone steps are included.
     """
 
     def __init__(self) -> None:
         self._values = np.zeros((FIRST_ROOM, 2), dtype=np.int64)
         self._count = 0
-        self._last: Row | None = None
+        self._last: HistoryStep | None = None
 
     @property
     def scores(self) -> np.ndarray:
@@ -35,12 +36,12 @@ class Track:
         return self._values[: self._count, 1]
 
     def follow(self, history: History) -> int:
-        """Take over what ``history`` holds now; returns the first state that may be new.
+        """Update from ``history``; returns the first state that may be new.
 
-        A row is never changed, and it comes after the same rows always: where the last known row
-        is still in its place, so is everything before it.
+        Steps never change, and a step always follows the same steps: if the last known step is
+        still in its place, so are all before it.
         """
-        known = self._count - 1  # rows
+        known = self._count - 1  # steps
         same = 0 < known <= len(history) and history[known - 1] is self._last
         first = known if same else 0
         rows = [history[i] for i in range(first, len(history))]
@@ -58,8 +59,8 @@ class Track:
 
 
 @dataclass(frozen=True)
-class Frame:
-    """Where a curve is drawn: a rectangle in pixels, the states and scores at its edges.
+class CurveFrame:
+    """Maps states and scores to pixels of a rectangle in which a curve is drawn.
 
     In a ``broken`` frame the optimum lies far below ``low``, and is drawn at the lower edge.
     """
@@ -73,12 +74,20 @@ class Frame:
     high: float
     broken: bool = False
 
+    @overload
+    def x(self, state: float) -> float: ...
+    @overload
+    def x(self, state: np.ndarray) -> np.ndarray: ...
     def x(self, state: np.ndarray | float) -> np.ndarray | float:
-        """Pixels from the left of a state, or of many."""
+        """x in pixels of a state, or of many."""
         return self.left + np.asarray(state) * (self.width / max(self.states - 1, 1))
 
+    @overload
+    def y(self, score: float) -> float: ...
+    @overload
+    def y(self, score: np.ndarray) -> np.ndarray: ...
     def y(self, score: np.ndarray | float) -> np.ndarray | float:
-        """Pixels from the top of a score, or of many."""
+        """y in pixels of a score, or of many."""
         share = np.maximum(np.asarray(score) - self.low, 0.0) / max(self.high - self.low, 1e-9)
         return self.top + self.height * (1.0 - share)
 
@@ -91,11 +100,11 @@ class Frame:
 
 def frame(
     scores: np.ndarray, optima: np.ndarray, left: float, top: float, width: float, height: float
-) -> Frame:
+) -> CurveFrame:
     """The frame that holds all scores and optima (n,) in this rectangle.
 
-    It is broken where the way that is left is far longer than all that has happened: else a large
-    mesh would show a level line only.
+    It is broken if the gap to the optimum is far larger than the range of the scores: otherwise
+    the curve of a large mesh would look like a level line.
     """
     low = float(optima.min()) if len(optima) else 0.0
     high = max(float(scores.max()) if len(scores) else 1.0, low + 1.0)
@@ -104,17 +113,17 @@ def frame(
     broken = lowest - low > FAR * room
     if broken:
         low = lowest - 0.5 * room
-    return Frame(left, top, width, height, len(scores), low, high, broken)
+    return CurveFrame(left, top, width, height, len(scores), low, high, broken)
 
 
-def break_mark(into: Frame, unit: float = 1.0) -> np.ndarray:
+def break_mark(into: CurveFrame, unit: float = 1.0) -> np.ndarray:
     """Two short slanted lines (2, 2, 2) at the left edge of a broken frame, over the optimum."""
     x, y = into.left, into.top + into.height - 7.0 * unit
     stroke = np.array([(-4.0, 2.0), (4.0, -2.0)]) * unit
     return np.stack([stroke + (x, y - 1.75 * unit), stroke + (x, y + 1.75 * unit)])
 
 
-def steps(values: np.ndarray, into: Frame) -> np.ndarray:
+def steps(values: np.ndarray, into: CurveFrame) -> np.ndarray:
     """The values (n,) as a line of steps, (m, 2) pixels; m grows with the width, not with n.
 
     The line changes its height where a state is reached. With more states than pixels each column

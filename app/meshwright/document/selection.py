@@ -19,9 +19,9 @@ _NONE = np.zeros(0, np.int64)
 
 
 class Selection:
-    """Vertices that a person has chosen; ``changed()`` is emitted when they are others.
+    """The selected vertices; ``changed()`` is emitted when they change.
 
-    A vertex that vanishes leaves the selection, another mesh empties it.
+    A deleted vertex leaves the selection; replacing the mesh empties it.
     """
 
     def __init__(self, document: Document) -> None:
@@ -64,10 +64,10 @@ class Selection:
         inside[_corners(mesh, outer)] = False
         return np.flatnonzero(inside)
 
-    # Choosing
+    # Selecting
 
     def set(self, vertices: np.ndarray | Sequence[int]) -> None:
-        """Select these vertices and no others; ids of no vertex are left out."""
+        """Select these vertices and no others; ids without a vertex are left out."""
         ids = self._living(np.unique(np.asarray(vertices, np.int64)))
         if not np.array_equal(ids, self._vertices):
             self._vertices, self._elements = ids, None
@@ -78,7 +78,7 @@ class Selection:
         self.set(_NONE)
 
     def toggle(self, vertex: int) -> None:
-        """Select a vertex that is not selected, else take it out."""
+        """Add a vertex to the selection, or remove it if it is selected."""
         self.set(np.setxor1d(self._vertices, [vertex]))
 
     def add(self, vertices: np.ndarray) -> None:
@@ -113,7 +113,7 @@ class Selection:
             self.set(rings(mesh, self._vertices, 1))
 
     def shrink(self) -> None:
-        """Take out the vertices that have a neighbour outside."""
+        """Remove the vertices that have a neighbour outside the selection."""
         mesh = self._document.mesh
         if mesh is not None and len(self._vertices):
             around = elements_at(mesh, self._vertices)
@@ -152,27 +152,13 @@ class Selection:
 
 
 def _corners(mesh: HalfEdgeMesh, elements: np.ndarray) -> np.ndarray:
-    """(k m,) the vertices of elements (m,), one element after the other."""
+    """(k m,) the vertices of elements (m,), element by element."""
     halfedges = (mesh.k * elements[:, None] + np.arange(mesh.k)).ravel()
     return mesh.arrays.edge[halfedges, ORIGIN].astype(np.int64)
 
 
-def in_box(places: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n,) which of the places (n, 2) lie in the box with these two opposite corners (2,)."""
+def in_box(points: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(n,) which of the points (n, 2) lie in the box with these two opposite corners (2,)."""
     low, high = np.minimum(first, second), np.maximum(first, second)
-    inside: np.ndarray = ((places >= low) & (places <= high)).all(axis=1)
-    return inside
-
-
-def in_lasso(places: np.ndarray, loop: np.ndarray) -> np.ndarray:
-    """(n,) which of the places (n, 2) lie in the polygon (m, 2), by the even-odd rule."""
-    inside = np.zeros(len(places), bool)
-    rows = np.flatnonzero(in_box(places, loop.min(axis=0), loop.max(axis=0)))
-    x, y = places[rows, 0], places[rows, 1]
-    odd = np.zeros(len(rows), bool)
-    for (ax, ay), (bx, by) in zip(loop.tolist(), np.roll(loop, -1, axis=0).tolist(), strict=True):
-        if ay != by:
-            crosses = (ay > y) != (by > y)
-            odd ^= crosses & (x < ax + (y - ay) * (bx - ax) / (by - ay))
-    inside[rows] = odd
+    inside: np.ndarray = ((points >= low) & (points <= high)).all(axis=1)
     return inside

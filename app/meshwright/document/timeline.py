@@ -1,10 +1,11 @@
-"""The timeline: a mesh and its history, which go back and forth together, and their events."""
+"""Undo and redo: keeps a mesh and its history at the same step."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TypeVar
 
-from meshwright.document.history import History, Row, normalised_return
-from meshwright.signals import Signal
+from meshwright.document.history import History, HistoryStep
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.history.packed_steps import Steps
 
@@ -13,134 +14,31 @@ Result = TypeVar("Result")
 NO_MESH = "There is no mesh yet: open a file or take a shape from the gallery."
 
 
-class Timeline:
-    """The half of :class:`meshwright.document.document.Document` that knows when, not what: every
-    change of the mesh is one step of the mesh's journal and one row of the history.
+class UndoTimeline:
+    """A mesh with its history: each change is one step of the mesh's journal and one step of the
+    history, so that both are undone together.
+
+    Attributes:
+        mesh: the mesh, None while there is none.
+        history: the steps, with a cursor between those that are done and those that are undone.
     """
 
-    history: History
-    _mesh: HalfEdgeMesh | None
-    _hover: int
+    def __init__(self, mesh: HalfEdgeMesh | None = None, history: History | None = None) -> None:
+        """`history` must belong to the mesh; None begins a new one."""
+        self.mesh = mesh
+        if history is None:
+            history = History(mesh.score, mesh.optimum) if mesh is not None else History(0, 0)
+        self.history = history
 
-    def __init__(self) -> None:
-        """Without a mesh."""
-        self.replaced = Signal()
-        self.changed = Signal()
-        self.score_changed = Signal()
-        self.history_changed = Signal()
-        self.saved_changed = Signal()
-        self.hover_changed = Signal()
-        self.noted = Signal()
-        self.revision = 0
-        self._mesh = None
-        self._hover = -1
-        self.history = History(0, 0)
-
-    # What is here
-
-    @property
-    def mesh(self) -> HalfEdgeMesh | None:
-        """The mesh, for reading only; None while the document is empty."""
-        return self._mesh
-
-    @property
-    def empty(self) -> bool:
-        """True while there is no mesh."""
-        return self._mesh is None
-
-    @property
-    def kind(self) -> str:
-        """``"tri"`` or ``"quad"``; empty string without a mesh."""
-        return self._mesh.kind if self._mesh is not None else ""
-
-    @property
-    def hover(self) -> int:
-        """The half-edge under the mouse, -1 for none."""
-        return self._hover
-
-    @hover.setter
-    def hover(self, halfedge: int) -> None:
-        if halfedge != self._hover:
-            self._hover = halfedge
-            self.hover_changed.emit(halfedge)
-
-    # Scores
-
-    @property
-    def score(self) -> int:
-        """s of the mesh now; 0 without a mesh."""
-        return self._mesh.score if self._mesh is not None else 0
-
-    @property
-    def optimum(self) -> int:
-        """s*, the lowest score that any connectivity can have; 0 without a mesh."""
-        return self._mesh.optimum if self._mesh is not None else 0
-
-    @property
-    def start_score(self) -> int:
-        """The score where this document began (or where desired degrees last changed)."""
-        return self.history.start_score
-
-    @property
-    def best_score(self) -> int:
-        """The lowest score on the way from the start to here."""
-        return self.history.best_score
-
-    @property
-    def normalised_return(self) -> float:
-        """(start - best) / (start - s*) so far, 1 when there was nothing to gain."""
-        return normalised_return(self.start_score, self.best_score, self.optimum)
-
-    @property
-    def at_optimum(self) -> bool:
-        """True if s = s*: no connectivity is better under these desired degrees."""
-        return self._mesh is not None and self._mesh.score == self._mesh.optimum
-
-    # Going back and forth
-
-    @property
-    def can_undo(self) -> bool:
-        """True if there is a step to take back."""
-        return self.history.can_undo
-
-    @property
-    def can_redo(self) -> bool:
-        """True if a step has been taken back."""
-        return self.history.can_redo
-
-    def undo(self) -> Row | None:
-        """Take back the last step; returns its row, None if there is none."""
-        row = self.history.last
-        self.go_to(self.history.cursor - 1)
-        return row
-
-    def redo(self) -> Row | None:
-        """Do again what was taken back last; returns its row, None if there is none."""
-        if not self.history.can_redo:
-            return None
-        self.go_to(self.history.cursor + 1)
-        return self.history.last
+    def need_mesh(self) -> HalfEdgeMesh:
+        """The mesh; raises MeshError if there is none."""
+        if self.mesh is None:
+            raise MeshError(NO_MESH)
+        return self.mesh
 
     def go_to(self, cursor: int) -> None:
-        """Undo or redo until ``cursor`` rows are done; beyond either end it stops there."""
-        cursor = min(max(cursor, 0), len(self.history))
-        if cursor == self.history.cursor:
-            return
-        self._walk(cursor)
-        self._moved_on("go", cursor)
-
-    def take_branch(self, index: int) -> None:
-        """Go to the end of ``history.branches[index]``; the rows left for it become a branch."""
-        mesh = self._need()
-        if not 0 <= index < len(self.history.branches):
-            raise MeshError(f"There is no branch {index} in this history.")
-        self._walk(self.history.branches[index].at)
-        mesh.graft_redo(self.history.take(index, mesh.cut_redo()))
-        self._walk(len(self.history))
-        self._moved_on("branch", index)
-
-    def _walk(self, cursor: int) -> None:
-        mesh = self._need()
+        """Undo or redo until ``cursor`` steps are done, with 0 <= cursor <= len(history)."""
+        mesh = self.need_mesh()
         while self.history.cursor > cursor:
             mesh.undo()
             self.history.step_back()
@@ -148,38 +46,49 @@ class Timeline:
             mesh.redo()
             self.history.step_forward()
 
-    def again(self, row: Row, steps: tuple[Steps, ...]) -> None:
-        """Do a step that was done here once before, as its row and the mesh's record say.
+    def take_branch(self, index: int) -> None:
+        """Go to the end of ``history.branches[index]``; the steps left for it become a branch.
 
-        Raises MeshError, and leaves the document as it was, if it does not follow from here.
+        Raises MeshError if there is no such branch.
         """
-        mesh = self._need()
+        mesh = self.need_mesh()
+        if not 0 <= index < len(self.history.branches):
+            raise MeshError(f"There is no branch {index} in this history.")
+        self.go_to(self.history.branches[index].at)
+        mesh.graft_redo(self.history.take(index, mesh.cut_redo()))
+        self.go_to(len(self.history))
+
+    def replay(self, step: HistoryStep, steps: tuple[Steps, ...]) -> None:
+        """Do a recorded step: ``step`` describes it, ``steps`` are the mesh's own record of it.
+
+        Raises MeshError, and leaves everything as it was, if the step does not follow from the
+        present state.
+        """
+        mesh = self.need_mesh()
         if [len(piece) for piece in steps] != [1]:
             raise MeshError("A record of a step must be one step.")
         before, undone = mesh.score, mesh.cut_redo()
         mesh.graft_redo(steps)
         mesh.redo()
-        if (before, mesh.score, mesh.optimum) != (row.before, row.after, row.optimum):
+        if (before, mesh.score, mesh.optimum) != (step.before, step.after, step.optimum):
             mesh.undo()
             mesh.graft_redo(undone)
             raise MeshError("A step of the record does not follow from the one before it.")
         self.history.append(
-            row.action, row.title, row.halfedge, row.by, row.before, row.after, row.optimum, undone
-        )
+            step.action, step.title, step.halfedge, step.by, step.before, step.after, step.optimum,
+            undone,
+        )  # fmt: skip
         mesh.trim()
-        self._moved_on("step", self.history.cursor)
 
-    # Inside
-
-    def _need(self) -> HalfEdgeMesh:
-        if self._mesh is None:
-            raise MeshError(NO_MESH)
-        return self._mesh
-
-    def _do(
+    def do(
         self, action: str, title: str, halfedge: int, by: str, work: Callable[[], Result]
-    ) -> Result:
-        mesh = self._need()
+    ) -> tuple[Result, bool]:
+        """Run ``work``, which changes the mesh, as one step.
+
+        Returns its result, and whether the mesh has changed: if not, no step is recorded. If
+        ``work`` raises, mesh and history are as before.
+        """
+        mesh = self.need_mesh()
         steps, before = mesh.steps, mesh.score
         undone = mesh.cut_redo()
         try:
@@ -190,22 +99,7 @@ class Timeline:
             raise
         if mesh.steps == steps:
             mesh.graft_redo(undone)
-            return result  # nothing to do was nothing done: no row, no event
+            return result, False
         self.history.append(action, title, halfedge, by, before, mesh.score, mesh.optimum, undone)
         mesh.trim()
-        self._moved_on("step", self.history.cursor)
-        return result
-
-    def _moved_on(self, event: str, number: int) -> None:
-        self.revision += 1
-        mesh = self._need()
-        self.noted.emit(event, number)
-        if self._hover >= 0 and not mesh.live(self._hover):
-            self.hover = -1
-        self._emit_all()
-
-    def _emit_all(self) -> None:
-        self.changed.emit()
-        self.score_changed.emit()
-        self.history_changed.emit()
-        self.saved_changed.emit()
+        return result, True

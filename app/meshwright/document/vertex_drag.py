@@ -1,7 +1,7 @@
-"""Dragging vertices with the mouse: where they may go, and what becomes of their elements.
+"""Dragging vertices with the mouse: their positions, and the shapes of the elements around them.
 
-Vertices inside follow the mouse, boundary vertices slide along their own side between their
-neighbours on it, corners and locked vertices stay. The mesh is not changed: whoever drags submits
+Inner vertices follow the mouse, boundary vertices slide along their side between their neighbours
+on it, corners and locked vertices stay. The mesh is not changed: the caller submits
 :attr:`Drag.vertices` and :attr:`Drag.places` to the document at the end.
 """
 
@@ -19,7 +19,7 @@ from meshwright_core.geometry.region import elements_at
 from meshwright_core.geometry.sides import Sides
 
 KEPT = 0.02
-"""Share of the room between its neighbours on the side that a sliding vertex keeps to either."""
+"""Distance that a sliding vertex keeps from its neighbours, as a fraction of their distance."""
 CORNER = "A corner stays where it is: free it in its menu first."
 LOCK = "This vertex is locked: unlock it in its menu first."
 
@@ -33,7 +33,7 @@ def refusal(mesh: HalfEdgeMesh, vertex: int) -> str:
 
 
 class Drag:
-    """The dragging of ``vertices``, of which the mouse holds ``grabbed``.
+    """One drag of ``vertices``, of which ``grabbed`` is under the mouse.
 
     Corners and locked vertices among them stay. Attributes: ``vertices`` (n,) ids of those that
     move, ``places`` (n, 3) where they are now.
@@ -52,7 +52,7 @@ class Drag:
         self._measure(mesh)
 
     def _measure(self, mesh: HalfEdgeMesh) -> None:
-        """The elements around as small arrays with local indices."""
+        """Collect the surrounding elements in small arrays with local indices."""
         k = mesh.k
         self._elements = elements_at(mesh, self.vertices)
         halfedges = k * self._elements[:, None] + np.arange(k)
@@ -74,7 +74,7 @@ class Drag:
             self._reference *= 1.0 if areas >= 0 else -1.0
 
     def to(self, x: float, y: float) -> None:
-        """The mouse has drawn the grabbed vertex to (x, y)."""
+        """Move the grabbed vertex to (x, y), and the others with it."""
         step = np.array([x - self._origin[0], y - self._origin[1], 0.0])
         self.places = self._start + step
         for row in self._slides.tolist():
@@ -82,7 +82,7 @@ class Drag:
         self._points[self._rows] = self.places
 
     def _on_side(self, row: int) -> np.ndarray:
-        """The place of a sliding vertex: on its side, between its neighbours as they were."""
+        """The position of a sliding vertex: on its side, between its neighbours."""
         assert self._sides is not None
         vertex = int(self.vertices[row])
         side, seat = self._sides.seat(vertex)
@@ -96,9 +96,7 @@ class Drag:
         return np.asarray(place_all(self._sides.polylines, np.array([side]), np.array([at]))[0])
 
     def _room(self, side: int, seat: int) -> tuple[float, float]:
-        """The arc lengths between which a vertex of the side may be; half-way to one that moves
-        too.
-        """
+        """The range of arc length for a vertex; half-way to a neighbour that moves too."""
         assert self._sides is not None
         if side not in self._parameters:
             self._parameters[side] = self._sides.parameters(side)
@@ -117,12 +115,12 @@ class Drag:
 
     @property
     def moved(self) -> bool:
-        """Whether anything is elsewhere than at the start."""
+        """Whether any vertex has moved."""
         return bool((self.places != self._start).any())
 
     @property
     def segments(self) -> np.ndarray:
-        """(m, 2, 2) the edges that move, as they are now."""
+        """(m, 2, 2) the moving edges at their present positions."""
         segments: np.ndarray = self._points[self._edges][:, :, :2]
         return segments
 

@@ -1,7 +1,8 @@
-"""Research in notebooks: policies compared, many meshes at once, learning curves, what a policy
-sees, the blocks of a mesh. Everything returns data, and shows itself as a picture.
+"""Experiments for notebooks: policies compared, many meshes in one picture, learning curves, the
+input and output of a policy at a half-edge, the blocks of a mesh. Each function returns data that
+displays itself as a picture.
 
-PyTorch is imported when a policy is asked for, and no earlier.
+PyTorch is imported when a policy is loaded, matplotlib when a chart is drawn.
 """
 
 from meshwright.experiments.block_view import BlockView, block_view

@@ -1,4 +1,4 @@
-"""The blocks of a quad mesh: a picture of them, and each as a structured grid."""
+"""The blocks of a quad mesh, as a picture and as structured grids."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh
-from meshwright.experiments.picture import Picture, ThemedLook
+from meshwright.experiments.picture import Picture, ThemedFigureOptions
 from meshwright.graphics.drawing import Disc, Drawing, Polygon, Segments, Text, text_width
 from meshwright.graphics.mesh_figure import figure
 from meshwright.graphics.theme import LIGHT, Theme
@@ -23,25 +23,25 @@ FOOT = 40.0
 
 
 def block_view(mesh: Any, corners: bool = False) -> BlockView:
-    """Cut a quad mesh into its blocks.
+    """Decompose a quad mesh into its blocks.
 
     Args:
-        mesh: as :func:`meshwright.experiments.compare` takes it; it is copied.
-        corners: cut also from corners of the outline that lie in the middle of a block's side.
+        mesh: a mesh or a source of one, as for :func:`meshwright.experiments.compare`; copied.
+        corners: whether to cut also at corners of the outline that lie inside a side of a block.
 
-    Raises MeshError with one sentence for triangles.
+    Raises MeshError for a triangle mesh.
     """
     shown = given_mesh(mesh)
     return BlockView(shown, grids(shown, corners), separatrices(shown, corners))
 
 
 class BlockView(Picture):
-    """A quad mesh as blocks."""
+    """The block decomposition of a quad mesh."""
 
     def __init__(self, mesh: HalfEdgeMesh, found: list[Grid], cut: np.ndarray) -> None:
         self.mesh = mesh
         self.grids = found
-        """One for each block: its vertices and its elements in rows."""
+        """For each block its vertices and its elements as arrays of rows and columns."""
         self._cut = cut
 
     def __len__(self) -> int:
@@ -49,13 +49,13 @@ class BlockView(Picture):
 
     def __repr__(self) -> str:
         sizes = Counter(_size(grid) for grid in self.grids)
-        said = ", ".join(f"{count} of {size}" for size, count in sizes.most_common())
+        listed = ", ".join(f"{count} of {size}" for size, count in sizes.most_common())
         noun = "block" if len(self) == 1 else "blocks"
-        return f"{len(self)} {noun}: {said}"
+        return f"{len(self)} {noun}: {listed}"
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each block."""
+        """One dictionary for each block."""
         return [
             {
                 "block": i,
@@ -68,16 +68,17 @@ class BlockView(Picture):
         ]
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
-        """Each block in a tint that its neighbours do not have, with its size, or where all are
-        single quads with its number from 1 on; thick lines where blocks meet.
+        """Blocks tinted differently from their neighbours, with thick lines between them.
+
+        Each is labelled with its size, or with its number from 1 on if all are single quads.
         """
         mesh = self.mesh
         extent = np.ptp(mesh.points[mesh.vertices(), :2], axis=0)
         tall = round(SIZE * float(np.clip(extent[1] / max(extent[0], 1e-12), 0.35, 1.0)))
         size = (SIZE, tall)
-        look = ThemedLook(size=size, score=False, curve=False, unit=1.0, given=theme)
+        options = ThemedFigureOptions(size=size, score=False, curve=False, unit=1.0, given=theme)
         view = Viewport(size=size).fitted(mesh.points[mesh.vertices()], MARGIN)
-        picture = figure(mesh, look, None, view)
+        picture = figure(mesh, options, None, view)
         drawing = Drawing((SIZE, round(tall + FOOT)), theme.background, repr(self))
         drawing.add(*self._tints(theme, view), *picture.shapes[1:2], self._lines(theme, view))
         drawing.add(*picture.shapes[2:])
@@ -109,7 +110,7 @@ class BlockView(Picture):
         return shapes
 
     def _chosen(self, tints: int) -> list[int]:
-        """A tint for each block, where possible another than its neighbours have."""
+        """The index of a tint for each block, different from its neighbours' where possible."""
         block = np.full(len(self.mesh.arrays.element_mark), -1)
         for i, grid in enumerate(self.grids):
             block[grid.elements.ravel()] = i
@@ -124,17 +125,17 @@ class BlockView(Picture):
         return chosen
 
     def _lines(self, theme: Theme, view: Viewport) -> Segments:
-        """The edges on which blocks meet."""
+        """The edges between blocks."""
         h = np.flatnonzero(self._cut)
         ends = self.mesh.arrays.edge[:, ORIGIN]
         pairs = np.column_stack([ends[h], ends[h - h % 4 + (h + 1) % 4]])
         return Segments(view.to_screen(self.mesh.points[pairs]), theme.accent, 3.0)
 
     def _middle(self, grid: Grid) -> np.ndarray:
-        """A place for words: the middle of the middle quad."""
+        """Where the label goes, in the plane: near the middle of the block."""
         rows, columns = grid.shape
         i, j = rows // 2, columns // 2
-        # an even number of quads has a line in its middle, an odd one a quad
+        # in the middle is a line if the number of quads is even, a quad if it is odd
         some = grid.vertices[i : i + 1 + rows % 2, j : j + 1 + columns % 2]
         return self.mesh.points[some.ravel(), :2].mean(axis=0)
 

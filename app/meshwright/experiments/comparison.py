@@ -1,7 +1,8 @@
-"""Policies compared on one mesh: every rollout as data, and the best of each side by side."""
+"""Comparison of policies on one mesh: all rollouts as data, the best ones as a picture."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
@@ -10,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshwright.assistant.policy_catalogue import shipped
-from meshwright.experiments.axes import LETTERS, Axes
 from meshwright.experiments.best_of import BestOf
+from meshwright.experiments.chart import FONT_SIZE, add_axes, add_level, chart
 from meshwright.experiments.evaluation_table import grid
-from meshwright.experiments.mesh_thumbnail import given_mesh, still
+from meshwright.experiments.mesh_thumbnail import given_mesh, thumbnail
 from meshwright.experiments.picture import Picture, shifted
 from meshwright.experiments.rollouts import (
     Rollout,
@@ -21,13 +22,16 @@ from meshwright.experiments.rollouts import (
     known_policy,
     play,
     require_kind,
-    whole_number,
 )
 from meshwright.graphics.drawing import Drawing, Text
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.arguments import whole_number
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from meshwright.document.document import Document
     from meshwright.graphics.export.film import Film
     from meshwright_agent.policy.policy_files import Policy
@@ -43,19 +47,19 @@ def compare(
     steps: int | None = None,
     seed: int = 0,
 ) -> Comparison:
-    """Let each policy run so often from the mesh, and keep everything.
+    """Roll out each policy several times from one mesh, and keep every rollout.
 
     Args:
         mesh: a mesh, a document, a widget, or what :func:`meshwright.mesh` makes a mesh of; it is
             not changed.
-        policies: names of shipped policies, files, or policies that are there, or one of these;
-            None: the best that is shipped for this kind of mesh, and that of the paper.
-        rollouts: of each policy, side by side.
-        steps: decisions that a run may take; None: as many as its policy was trained with.
-        seed: the same seed brings the same runs.
+        policies: names of shipped policies, policy files or loaded policies, or a single one of
+            these; None: the best shipped policy for this kind of mesh, and the paper's method.
+        rollouts: the number of rollouts of each policy, computed as one batch.
+        steps: the most decisions in a rollout; None: as many as in the policy's training.
+        seed: of the random numbers; equal seeds give equal rollouts.
 
-    Raises MeshError with one sentence where a policy is unknown or for the other kind of mesh, or
-    the mesh has no elements.
+    Raises MeshError for an unknown policy, a policy for the other kind of mesh, or a mesh without
+    elements.
     """
     count = whole_number(rollouts, 1, "rollouts")
     limit = None if steps is None else whole_number(steps, 1, "steps")
@@ -63,8 +67,9 @@ def compare(
     start = given_mesh(mesh)
     if policies is None:
         policies = shipped(start.kind)[:2]
-    several = isinstance(policies, Iterable) and not isinstance(policies, str)
-    given = list(policies) if several else [policies]
+    if isinstance(policies, str | os.PathLike) or not isinstance(policies, Iterable):
+        policies = [policies]
+    given = list(policies)
     if not given:
         raise MeshError("There is no policy to compare: name one or more.")
     known = [known_policy(name) for name in given]
@@ -86,19 +91,19 @@ def compare(
     return found
 
 
-class Table(str):
-    """Text that a notebook shows as it is, line by line."""
+class TextTable(str):
+    """Preformatted text, shown in notebooks in a monospaced font."""
 
     def __repr__(self) -> str:
         return str(self)
 
     def _repr_html_(self) -> str:
-        """The same; in a narrow cell it is scrolled, not broken."""
+        """The text as HTML; a narrow cell scrolls it and does not wrap its lines."""
         return f'<pre style="white-space:pre;overflow-x:auto">{escape(self)}</pre>'
 
 
 class Comparison(Picture):
-    """What some policies made of one mesh."""
+    """The rollouts of several policies from one mesh."""
 
     def __init__(
         self,
@@ -107,13 +112,13 @@ class Comparison(Picture):
         seconds: dict[str, float],
     ) -> None:
         self.mesh = mesh
-        """The mesh that every run started from."""
+        """The start of every rollout."""
         self.rollouts = rollouts
-        """The runs of each policy, by its name."""
+        """The rollouts of each policy, by its name."""
         self.seconds = seconds
-        """What all runs of a policy took."""
+        """The time that all rollouts of a policy took together."""
         self.sources: dict[str, str] = {}
-        """By which name, or from which file, each policy was had, unless it was there already."""
+        """The name or file of each policy; those that were given loaded are left out."""
         self._films: dict[tuple[str, int], Film] = {}
 
     def __repr__(self) -> str:
@@ -123,7 +128,7 @@ class Comparison(Picture):
 
     @property
     def policies(self) -> tuple[str, ...]:
-        """The names, in the order in which they were given."""
+        """The names of the policies, in the order given."""
         return tuple(self.rollouts)
 
     @property
@@ -138,30 +143,30 @@ class Comparison(Picture):
 
     @property
     def scores(self) -> dict[str, list[np.ndarray]]:
-        """For each policy the scores (T + 1,) of each of its runs, start and every decision."""
+        """For each policy the scores (T + 1,) of each rollout, at the start and after decisions."""
         return {name: [run.scores for run in runs] for name, runs in self.rollouts.items()}
 
     def returns(self, policy: str) -> np.ndarray:
-        """(rollouts,) the normalised return of each run, by its best state."""
+        """(rollouts,) the normalised return of each rollout, at its best state."""
         return np.array([run.normalised for run in self._runs(policy)])
 
     def best(self, policy: str) -> Rollout:
-        """The run with the lowest s, the one with the fewest decisions to it among equals."""
+        """The rollout with the lowest s; among equals the one that needs the fewest decisions."""
         return min(self._runs(policy), key=lambda run: (run.best, run.decisions))
 
     def best_of(self, policy: str, k: int) -> tuple[float, float]:
-        """Mean and deviation of the normalised return of the best among k of the runs, over all
-        ways to choose k of them: what the best of k rollouts would bring.
+        """Mean and standard deviation of the best normalised return among k rollouts, over all
+        subsets of k of the rollouts.
         """
         return best_of(self.returns(policy), whole_number(k, 1, "k"))
 
     def best_of_curve(self) -> BestOf:
-        """The best of k against k, for all policies: data, and a figure."""
+        """The expected best of k rollouts as a function of k, for all policies."""
         return BestOf({name: self.returns(name) for name in self.policies})
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each policy; ``pandas.DataFrame(rows)`` makes a table of them."""
+        """One dictionary for each policy; ``pandas.DataFrame(rows)`` makes a table of them."""
         rows = []
         for name, runs in self.rollouts.items():
             returns, best = self.returns(name), self.best(name)
@@ -185,7 +190,7 @@ class Comparison(Picture):
 
     @property
     def rollout_rows(self) -> list[dict[str, Any]]:
-        """A plain row for each run of each policy."""
+        """One dictionary for each rollout of each policy."""
         return [
             {
                 "policy": name,
@@ -202,8 +207,8 @@ class Comparison(Picture):
             for run in runs
         ]
 
-    def table(self) -> Table:
-        """The rows as text, as the paper's tables have them: mean and standard deviation."""
+    def table(self) -> TextTable:
+        """The rows as a text table of means and standard deviations, as in the paper."""
         count = len(next(iter(self.rollouts.values())))
         names = ["policy", "single", f"best of {count}", "best s", "runs at s*", "operations",
                  "seconds"]  # fmt: skip
@@ -224,12 +229,12 @@ class Comparison(Picture):
             f"s = {self.start}, s* = {self.optimum}; {count} {noun} each; normalised return,"
             " mean ± standard deviation"
         )
-        return Table(f"{head}\n\n{grid(names, cells)}")
+        return TextTable(f"{head}\n\n{grid(names, cells)}")
 
     # Meshes and films
 
     def document(self, policy: str, rollout: int | None = None) -> Document:
-        """A document that has the run in its history, up to its best state, smoothed on the way.
+        """A document whose history is the rollout up to its best state and a smoothing.
 
         rollout: its number; None: the best one.
         """
@@ -243,7 +248,7 @@ class Comparison(Picture):
         return document
 
     def film(self, policy: str, rollout: int | None = None) -> Film:
-        """The film of a run, up to its best state; rollout: its number; None: the best one."""
+        """The film of a rollout up to its best state; rollout: its number, None for the best."""
         from meshwright.graphics.export.film import Film
 
         run = self._run(policy, rollout)
@@ -263,8 +268,8 @@ class Comparison(Picture):
         return found
 
     def widget(self, policy: str, rollout: int | None = None, **options: Any) -> Any:
-        """A :class:`meshwright.notebook.MeshWidget` on such a document, to scrub and to go on
-        editing; its agent follows the same policy where that has a name or a file.
+        """A :class:`meshwright.notebook.MeshWidget` on the document of a rollout, for stepping
+        through it and for editing. Its agent uses the same policy if that has a name or a file.
         """
         from meshwright.notebook import MeshWidget
 
@@ -292,32 +297,23 @@ class Comparison(Picture):
     # The picture
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
-        """The best mesh of each policy, and below it the scores of all its runs, on axes that the
-        policies share.
+        """For each policy its best mesh, above a chart of the scores of all its rollouts; the axes
+        of all policies have the same ranges.
         """
         meshes = self.meshes
         count = len(self.policies)
         tall = max(_height(mesh) for mesh in meshes.values())
-        width = LEFT + count * COLUMN + (count - 1) * GAP + 16.0
-        height = HEAD + tall + 40.0 + CURVE + 48.0
-        said = "; ".join(f"{row['policy']}: best s {row['best_score']}" for row in self.rows)
-        title = f"s {self.start} at the start, optimum {self.optimum}; {said}"
-        drawing = Drawing((round(width), round(height)), theme.background, title)
-        longest = max(len(run.steps) for runs in self.rollouts.values() for run in runs)
-        highest = max(int(run.scores.max()) for runs in self.rollouts.values() for run in runs)
+        width = round(LEFT + count * COLUMN + (count - 1) * GAP + 16.0)
+        foot = round(40.0 + CURVE + 48.0)
+        best = "; ".join(f"{row['policy']}: best s {row['best_score']}" for row in self.rows)
+        title = f"s {self.start} at the start, optimum {self.optimum}; {best}"
+        drawing = Drawing((width, round(HEAD + tall) + foot), theme.background, title)
         for column, name in enumerate(self.policies):
-            left = LEFT + column * (COLUMN + GAP)
+            left = _left_of(column)
             self._add_head(drawing, theme, name, left)
-            picture = still(meshes[name], (round(COLUMN), round(tall)), theme)
+            picture = thumbnail(meshes[name], (round(COLUMN), round(tall)), theme)
             drawing.add(*(shifted(shape, left, HEAD) for shape in picture.shapes))
-            axes = Axes(
-                left, HEAD + tall + 40.0, COLUMN, CURVE,
-                (0.0, float(max(longest, 1))), (0.0, 1.06 * max(highest, 1)),
-            )  # fmt: skip
-            axes.frame(drawing, theme, "decisions", labels=column == 0, whole_y=True)
-            self._add_curves(drawing, theme, name, axes)
-        top = HEAD + tall + 20.0
-        drawing.add(Text("s", (LEFT - 8.0, top), LETTERS + 1.0, theme.muted, "right"))
+        drawing.add(chart(self._draw_chart, (width, foot), theme, (0.0, HEAD + tall)))
         return drawing
 
     def _add_head(self, drawing: Drawing, theme: Theme, name: str, left: float) -> None:
@@ -333,20 +329,53 @@ class Comparison(Picture):
                  solved),
         )  # fmt: skip
 
-    def _add_curves(self, drawing: Drawing, theme: Theme, name: str, axes: Axes) -> None:
-        best = self.best(name)
-        for run in self.rollouts[name]:
-            axes.steps(drawing, run.scores, theme.faint, 0.9)
-        axes.steps(drawing, best.scores[: best.decisions + 1], theme.accent, 2.4)
-        axes.level(drawing, self.optimum, theme.text, f"s* = {self.optimum}")
-        if len(self.rollouts[name]) > 1:
-            at = (axes.left + axes.width, axes.top - 2.0)
-            words = f"thick: the best of {len(self.rollouts[name])}"
-            drawing.add(Text(words, at, LETTERS, theme.muted, "right"))
+    def _draw_chart(self, figure: Figure, theme: Theme) -> None:
+        """The scores of all runs of each policy against decisions, on axes of equal ranges."""
+        runs = [run for runs in self.rollouts.values() for run in runs]
+        longest = max(len(run.steps) for run in runs)
+        highest = max(int(run.scores.max()) for run in runs)
+        for column, name in enumerate(self.policies):
+            axes = add_axes(
+                figure, theme, (_left_of(column), 40.0, COLUMN, CURVE),
+                (0.0, float(max(longest, 1))), (0.0, 1.06 * max(highest, 1)), "decisions",
+                y_labels=column == 0, whole_y=True,
+            )  # fmt: skip
+            best = self.best(name)
+            for run in self.rollouts[name]:
+                _add_scores(axes, run.scores, theme.faint, 0.9)
+            _add_scores(axes, best.scores[: best.decisions + 1], theme.accent, 2.4)
+            add_level(axes, theme, self.optimum, f"s* = {self.optimum}")
+            if column == 0:
+                _add_note(axes, theme, "s", (0.0, 1.0), (-8.0, 14.0))
+            if len(self.rollouts[name]) > 1:
+                words = f"thick: the best of {len(self.rollouts[name])}"
+                _add_note(axes, theme, words, (1.0, 1.0), (0.0, -3.0))
+
+
+def _left_of(column: int) -> float:
+    """Pixels from the left of the picture to a column."""
+    return LEFT + column * (COLUMN + GAP)
+
+
+def _add_scores(axes: Axes, scores: np.ndarray, colour: str, width: float) -> None:
+    """Scores after 0, 1, 2, ... decisions, each kept until the next decision."""
+    axes.step(
+        np.arange(len(scores)), scores, where="post", color=colour, linewidth=width, clip_on=False
+    )
+
+
+def _add_note(
+    axes: Axes, theme: Theme, text: str, corner: tuple[float, float], offset: tuple[float, float]
+) -> None:
+    """Text that ends so many pixels right of and above a corner of the axes."""
+    axes.annotate(
+        text, corner, xycoords="axes fraction", xytext=offset, textcoords="offset points",
+        ha="right", color=theme.muted, fontsize=FONT_SIZE,
+    )  # fmt: skip
 
 
 def _height(mesh: HalfEdgeMesh) -> float:
-    """Pixels for a mesh in a column: wide ones are low."""
+    """The height in pixels of a mesh that fills the width of a column, within limits."""
     extent = np.ptp(mesh.points[mesh.vertices(), :2], axis=0)
     share = float(extent[1] / max(float(extent[0]), 1e-12))
     return float(np.clip(share * COLUMN, 160.0, 352.0))

@@ -1,11 +1,11 @@
-"""An evaluation in words: one line for one row, aligned tables for all rows of a kind."""
+"""Evaluations of policies as text: a sentence for one row, aligned tables for several."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from meshwright.cli.arguments import KIND_NOUN
+from meshwright_core.core.kinds import KIND_NOUN
 
 _METHODS = {
     "policy": "policy",
@@ -17,7 +17,7 @@ _METHODS = {
 
 
 def one_row(kind: str, policy: str, given: Mapping[str, Any], row: Mapping[str, Any]) -> str:
-    """The row as a sentence, and whatever else was measured as tables."""
+    """The row as a sentence, followed by tables of the baselines and other measurements."""
     low, high = row["sides"]
     sentence = (
         f"{KIND_NOUN[kind]}, {low}-{high} sides, {given['meshes']} meshes, "
@@ -32,7 +32,7 @@ def one_row(kind: str, policy: str, given: Mapping[str, Any], row: Mapping[str, 
 def all_rows(
     kind: str, policy: str, given: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]
 ) -> str:
-    """The paper's table with ours beside it, and whatever else was measured below."""
+    """Our results beside the paper's, followed by tables of the other measurements."""
     head = (
         f"{KIND_NOUN[kind]}, policy {policy}, {given['meshes']} polygons a row, "
         f"seed {given['seed']}\n"
@@ -67,7 +67,7 @@ def sides(bounds: Sequence[int]) -> str:
 
 
 def grid(names: Sequence[str], cells: Sequence[Sequence[str]]) -> str:
-    """Columns under their names, the first against the left and the others against the right."""
+    """A text table: the first column is aligned to the left, the others to the right."""
     widths = [max(map(len, column)) for column in zip(names, *cells, strict=True)]
     lines = [
         "  ".join(

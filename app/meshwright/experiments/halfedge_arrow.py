@@ -1,18 +1,18 @@
-"""The arrow of a half-edge: just inside its element, along its own side of the edge."""
+"""The arrow that shows a half-edge: inside its element, parallel to the edge."""
 
 from __future__ import annotations
 
 import numpy as np
 
 DEEP = 9.0
-"""Pixels from the edge to the arrow, at most."""
+"""The largest distance from the edge to the arrow, in pixels."""
 POINT = 9.0
 
 
 def arrow(corners: np.ndarray, side: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Tail (2,), neck (2,) and the triangle (3, 2) of the point, in pixels.
+    """Start (2,) and end (2,) of the shaft and the triangle (3, 2) of the head, in pixels.
 
-    corners (k, 2): of the element; side: which of its edges the half-edge is.
+    corners (k, 2): those of the element; side: the index of the half-edge in it.
     """
     a, b = corners[side], corners[(side + 1) % len(corners)]
     centre = corners.mean(axis=0)

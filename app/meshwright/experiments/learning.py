@@ -1,4 +1,4 @@
-"""Learning curves: trainings side by side, as data and in one figure."""
+"""Learning curves of one or more trainings, as data and as a chart."""
 
 from __future__ import annotations
 
@@ -6,16 +6,20 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from meshwright.experiments import training_log
-from meshwright.experiments.axes import DASHES, Axes, legend, series_colours
+from meshwright.experiments.chart import add_axes, add_legend, add_title, chart, series_style
 from meshwright.experiments.picture import Picture
-from meshwright.graphics.drawing import Drawing, Text
+from meshwright.graphics.drawing import Drawing
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright_core import MeshError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 TITLES = {
     "mean": "normalised return of single rollouts, unseen polygons",
@@ -26,22 +30,23 @@ TITLES = {
 }
 WIDTH, HEIGHT, LEFT, GAP = 400.0, 216.0, 56.0, 72.0
 MOST = 4
-"""Trainings in one figure: there are no more kinds of line."""
+"""The most trainings in one chart: one for each line style."""
 
 
 @dataclass(frozen=True, eq=False)
 class Training:
-    """What one training has written."""
+    """The recorded measurements of one training."""
 
     name: str
     points: dict[str, np.ndarray]
-    """iteration, decisions, seconds, mean, std, at_optimum: (n,) at each evaluation."""
+    """iteration, decisions, seconds, mean, std, at_optimum: an array (n,) of each, one entry for
+    each evaluation."""
     updates: dict[str, tuple[np.ndarray, np.ndarray]]
-    """Numbers of every update, where events were written: updates (m,) and values (m,)."""
+    """For each quantity that TensorBoard events hold: updates (m,) and values (m,)."""
 
     def series(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Decisions (n,) and the values (n,) of a quantity; updates in place of decisions for
-        those that are known of every update only. MeshError where it was not written.
+        """Decisions (n,) and values (n,) of a quantity. For quantities that are recorded with
+        every update only, updates in place of decisions. MeshError for an unknown quantity.
         """
         if name in self.points:
             return self.points["decisions"], self.points[name]
@@ -52,17 +57,17 @@ class Training:
 
 
 def learning_curves(*paths: str | os.PathLike[str], names: Sequence[str] | None = None) -> Curves:
-    """Read what ``meshwright train`` has written, and go on writing.
+    """Read the learning curves of trainings by ``meshwright train``, finished or still running.
 
     Args:
         paths: folders of trainings, or files in them: ``checkpoint.safetensors``, ``curve.json``,
-            ``policy.safetensors``. A shipped policy's name will do too.
-        names: what to call them; None: the folders' or policies' own.
+            ``policy.safetensors``; or names of shipped policies.
+        names: labels of the trainings; None: the names of the folders or policies.
 
-    Raises MeshError with one sentence for a file that is torn, or something else.
+    Raises MeshError for a file that is damaged or holds no learning curve.
     """
     if not paths:
-        raise MeshError("There is nothing to read: name the folder of a training, or more.")
+        raise MeshError("There is nothing to read: name the folder of at least one training.")
     if not all(isinstance(path, str | os.PathLike) for path in paths):
         raise MeshError("The folder of a training is named by text or by a path.")
     found = [_located(path) for path in paths]
@@ -77,7 +82,7 @@ def learning_curves(*paths: str | os.PathLike[str], names: Sequence[str] | None 
 
 
 def _located(path: str | os.PathLike[str]) -> Path:
-    """Where it is: a path, or the file of a shipped policy."""
+    """The path itself, or the file of the shipped policy of this name."""
     from importlib.resources import files
 
     place = Path(path)
@@ -94,7 +99,7 @@ def _name_of(path: Path) -> str:
 
 
 class Curves(Picture):
-    """Trainings in one figure."""
+    """Learning curves of several trainings in one chart."""
 
     def __init__(self, trainings: list[Training], quantities: Sequence[str] = ()) -> None:
         self.trainings = trainings
@@ -104,7 +109,7 @@ class Curves(Picture):
         return len(self.trainings)
 
     def __getitem__(self, key: int | str) -> Training:
-        """A training by its place or its name."""
+        """A training by its index or its name."""
         if isinstance(key, str):
             found = [one for one in self.trainings if one.name == key]
             if not found:
@@ -125,7 +130,7 @@ class Curves(Picture):
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each evaluation of each training."""
+        """One dictionary for each evaluation of each training."""
         return [
             {"training": one.name, **{name: float(v[i]) for name, v in one.points.items()}}
             for one in self.trainings
@@ -133,9 +138,11 @@ class Curves(Picture):
         ]
 
     def plot(self, *quantities: str) -> Curves:
-        """The same trainings with other quantities in the figure, a panel for each: any of
-        :data:`meshwright.experiments.training_log.POINT`, and of the updates where there are
-        events: "played", "entropy", "policy", "value", "learning_rate", ...
+        """A chart of other quantities of the same trainings, with one panel for each.
+
+        quantities: those of each evaluation, :data:`meshwright.experiments.training_log.POINT`;
+        and, if TensorBoard events were written, those of each update: "played", "entropy",
+        "policy", "value", "learning_rate", ... MeshError for an unknown one.
         """
         for name in quantities:
             for training in self.trainings:
@@ -143,23 +150,31 @@ class Curves(Picture):
         return Curves(self.trainings, quantities)
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
-        """A panel for each quantity, a line for each training."""
+        """One panel for each quantity, one curve for each training."""
         if len(self.trainings) > MOST:
             raise MeshError(f"One figure shows up to {MOST} trainings, not {len(self.trainings)}.")
         count = len(self.quantities)
-        many = len(self.trainings) > 1
-        top = 72.0 if many else 40.0
-        size = (round(LEFT + count * WIDTH + (count - 1) * GAP + 24.0), round(top + HEIGHT + 56.0))
-        drawing = Drawing(size, theme.background, repr(self))
-        if many:
-            legend(drawing, theme, [one.name for one in self.trainings], LEFT, 20.0)
-        for panel, name in enumerate(self.quantities):
-            self._add_panel(drawing, theme, name, LEFT + panel * (WIDTH + GAP), top)
-        return drawing
+        size = (
+            round(LEFT + count * WIDTH + (count - 1) * GAP + 24.0),
+            round(self._top + HEIGHT + 56.0),
+        )
+        inset = chart(self._draw_chart, size, theme)
+        return Drawing(size, theme.background, repr(self), [inset])
 
-    def _add_panel(
-        self, drawing: Drawing, theme: Theme, name: str, left: float, top: float
-    ) -> None:
+    @property
+    def _top(self) -> float:
+        """Pixels above the panels: their titles, and the legend of several trainings."""
+        return 72.0 if len(self.trainings) > 1 else 40.0
+
+    def _draw_chart(self, figure: Figure, theme: Theme) -> None:
+        panels = [
+            self._add_panel(figure, theme, name, LEFT + panel * (WIDTH + GAP))
+            for panel, name in enumerate(self.quantities)
+        ]
+        if len(self.trainings) > 1:
+            add_legend(figure, panels[0], theme, LEFT, 12.0)
+
+    def _add_panel(self, figure: Figure, theme: Theme, name: str, left: float) -> Axes:
         series = [one.series(name) for one in self.trainings]
         share = name in ("mean", "at_optimum", "played")
         values = np.concatenate([y[np.isfinite(y)] for _, y in series] or [np.zeros(1)])
@@ -167,14 +182,16 @@ class Curves(Picture):
         span = max(high - low, 1e-9 + 0.02 * abs(high))
         y_range = (min(0.0, low), 1.02) if share else (low - 0.06 * span, high + 0.06 * span)
         last = max((float(x[-1]) for x, _ in series if len(x)), default=1.0)
-        axes = Axes(left, top, WIDTH, HEIGHT, (0.0, max(last, 1.0)), y_range)
-        colours = series_colours(theme)
+        by_update = any(name not in one.points for one in self.trainings)
+        axes = add_axes(
+            figure, theme, (left, self._top, WIDTH, HEIGHT), (0.0, max(last, 1.0)), y_range,
+            "updates" if by_update else "decisions",
+        )  # fmt: skip
+        add_title(axes, theme, TITLES.get(name, name.replace("_", " ")))
         if name == "mean" and len(series) == 1:
             mean, std = self.trainings[0].points["mean"], self.trainings[0].points["std"]
-            axes.band(drawing, series[0][0], mean - std, mean + std, theme.accent_soft)
-        by_update = any(name not in one.points for one in self.trainings)
-        axes.frame(drawing, theme, "updates" if by_update else "decisions")
-        for i, (x, y) in enumerate(series):
-            axes.line(drawing, x, y, colours[i % len(colours)], 2.2, DASHES[i % len(DASHES)])
-        title = TITLES.get(name, name.replace("_", " "))
-        drawing.add(Text(title, (left, top - 16.0), 12.5, theme.text, "left", True))
+            band = axes.fill_between(series[0][0], mean - std, mean + std, linewidth=0.0)
+            band.set(facecolor=theme.accent_soft, zorder=0.5)  # below the lines of the grid
+        for i, (training, (x, y)) in enumerate(zip(self.trainings, series, strict=True)):
+            axes.plot(x, y, label=training.name, clip_on=False, **series_style(theme, i))
+        return axes

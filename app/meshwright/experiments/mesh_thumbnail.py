@@ -1,4 +1,4 @@
-"""Stills: the mesh that somebody gave, and small figures of meshes."""
+"""Small figures of meshes, and the mesh that a caller gave in one of several forms."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.experiments.picture import ThemedLook
+from meshwright.experiments.picture import ThemedFigureOptions
 from meshwright.graphics.drawing import Drawing, Text
 from meshwright.graphics.markers import READABLE, label, markers
 from meshwright.graphics.mesh_figure import figure
@@ -17,40 +17,37 @@ from meshwright_core import HalfEdgeMesh, MeshError
 
 MARGIN = 16.0
 FEW = 6
-"""Small discs that get their number beside them."""
+"""The most discs whose numbers are written beside them."""
 
 
 def given_mesh(source: Any) -> HalfEdgeMesh:
-    """A copy of the mesh that is meant: one, that of a document or widget or film, or what
-    :func:`meshwright.sources.resolve.mesh` makes a mesh of. MeshError where there is none or it is
-    empty.
+    """A copy of a mesh, of the mesh of a document, widget or film, or of what
+    :func:`meshwright.sources.resolve.mesh` makes of any other source. MeshError if there is no mesh
+    or it has no elements.
     """
-    inner = source if isinstance(source, HalfEdgeMesh) else getattr(source, "mesh", source)
-    if inner is None:
-        raise MeshError("There is no mesh here yet.")
-    mesh = resolve.mesh(inner)
+    mesh = resolve.mesh(source)
     if mesh.n_elements == 0:
         raise MeshError("This mesh has no elements.")
     return mesh
 
 
-def still(
+def thumbnail(
     mesh: HalfEdgeMesh, size: tuple[int, int], theme: Theme, window: np.ndarray | None = None
 ) -> Drawing:
-    """A small figure of the mesh, lines and letters as large as in the window.
+    """A small figure of the mesh, with lines and letters of the same size as in the window.
 
-    window (n, 2): points that are to fill it, in place of the whole mesh.
+    window (n, 2): points that the view is fitted to; None: the whole mesh.
     """
-    look = ThemedLook(size=size, score=False, curve=False, unit=1.0, given=theme)
+    options = ThemedFigureOptions(size=size, score=False, curve=False, unit=1.0, given=theme)
     shown = mesh.points[mesh.vertices()] if window is None else window
     view = Viewport(size=size).fitted(shown, MARGIN)
-    drawing = figure(mesh, look, None, view)
+    drawing = figure(mesh, options, None, view)
     _add_numbers(drawing, mesh, view, theme)
     return drawing
 
 
 def _add_numbers(drawing: Drawing, mesh: HalfEdgeMesh, view: Viewport, theme: Theme) -> None:
-    """The numbers of discs too small to hold one, beside them, where they are few."""
+    """Write the numbers of discs that are too small to hold one beside them, if they are few."""
     marks = markers(mesh)
     radii = marks.radii(view)
     small = np.flatnonzero(radii < READABLE)

@@ -1,4 +1,4 @@
-"""Pictures of experiments: drawings that notebooks show, in the light or dark of their host."""
+"""Pictures of experiments: files, and display in notebooks with a light or a dark theme."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from meshwright.graphics.drawing import (
     Area,
     Disc,
     Drawing,
+    Inset,
     Line,
     Polygon,
     Segments,
@@ -21,27 +22,27 @@ from meshwright.graphics.drawing import (
     raster,
     svg,
 )
-from meshwright.graphics.mesh_figure import Look
+from meshwright.graphics.mesh_figure import FigureOptions
 from meshwright.graphics.theme import DARK, LIGHT, THEMES, Theme
 from meshwright_core import MeshError
 from meshwright_core.io import atomic_write
 
 CLASS = "meshwright-picture"
 SMALLEST = 0.62
-"""Of its size: in a narrow cell a picture gets no smaller, to be read, but is scrolled."""
+"""A picture is scaled down to this share of its size at most; narrower cells scroll it."""
 _DARK_HOSTS = ('body[data-jp-theme-light="false"]', ".dark", ".dark-theme", ".vscode-dark")
 _LIGHT_HOSTS = ('body[data-jp-theme-light="true"]', ".light", ".light-theme", ".vscode-light")
 
 
 class Picture:
-    """What can be drawn: a subclass says how, and gets files and rich display."""
+    """Base class of results with a picture: SVG and PNG files, and HTML for notebooks."""
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
         """The picture in the colours of ``theme``."""
         raise NotImplementedError
 
     def to_svg(self, path: str | Path | None = None, theme: str = "light") -> str:
-        """The picture as SVG, written to ``path`` if given: whole, or not at all."""
+        """The picture as SVG; written to ``path`` if given, atomically."""
         text = svg(self.drawing(_named(theme)))
         if path is not None:
             with atomic_write.replacing(path) as temporary:
@@ -51,9 +52,9 @@ class Picture:
     def to_png(
         self, path: str | Path | None = None, theme: str = "light", scale: float = 2.0
     ) -> bytes:
-        """The picture as PNG of ``scale`` pixels for each of its own; written to ``path`` if given.
+        """The picture as PNG with ``scale`` times its size in pixels; written to ``path`` if given.
 
-        Raises MeshError for a scale that gives no picture.
+        Raises MeshError for a scale outside 0.1 to 8.
         """
         from io import BytesIO
 
@@ -68,7 +69,7 @@ class Picture:
         return content.getvalue()
 
     def _repr_html_(self) -> str:
-        """For notebooks: it takes the light or dark of its host, and follows it when it changes."""
+        """The picture for notebooks; its colours follow the theme of the notebook."""
         drawn = self.drawing(LIVE)
         inner = svg(drawn).partition("?>\n")[2]
         least = round(SMALLEST * drawn.size[0])
@@ -91,7 +92,7 @@ def _property(name: str) -> str:
 
 
 def _live() -> Theme:
-    """Colours that the browser looks up when it draws; light ones where nobody says more."""
+    """CSS variables in place of colours, with those of the light theme as default."""
     colours = {
         field.name: f"var({_property(field.name)},{getattr(LIGHT, field.name)})"
         for field in fields(Theme)
@@ -101,7 +102,7 @@ def _live() -> Theme:
 
 
 LIVE = _live()
-"""The theme of a picture that takes its colours from where it is shown."""
+"""The theme of a picture whose colours the page decides."""
 
 
 def _values(theme: Theme) -> str:
@@ -113,7 +114,9 @@ def _values(theme: Theme) -> str:
 
 
 def _style() -> str:
-    """The colours for hosts that say what they are, for others by what people prefer."""
+    """Style sheet with the colours of light and dark pages, by their classes, or else by the
+    setting of the browser.
+    """
     hosts = [
         (",".join(f"{host} .{CLASS}" for host in names), _values(theme))
         for names, theme in ((_LIGHT_HOSTS, LIGHT), (_DARK_HOSTS, DARK))
@@ -124,8 +127,8 @@ def _style() -> str:
 
 
 @dataclass(frozen=True)
-class ThemedLook(Look):
-    """A look in given colours, be they named in :mod:`meshwright.graphics.theme` or not."""
+class ThemedFigureOptions(FigureOptions):
+    """Options of a figure in the colours of any theme, for example one of CSS variables."""
 
     given: Theme = LIGHT
 
@@ -136,12 +139,12 @@ class ThemedLook(Look):
 
 
 def shifted(shape: Shape, x: float, y: float) -> Shape:
-    """The shape so many pixels to the right and down."""
+    """The shape moved by (x, y) pixels to the right and down."""
     return _moved(shape, 1.0, (x, y))
 
 
 def scaled(drawing: Drawing, factor: float) -> Drawing:
-    """The drawing so many times as large, its lines and letters too."""
+    """The drawing enlarged by a factor, with its lines and letters."""
     width, height = drawing.size
     size = max(round(width * factor), 1), max(round(height * factor), 1)
     shapes = [_moved(shape, factor, (0.0, 0.0)) for shape in drawing.shapes]
@@ -164,6 +167,9 @@ def _moved(shape: Shape, factor: float, by: tuple[float, float]) -> Shape:
     if isinstance(shape, Text):
         x, y = place(shape.at).tolist()
         return replace(shape, at=(x, y), size=shape.size * factor)
+    if isinstance(shape, Inset):
+        x, y = place(shape.at).tolist()
+        return replace(shape, at=(x, y), scale=shape.scale * factor)
     x, y = place(shape.centre).tolist()
     if isinstance(shape, Disc):
         return replace(

@@ -1,4 +1,4 @@
-"""What a policy sees at a half-edge: its template, its field of view, its probabilities."""
+"""Input and output of a policy at a half-edge: template, field of view, probabilities."""
 
 from __future__ import annotations
 
@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshwright.assistant.torch_threads import one_thread
 from meshwright.experiments.halfedge_arrow import arrow
-from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh, still
+from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh, thumbnail
 from meshwright.experiments.picture import Picture, shifted
-from meshwright.experiments.rollouts import known_policy, one_thread, require_kind
+from meshwright.experiments.rollouts import known_policy, require_kind
 from meshwright.experiments.template_figure import template_figure
 from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Text
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.arguments import whole_number
 from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.operations.catalogue import CATALOGUE, Operation
 
@@ -28,16 +30,16 @@ ROW, BAR, GAP = 24.0, 288.0, 24
 
 
 def policy_view(mesh: Any, policy: str | Policy, halfedge: int | None = None) -> PolicyView:
-    """Look at a mesh as a policy does.
+    """Evaluate a policy at one half-edge of a mesh.
 
     Args:
         mesh: as :func:`meshwright.experiments.compare` takes it; it is not changed.
-        policy: the name of a shipped one, a file, or a policy that is there.
-        halfedge: where to look. A policy that reads one template is shown that of this half-edge;
-            one with a shortlist is given it among the others. None: where it looks by itself, at
-            the half-edge of the likeliest operation.
+        policy: the name of a shipped policy, a policy file, or a loaded policy.
+        halfedge: a policy that reads one template gets that of this half-edge; one with a
+            shortlist gets it as one of its candidates. None: the half-edge of the most probable
+            operation.
 
-    Raises MeshError with one sentence for a wrong policy, or a half-edge that is not there.
+    Raises MeshError for a wrong policy, or a half-edge that does not exist.
     """
     from meshwright_agent.policy.policy_files import PolicyError
     from meshwright_agent.policy.what_if import candidates, outlook
@@ -45,25 +47,23 @@ def policy_view(mesh: Any, policy: str | Policy, halfedge: int | None = None) ->
     shown = given_mesh(mesh)
     known = known_policy(policy)
     require_kind(known, shown)
-    if halfedge is not None and (
-        isinstance(halfedge, bool) or not isinstance(halfedge, int | np.integer) or halfedge < 0
-    ):
-        raise MeshError(f"A half-edge is a whole number of at least 0, not {halfedge!r}.")
+    if halfedge is not None:
+        halfedge = whole_number(halfedge, 0, "A half-edge")
     try:
         with one_thread():
-            among = candidates(shown, known, -1 if halfedge is None else int(halfedge))
+            among = candidates(shown, known, -1 if halfedge is None else halfedge)
             if not len(among):
                 raise MeshError("This mesh is regular: the policy has nothing to look at.")
             seen = outlook(shown, known, among)
     except PolicyError as error:
         sentence = str(error)
         raise MeshError(f"{sentence[0].upper()}{sentence[1:]}.") from None
-    h = int(among[seen.probabilities.max(axis=1).argmax()]) if halfedge is None else int(halfedge)
+    h = int(among[seen.probabilities.max(axis=1).argmax()]) if halfedge is None else halfedge
     return PolicyView(shown, known, h, seen)
 
 
 class PolicyView(Picture):
-    """A half-edge as a policy sees it."""
+    """Input and output of a policy at one half-edge."""
 
     def __init__(self, mesh: HalfEdgeMesh, policy: Policy, halfedge: int, seen: Outlook) -> None:
         from meshwright_agent.policy.explanation import field_of_view, template_of
@@ -109,7 +109,7 @@ class PolicyView(Picture):
 
     @property
     def vertices(self) -> np.ndarray:
-        """(N,) the vertex of each slot, -1 beyond the boundary: what the half-edge in it reads."""
+        """(N,) the vertex that each slot of the template reads, -1 beyond the boundary."""
         k = self.mesh.k
         there = self.slots >= 0
         h = np.where(there, self.slots, 0)
@@ -125,7 +125,7 @@ class PolicyView(Picture):
 
     @property
     def choices(self) -> list[dict[str, Any]]:
-        """A plain row for each operation at the half-edge itself."""
+        """One dictionary for each operation at the half-edge itself."""
         i = int(np.flatnonzero(self.halfedges == self.halfedge)[0])
         titles = {info.operation: info.title for info in CATALOGUE if info.kind == self.mesh.kind}
         return [
@@ -143,7 +143,7 @@ class PolicyView(Picture):
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each operation that it may choose, the likeliest first."""
+        """One dictionary for each permitted operation, the most probable first."""
         found = [
             {
                 "operation": self.operations[j].value,
@@ -173,7 +173,7 @@ class PolicyView(Picture):
     # The picture
 
     def drawing(self, theme: Theme = LIGHT) -> Drawing:
-        """The mesh around the half-edge, the template laid out flat, and the operations there."""
+        """The mesh near the half-edge, its template in the plane, and probabilities as bars."""
         rows = self.choices
         top, foot = 32, 40
         width = MESH[0] + GAP + FLAT[0] + 2 * GAP
@@ -205,7 +205,7 @@ class PolicyView(Picture):
         seen = mesh.points[self.template[:, 0], :2]
         window = np.concatenate([corners.reshape(-1, 2), seen])
         view = Viewport(size=MESH).fitted(window, MARGIN + 16.0)
-        drawing = still(mesh, MESH, theme, _box(view))
+        drawing = thumbnail(mesh, MESH, theme, _box(view))
         screen = view.to_screen(corners)
         tints = [Polygon(one, theme.accent_soft) for one in screen]
         drawing.shapes[1:1] = tints
@@ -254,7 +254,7 @@ class PolicyView(Picture):
 
 
 def _box(view: Viewport) -> np.ndarray:
-    """Two corners of what the view shows, less the margin that a still keeps."""
+    """Two opposite corners of what the view shows, less the margin of a thumbnail."""
     width, height = view.size
     low = view.to_plane(MARGIN, height - MARGIN)
     high = view.to_plane(width - MARGIN, MARGIN)
@@ -264,7 +264,7 @@ def _box(view: Viewport) -> np.ndarray:
 def _mat(
     size: tuple[int, int], corner: tuple[float, float], window: tuple[int, int], theme: Theme
 ) -> list[Polygon | Line]:
-    """What covers a drawing all around a window in it, and the window's frame."""
+    """Polygons that cover a drawing outside a rectangle, and the outline of the rectangle."""
     (width, height), (x, y) = size, corner
     right, bottom = x + window[0], y + window[1]
     boxes = (

@@ -1,40 +1,39 @@
-"""Rollouts on one mesh, kept whole: every score, every operation, of every run."""
+"""Rollouts of a policy from one mesh, with all their scores and operations."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from meshwright.assistant.torch_threads import one_thread
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 if TYPE_CHECKING:
     from meshwright_agent.env.task import Task
     from meshwright_agent.policy.policy_files import Policy
 
-Step = tuple[tuple[Operation, int], ...]
+RolloutStep = tuple[tuple[Operation, int], ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Rollout:
-    """One run of a policy."""
+    """One rollout of a policy."""
 
     policy: str
     number: int
-    """Among the runs of its policy, from 0."""
+    """Index among the rollouts of its policy."""
     scores: np.ndarray
     """(T + 1,) int64: s at the start and after each decision."""
-    steps: tuple[Step, ...]
-    """T decisions: the operation with its half-edge, and the clean-ups that followed it. They
-    replay on the mesh that the run started from."""
+    steps: tuple[RolloutStep, ...]
+    """For each of T decisions its operation and half-edge, followed by its clean-ups. They can be
+    replayed on the mesh that the rollout started from."""
     optimum: int
-    """s*, the same all the way."""
+    """s*, which no operation changes."""
 
     @property
     def start(self) -> int:
@@ -43,35 +42,35 @@ class Rollout:
 
     @property
     def best(self) -> int:
-        """The lowest s of the run."""
+        """The lowest s of the rollout."""
         return int(self.scores.min())
 
     @property
     def last(self) -> int:
-        """s where the run ended."""
+        """s at the end of the rollout."""
         return int(self.scores[-1])
 
     @property
     def decisions(self) -> int:
-        """Decisions to the best state."""
+        """The number of decisions to the best state."""
         return int(self.scores.argmin())
 
     @property
     def normalised(self) -> float:
-        """(s at the start - best s) / (s at the start - s*): 1 is the optimum."""
+        """Normalised return (start - best) / (start - optimum); 1 is the optimum."""
         gap = self.start - self.optimum
         return (self.start - self.best) / gap if gap else 1.0
 
     def operations(self, decisions: int | None = None) -> list[tuple[Operation, int]]:
-        """All operations of the first so many decisions; None: up to the best state."""
+        """The operations of the first ``decisions`` decisions; None: up to the best state."""
         count = self.decisions if decisions is None else decisions
         return [one for step in self.steps[:count] for one in step]
 
 
 def known_policy(name: object) -> Policy:
-    """The policy that is meant: a shipped one by name, one from a file, or one that is there.
+    """A shipped policy by its name, one from a file, or the loaded policy that is given.
 
-    Raises MeshError with one sentence.
+    Raises MeshError if it cannot be loaded.
     """
     from meshwright_agent.policy.policy_files import Policy, PolicyError, load
 
@@ -87,27 +86,20 @@ def known_policy(name: object) -> Policy:
 
 def require_kind(policy: Policy, mesh: HalfEdgeMesh) -> None:
     """Refuse a policy for the other kind of mesh, by MeshError."""
-    if policy.kind != mesh.kind:
-        noun = {"tri": "triangles", "quad": "quads"}
-        raise MeshError(
-            f"{policy.name}: this policy is for {noun[policy.kind]}, and the mesh is of"
-            f" {noun[mesh.kind]}."
-        )
+    from meshwright_agent.policy import policy_files
 
-
-def whole_number(value: object, least: int, name: str) -> int:
-    """The number if it is a whole one that is large enough; MeshError else."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise MeshError(f"{name} is a whole number of at least {least}, not {value!r}.")
-    return int(value)
+    try:
+        policy_files.require_kind(policy, mesh.kind)
+    except policy_files.PolicyError as error:
+        raise MeshError(f"{error}.") from None
 
 
 def play(
     mesh: HalfEdgeMesh, policy: Policy, rollouts: int, steps: int | None, seed: int
 ) -> tuple[tuple[Rollout, ...], float]:
-    """So many runs side by side from the mesh, which is not changed; and the seconds they took.
+    """Several rollouts from the mesh, which is not changed, as one batch; and their seconds.
 
-    steps: decisions that a run may take; None: as many as the policy was trained with.
+    steps: the most decisions in a rollout; None: as many as in the policy's training.
     """
     from meshwright_agent.evaluation.rollouts import roll_out
 
@@ -115,8 +107,8 @@ def play(
         _warm_up(policy.task)
     began = time.perf_counter()
     if mesh.score == mesh.optimum:
-        still = np.array([mesh.score], np.int64)
-        rows = [Rollout(policy.name, k, still, (), mesh.optimum) for k in range(rollouts)]
+        start = np.array([mesh.score], np.int64)
+        rows = [Rollout(policy.name, k, start, (), mesh.optimum) for k in range(rollouts)]
         return tuple(rows), time.perf_counter() - began
     with one_thread():
         rolled = roll_out(_limited(policy, mesh, steps), [mesh] * rollouts, 1, seed)
@@ -138,7 +130,7 @@ def play(
 
 @cache
 def _warm_up(task: Task) -> None:
-    """What is compiled, or loaded, at the first look of a policy is not measured."""
+    """Compile or load the kernels of an environment, so that this time is not measured."""
     from meshwright_agent.env.vector_env import Batch
     from meshwright_core.domains import gallery, meshing
 
@@ -148,7 +140,7 @@ def _warm_up(task: Task) -> None:
 
 
 def _limited(policy: Policy, mesh: HalfEdgeMesh, steps: int | None) -> Policy:
-    """The policy with runs of so many decisions; a task does not go below ten, runs are cut."""
+    """The policy with rollouts of at least ``steps`` decisions; the caller cuts them off."""
     from meshwright_agent.evaluation.rollouts import longer
 
     if steps is None:
@@ -157,28 +149,17 @@ def _limited(policy: Policy, mesh: HalfEdgeMesh, steps: int | None) -> Policy:
     return longer(policy, wanted / policy.task.steps)
 
 
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """Let torch use one thread meanwhile: the matrices of a decision are small."""
-    import torch
-
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
-
-
 def best_of(values: np.ndarray, k: int) -> tuple[float, float]:
-    """Mean and standard deviation of the largest among k of the values (n,), over all ways to
-    choose them; MeshError unless 1 <= k <= n.
+    """Mean and standard deviation of the maximum of k of the values (n,), over all subsets of k.
+
+    MeshError unless 1 <= k <= n.
     """
     n = len(values)
     if not 1 <= k <= n:
         raise MeshError(f"Of {n} rollouts the best of {k} cannot be had: k is from 1 to {n}.")
     ordered = np.sort(np.asarray(values, float))
-    # the i-th smallest is the largest in as many choices as there are of k - 1 below it
+    # the i-th smallest value is the maximum of C(i, k - 1) of the C(n, k) subsets
     weights = np.array([math.comb(i, k - 1) for i in range(n)], float) / math.comb(n, k)
     mean = float(weights @ ordered)
-    return mean, float(np.sqrt(max(weights @ (ordered - mean) ** 2, 0.0)))
+    variance = float(weights @ (ordered - mean) ** 2)
+    return mean, math.sqrt(max(variance, 0.0))

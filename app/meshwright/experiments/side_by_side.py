@@ -1,4 +1,4 @@
-"""Runs side by side as widgets: each can be scrubbed, and edited on."""
+"""The best rollouts of a comparison side by side, each in a widget of its own."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from meshwright_core import MeshError
 def side_by_side(
     comparison: Comparison, policies: Sequence[str] | str | None = None, height: int = 400
 ) -> Any:
-    """The best run of each policy in a widget of its own, in a row.
+    """The best rollout of each policy in a widget of its own, in a row.
 
     Args:
-        comparison: what :func:`meshwright.experiments.compare` brought.
-        policies: its names, or one of them; None: the first two.
-        height: of the meshes, in pixels.
+        comparison: the result of :func:`meshwright.experiments.compare`.
+        policies: names of policies in it, or one of them; None: the first two.
+        height: the height of each mesh in pixels.
 
     Returns a box for Jupyter, whose ``children`` are boxes of a name and a
     :class:`meshwright.notebook.MeshWidget`, or in marimo a row of them.
     """
     if not isinstance(comparison, Comparison):
-        raise MeshError("Side by side go the runs of a comparison: make one by compare().")
+        raise MeshError("side_by_side() takes a comparison: make one by compare().")
     names = [policies] if isinstance(policies, str) else list(policies or comparison.policies[:2])
     widgets = [comparison.widget(name, height=height, name=name) for name in names]
     marimo = sys.modules.get("marimo")

@@ -1,4 +1,4 @@
-"""Small multiples: many meshes in a grid of small figures, with s and s* under each."""
+"""Small multiples: a grid of small figures of meshes, with s and s* below each."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.experiments.mesh_thumbnail import given_mesh, still
+from meshwright.experiments.mesh_thumbnail import given_mesh, thumbnail
 from meshwright.experiments.picture import Picture, shifted
-from meshwright.experiments.rollouts import whole_number
 from meshwright.graphics.drawing import Drawing, Text, text_width
 from meshwright.graphics.export.film import Film
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.arguments import whole_number
 
 CELL, GAP, FOOT = 208, 16, 40
 MOST = 400
-"""Figures in one grid: more cannot be looked at."""
+"""The most figures in one grid."""
 
 
 def small_multiples(
@@ -26,16 +26,16 @@ def small_multiples(
     titles: Sequence[str] | None = None,
     every: int = 1,
 ) -> Multiples:
-    """Put many meshes side by side.
+    """Draw many meshes in a grid.
 
     Args:
-        items: meshes, documents, widgets, films (in the state where they stand) or names of the
-            gallery; or one film, of which every ``every``-th state is shown, and the last.
-        columns: figures in a row.
-        titles: a line for each; None: none, or the number of the state.
-        every: only for a film: states from one figure to the next.
+        items: meshes, documents, widgets, films (in their present state) or names of gallery
+            shapes; or one film, of which every ``every``-th state and the last are shown.
+        columns: the number of figures in a row.
+        titles: one for each mesh; None: none, or for a film the number of the state.
+        every: for a film, the number of states from one figure to the next.
 
-    The meshes are copied. Raises MeshError with one sentence where something else is given.
+    The meshes are copied. Raises MeshError for other items or a wrong number of them.
     """
     width = whole_number(columns, 1, "columns")
     if isinstance(items, Film):
@@ -55,7 +55,7 @@ def small_multiples(
 
 
 def _states(film: Film, every: int) -> tuple[list[HalfEdgeMesh], list[str]]:
-    """Copies of some states; the film stands afterwards where it stood."""
+    """Copies of every ``every``-th state and its title; the film returns to its present state."""
     stood, meshes, names = film.state, [], []
     for state in film.stops(every):
         film.go_to(state)
@@ -96,7 +96,7 @@ class Multiples(Picture):
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each mesh."""
+        """One dictionary for each mesh."""
         return [
             {
                 "title": title,
@@ -121,7 +121,7 @@ class Multiples(Picture):
             x, y = GAP + column * (CELL + GAP), GAP + row * (tall + GAP)
             if title:
                 drawing.add(Text(title, (x + 8.0, y + 12.0), 12.0, theme.text, "left", True))
-            picture = still(mesh, (CELL, CELL), theme)
+            picture = thumbnail(mesh, (CELL, CELL), theme)
             drawing.add(*(shifted(shape, x, y + head) for shape in picture.shapes))
             _add_score(drawing, theme, mesh, x + 8.0, y + head + CELL + 12.0)
         return drawing

@@ -1,4 +1,4 @@
-"""One row of the paper's tables, as large or as small as there is time for."""
+"""One row of the paper's tables, measured with any number of polygons and rollouts."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshwright.experiments.rollouts import known_policy, one_thread, whole_number
+from meshwright.assistant.torch_threads import one_thread
+from meshwright.experiments.rollouts import known_policy
 from meshwright_core import MeshError
+from meshwright_core.arguments import whole_number
+from meshwright_core.core.kinds import KIND_NOUN
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.policy_files import Policy
@@ -16,21 +19,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TableRow:
-    """What a policy brought on random polygons that it has not seen."""
+    """The results of a policy on random polygons that are not in its training set."""
 
     policy: str
     kind: str
     sides: tuple[int, int]
     returns: np.ndarray
-    """(M, K) normalised return of each rollout on each polygon, by its best state."""
+    """(M, K) normalised return of each rollout on each polygon, at its best state."""
     gaps: np.ndarray
     """(M, K) s - s* at the best state."""
     operations: np.ndarray
-    """(M, K) decisions to it."""
+    """(M, K) decisions to the best state."""
     left_out: int
-    """Polygons that were at their optimum from the start."""
+    """The number of polygons that start at their optimum, which are not counted."""
     paper: tuple[float, float] | None
-    """Mean and deviation that the paper gives for the best of ten, if it has this row."""
+    """The paper's mean and standard deviation of the best of ten, if it has this row."""
 
     @property
     def single(self) -> tuple[float, float]:
@@ -50,7 +53,7 @@ class TableRow:
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A plain row for each rollout on each polygon."""
+        """One dictionary for each rollout on each polygon."""
         return [
             {
                 "policy": self.policy,
@@ -66,7 +69,7 @@ class TableRow:
 
     def __repr__(self) -> str:
         meshes, rollouts = self.returns.shape
-        noun = {"tri": "triangles", "quad": "quads"}[self.kind]
+        noun = KIND_NOUN[self.kind]
         low, high = self.sides
         found = [
             ("single rollout", _spread(self.single)),
@@ -85,16 +88,16 @@ def table_row(
     rollouts: int = 10,
     seed: int = 0,
 ) -> TableRow:
-    """Measure a policy on so many random polygons, with so many rollouts on each.
+    """Measure a policy on random polygons, with several rollouts on each.
 
     Args:
-        policy: the name of a shipped one, a file, or a policy that is there.
+        policy: the name of a shipped policy, a policy file, or a loaded policy.
         sides: fewest and most sides of a polygon; the paper's rows are (10, 20), (20, 30), ...
-        meshes: polygons; those that start at their optimum are left out.
-        rollouts: of which the best counts.
-        seed: the same seed draws the same polygons, and throws the same dice.
+        meshes: the number of polygons; those that start at their optimum are left out.
+        rollouts: the number of rollouts on each polygon.
+        seed: of polygons and rollouts; equal seeds give equal results.
 
-    Raises MeshError with one sentence.
+    Raises MeshError for an argument that is out of range or a policy that cannot be loaded.
     """
     from meshwright_agent.evaluation import paper_results
     from meshwright_agent.evaluation.rollouts import NothingToDo, roll_out, unseen
@@ -115,9 +118,10 @@ def table_row(
     with one_thread():
         rolled = roll_out(known, starts, tries, given_seed)
     reported = paper_results.row(known.kind, (low, high))
+    paper = None if reported is None else (reported.best.mean, reported.best.deviation)
     return TableRow(
         known.name, known.kind, (low, high), rolled.returns, rolled.gaps, rolled.operations,
-        count - len(starts), None if reported is None else tuple(reported.best),
+        count - len(starts), paper,
     )  # fmt: skip
 
 

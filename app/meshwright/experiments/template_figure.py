@@ -1,7 +1,8 @@
-"""The template of a half-edge, laid out flat: the paper's figure of what a policy reads.
+"""Drawing of the template of a half-edge in a fixed layout, like the paper's figure of it.
 
-The first element is a regular triangle or square with the half-edge at its foot; every element that
-is reached through a side of another lies on that side, smaller, so that none covers another.
+The first element is a regular triangle or square with the half-edge at the bottom. Every element
+that is reached through a side of another is attached to that side, and smaller, so that no two
+overlap.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from functools import cache
 
 import numpy as np
 
-from meshwright.experiments.axes import dashes
 from meshwright.experiments.halfedge_arrow import arrow
 from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Segments, Text
 from meshwright.graphics.markers import label
@@ -26,20 +26,20 @@ _NARROW = (1.0, 0.5, 0.3)
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Where the corners of a template lie; a unit is half a side of the first element."""
+    """Positions of the corners of a template; the unit is half a side of the first element."""
 
     corners: np.ndarray
     """(elements, k, 2), counter-clockwise; the half-edge of slot k e + i runs from corner i of
     element e."""
     rings: np.ndarray
-    """(elements,) how many sides lie between it and the first."""
+    """(elements,) the number of sides between each and the first."""
     own: np.ndarray
-    """(elements, k) bool: corners that no earlier element has."""
+    """(elements, k) bool: whether no earlier element has this corner."""
 
 
 @cache
 def layout(k: int, elements: int) -> Layout:
-    """The flat template of so many elements (1, 1 + k, 1 + k + k (k - 1), ...)."""
+    """The layout of a template of 1, 1 + k, 1 + k + k (k - 1), ... elements."""
     corners = np.zeros((elements, k, 2))
     rings = np.zeros(elements, int)
     own = np.zeros((elements, k), bool)
@@ -64,8 +64,8 @@ def layout(k: int, elements: int) -> Layout:
 
 
 def slot_of_corner(k: int, element: int, corner: int) -> int:
-    """The slot whose half-edge is associated with this corner: in a quad the one that starts
-    there, in a triangle the one across (section 3.1).
+    """The slot of the half-edge that is associated with this corner (section 3.1): in a quad the
+    half-edge that starts there, in a triangle the opposite one.
     """
     return k * element + (corner if k == 4 else (corner + 1) % 3)
 
@@ -73,9 +73,14 @@ def slot_of_corner(k: int, element: int, corner: int) -> int:
 def template_figure(
     k: int, vertices: np.ndarray, delta: np.ndarray, size: tuple[int, int], theme: Theme
 ) -> Drawing:
-    """The template laid out flat.
+    """Draw a template.
 
-    vertices (N,): the vertex of each slot, -1 beyond the boundary; delta: by vertex.
+    Args:
+        k: sides of an element.
+        vertices: (N,) the vertex of each slot, -1 beyond the boundary.
+        delta: (V,) the irregularity of each vertex of the mesh.
+        size: width and height in pixels.
+        theme: the colours.
     """
     drawing = Drawing(size, theme.background, "the template, laid out flat")
     plan = layout(k, len(vertices) // k)
@@ -92,7 +97,7 @@ def template_figure(
             slot = slot_of_corner(k, e, i)
             v = int(vertices[slot])
             amount = int(delta[v]) if v >= 0 else None
-            # those of the first element are named inside it: outside there is no room
+            # the slots of the first element are written inside it, as there is no room outside
             outward = (middle - places[e, i]) if e == 0 else (places[e, i] - middle)
             _add_vertex(drawing, theme, places[e, i], outward, slot, amount, e == 0)
     return drawing
@@ -105,19 +110,19 @@ def _there(k: int, vertices: np.ndarray, element: int) -> bool:
 def _add_element(
     drawing: Drawing, theme: Theme, corners: np.ndarray, ring: int, there: bool
 ) -> None:
-    closed = np.concatenate([corners, corners[:1]])
+    sides = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
     if there:
         drawing.add(Polygon(corners, theme.accent_soft if ring == 0 else theme.fill))
-        drawing.add(Line(closed, theme.boundary if ring == 0 else theme.edge, 1.2))
+        drawing.add(Segments(sides, theme.boundary if ring == 0 else theme.edge, 1.2))
     else:
-        drawing.add(Segments(dashes(closed, 3.0), theme.faint, 1.0))
+        drawing.add(Segments(sides, theme.faint, 1.0, 3.0))
 
 
 def _add_vertex(
     drawing: Drawing, theme: Theme, at: np.ndarray, outward: np.ndarray, slot: int,
     delta: int | None, first: bool,
 ) -> None:  # fmt: skip
-    """A disc with delta, a small dot where it is regular, an empty ring beyond the boundary."""
+    """A disc with delta; a dot if it is regular; an empty ring beyond the boundary."""
     x, y = at.tolist()
     if delta is None:
         drawing.add(Disc((x, y), 5.0, theme.background), Disc((x, y), 5.0, theme.faint, 1.2))

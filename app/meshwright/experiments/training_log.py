@@ -1,4 +1,4 @@
-"""What a training has written, read back: points of its learning curve, numbers of every update."""
+"""Reads the files of a training: its learning curve, and the quantities of every update."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ POINT = ("iteration", "decisions", "seconds", "mean", "std", "at_optimum")
 :class:`meshwright_agent.training.trainer.Progress`.
 """
 FILES = ("checkpoint.safetensors", "curve.json", "policy.safetensors")
-"""What holds a learning curve, the newest first: a training that goes on has a checkpoint only."""
+"""Files with a learning curve, newest first; a running training has a checkpoint only."""
 _LONGEST_HEADER = 64 * 1024 * 1024
 _EVENTS = "events.out.tfevents.*"
 
 
 def points(path: Path) -> dict[str, np.ndarray]:
-    """The learning curve in a training's folder, or in one of its FILES: for each of POINT the
-    numbers (n,). MeshError where there is none, it is torn, or it is something else.
+    """The learning curve in the folder of a training, or in one of its FILES: for each of POINT
+    an array (n,). MeshError if there is none, or the file is damaged or of another kind.
     """
     if path.is_dir():
         found = next((path / name for name in FILES if (path / name).is_file()), None)
@@ -46,7 +46,7 @@ def points(path: Path) -> dict[str, np.ndarray]:
 
 
 def _rows(path: Path) -> list[dict[str, Any]]:
-    """The points in a file of any of the three kinds."""
+    """The points of the curve in a file of any of the three kinds."""
     if path.suffix != ".safetensors":
         rows = json.loads(path.read_text(encoding="utf-8"))
     else:
@@ -57,13 +57,13 @@ def _rows(path: Path) -> list[dict[str, Any]]:
 
 
 def _notes(path: Path) -> dict[str, Any]:
-    """The plain values in the header of a checkpoint or of a policy; no tensor is read."""
+    """The metadata in the header of a checkpoint or policy; no tensor is read."""
     with path.open("rb") as file:
         length = int.from_bytes(file.read(8), "little")
         if not 0 < length <= _LONGEST_HEADER:
             raise ValueError("no header")
         header = json.loads(file.read(length))
-        # the tensors must be there, too: a torn file is no training to trust
+        # a file that ends before its tensors do is refused as well
         ends = [entry["data_offsets"][1] for name, entry in header.items() if name[:2] != "__"]
         if path.stat().st_size < 8 + length + max(ends, default=0):
             raise ValueError("torn")
@@ -73,9 +73,9 @@ def _notes(path: Path) -> dict[str, Any]:
 
 
 def updates(folder: Path) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """The numbers of every update in the events beside a curve, by the names that
-    :data:`meshwright_agent.training.tensorboard.TAGS` has for them: updates (n,) and values (n,).
-    Empty without events, whose writing needs an optional package; MeshError where they are torn.
+    """The quantities of every update in the TensorBoard events of a training, by their names in
+    :data:`meshwright_agent.training.tensorboard.TAGS`: updates (n,) and values (n,). Empty without
+    events, which need an optional package; MeshError if they are damaged.
     """
     from meshwright_agent.training.tensorboard import TAGS
 
@@ -84,7 +84,7 @@ def updates(folder: Path) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     for path in sorted((folder / "events").glob(_EVENTS)):
         try:
             for step, tag, value in _scalars(path.read_bytes()):
-                # of two runs over the same updates the later one counts
+                # where two runs wrote the same update, the later one is kept
                 found.setdefault(names.get(tag, tag), {})[step] = value
         except (ValueError, struct.error, IndexError, UnicodeDecodeError):
             raise MeshError(f"{path}: these are no events of a training, or torn ones.") from None
@@ -94,8 +94,8 @@ def updates(folder: Path) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     }
 
 
-# TensorBoard's files: records of length, checksum, content, checksum; the content is a message of
-# fields, each a key (number and form) and a value.
+# A TensorBoard file is a sequence of records of length, checksum, content, checksum. The content is
+# a protocol buffer: fields of a key (field number and wire type) and a value.
 
 
 def _scalars(content: bytes) -> Iterator[tuple[int, str, float]]:
@@ -117,7 +117,7 @@ def _scalars(content: bytes) -> Iterator[tuple[int, str, float]]:
 
 
 def _fields(message: Any) -> list[tuple[int, Any]]:
-    """Number and value of each field; values are ints, or bytes as they stand."""
+    """Number and value of each field; values are ints or raw bytes."""
     if not isinstance(message, bytes):
         raise ValueError("no message")
     found: list[tuple[int, Any]] = []
@@ -142,7 +142,7 @@ def _fields(message: Any) -> list[tuple[int, Any]]:
 
 
 def _integer(message: bytes, at: int) -> tuple[int, int]:
-    """A number in pieces of seven bits, and where it ends."""
+    """A variable-length integer, seven bits a byte, and the position after it."""
     value = shift = 0
     while True:
         byte = message[at]

@@ -1,12 +1,12 @@
-"""Drawings: flat shapes in pixels, written as pixels (Pillow) or as vectors (SVG).
+"""Drawings: lists of shapes that are written as PNG by Pillow or as SVG.
 
-A drawing is a list of shapes, the first at the bottom. Coordinates are pixels from the upper left
-corner; colours are six hexadecimal digits after ``#``.
+The first shape is at the bottom. Coordinates are pixels from the upper left corner; colours are six
+hexadecimal digits after ``#``, or for SVG any CSS colour.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -15,17 +15,17 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 SAMPLES = 3
-"""Pictures are drawn this many times larger and scaled down, for smooth lines."""
+"""Images are drawn at this many times their size and scaled down, for smooth lines."""
 FAMILIES = "'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif"
 MIDDLE = 0.36
-"""Of the size of a font: how far below its middle a line of text stands."""
+"""Distance from the middle of a line of text down to its baseline, relative to the font size."""
 
 _ANCHORS = {"left": ("l", "start"), "middle": ("m", "middle"), "right": ("r", "end")}
 
 
 @dataclass(frozen=True)
 class Area:
-    """What lies inside an odd number of closed loops, each (m, 2)."""
+    """The area inside an odd number of closed loops, each (m, 2)."""
 
     loops: Sequence[np.ndarray]
     colour: str
@@ -79,7 +79,7 @@ class Square:
 
 @dataclass(frozen=True)
 class Text:
-    """One line of text whose middle is at the height of ``at``."""
+    """One line of text, vertically centred at ``at``; ``anchor`` is the end that is there."""
 
     text: str
     at: tuple[float, float]
@@ -89,12 +89,27 @@ class Text:
     bold: bool = False
 
 
-Shape = Area | Segments | Line | Polygon | Disc | Square | Text
+@dataclass(frozen=True)
+class Inset:
+    """A part that another library draws: ``size`` pixels with the upper left corner ``at``.
+
+    ``svg()`` returns SVG elements in pixels of the inset; ``image(scale)`` returns a Pillow image
+    with ``scale`` pixels for each of them. ``scale`` enlarges both.
+    """
+
+    at: tuple[float, float]
+    size: tuple[int, int]
+    svg: Callable[[], str]
+    image: Callable[[float], Any]
+    scale: float = 1.0
+
+
+Shape = Area | Segments | Line | Polygon | Disc | Square | Text | Inset
 
 
 @dataclass
 class Drawing:
-    """Shapes on a background; ``title`` says in words what is seen."""
+    """Shapes on a background; ``title`` describes the picture in words."""
 
     size: tuple[int, int]
     background: str
@@ -102,12 +117,12 @@ class Drawing:
     shapes: list[Shape] = field(default_factory=list)
 
     def add(self, *shapes: Shape) -> None:
-        """Put ``shapes`` on top."""
+        """Add ``shapes`` on top."""
         self.shapes.extend(shapes)
 
 
 def text_width(text: str, size: float, bold: bool = False) -> float:
-    """Pixels that ``text`` takes in a picture; vectors may differ by a few per cent."""
+    """Width of ``text`` in pixels in a PNG; in SVG it may differ by a few per cent."""
     return float(_font(size, bold).getlength(text))
 
 
@@ -171,6 +186,9 @@ def _paint(image: Any, painter: Any, shape: Shape, scale: int) -> None:
         font = _font(shape.size * scale, shape.bold)
         anchor = _ANCHORS[shape.anchor][0] + "s"
         painter.text(at, shape.text, fill=shape.colour, font=font, anchor=anchor)
+    elif isinstance(shape, Inset):
+        x, y = shape.at
+        image.paste(shape.image(scale * shape.scale), (round(x * scale), round(y * scale)))
     else:
         _fill(image, painter, shape, scale)
 
@@ -254,6 +272,10 @@ def _element(shape: Shape) -> str:
         x, y = _number(shape.centre[0] - shape.half), _number(shape.centre[1] - shape.half)
         side = _number(2.0 * shape.half)
         return f'<rect x="{x}" y="{y}" width="{side}" height="{side}" fill="{shape.colour}"/>'
+    if isinstance(shape, Inset):
+        place = f"translate({_number(shape.at[0])},{_number(shape.at[1])})"
+        size = f" scale({_number(shape.scale)})" if shape.scale != 1.0 else ""
+        return f'<g transform="{place}{size}" stroke-linejoin="round">{shape.svg()}</g>'
     x, y = _number(shape.at[0]), _number(shape.at[1] + MIDDLE * shape.size)
     weight = ' font-weight="bold"' if shape.bold else ""
     return (

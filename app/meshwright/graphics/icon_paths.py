@@ -1,4 +1,4 @@
-"""The icons as strokes on a grid of 20 by 20: SVG paths that every view draws in its own colour."""
+"""The icons as SVG paths of strokes on a grid of 20 by 20; each view sets their colour."""
 
 STROKES = {
     "new": "M3 3h14v14H3z M10 3v14 M3 10h14",

@@ -1,4 +1,4 @@
-"""Markers: what is drawn at vertices, the same in the window, in pictures and in films."""
+"""Markers of vertices and the boundary, the same in the window, in pictures and in films."""
 
 from dataclasses import dataclass
 
@@ -8,22 +8,22 @@ from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 
 BASE_RADIUS = 10.0
-"""Pixels of the disc of a vertex with |delta| = 1, where the mesh leaves room."""
+"""Radius in pixels of the disc of a vertex with |delta| = 1, where there is room."""
 GROWTH = 2.5
-"""Pixels that each further degree adds."""
+"""Pixels added to the radius for each further unit of |delta|."""
 LARGEST = 16.0
 SMALLEST = 2.5
 CROWDED = 0.36
-"""A disc takes no more than this share of the shortest edge at its vertex."""
+"""The largest radius of a disc, relative to the shortest edge at its vertex."""
 READABLE = 6.0
 """Discs smaller than this radius in pixels carry no number."""
 
 
 @dataclass(frozen=True)
 class Markers:
-    """Irregular vertices (n,), their delta (n,), places (n, 2), shortest edges (n,) in lengths, and
-    whether they are corners (n,); places of all corners and of locked vertices; boundary loops
-    (m, 2), each closed by its first point.
+    """Irregular vertices (n,), with their delta (n,), places (n, 2), length of their shortest edges
+    ``reach`` (n,), and whether they are corners (n,); places of all corners and of locked vertices;
+    boundary loops (m, 2), each ending with its first point.
     """
 
     vertices: np.ndarray
@@ -36,7 +36,7 @@ class Markers:
     loops: tuple[np.ndarray, ...]
 
     def radii(self, viewport: Viewport) -> np.ndarray:
-        """Radius in pixels of every disc (n,): larger with |delta|, smaller where crowded."""
+        """Radii of the discs (n,) in pixels: larger with |delta|, smaller where edges are short."""
         wanted = np.minimum(BASE_RADIUS + GROWTH * (np.abs(self.delta) - 1), LARGEST)
         room = CROWDED * self.reach * viewport.pixels
         return np.maximum(np.minimum(wanted, room), SMALLEST)

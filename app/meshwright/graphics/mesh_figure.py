@@ -1,6 +1,6 @@
-"""The figure: a mesh as a drawing, with its score, where it is in a history, and the score curve.
+"""The figure of a mesh: a drawing with its score, its place in a history, and the score curve.
 
-Pictures and films are made from it; the window draws the same things in the same colours.
+Pictures and films consist of figures; the window draws the same things in the same colours.
 """
 
 from __future__ import annotations
@@ -19,20 +19,22 @@ from meshwright_core.core.arrays import ORIGIN, TWIN
 from meshwright_core.geometry import quality
 
 REFERENCE = 800.0
-"""Pixels of the shorter side of a figure whose lines and letters have their nominal size."""
+"""Lines and letters have their nominal size in a figure whose shorter side has these pixels."""
 HEAD, FOOT = 64.0, 112.0
-"""Nominal height of the lines above the mesh, and of the score curve below it."""
+"""Nominal height of the text above the mesh, and of the score curve below it."""
 MARGIN = 24.0
 MOST_INVERTED = 500
-"""More elements than this are not all hatched."""
+"""The most inverted elements that are hatched."""
 
 
 @dataclass(frozen=True)
-class Look:
-    """What a figure shows. ``size`` in pixels; ``numbers`` inside the discs of irregular vertices;
-    ``score`` above the mesh; ``curve`` below it; ``changes`` since the moment before. ``theme`` and
-    ``colours`` are what :func:`meshwright.graphics.theme.theme` takes. ``unit`` scales lines and
-    letters; 0: by the size, so that a small figure is a large one made smaller.
+class FigureOptions:
+    """What a figure shows.
+
+    ``size`` is in pixels. ``numbers`` are those inside the discs of irregular vertices; ``score``
+    stands above the mesh, ``curve`` below it; ``changes`` are edges that the last step added and
+    removed. ``theme`` and ``colours`` are as for :func:`meshwright.graphics.theme.theme`. ``unit``
+    scales lines and letters; 0: in proportion to the size.
     """
 
     size: tuple[int, int] = (960, 720)
@@ -51,12 +53,12 @@ class Look:
 
 
 @dataclass(frozen=True)
-class Moment:
+class HistoryMoment:
     """Where a mesh stands in its history.
 
-    ``title`` and ``detail`` are words; ``added`` and ``removed`` (n, 2, 2) are the edges, in the
-    plane, that the last step made and deleted; ``scores`` and ``optima`` (m,) are those of all
-    states, ``state`` is the present one.
+    ``title`` and ``detail`` are text; ``added`` and ``removed`` (n, 2, 2) are the ends, in the
+    plane, of edges that the last step added and deleted; ``scores`` and ``optima`` (m,) are those
+    of all states, ``state`` is the index of the present one.
     """
 
     title: str = ""
@@ -77,12 +79,14 @@ def edges(mesh: HalfEdgeMesh) -> np.ndarray:
     return np.column_stack([origin[once], target[once]])
 
 
-def fitted(mesh: HalfEdgeMesh, look: Look, moment: Moment | None = None) -> Viewport:
-    """The view that shows the whole mesh in what the figure leaves for it."""
-    width, height = look.size
-    unit = _unit(look)
-    head = HEAD * unit if look.score else 0.0
-    foot = FOOT * unit if _has_curve(look, moment) else 0.0
+def fitted(
+    mesh: HalfEdgeMesh, options: FigureOptions, moment: HistoryMoment | None = None
+) -> Viewport:
+    """The viewport that shows the whole mesh between the text and the score curve."""
+    width, height = options.size
+    unit = _unit(options)
+    head = HEAD * unit if options.score else 0.0
+    foot = FOOT * unit if _has_curve(options, moment) else 0.0
     room = (width, max(int(height - head - foot), 16))
     view = Viewport(size=room).fitted(
         mesh.points[mesh.vertices()], max(MARGIN * unit, 0.06 * min(room))
@@ -93,32 +97,32 @@ def fitted(mesh: HalfEdgeMesh, look: Look, moment: Moment | None = None) -> View
 
 def figure(
     mesh: HalfEdgeMesh,
-    look: Look | None = None,
-    moment: Moment | None = None,
+    options: FigureOptions | None = None,
+    moment: HistoryMoment | None = None,
     viewport: Viewport | None = None,
 ) -> Drawing:
-    """Draw ``mesh`` as it is now; ``viewport`` as fitted if None."""
-    look = look or Look()
-    view = viewport or fitted(mesh, look, moment)
-    colours, unit = look.palette, _unit(look)
-    drawing = Drawing(look.size, colours.background, summary(mesh))
+    """Draw the present state of ``mesh``; ``viewport`` None: as :func:`fitted` makes it."""
+    options = options or FigureOptions()
+    view = viewport or fitted(mesh, options, moment)
+    colours, unit = options.palette, _unit(options)
+    drawing = Drawing(options.size, colours.background, summary(mesh))
     marks = markers(mesh)
     pairs = edges(mesh)
     drawing.add(Area([view.to_screen(loop) for loop in marks.loops], colours.fill))
-    if look.changes and moment is not None and len(moment.removed):
+    if options.changes and moment is not None and len(moment.removed):
         gone = view.to_screen(moment.removed)
         drawing.add(Segments(gone, colours.faint, 1.3 * unit, dash=5.0 * unit))
     width = _edge_width(mesh, pairs, view, unit)
     drawing.add(Segments(view.to_screen(mesh.points[pairs]), colours.edge, width))
-    if look.changes and moment is not None and len(moment.added):
+    if options.changes and moment is not None and len(moment.added):
         drawing.add(Segments(view.to_screen(moment.added), colours.accent, 2.6 * unit))
     _add_inverted(drawing, mesh, view, colours, unit)
     for loop in marks.loops:
         drawing.add(Line(view.to_screen(loop), colours.boundary, max(2.0 * unit, 1.3 * width)))
-    _add_markers(drawing, marks, view, colours, unit, look.numbers)
-    if look.score:
+    _add_markers(drawing, marks, view, colours, unit, options.numbers)
+    if options.score:
         _add_head(drawing, mesh, moment, colours, unit)
-    if moment is not None and _has_curve(look, moment):
+    if moment is not None and _has_curve(options, moment):
         _add_curve(drawing, moment, colours, unit)
     return drawing
 
@@ -134,16 +138,16 @@ def elements(mesh: HalfEdgeMesh) -> str:
     return f"{mesh.n_elements:,} {noun}{'' if mesh.n_elements == 1 else 's'}"
 
 
-def _unit(look: Look) -> float:
-    return look.unit or min(max(min(look.size) / REFERENCE, 0.45), 6.0)
+def _unit(options: FigureOptions) -> float:
+    return options.unit or min(max(min(options.size) / REFERENCE, 0.45), 6.0)
 
 
-def _has_curve(look: Look, moment: Moment | None) -> bool:
-    return look.curve and moment is not None and len(moment.scores) > 1
+def _has_curve(options: FigureOptions, moment: HistoryMoment | None) -> bool:
+    return options.curve and moment is not None and len(moment.scores) > 1
 
 
 def _edge_width(mesh: HalfEdgeMesh, pairs: np.ndarray, view: Viewport, unit: float) -> float:
-    """Thin lines, and thinner ones where many of them must share the pixels."""
+    """Line width of edges in pixels: thinner where edges are short."""
     if len(pairs) == 0:
         return unit
     some = mesh.points[pairs[:: max(1, len(pairs) // 2000)], :2]
@@ -154,7 +158,7 @@ def _edge_width(mesh: HalfEdgeMesh, pairs: np.ndarray, view: Viewport, unit: flo
 def _add_inverted(
     drawing: Drawing, mesh: HalfEdgeMesh, view: Viewport, colours: Theme, unit: float
 ) -> None:
-    """Hatch what no solver may take, in plain sight."""
+    """Hatch inverted elements, which solvers do not accept."""
     ids = quality.inverted(mesh)[:MOST_INVERTED]
     if len(ids) == 0:
         return
@@ -171,7 +175,7 @@ def _add_markers(
 ) -> None:
     for x, y in view.to_screen(marks.corner_places).tolist():
         drawing.add(Square((x, y), 3.5 * unit, colours.corner))
-    # radii are meant for the window: larger figures get larger discs
+    # radii are those of the window; larger figures have larger discs
     radii = marks.radii(Viewport(view.centre, view.pixels / unit, view.size)) * unit
     places = view.to_screen(marks.places).tolist()
     rows = zip(places, marks.delta.tolist(), radii.tolist(), marks.corners.tolist(), strict=True)
@@ -189,9 +193,9 @@ def _add_markers(
 
 
 def _add_head(
-    drawing: Drawing, mesh: HalfEdgeMesh, moment: Moment | None, colours: Theme, unit: float
+    drawing: Drawing, mesh: HalfEdgeMesh, moment: HistoryMoment | None, colours: Theme, unit: float
 ) -> None:
-    """Two lines at the left, words; two at the right, the score, as in the paper's figures."""
+    """Two lines of text at the left, score and optimum at the right, as in the paper's figures."""
     left, right = MARGIN * unit, drawing.size[0] - MARGIN * unit
     first, second = 25.0 * unit, 48.0 * unit
     title = moment.title if moment is not None else ""
@@ -208,8 +212,8 @@ def _add_head(
     drawing.add(Text(words, (right, second), 13.5 * unit, colour, "right", solved))
 
 
-def _add_curve(drawing: Drawing, moment: Moment, colours: Theme, unit: float) -> None:
-    """Score against states: what is done in the accent, what is to come pale."""
+def _add_curve(drawing: Drawing, moment: HistoryMoment, colours: Theme, unit: float) -> None:
+    """Score against states: in the accent colour up to the present state, pale after it."""
     width, height = drawing.size
     left, right = (MARGIN + 40.0) * unit, width - (MARGIN + 4.0) * unit
     top = height - (FOOT - 18.0) * unit
@@ -231,7 +235,7 @@ def _add_curve(drawing: Drawing, moment: Moment, colours: Theme, unit: float) ->
     drawing.add(Line(line, colours.faint, 1.2 * unit))
     done = line[line[:, 0] <= x + 1e-6]
     here = (x, float(box.y(moment.scores[moment.state])))
-    # a step that is reached just now is the next point at the same place
+    # the step to the present state ends at the next point, which has the same x
     done = np.vstack([done[: np.searchsorted(done[:, 0], x)], _ascent(line, x), [here]])
     drawing.add(
         Line(done, colours.accent, 2.0 * unit),
@@ -245,6 +249,6 @@ def _add_curve(drawing: Drawing, moment: Moment, colours: Theme, unit: float) ->
 
 
 def _ascent(line: np.ndarray, x: float) -> np.ndarray:
-    """The first point of ``line`` at ``x``: where the step before it ends; none at the start."""
+    """The first point of ``line`` at ``x``, at the score of the state before; none at the start."""
     at = np.flatnonzero(np.abs(line[:, 0] - x) < 1e-6)
     return line[at[:1]]

@@ -1,8 +1,9 @@
-"""Picking: which half-edge or vertex of the mesh lies at a point of the plane."""
+"""Finds the half-edge, element or vertex of a mesh at a point of the plane."""
 
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry.polygons import contains
 
 _NEAR = (8, 32, 128)
 
@@ -10,12 +11,12 @@ _NEAR = (8, 32, 128)
 class Picker:
     """A search tree over the element centres of one state of a mesh; make a new one after edits.
 
-    Source of the idea: the elements whose centres are nearest are the candidates, and a point in
-    polygon test decides; candidates are widened where elements differ much in size.
+    The elements with the nearest centres are candidates, and a point-in-polygon test decides. If
+    none contains the point more candidates are tried, since elements may differ much in size.
     """
 
     def __init__(self, mesh: HalfEdgeMesh) -> None:
-        from scipy.spatial import cKDTree  # only the first hover needs scipy
+        from scipy.spatial import cKDTree  # imported at the first hover, as it takes time
 
         self._mesh = mesh
         self._elements = mesh.elements()
@@ -31,7 +32,7 @@ class Picker:
             if count == 0:
                 break
             rows = np.atleast_1d(self._tree.query((x, y), k=min(near, count))[1])
-            inside = _contain(self._corners[rows], x, y)
+            inside = contains(self._corners[rows], x, y)
             if inside.any():
                 return int(rows[np.argmax(inside)])
             if near >= count:
@@ -59,16 +60,6 @@ class Picker:
         if squared[nearest] > reach * reach:
             return -1
         return int(self._elements[rows].reshape(-1)[nearest])
-
-
-def _contain(polygons: np.ndarray, x: float, y: float) -> np.ndarray:
-    """For ``polygons`` (m, k, 2): does each contain (x, y)? By crossings; any orientation."""
-    ax, ay = polygons[..., 0], polygons[..., 1]
-    bx, by = np.roll(ax, -1, axis=1), np.roll(ay, -1, axis=1)
-    straddles = (ay > y) != (by > y)
-    rise = np.where(straddles, by - ay, 1.0)
-    crossing = ax + (y - ay) * (bx - ax) / rise
-    return ((straddles & (x < crossing)).sum(axis=1) % 2).astype(bool)
 
 
 def _distances(start: np.ndarray, end: np.ndarray, x: float, y: float) -> np.ndarray:

@@ -1,7 +1,7 @@
-"""The two themes: colours of the scene and of the controls, and the style sheet made of them.
+"""The light and the dark theme: colours of meshes and controls, and the Qt style sheet.
 
-Irregular vertices are the only loud thing (vermilion and blue that colour-blind people can tell
-apart); controls have one accent. All distances are multiples of :data:`GRID`.
+Only irregular vertices have strong colours (vermilion and blue, which colour-blind people can tell
+apart); controls have one accent colour. All distances are multiples of :data:`GRID`.
 """
 
 from dataclasses import dataclass, replace
@@ -10,15 +10,15 @@ from pathlib import Path
 import meshwright_assets
 
 GRID = 8
-"""Pixels: margins and gaps are multiples of this, or half of it inside small controls."""
+"""Margins and gaps in pixels are multiples of this, or of half of it in small controls."""
 
 FONTS = ("Inter", "Segoe UI", "SF Pro Text", "Helvetica Neue", "Noto Sans", "Nimbus Sans", "Arial")
-"""Families for the interface, best first."""
+"""Font families of the interface, in order of preference."""
 
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours as six hexadecimal digits. ``plus`` and ``minus`` are for degrees above and below."""
+    """Colours as six hexadecimal digits; ``plus`` and ``minus`` are those of delta > 0 and < 0."""
 
     name: str
     background: str
@@ -107,8 +107,8 @@ COLOURS = {
     "gold": ("Gold and violet", "#a66f00", "#8a63d2"),
     "strong": ("Red and navy, stronger", "#b3261e", "#1f4fa3"),
 }
-"""Pairs for degrees above and below, with their names. In each, one is warm and one is cold, which
-colour-blind people can tell apart, and white numbers can be read on both.
+"""Name and pair of colours for delta > 0 and < 0. In each pair one colour is warm and one is cold,
+which colour-blind people can tell apart, and white numbers are legible on both.
 """
 
 

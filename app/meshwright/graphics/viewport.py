@@ -1,7 +1,7 @@
-"""The viewport: which part of the plane is seen, and where a point of it is on the screen.
+"""The viewport: the map between the plane of the mesh and pixels of a picture or window.
 
-The camera looks down the z axis, in parallel projection, with x to the right and y up. Screen
-coordinates are pixels from the upper left corner. The window, pictures and films share this.
+The camera looks down the z axis in parallel projection, with x to the right and y up. Screen
+coordinates are pixels from the upper left corner.
 """
 
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ class Viewport:
 
     @property
     def parallel_scale(self) -> float:
-        """Half the height of the view in units of length, as VTK's camera wants it."""
+        """Half the height of the view in units of length, the parallel scale of a VTK camera."""
         return self.size[1] / (2.0 * self.pixels)
 
     def to_screen(self, points: np.ndarray) -> np.ndarray:
@@ -32,14 +32,14 @@ class Viewport:
         return offset + (self.size[0] / 2.0, self.size[1] / 2.0)
 
     def to_plane(self, x: float, y: float) -> tuple[float, float]:
-        """The point of the plane that is seen at pixel (x, y)."""
+        """The point of the plane at pixel (x, y)."""
         return (
             self.centre[0] + (x - self.size[0] / 2.0) / self.pixels,
             self.centre[1] - (y - self.size[1] / 2.0) / self.pixels,
         )
 
     def zoomed(self, factor: float, x: float, y: float) -> "Viewport":
-        """Closer by ``factor`` with the point under pixel (x, y) staying where it is."""
+        """Zoomed by ``factor``; the point at pixel (x, y) stays there."""
         pixels = float(np.clip(self.pixels * factor, NEAREST, FARTHEST))
         px, py = self.to_plane(x, y)
         centre = (
@@ -58,7 +58,7 @@ class Viewport:
         return replace(self, size=(max(width, 1), max(height, 1)))
 
     def fitted(self, points: np.ndarray, margin: float = 48.0) -> "Viewport":
-        """The view that shows all ``points`` (n, 2 or 3) with ``margin`` pixels around them."""
+        """The viewport that shows all ``points`` (n, 2 or 3) with a margin of ``margin`` pixels."""
         points = np.asarray(points, dtype=float)
         if len(points) == 0:
             return replace(self, centre=(0.0, 0.0), pixels=100.0)
@@ -70,8 +70,8 @@ class Viewport:
         return replace(self, centre=centre, pixels=pixels)
 
     def around(self, points: np.ndarray, least: float = 72.0) -> "Viewport":
-        """The view centred on ``points`` (n, 2 or 3), so close that they are ``least`` pixels wide
-        or high; a view that shows them larger already, and fully, keeps its scale.
+        """The viewport centred on ``points`` (n, 2 or 3), zoomed in until they are ``least`` pixels
+        wide or high; if they are larger already and fit, the scale stays.
         """
         points = np.asarray(points, dtype=float)
         low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)

@@ -1,9 +1,8 @@
-"""The scene: a mesh as PyVista actors, for the window.
+"""The mesh of the window as PyVista actors.
 
-VTK draws the elements and the outline. Markers and numbers are drawn over it by the window, with
-QPainter, so that they are crisp; only where there are very many of them does VTK draw the discs too
-(:attr:`Scene.crowd`). Pictures and films are made without VTK: see
-:mod:`meshwright.graphics.mesh_figure`.
+VTK draws elements and long outlines. The window draws markers and numbers over them by QPainter,
+which is sharper; only if there are very many does VTK draw the discs too (:attr:`Scene.crowd`).
+Pictures and films do not use VTK: see :mod:`meshwright.graphics.mesh_figure`.
 """
 
 from typing import Any
@@ -16,20 +15,19 @@ from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 
 CROWD = 1200
-"""With more visible irregular vertices than this VTK draws their discs, without numbers."""
+"""If more irregular vertices are visible, VTK draws their discs, without numbers."""
 LONG = 4000
-"""A boundary of more vertices than this is VTK's to draw, also where the caller could."""
+"""A boundary of more vertices is drawn by VTK even if the caller draws short ones."""
 CLASSES = 4
-"""Discs of VTK come in one size for each |delta| from 1 to here; larger ones share the last."""
-_NOWHERE = np.zeros((0, 3))
+"""VTK draws discs of one size for each |delta| up to this; larger |delta| share the last."""
 
 
 class Scene:
     """The actors of one mesh in ``plotter`` (a ``pyvista.Plotter`` or a ``QtInteractor``).
 
-    Nothing here renders: the caller does, when it wants a frame. ``width`` scales lines. The
-    boundary is VTK's unless the caller says that it draws ``short_outlines`` itself, which looks
-    better; :attr:`outlined` tells whose it is.
+    No method renders a frame; the caller does. ``width`` scales lines. VTK draws the boundary,
+    except short ones if the caller draws ``short_outlines`` itself, which looks better;
+    :attr:`outlined` is whether VTK draws the present one.
     """
 
     def __init__(
@@ -65,7 +63,7 @@ class Scene:
         self.show(mesh)
 
     def show(self, mesh: HalfEdgeMesh | None) -> None:
-        """Show another mesh, or none: all actors are made anew."""
+        """Show another mesh or none; all actors are replaced."""
         for actor in (self._surface, self._outline, *self._discs.values()):
             if actor is not None:
                 self._plotter.remove_actor(actor, render=False, reset_camera=False)
@@ -99,7 +97,7 @@ class Scene:
         self._mark_crowd(mesh)
 
     def update(self, mesh: HalfEdgeMesh) -> None:
-        """Show the present state of the mesh that is shown already."""
+        """Update the actors to the present state of the mesh that is shown."""
         self.markers = markers(mesh)
         if self._surface is None or self.outlined != self._draws_outline(self.markers):
             self.show(mesh)
@@ -110,7 +108,7 @@ class Scene:
         self._mark_crowd(mesh)
 
     def look(self, viewport: Viewport) -> None:
-        """Point the camera so that the plane is seen as ``viewport`` says."""
+        """Set the camera to the viewport."""
         camera = self._plotter.renderer.camera
         x, y = viewport.centre
         distance = 4.0 * self._depth + 1.0
@@ -119,10 +117,10 @@ class Scene:
         camera.SetPosition(x, y, distance)
         camera.SetParallelScale(viewport.parallel_scale)
         camera.SetClippingRange(1e-3 * distance, 2.0 * distance)
-        camera.is_set = True  # else PyVista turns it to an oblique view at the first frame
+        camera.is_set = True  # otherwise PyVista resets it to an oblique view at the first frame
 
     def show_crowd(self, mesh: HalfEdgeMesh, crowd: bool) -> None:
-        """Let VTK draw the discs of irregular vertices (``crowd``), or the caller."""
+        """Set whether VTK draws the discs of irregular vertices (``crowd``) or the caller."""
         if crowd != self.crowd:
             self.crowd = crowd
             self._mark_crowd(mesh)
@@ -138,12 +136,13 @@ class Scene:
         return length > (LONG if self._short_outlines else 0)
 
     def _mark_crowd(self, mesh: HalfEdgeMesh) -> None:
-        """One actor of discs for each sign and size of delta; an actor once made is kept."""
-        size = np.zeros(0, int)
+        """Update the discs: one actor for each value of delta, kept for reuse."""
+        size = vertices = np.zeros(0, int)
         if self.crowd and self.markers is not None:
+            vertices = self.markers.vertices
             size = np.clip(self.markers.delta, -CLASSES, CLASSES)
         for value in {*np.unique(size).tolist(), *self._discs}:
-            places = mesh.points[self.markers.vertices[size == value]] if len(size) else _NOWHERE
+            places = mesh.points[vertices[size == value]]
             places = places * (1.0, 1.0, 0.0) + (0.0, 0.0, 2.0 * self._depth)
             if value not in self._discs:
                 self._discs[value] = self._add_discs(places, value)

@@ -11,6 +11,7 @@ from typing import Any
 
 from meshwright.notebook.protocol.requests import DEGREES
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
+from meshwright_core.arguments import is_whole_number
 from meshwright_core.operations.catalogue import of_kind
 
 _IDS = 2**31
@@ -29,10 +30,9 @@ def operation_of(mesh: HalfEdgeMesh, operation: Any) -> Operation:
 
 def whole(value: Any, noun: str) -> int:
     """A whole number, numpy's too; MeshError if it is none, or none that a mesh can count to."""
-    try:
-        number = index(value)
-    except TypeError:
-        raise MeshError(f"A {noun} must be a whole number, not {shortened(value)}.") from None
+    if not is_whole_number(value):
+        raise MeshError(f"A {noun} must be a whole number, not {shortened(value)}.")
+    number = index(value)
     if not -_IDS <= number < _IDS:
         raise MeshError(f"There is no {noun} {shortened(number)}.")
     return number

@@ -26,6 +26,7 @@ from meshwright.notebook.protocol.requests import RefusedError, Request, parse
 from meshwright.notebook.thread_loop import Loop
 from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.errors import sentence
 
 Result = TypeVar("Result")
 
@@ -77,7 +78,7 @@ class Session:
         document.score_changed.connect(self._on_score_changed)
         self.assistant.changed.connect(self._on_agent_changed)
         self.assistant.hinting.changed.connect(self._on_agent_changed)
-        self.assistant.said.connect(self._on_said)
+        self.assistant.message.connect(self._on_said)
         self.assistant.failed.connect(self._on_failed)
 
     @classmethod
@@ -284,12 +285,6 @@ class Session:
     def _on_broken(self, error: Exception) -> None:
         """A queued call has raised, and is in the log already."""
         self.telling.notice("failed", broken(error))
-
-
-def sentence(text: str) -> str:
-    """``text`` with a capital and a full stop, as it stands alone."""
-    text = text[:1].upper() + text[1:]
-    return text if text.endswith((".", "\u2026", "!", "?")) else text + "."
 
 
 def broken(error: Exception) -> str:

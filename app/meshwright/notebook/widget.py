@@ -13,7 +13,7 @@ import traitlets
 from meshwright.assistant.assistant import Assistant
 from meshwright.assistant.search_runner import COMPLETE_SECONDS, Effort
 from meshwright.document.document import Document
-from meshwright.document.history import History, Row
+from meshwright.document.history import History, HistoryStep
 from meshwright.notebook import bundle
 from meshwright.notebook.arguments import (
     degree_of,
@@ -23,7 +23,6 @@ from meshwright.notebook.arguments import (
     vertex_of,
     whole,
 )
-from meshwright.notebook.document_source import document_of
 from meshwright.notebook.export.export_mixin import Exports
 from meshwright.notebook.protocol.level_bridge import Playing
 from meshwright.notebook.protocol.mesh_sync import Packet
@@ -31,6 +30,7 @@ from meshwright.notebook.session import Session
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.level import Level
 from meshwright.signals import Signal
+from meshwright.sources import resolve
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         """Show ``source``; a document, or another widget's, is shared with whoever has it.
 
         Args:
-            source: see :func:`meshwright.notebook.document_source.document_of`; or another widget.
+            source: see :func:`meshwright.sources.resolve.document`; or another widget.
             kind: what a shape is meshed with, "tri" or "quad"; quads by default.
             policy: what the agent follows: a shipped policy, or a file; by default the first that
                 is shipped for this kind of mesh.
@@ -103,7 +103,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         if not isinstance(wanted, Level | None):
             raise MeshError(f"A level must be the name of one, not {shortened(level)}.")
         shown = source.document if isinstance(source, MeshWidget) else source
-        document = Document() if wanted is not None else document_of(shown, kind, name)
+        document = Document() if wanted is not None else resolve.document(shown, kind, name)
         session = self.session = Session.of(document)
         try:
             if wanted is not None:
@@ -174,11 +174,11 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         action, at = operation_of(self.mesh, operation), whole(halfedge, "half-edge")
         return self._do(lambda: self.document.submit(action, at))
 
-    def undo(self) -> Row | None:
+    def undo(self) -> HistoryStep | None:
         """Take back the last step; returns its row, None if there is none."""
         return self._do(self.document.undo)
 
-    def redo(self) -> Row | None:
+    def redo(self) -> HistoryStep | None:
         """Do again what was taken back last; returns its row, None if there is none."""
         return self._do(self.document.redo)
 

@@ -1,4 +1,4 @@
-"""The agent as one's rival: it solves the start of a level on a mesh of its own."""
+"""Lets the agent solve a level on a separate copy of its mesh."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from meshwright.signals import Signal
 from meshwright_core import Operation
 
 SECONDS = 2.0
-"""How long it searches at most."""
+"""Time limit of the search, in seconds."""
 
 MakeAssistant = Callable[[Document], Assistant]
 
 _OPERATIONS = frozenset(operation.value for operation in Operation)
 
 
-class Standing(StrEnum):
-    """How far it is."""
+class OpponentState(StrEnum):
+    """State of the agent's search."""
 
     ASKED = "asked"
     DONE = "done"
     FAILED = "failed"
 
 
-class Rival:
-    """Solves ``level`` once, with an assistant of its own. ``changed()`` comes at the end."""
+class AgentOpponent:
+    """Solves ``level`` once, with a separate assistant. ``changed()`` is emitted at the end."""
 
     def __init__(self, level: Level, make: MakeAssistant) -> None:
         self.changed = Signal()
-        self.standing = Standing.ASKED
+        self.standing = OpponentState.ASKED
         self.operations: list[tuple[Operation, int]] = []
         self.score = 0
         self.reason = ""
@@ -47,26 +47,26 @@ class Rival:
         if not self._assistant.policy:
             self._assistant.policy = policies[0] if policies else ""
         self._assistant.failed.connect(self._on_failed)
-        self._assistant.said.connect(self._on_said)  # the last that a run says, however it ends
+        self._assistant.message.connect(self._on_message)  # every run ends with such a message
         self._assistant.search(Effort(seconds=SECONDS, coarsen=False))
 
     def close(self) -> None:
-        """End it, whether it has come to an end or not."""
+        """Cancel the search if it still runs, and disconnect."""
         assistant, self._assistant = self._assistant, None
         if assistant is not None:
             assistant.failed.disconnect(self._on_failed)
-            assistant.said.disconnect(self._on_said)
+            assistant.message.disconnect(self._on_message)
             assistant.close()
 
-    def _on_said(self, sentence: str) -> None:
+    def _on_message(self, sentence: str) -> None:
         if self._assistant is not None and not self._assistant.running:
-            self._end(Standing.DONE, sentence)
+            self._end(OpponentState.DONE, sentence)
 
     def _on_failed(self, sentence: str) -> None:
-        self._end(Standing.FAILED, sentence)
+        self._end(OpponentState.FAILED, sentence)
 
-    def _end(self, standing: Standing, reason: str) -> None:
-        if self._assistant is None or self.standing is not Standing.ASKED:
+    def _end(self, standing: OpponentState, reason: str) -> None:
+        if self._assistant is None or self.standing is not OpponentState.ASKED:
             return
         self.standing, self.reason = standing, reason
         self.operations = done_in(self._document.history)
@@ -75,6 +75,6 @@ class Rival:
 
 
 def done_in(history: History) -> list[tuple[Operation, int]]:
-    """The operations on the way to the cursor; what moves vertices only is left out."""
+    """The operations up to the cursor; steps that only move vertices are left out."""
     rows = [history[i] for i in range(history.cursor)]
     return [(Operation(row.action), row.halfedge) for row in rows if row.action in _OPERATIONS]

@@ -1,30 +1,33 @@
-"""Levels: a mesh with a goal and a par, to be played in the window and in the notebook.
+"""Levels: meshes with a goal and a par, to be played in the window and in the notebook.
 
-Each is a file ``assets/levels/NN-name.json`` that holds its mesh to the last digit, so that no
-change of a mesher changes a level, and a solution: operations with the ends of their half-edges.
+Each is a file ``levels/NN-name.json`` of ``meshwright_assets``. It holds the mesh in full
+precision, so that changes of the mesh generator do not change levels, and a solution: operations
+with the ends of their half-edges.
 """
 
 from __future__ import annotations
 
 import difflib
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from msgspec import Meta, Struct
 
 import meshwright_assets
+from meshwright.document.json_records import Count, WholeNumber, decoded
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
+from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.operations.catalogue import CODES
 
 FOLDER = Path(meshwright_assets.__file__).parent / "levels"
 VERSION = 1
 LARGEST = 1000
-"""Elements that a level may have."""
+"""Limit on the elements of a level."""
 SIDES = {"tri": 3, "quad": 4}
 
 Way = tuple[tuple[Operation, tuple[int, int]], ...]
@@ -33,7 +36,7 @@ Way = tuple[tuple[Operation, tuple[int, int]], ...]
 
 @dataclass(frozen=True)
 class Level:
-    """One level. Where arrays are concerned, vertex i of ``points`` is vertex id i of the mesh."""
+    """One level. Row i of the arrays by vertex belongs to vertex id i of the mesh."""
 
     name: str
     number: int
@@ -42,17 +45,17 @@ class Level:
     kind: str
     """``"tri"`` or ``"quad"``."""
     text: str
-    """What one learns, in one or two sentences."""
+    """What the level teaches, in one or two sentences."""
     goal: int
-    """The score to reach: s*, the lowest that is possible."""
+    """The score to reach, s*, the lowest possible."""
     most: int
-    """Elements that the mesh may have at the goal; 0 for any number."""
+    """Limit on the elements at the goal; 0 for none."""
     par: int
     """The fewest operations known."""
     proved: bool
-    """Whether an exhaustive search has shown that no fewer will do."""
+    """Whether an exhaustive search has proved that no fewer suffice."""
     solution: Way
-    """A way with ``par`` operations."""
+    """A solution with ``par`` operations."""
     points: np.ndarray = field(compare=False, repr=False)
     """(n, 2)"""
     elements: np.ndarray = field(compare=False, repr=False)
@@ -63,25 +66,23 @@ class Level:
     """(n,) desired degrees."""
 
     def mesh(self) -> HalfEdgeMesh:
-        """A fresh mesh, as the level begins."""
+        """A new mesh in the state where the level begins."""
         return HalfEdgeMesh.from_elements(self.points, self.elements, self.corners, self.desired)
 
     def reached(self, mesh: HalfEdgeMesh) -> bool:
-        """Whether ``mesh`` is at the goal."""
+        """Whether ``mesh`` has reached the goal."""
         return mesh.score <= self.goal and not (self.most and mesh.n_elements > self.most)
 
     @property
     def story(self) -> str:
-        """How large it is, and its par."""
-        noun = "triangles" if self.kind == "tri" else "quads"
-        return f"{len(self.elements)} {noun}, par {self.par}"
+        """Its number of elements, and its par."""
+        return f"{len(self.elements)} {KIND_NOUN[self.kind]}, par {self.par}"
 
     @property
     def aim(self) -> str:
         """The goal in words."""
         if self.most:
-            noun = "triangles" if self.kind == "tri" else "quads"
-            return f"s = {self.goal} with at most {self.most} {noun}"
+            return f"s = {self.goal} with at most {self.most} {KIND_NOUN[self.kind]}"
         return f"s = {self.goal}"
 
 
@@ -90,16 +91,16 @@ def names() -> tuple[str, ...]:
     return tuple(_name(path) for path in _files())
 
 
-class Shelf(tuple[Level, ...]):
-    """Levels side by side, which show themselves as a table."""
+class LevelList(tuple[Level, ...]):
+    """A tuple of levels that shows itself as a table."""
 
     def __repr__(self) -> str:
-        """One line for each level: its name, its title, what it is, its par."""
+        """One line for each level: name, title, number of elements, par."""
         width = max((len(level.name) for level in self), default=0)
         return "\n".join(f"{level.name:<{width}}  {level.title}: {level.story}" for level in self)
 
     def _repr_html_(self) -> str:
-        """The same as a table, for notebooks."""
+        """The table as HTML, for notebooks."""
         cells = "".join(
             f"<tr><td>{level.number}</td><td><code>{escape(level.name)}</code></td>"
             f"<td>{escape(level.title)}</td><td>{level.story}</td></tr>"
@@ -108,14 +109,14 @@ class Shelf(tuple[Level, ...]):
         return f"<table><tbody>{cells}</tbody></table>"
 
 
-def all() -> Shelf:
+def all() -> LevelList:
     """All levels, the easiest first."""
-    return Shelf(load(name) for name in names())
+    return LevelList(load(name) for name in names())
 
 
 @cache
 def load(name: str) -> Level:
-    """The level of this name; MeshError if there is none, or if its file is not sound."""
+    """The level of this name; MeshError if there is none, or if its file is not valid."""
     for number, path in enumerate(_files(), 1):
         if _name(path) == name:
             return read(path, number)
@@ -131,23 +132,23 @@ def after(name: str) -> str | None:
 
 
 def read(path: Path, number: int = 1) -> Level:
-    """The level in a file; MeshError, in one sentence that begins with the path, if there is none.
+    """The level in a file; MeshError, one sentence that begins with the path, if it is not valid.
 
-    Its mesh is made once, to see that it is one, and its solution is done on it.
+    The check builds the mesh and applies the solution to it.
     """
     try:
-        level = _level(json.loads(path.read_text("utf-8")), _name(path), number)
+        level = _level(decoded(path.read_bytes(), _LevelFile), _name(path), number)
         _prove(level)
     except OSError as error:
         raise MeshError(f"{path}: cannot be read ({error.strerror}).") from error
-    except (ValueError, RecursionError) as error:
-        why = str(error).partition("\n")[0].rstrip(".") or type(error).__name__
-        raise MeshError(f"{path}: this is no sound level: {why}.") from error
+    except ValueError as error:
+        why = str(error).partition("\n")[0].rstrip(".")
+        raise MeshError(f"{path}: this is no valid level: {why}.") from error
     return level
 
 
 def record(level: Level) -> dict[str, Any]:
-    """What :func:`read` reads, for JSON."""
+    """The level as plain values for JSON, as :func:`read` reads them."""
     return {
         "version": VERSION,
         "title": level.title,
@@ -166,7 +167,7 @@ def record(level: Level) -> dict[str, Any]:
 
 
 def play(mesh: HalfEdgeMesh, way: Way) -> None:
-    """Do the operations on ``mesh``; MeshError at the first that is not possible."""
+    """Apply the operations to ``mesh``; MeshError at the first that is refused."""
     for operation, (a, b) in way:
         mesh.apply(operation, halfedge_of(mesh, a, b))
 
@@ -180,7 +181,7 @@ def halfedge_of(mesh: HalfEdgeMesh, a: int, b: int) -> int:
 
 
 def way_of(mesh: HalfEdgeMesh, operations: Iterable[tuple[Operation, int]]) -> Way:
-    """Operations on half-edges as a way on ``mesh``, which is not changed."""
+    """Operations with the vertices of their half-edges; ``mesh`` is not changed."""
     work, way = mesh.copy(), []
     for operation, halfedge in operations:
         way.append((Operation(operation), (work.origin(halfedge), work.target(halfedge))))
@@ -196,32 +197,55 @@ def _name(path: Path) -> str:
     return path.stem.partition("-")[2] or path.stem
 
 
-def _level(given: Any, name: str, number: int) -> Level:
-    """The level that a file's contents describe; MeshError or ValueError if they do not."""
-    if not isinstance(given, dict):
-        raise MeshError("it is not an object")
-    if given.get("version") != VERSION:
-        raise MeshError(f"its version is not {VERSION}")
-    kind = _text(given, "kind")
-    if kind not in SIDES:
-        raise MeshError(f"its kind is {kind!r}, neither 'tri' nor 'quad'")
-    points = _table(given, "points", 2, float)
-    elements = _table(given, "elements", SIDES[kind], int)
-    if len(elements) > LARGEST:
-        raise MeshError(f"it has more than {LARGEST} elements")
-    flags = np.zeros(len(points), bool)
-    for corner in _whole_numbers(given.get("corners"), "corners"):
-        if not 0 <= corner < len(points):
+class _LevelFile(Struct):
+    """The contents of a level file."""
+
+    version: Literal[1]
+    title: Annotated[str, Meta(min_length=1)]
+    kind: Literal["tri", "quad"]
+    text: Annotated[str, Meta(min_length=1)]
+    solution: list[tuple[str, Count, Count]]
+    points: Annotated[list[tuple[float, float]], Meta(min_length=1)]
+    elements: Annotated[list[list[Count]], Meta(min_length=1, max_length=LARGEST)]
+    desired: list[WholeNumber]
+    corners: list[Count]
+    goal: Count = 0
+    most: Count = 0
+    par: Count = 0
+    proved: bool = False
+
+
+def _level(file: _LevelFile, name: str, number: int) -> Level:
+    """The level that a file describes; MeshError if its parts do not fit together."""
+    sides, count = SIDES[file.kind], len(file.points)
+    if any(len(row) != sides for row in file.elements):
+        raise MeshError(f"its field 'elements' has not {sides} vertices in each row")
+    flags = np.zeros(count, bool)
+    for corner in file.corners:
+        if corner >= count:
             raise MeshError(f"there is no vertex {corner} to be a corner")
         flags[corner] = True
-    desired = np.array(_whole_numbers(given.get("desired"), "desired"), np.int64)
-    if desired.shape != (len(points),):
-        raise MeshError("'desired' has not one number for each point")
+    if len(file.desired) != count:
+        raise MeshError("its field 'desired' has not one number for each point")
+    for operation, _, _ in file.solution:
+        if operation not in CODES[sides]:
+            raise MeshError(f"its field 'solution' has no operation on a half-edge, {operation!r}")
     return Level(
-        name, number, _text(given, "title"), kind, _text(given, "text"), _count(given, "goal"),
-        _count(given, "most"), _count(given, "par"), given.get("proved") is True,
-        _way(given.get("solution"), kind), points, elements, flags, desired,
-    )  # fmt: skip
+        name=name,
+        number=number,
+        title=file.title,
+        kind=file.kind,
+        text=file.text,
+        goal=file.goal,
+        most=file.most,
+        par=file.par,
+        proved=file.proved,
+        solution=tuple((Operation(operation), (a, b)) for operation, a, b in file.solution),
+        points=np.array(file.points, float),
+        elements=np.array(file.elements, int),
+        corners=flags,
+        desired=np.array(file.desired, np.int64),
+    )
 
 
 def _prove(level: Level) -> None:
@@ -234,47 +258,3 @@ def _prove(level: Level) -> None:
         raise MeshError("its solution does not reach the goal")
     if len(level.solution) != level.par:
         raise MeshError("its solution is not as long as its par")
-
-
-def _way(given: Any, kind: str) -> Way:
-    if not isinstance(given, list):
-        raise MeshError("'solution' is no list")
-    way = []
-    for one in given:
-        if not isinstance(one, list) or len(one) != 3 or one[0] not in CODES[SIDES[kind]]:
-            raise MeshError("'solution' holds what is no operation on a half-edge")
-        a, b = _whole_numbers(one[1:], "solution")
-        way.append((Operation(one[0]), (a, b)))
-    return tuple(way)
-
-
-def _text(given: dict[str, Any], key: str) -> str:
-    found = given.get(key)
-    if not isinstance(found, str) or not found:
-        raise MeshError(f"'{key}' is no text")
-    return found
-
-
-def _count(given: dict[str, Any], key: str) -> int:
-    found = given.get(key, 0)
-    if type(found) is not int or found < 0:
-        raise MeshError(f"'{key}' is no number of things")
-    return found
-
-
-def _whole_numbers(given: Any, key: str) -> list[int]:
-    if not isinstance(given, list) or any(type(one) is not int for one in given):
-        raise MeshError(f"'{key}' is no list of whole numbers")
-    return given
-
-
-def _table(given: dict[str, Any], key: str, width: int, of: type) -> np.ndarray:
-    """(n, width) numbers."""
-    rows = given.get(key)
-    kinds = (int,) if of is int else (int, float)
-    if not isinstance(rows, list) or not rows:
-        raise MeshError(f"'{key}' is no list")
-    for row in rows:
-        if not isinstance(row, list) or len(row) != width or any(type(x) not in kinds for x in row):
-            raise MeshError(f"'{key}' has not {width} numbers in each row")
-    return np.array(rows, of)

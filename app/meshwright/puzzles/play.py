@@ -1,6 +1,6 @@
-"""Playing levels on a document: what counts, what is won, and the agent beside you.
+"""Plays levels on a document: counts operations, awards stars, and lets the agent solve a level.
 
-Neither Qt nor torch is imported here: the window and the notebook show the same play.
+Imports neither Qt nor torch: window and notebook share it.
 """
 
 from __future__ import annotations
@@ -11,43 +11,43 @@ from meshwright.assistant.hints import Hinting
 from meshwright.document.document import Document
 from meshwright.document.history import YOU, History
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import MakeAssistant, Rival, Standing
+from meshwright.puzzles.agent_opponent import AgentOpponent, MakeAssistant, OpponentState
 from meshwright.puzzles.level import Level
-from meshwright.puzzles.progress import Progress
+from meshwright.puzzles.progress import LevelProgress
 from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 STRIP = Operation.CHORD_COLLAPSE.value
 COUNTED = frozenset(operation.value for operation in Operation)
 FREE = frozenset(("smooth", "untangle", "move"))
-"""Steps that move vertices only: they cost nothing."""
+"""Steps that only move vertices; they are not counted."""
 BARRED = {
-    STRIP: "Collapse strip goes beyond the paper's operations, and is not played in levels",
+    STRIP: "Collapse strip goes beyond the paper's operations and is not allowed in levels",
     "clean_all": "Clean all deletes several lines at once: in a level they are deleted one by one",
     "desired": "A level keeps its desired degrees",
     "geometric": "A level keeps its corners",
     "locked": "In a level nothing is locked",
 }
-"""Steps that are not played, and why."""
+"""Steps that are not allowed in levels, with the reason."""
 NAMES = {1: "one star", 2: "two stars", 3: "three stars"}
 SLACK = 2
-"""Operations beyond par, at least, that still win two stars."""
+"""Operations beyond par that always still win two stars."""
 
 
 @dataclass(frozen=True)
-class Tally:
-    """What is on the way from the start of a history to its cursor."""
+class StepSummary:
+    """Summary of the steps from the start of a history to its cursor."""
 
     used: int = 0
-    """Operations."""
+    """Number of operations."""
     helped: bool = False
-    """Whether an agent has taken some of them."""
+    """Whether some of them are the agent's."""
     barred: str = ""
-    """The first step that is not played in levels; empty if there is none."""
+    """The first step that is not allowed in levels; empty if there is none."""
 
 
-def tally(history: History) -> Tally:
-    """Count; what was undone is not on the way."""
+def tally(history: History) -> StepSummary:
+    """Summarise the steps that are done."""
     used, helped, barred = 0, False, ""
     for index in range(history.cursor):
         row = history[index]
@@ -55,7 +55,7 @@ def tally(history: History) -> Tally:
         helped = helped or (row.by != YOU and row.action not in FREE)
         if row.action not in FREE and (row.action in BARRED or row.action not in COUNTED):
             barred = barred or row.action
-    return Tally(used, helped, barred)
+    return StepSummary(used, helped, barred)
 
 
 def spare(level: Level) -> int:
@@ -64,17 +64,18 @@ def spare(level: Level) -> int:
 
 
 def stars(level: Level, used: int, hinted: bool = False) -> int:
-    """Stars for reaching the goal with so many operations of one's own."""
+    """Stars for reaching the goal with ``used`` operations and without the agent's."""
     if used > spare(level):
         return 1
     return 2 if used > level.par or hinted else 3
 
 
 class LevelPlay:
-    """One person at the levels, on ``document``; ``progress`` keeps what is won.
+    """Plays levels on ``document``; ``progress`` stores the results.
 
     ``make_rival`` makes an assistant for another document, on which the agent solves the level.
-    Events: ``changed()`` anything here differs; ``won(stars)`` the goal was reached by oneself.
+    Events: ``changed()`` any attribute changed; ``won(stars)`` the goal was reached without the
+    agent's operations.
     """
 
     def __init__(
@@ -82,20 +83,20 @@ class LevelPlay:
         document: Document,
         hinting: Hinting,
         make_rival: MakeAssistant,
-        progress: Progress | None = None,
+        progress: LevelProgress | None = None,
     ) -> None:
         self.changed = Signal()
         self.won = Signal()
         self.level: Level | None = None
-        self.tally = Tally()
+        self.tally = StepSummary()
         self.done = False
-        """Whether the mesh is at the goal, by steps that count."""
+        """Whether the goal is reached by allowed steps."""
         self.hinted = False
-        """Whether the agent was asked for a hint since the start."""
-        self.rival: Rival | None = None
+        """Whether a hint was requested since the start."""
+        self.rival: AgentOpponent | None = None
         self.notice = ""
-        """What went wrong with the stars that are kept, as one sentence."""
-        self.progress = progress or Progress()
+        """An error in storing the results, as one sentence."""
+        self.progress = progress or LevelProgress()
         self._document, self._hinting, self._make_rival = document, hinting, make_rival
         self._showing = False
         document.bar = self.refusal
@@ -104,14 +105,14 @@ class LevelPlay:
         hinting.changed.connect(self._on_hints_changed)
 
     def release(self) -> None:
-        """Let go of the document, and end the agent's answer."""
+        """Disconnect from the document, and cancel the agent's search."""
         self._document.bar = None
         self._document.replaced.disconnect(self._on_replaced)
         self._document.history_changed.disconnect(self._on_history_changed)
         self._hinting.changed.disconnect(self._on_hints_changed)
         self._drop_rival()
 
-    # What a person does
+    # Commands
 
     def open(self, name: str | Level) -> Level:
         """Begin a level; MeshError if there is none of this name."""
@@ -133,7 +134,7 @@ class LevelPlay:
         return self.open(name)
 
     def leave(self) -> None:
-        """Go on with the mesh as it is, without counting."""
+        """Stop playing and keep the mesh as it is."""
         if self.level is not None:
             self._drop_rival()
             self.level, self.done, self.hinted = None, False, False
@@ -141,27 +142,29 @@ class LevelPlay:
             self.changed.emit()
 
     def refusal(self, action: str) -> str:
-        """Why a step is not played here, as a sentence; empty if it is."""
+        """Why a step is not allowed now, as a sentence; empty if it is."""
         if self.level is None or self._showing:
             return ""
         return f"{BARRED[action]}." if action in BARRED else ""
 
     def ask_agent(self) -> None:
-        """Let the agent solve the level on a mesh of its own."""
+        """Let the agent solve the level on a copy of its mesh."""
         level = self._need()
         if level.most:
-            raise MeshError("The agent looks for a low score only: look at a solution instead.")
-        if self.rival is None or self.rival.standing is Standing.FAILED:
+            raise MeshError("The agent minimises the score only: look at a solution instead.")
+        if self.rival is None or self.rival.standing is OpponentState.FAILED:
             self._drop_rival()
-            self.rival = Rival(level, self._make_rival)
+            self.rival = AgentOpponent(level, self._make_rival)
             self.rival.changed.connect(self.changed.emit)
             self.changed.emit()
 
     def show_answer(self) -> str:
-        """Begin again, with the agent's way (or the best one known) ahead; says what to do."""
+        """Begin again with the agent's solution, or the best known one, ready to be redone step by
+        step; returns a message on how to.
+        """
         level = self._need()
         rival = self.rival
-        answered = rival is not None and rival.standing is Standing.DONE
+        answered = rival is not None and rival.standing is OpponentState.DONE
         by = rival.name if rival is not None and answered else "the best known"
         self._begin(level)
         self._showing = True
@@ -178,18 +181,18 @@ class LevelPlay:
             self._showing = False
         self._follow()
         count = len(self._document.history)
-        return f"The way lies ahead: {_plural(count)}, one with every Redo."
+        return f"The solution is ready: {_plural(count)}; Redo does one at a time."
 
-    # What is won
+    # Results
 
     @property
     def used(self) -> int:
-        """Operations on the way to here."""
+        """Operations done so far."""
         return self.tally.used
 
     @property
     def stars(self) -> int:
-        """Stars for being at the goal now; 0 if not there, or not by oneself."""
+        """Stars for the present state; 0 if the goal is not reached, or with the agent's help."""
         if self.level is None or not self.done or self.tally.helped:
             return 0
         return stars(self.level, self.used, self.hinted)
@@ -201,26 +204,26 @@ class LevelPlay:
 
     @property
     def headline(self) -> str:
-        """What the goal, once reached, is called; empty before."""
+        """Headline once the goal is reached; empty before."""
         level = self.level
         if level is None or not self.done:
             return ""
         if self.tally.helped:
             return "At the goal, with help"
         if self.used < level.par:
-            return "Better than the best we know"
+            return "Better than the best known"
         if self.used == level.par:
-            return "As few as can be" if level.proved else "As few as the best we know"
+            return "As few as can be" if level.proved else "As few as the best known"
         return "At the goal" if level.most else "At the optimum"
 
     @property
     def remark(self) -> str:
-        """What there is to know about the stars, as a sentence; empty if nothing."""
+        """Explanation of the stars, as a sentence; empty if there is none."""
         level = self.level
         if level is None:
             return ""
         if self.tally.barred:
-            why = BARRED.get(self.tally.barred, "This step is not played in levels")
+            why = BARRED.get(self.tally.barred, "This step is not allowed in levels")
             return f"{why}. Undo it, or begin again."
         if self.tally.helped:
             return "The agent's operations win no stars. Undo them, or begin again."
@@ -248,7 +251,7 @@ class LevelPlay:
     def _begin(self, level: Level) -> None:
         self.level = level
         self.done = self.hinted = False
-        self.tally = Tally()
+        self.tally = StepSummary()
         self._document.replace(level.mesh(), level.title, passing=True)
 
     def _drop_rival(self) -> None:
@@ -259,7 +262,7 @@ class LevelPlay:
 
     def _on_replaced(self) -> None:
         if self.level is not None and not self._document.passing:
-            self.leave()  # another mesh has come
+            self.leave()  # another mesh was opened
         else:
             self._follow()
 
@@ -285,7 +288,7 @@ class LevelPlay:
             self.won.emit(self.stars)
 
     def _note(self, level: Level) -> None:
-        """Keep what is won; where that cannot be written the play goes on."""
+        """Store the result; if that fails, playing goes on."""
         try:
             self.progress.note(level.name, self.stars, self.used)
         except MeshError as error:
@@ -293,7 +296,7 @@ class LevelPlay:
 
 
 def _mesh_of(document: Document) -> HalfEdgeMesh:
-    """The mesh of a document on which a level was begun."""
+    """The document's mesh; MeshError if there is none."""
     if document.mesh is None:
         raise MeshError("No level is being played: choose one first.")
     return document.mesh

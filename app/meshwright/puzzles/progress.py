@@ -1,6 +1,6 @@
-"""What a person has won: the best stars and the fewest operations of every level, kept on disk.
+"""Stores the most stars and the fewest operations reached in every level, on disk.
 
-Window and notebook share one file. One that is broken is left aside, and it begins again.
+Window and notebook share one file. A damaged file is renamed, and a new one begun.
 """
 
 from __future__ import annotations
@@ -9,60 +9,74 @@ import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Literal
 
 import platformdirs
+from msgspec import Meta, Struct
 
+from meshwright.document.json_records import Count, decoded
 from meshwright_core import MeshError
 from meshwright_core.io.atomic_write import replacing
 
 VERSION = 1
 MOST_STARS = 3
 LARGEST_FILE = 1 << 20
-"""Bytes; a file beyond that is none of ours."""
+"""Limit on the size of the file in bytes."""
 
 
 @dataclass(frozen=True)
 class Best:
-    """The best that a person has done in a level; nothing yet if ``stars`` is 0."""
+    """The best result in a level; none yet if ``stars`` is 0."""
 
     stars: int = 0
     used: int = 0
     """The fewest operations."""
 
 
+class _BestRecord(Struct):
+    stars: Annotated[int, Meta(ge=1, le=MOST_STARS)]
+    used: Count
+
+
+class _ProgressFile(Struct):
+    """The contents of the file."""
+
+    version: Literal[1]
+    levels: dict[str, _BestRecord]
+
+
 def usual_path() -> Path:
-    """Where it is kept; `MESHWRIGHT_STATE_DIR` overrides the user's folder for such things."""
+    """Path of the file; `MESHWRIGHT_STATE_DIR` overrides the user's state folder."""
     chosen = os.environ.get("MESHWRIGHT_STATE_DIR")
     return Path(chosen or platformdirs.user_state_path("meshwright")) / "levels.json"
 
 
-class Progress:
-    """The file at ``path``, or the user's own; read when it is first asked."""
+class LevelProgress:
+    """The file at ``path``, by default the user's; read at the first access."""
 
     def __init__(self, path: Path | None = None) -> None:
         self.path = path or usual_path()
         self.notice = ""
-        """What went wrong with the file, as one sentence; empty if nothing did."""
+        """An error in reading the file, as one sentence; empty if there was none."""
         self._found: dict[str, Best] | None = None
 
     def best(self, name: str) -> Best:
-        """The best in the level of this name."""
+        """The best result in the level of this name."""
         if self._found is None:
             self._found = self._read()
         return self._found.get(name, Best())
 
     @property
     def stars(self) -> int:
-        """All stars together."""
+        """The sum of all stars."""
         self.best("")
         return sum(best.stars for best in (self._found or {}).values())
 
     def note(self, name: str, stars: int, used: int) -> bool:
-        """The level was done; True if that is better than before.
+        """Record a result; True if it is better than before.
 
-        What another process has written meanwhile is kept. MeshError if the file cannot be written;
-        the level counts for this process all the same.
+        Results that another process has written are merged. Raises MeshError if the file cannot be
+        written; the result then still counts in this process.
         """
         found = self._read()
         for known, best in (self._found or {}).items():
@@ -79,13 +93,13 @@ class Progress:
         try:
             if self.path.stat().st_size > LARGEST_FILE:
                 raise ValueError("too large")
-            given = json.loads(self.path.read_text("utf-8"))
-            return _parsed(given)
+            file = decoded(self.path.read_bytes(), _ProgressFile)
+            return {name: Best(best.stars, best.used) for name, best in file.levels.items()}
         except FileNotFoundError:
             return {}
         except OSError as error:
             self.notice = f"The stars of the levels cannot be read ({error.strerror}): {self.path}."
-        except (ValueError, RecursionError):
+        except ValueError:
             self.notice = f"The file with the stars of the levels was broken: {self._put_aside()}"
         return {}
 
@@ -109,22 +123,6 @@ class Progress:
 
 
 def _better(one: Best, other: Best) -> Best:
-    """More stars, and the fewer operations of those that were done at all."""
+    """The more stars, and the fewer operations of the results that have stars."""
     used = [best.used for best in (one, other) if best.stars]
     return Best(max(one.stars, other.stars), min(used, default=0))
-
-
-def _parsed(given: Any) -> dict[str, Best]:
-    """ValueError for what this program has not written."""
-    rows = given.get("levels") if isinstance(given, dict) else None
-    if not isinstance(rows, dict) or given.get("version") != VERSION:
-        raise ValueError("not ours")
-    found = {}
-    for name, best in rows.items():
-        stars, used = (best.get("stars"), best.get("used")) if isinstance(best, dict) else (0, 0)
-        if type(stars) is not int or type(used) is not int or used < 0:
-            raise ValueError("no stars")
-        if not 1 <= stars <= MOST_STARS:
-            raise ValueError("no such number of stars")
-        found[str(name)] = Best(stars, used)
-    return found

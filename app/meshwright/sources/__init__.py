@@ -1,1 +1,1 @@
-"""What a name or a path means, polygons drawn by hand, and meshing in a process of its own."""
+"""Sources of meshes: names and paths, polygons drawn by hand, meshing in a separate process."""

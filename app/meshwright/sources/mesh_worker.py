@@ -1,9 +1,8 @@
-"""New meshes from requests, so that they can be made and looked at in a process of their own.
+"""Makes new meshes in a separate process, on request of the window.
 
-Triangle and the readers of foreign files hold the interpreter until they are done; a window that
-made meshes in a thread would stand still meanwhile. `serve` is what such a process runs: it reads
-requests on stdin, one JSON object a line, and writes a frame for each on stdout (`frame`,
-`unframed`).
+Triangle and the readers of foreign files hold the interpreter lock until they are done, so that a
+thread would block the window. The process runs `serve`: it reads requests from stdin, one JSON
+object a line, and writes a frame for each to stdout (`frame`, `unframed`).
 """
 
 from __future__ import annotations
@@ -25,34 +24,35 @@ from meshwright_core.errors import MeshError
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh
     from meshwright_core.domains.domain import Domain
+    from meshwright_core.domains.meshing import Quads
 
 MOST = 2_000_000
-"""Elements that a new mesh may have."""
+"""Limit on the elements of a new mesh."""
 
 _PER_AREA = {"tri": 4.9, "quad": 3.7, "pairing": 2.6}
-"""Elements for each square of the longest edge, measured on shapes of the gallery."""
+"""Elements per area of max_edge squared, measured on shapes of the gallery."""
 
 _LENGTH = 8
-"""Bytes that say how long a frame is."""
+"""Bytes at the start of a frame that give its length."""
 
 
 @dataclass(frozen=True)
-class Made:
-    """A mesh as arrays, and what there is to say and to draw about it.
+class NewMesh:
+    """A new mesh as arrays, with what the dialog shows and draws of it.
 
     Attributes:
-        name: what to call the mesh.
+        name: name of the mesh.
         path: the mesh file that it was read from, empty for a mesh that was made.
         kind: "tri" or "quad".
         score, optimum: s and s*.
-        low, high: (2,) the corners of its box, seen from above.
+        low, high: (2,) the corners of its bounding box, in the plane.
         points: (n, 3).
         elements: (m, 3 or 4).
         geometric: (n,) whether a vertex is a corner.
         desired: (n,) desired degrees.
         delta: (n,) degree less desired degree.
-        reach: (n,) length of the shortest edge at a vertex, seen from above.
-        edges: (e, 2) inner edges by vertex.
+        reach: (n,) length of the shortest edge at a vertex, in the plane.
+        edges: (e, 2) vertices of the inner edges.
         rim: (b,) boundary vertices, loop after loop.
         sizes: (l,) how many of them each loop has.
     """
@@ -76,7 +76,7 @@ class Made:
 
     @property
     def extent(self) -> float:
-        """The longer side of its box."""
+        """The longer side of its bounding box."""
         return float((self.high - self.low).max())
 
     @property
@@ -85,40 +85,44 @@ class Made:
         return np.split(self.rim, np.cumsum(self.sizes)[:-1])
 
     def mesh(self) -> HalfEdgeMesh:
-        """The mesh itself, built anew."""
+        """Build the mesh from the arrays."""
         from meshwright_core import HalfEdgeMesh
 
         return HalfEdgeMesh.from_elements(self.points, self.elements, self.geometric, self.desired)
 
 
-def make(request: Mapping[str, Any]) -> Made:
+def make(request: Mapping[str, Any]) -> NewMesh:
     """Return the mesh that a request asks for.
 
     Args:
         request: ``"source"`` is one of ``{"shape": name}``, ``{"polygon": sides, "seed": n}``,
             ``{"part": corners, "seed": n}``, ``{"domain": as in Domain.to_json}`` and
             ``{"file": path, "corner_angle": degrees, "curve_step": degrees}``; besides there are
-            ``"kind"``, and, each null for what suits the shape, ``"max_edge"``, ``"min_angle"``
+            ``"kind"``, and, each null for the default, ``"max_edge"``, ``"min_angle"``
             (degrees) and ``"quads"`` ("catmull-clark" or "pairing"). A mesh file is read as it is.
 
     Raises:
         MeshError: one sentence.
     """
-    from meshwright_core import read
+    from meshwright.sources.resolve import resolve
     from meshwright_core.domains import meshing
-    from meshwright_core.io import drawings
+    from meshwright_core.domains.domain import Domain
 
     source = request["source"]
     path = source.get("file", "")
     if is_project(path):
         raise MeshError(f"{path}: a project is opened by Open, not here.")
-    if path and not drawings.is_geometry(path):
-        mesh = read(path, source["corner_angle"])
-        _refuse_many(mesh.n_elements, "has")
-        return _made(mesh, Path(path).stem, path)
-    domain = _domain(source)
+    if path:
+        angles = {"corner_angle": source["corner_angle"], "curve_step": source["curve_step"]}
+        domain = resolve(Path(path), **angles)
+    else:
+        domain = _domain(source)
+    if not isinstance(domain, Domain):
+        assert domain.mesh is not None
+        _refuse_many(domain.mesh.n_elements, "has")
+        return _made(domain.mesh, domain.name, path)
     kind, max_edge = request["kind"], request["max_edge"]
-    quads = request["quads"] or "catmull-clark"
+    quads: Quads = request["quads"] or "catmull-clark"
     if max_edge:
         rule = "pairing" if kind == "quad" and quads == "pairing" else kind
         _refuse_many(int(_PER_AREA[rule] * domain.area / max_edge**2), "would need about")
@@ -127,13 +131,13 @@ def make(request: Mapping[str, Any]) -> Made:
     return _made(mesh, domain.name or "drawing", "")
 
 
-def frame(result: Made | str) -> bytes:
-    """Return a mesh, or the sentence that says why there is none, as bytes with their length."""
+def frame(result: NewMesh | str) -> bytes:
+    """Return a mesh, or the sentence of a refusal, as bytes with their length."""
     arrays: dict[str, Any] = {}
     if isinstance(result, str):
         arrays["refusal"] = np.array(result)
     else:
-        arrays = {field.name: np.asarray(getattr(result, field.name)) for field in fields(Made)}
+        arrays = {field.name: np.asarray(getattr(result, field.name)) for field in fields(NewMesh)}
     content = io.BytesIO()
     np.savez(content, **arrays)
     whole = content.getvalue()
@@ -141,12 +145,12 @@ def frame(result: Made | str) -> bytes:
 
 
 def length(content: bytes | bytearray) -> int:
-    """Return the bytes that a frame has in all, by its beginning."""
+    """Return the length of a frame in bytes, read from its beginning."""
     return _LENGTH + int.from_bytes(content[:_LENGTH], "little")
 
 
-def unframed(content: bytes | bytearray) -> Made | str:
-    """Return the mesh, or the refusal, in a whole frame."""
+def unframed(content: bytes | bytearray) -> NewMesh | str:
+    """Return the mesh, or the refusal, in a complete frame."""
     with np.load(io.BytesIO(memoryview(content)[_LENGTH:]), allow_pickle=False) as arrays:
         if "refusal" in arrays:
             return str(arrays["refusal"])
@@ -155,13 +159,13 @@ def unframed(content: bytes | bytearray) -> Made | str:
         values[name] = str(values[name])
     for name in ("score", "optimum"):
         values[name] = int(values[name])
-    return Made(**values)
+    return NewMesh(**values)
 
 
 def serve() -> None:
-    """Answer requests until stdin ends: when the window is gone, so is this process."""
+    """Answer requests until stdin ends, which also happens when the window's process ends."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    # what a library prints must not come between the frames
+    # output that a library prints must not mix with the frames
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     _answer(sys.stdin.buffer, answers)
 
@@ -169,7 +173,7 @@ def serve() -> None:
 def _answer(requests: BinaryIO, answers: BinaryIO) -> None:
     for line in requests:
         try:
-            result: Made | str = make(json.loads(line))
+            result: NewMesh | str = make(json.loads(line))
         except MeshError as error:
             result = str(error)
         except MemoryError:
@@ -181,14 +185,11 @@ def _answer(requests: BinaryIO, answers: BinaryIO) -> None:
 def _domain(source: Mapping[str, Any]) -> Domain:
     from meshwright_core.domains import gallery, random_parts
     from meshwright_core.domains.domain import Domain
-    from meshwright_core.io import drawings
 
     if "shape" in source:
         return gallery.shape(source["shape"])
     if "domain" in source:
         return Domain.from_json(source["domain"])
-    if "file" in source:
-        return drawings.read_domain(source["file"], source["corner_angle"], source["curve_step"])
     rng = np.random.default_rng(source["seed"])
     if "part" in source:
         return random_parts.random_part(source["part"], rng)
@@ -200,11 +201,11 @@ def _refuse_many(count: int, verb: str) -> None:
         if verb == "would need about":
             count = int(float(f"{count:.2g}"))
         raise MeshError(
-            f"This mesh {verb} {count:,} elements, and {MOST:,} are the most: ask for longer edges."
+            f"This mesh {verb} {count:,} elements, and the limit is {MOST:,}: use longer edges."
         )
 
 
-def _made(mesh: HalfEdgeMesh, name: str, path: str) -> Made:
+def _made(mesh: HalfEdgeMesh, name: str, path: str) -> NewMesh:
     elements = mesh.elements().astype(np.int32)
     ends = np.stack([elements, np.roll(elements, -1, axis=1)], axis=2).reshape(-1, 2)
     ends.sort(axis=1)
@@ -215,7 +216,7 @@ def _made(mesh: HalfEdgeMesh, name: str, path: str) -> Made:
     for side in (0, 1):
         np.minimum.at(reach, ends[first, side], np.hypot(*steps.T))
     loops = [np.asarray(loop, np.int64) for loop in mesh.boundary_loops()]
-    return Made(
+    return NewMesh(
         name=name,
         path=path,
         kind=mesh.kind,

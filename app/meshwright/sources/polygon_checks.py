@@ -1,8 +1,7 @@
-"""What may be wrong with loops of corners: crossings, holes outside, loops without area.
+"""Checks of polygons while they are drawn: crossings, misplaced holes, loops without area.
 
-In words for the person who draws, with the edges and places to mark.
-`meshwright_core.domains.domain` checks again
-what comes out; this here is quick enough to follow the mouse.
+Each problem has a sentence, and the edges and points to mark. `meshwright_core.domains.domain`
+checks the finished polygon again; these checks are fast enough to run at every mouse move.
 """
 
 from __future__ import annotations
@@ -11,14 +10,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwright_core.errors import capitalised
+from meshwright_core.geometry.polygons import contains
+
 Place = tuple[float, float]
 
 _NEAR = 1e-9
-"""Share of the sketch's size below which two places are one."""
+"""Tolerance, relative to the size of the sketch, below which two points coincide."""
 
 
 @dataclass(frozen=True)
-class Loop:
+class PolygonLoop:
     """Corners in order; the first loop is the outline, the others are holes."""
 
     corners: tuple[Place, ...] = ()
@@ -26,8 +28,8 @@ class Loop:
 
 
 @dataclass(frozen=True)
-class Problem:
-    """A sentence, and the edges to mark: (loop, corner at which the edge begins), and places."""
+class PolygonProblem:
+    """A sentence, the edges to mark as (loop, corner where the edge begins), and points."""
 
     words: str
     edges: tuple[tuple[int, int], ...] = ()
@@ -39,8 +41,8 @@ def name_of(loop: int) -> str:
     return "the outline" if loop == 0 else f"hole {loop}"
 
 
-def problem_of(loops: tuple[Loop, ...]) -> Problem:
-    """What is wrong with loops so far; no words if nothing is."""
+def problem_of(loops: tuple[PolygonLoop, ...]) -> PolygonProblem:
+    """The first problem of the loops; its sentence is empty if there is none."""
     crossing = _crossing(loops)
     if crossing is not None:
         return crossing
@@ -49,20 +51,20 @@ def problem_of(loops: tuple[Loop, ...]) -> Problem:
         if not loop.corners:
             continue
         edges = tuple((i, j) for j in range(len(loop.corners)))
-        if not _inside(loop.corners[0], outline.corners):
-            return Problem(f"Hole {i} lies outside the outline.", edges, loop.corners)
+        if not contains(np.array(outline.corners), *loop.corners[0]):
+            return PolygonProblem(f"Hole {i} lies outside the outline.", edges, loop.corners)
         for j, other in enumerate(loops[1:], start=1):
-            if i != j and other.closed and _inside(loop.corners[0], other.corners):
-                return Problem(f"Hole {i} lies inside hole {j}.", edges, loop.corners)
+            if i != j and other.closed and contains(np.array(other.corners), *loop.corners[0]):
+                return PolygonProblem(f"Hole {i} lies inside hole {j}.", edges, loop.corners)
     for i, loop in enumerate(loops):
         if loop.closed and _flat(loop.corners):
             edges = tuple((i, j) for j in range(len(loop.corners)))
-            return Problem(f"{capital(name_of(i))} encloses no area.", edges)
-    return Problem("")
+            return PolygonProblem(f"{capitalised(name_of(i))} encloses no area.", edges)
+    return PolygonProblem("")
 
 
-def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
-    """The first two edges that meet where they should not, and where."""
+def _crossing(loops: tuple[PolygonLoop, ...]) -> PolygonProblem | None:
+    """The first two edges that cross or touch, and where."""
     owner = [(i, j) for i, loop in enumerate(loops) for j in range(len(loop.corners) - 1)]
     owner += [(i, len(loop.corners) - 1) for i, loop in enumerate(loops) if loop.closed]
     if len(owner) < 2:
@@ -82,7 +84,7 @@ def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
     beside = (ring[one] == ring[other]) & ((gap == 1) | (gap == count[one] - 1))
     beside &= closed[one] | (np.abs(index[other] - index[one]) == 1)
     ends = a[one], b[one], a[other], b[other]
-    # neighbours share a corner; only one that runs back over the other is wrong
+    # neighbours share a corner: they only must not fold back on each other
     wrong = np.flatnonzero(np.where(beside, _folds(*ends), _meet(*ends)))
     if len(wrong) == 0:
         return None
@@ -91,16 +93,15 @@ def _crossing(loops: tuple[Loop, ...]) -> Problem | None:
     spot = f"({place[0]:.4g}, {place[1]:.4g})"
     i, j = owner[e][0], owner[f][0]
     if i == j:
-        words = f"{capital(name_of(i))} crosses or touches itself near {spot}."
+        words = f"{capitalised(name_of(i))} crosses or touches itself near {spot}."
     else:
-        words = (
-            f"{capital(name_of(max(i, j)))} crosses or touches {name_of(min(i, j))} near {spot}."
-        )
-    return Problem(words, (owner[e], owner[f]), (place,))
+        one_loop, other_loop = capitalised(name_of(max(i, j))), name_of(min(i, j))
+        words = f"{one_loop} crosses or touches {other_loop} near {spot}."
+    return PolygonProblem(words, (owner[e], owner[f]), (place,))
 
 
 def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """Sign of where p lies beside the line from a to b; 0 within rounding of it."""
+    """Side of the line from a to b on which p lies: 1 left, -1 right, 0 within rounding."""
     u, v = b - a, p - a
     across = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
     size = np.abs(u).sum(axis=-1) * np.abs(v).sum(axis=-1)
@@ -109,7 +110,7 @@ def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
 
 
 def _meet(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """(k,) whether the edge from p to q and that from r to s have a point in common."""
+    """(k,) whether the edges p-q and r-s have a point in common."""
     one, other = _side(p, q, r), _side(p, q, s)
     third, fourth = _side(r, s, p), _side(r, s, q)
     proper = (one * other < 0) & (third * fourth < 0)
@@ -131,7 +132,7 @@ def _between(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
 
 
 def _folds(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """(k,) whether the edge from r to s runs back along that from p to q."""
+    """(k,) whether the edge r-s folds back along the edge p-q."""
     ahead = ((q - p) * (s - r)).sum(axis=-1)
     result: np.ndarray = (_side(p, q, q + (s - r)) == 0) & (ahead < 0)
     return result
@@ -147,22 +148,8 @@ def _place(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Place:
     return float(middle[0]), float(middle[1])
 
 
-def _inside(place: Place, corners: tuple[Place, ...]) -> bool:
-    x, y = place
-    inside = False
-    for (x1, y1), (x2, y2) in zip(corners, (*corners[1:], *corners[:1]), strict=True):
-        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
-            inside = not inside
-    return inside
-
-
 def _flat(corners: tuple[Place, ...]) -> bool:
     p = np.array(corners)
     x, y = (p - p[0]).T
     area = abs(float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)))
     return area <= _NEAR * float(np.ptp(p, axis=0).max()) ** 2
-
-
-def capital(text: str) -> str:
-    """With a capital letter at its beginning."""
-    return text[:1].upper() + text[1:]

@@ -1,74 +1,180 @@
-"""Sources: what a person may name when a mesh is wanted, in Python and in notebooks.
+"""What a name, a path or an object means where a mesh is wanted.
 
-The command line has its own door, :mod:`meshwright.cli.arguments`, with errors of its own.
+The command line, the window, the widget, the experiments and ``meshwright.mesh`` all decide here.
+The gallery and the mesh generator, which need shapely and Triangle, are imported late.
 """
 
 from __future__ import annotations
 
+import os
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshwright.document.document import Document
+from meshwright.document.storage import document_file
+from meshwright.document.storage.document_state import DocumentState
+from meshwright.sources.naming import looks_like_path
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.core.kinds import KIND_NOUN
+from meshwright_core.io.formats import SHAPES
 
 if TYPE_CHECKING:
     from meshwright_core.domains.domain import Domain
 
+NOTHING = "There is nothing to show or to mesh: name a shape of the gallery or a file."
+
+
+def names_file(source: object) -> bool:
+    """Whether the source is a path, or a text that is read as one.
+
+    The name of a gallery shape always means the shape; any other text that has an ending or a
+    folder in it, or that names something that exists, is a path.
+    """
+    if not isinstance(source, str):
+        return isinstance(source, os.PathLike)
+    if looks_like_path(source):
+        return True
+    from meshwright_core.domains import gallery
+
+    return source not in gallery.names() and Path(source).exists()
+
+
+def resolve(
+    source: Any,
+    name: str = "",
+    *,
+    corner_angle: float | None = None,
+    curve_step: float | None = None,
+) -> Document | Domain:
+    """The document or the domain that a source means.
+
+    Args:
+        source: a document, which is returned as it is; a mesh, which is not copied; an object with
+            a ``mesh``, such as a widget or a film; a domain; the corners of a polygon (n, 2); the
+            name of a gallery shape; or the path of a mesh file, a project or a drawing.
+        name: name of a new document; by default that of the file.
+        corner_angle: degrees by which the boundary of a mesh file or drawing must turn at a
+            corner; None for the default, 0.01.
+        curve_step: degrees by which a polyline that replaces a curve of a drawing turns at each
+            point, at most; None for the default, 15.
+
+    Returns a domain for a gallery shape, a drawing, a polygon and a domain, else a document.
+
+    Raises MeshError, one sentence, if the source means nothing or cannot be read.
+    """
+    if source is None or (isinstance(source, str) and not source.strip()):
+        raise MeshError(NOTHING)
+    if isinstance(source, Document):
+        return source
+    if isinstance(source, HalfEdgeMesh):
+        return Document(source, name)
+    if names_file(source):
+        return _read(Path(source), name, corner_angle, curve_step)
+    from meshwright_core.domains import gallery
+    from meshwright_core.domains.domain import Domain
+
+    if isinstance(source, str):
+        return gallery.shape(source)
+    if isinstance(source, Domain):
+        return source
+    if isinstance(source, np.ndarray | list | tuple):
+        return Domain(source)
+    if not hasattr(source, "mesh"):
+        raise MeshError(f"A mesh cannot be made of {type(source).__name__}.")
+    if not isinstance(source.mesh, HalfEdgeMesh):
+        raise MeshError("There is no mesh here yet.")
+    return Document(source.mesh, name)
+
 
 def mesh(
-    source: HalfEdgeMesh | Domain | str | Path | np.ndarray | list | tuple,
+    source: Any,
     kind: str | None = None,
     *,
     max_edge: float | None = None,
     min_angle: float | None = None,
     seed: int = 0,
 ) -> HalfEdgeMesh:
-    """A mesh of what ``source`` names.
+    """A new mesh of what ``source`` means.
 
     Args:
-        source: a name of the gallery (``"star"``), a mesh file, a project, a geometry file, a
-            domain, the corners of a polygon (n, 2), or a mesh, which is copied.
-        kind: ``"tri"`` or ``"quad"`` (if left out) for what has to be meshed; a mesh that is
+        source: the name of a gallery shape (``"star"``); a mesh file, a project, or a drawing; a
+            domain; the corners of a polygon (n, 2); or a mesh or document, whose mesh is copied.
+        kind: ``"tri"`` or ``"quad"`` (the default) for what has to be meshed; a mesh that is
             there already must be of this kind.
-        max_edge: length that no edge exceeds.
-        min_angle: degrees, the angle that Triangle aims at.
-        seed: 0 is the plain mesh, others let Triangle choose otherwise where it can.
+        max_edge: upper bound on the length of edges, in the units of the source.
+        min_angle: lower bound, in degrees, that Triangle aims at for the angles.
+        seed: 0 for the plain mesh; other values vary it where Triangle has a choice.
 
-    Raises MeshError, in one sentence, where there is no such thing or it cannot be meshed.
+    Raises MeshError, one sentence, if the source means nothing or cannot be meshed.
     """
-    from meshwright_core.domains import meshing
+    _check_kind(kind)
+    found = resolve(source)
+    if not isinstance(found, Document):
+        from meshwright_core.domains import meshing
 
-    if kind not in (None, "tri", "quad"):
-        raise MeshError(f"There is no kind of mesh {kind!r}: it is 'tri' or 'quad'.")
-    found = source.copy() if isinstance(source, HalfEdgeMesh) else _found(source)
-    if not isinstance(found, HalfEdgeMesh):
         return meshing.mesh_domain(
             found, kind or "quad", max_edge=max_edge, min_angle=min_angle, seed=seed
         )
-    if kind not in (None, found.kind):
-        raise MeshError(f"This mesh is of kind '{found.kind}', not '{kind}'.")
+    if found.mesh is None:
+        raise MeshError("There is no mesh here yet.")
+    _require_kind(found, kind)
+    return found.mesh.copy()
+
+
+def document(source: Any, kind: str | None = None, name: str = "") -> Document:
+    """The document to show for a source.
+
+    Args:
+        source: as for :func:`resolve`; a document is returned as it is, and a mesh is not copied.
+        kind: ``"tri"`` or ``"quad"`` (the default) for what has to be meshed; a mesh that is
+            there already must be of this kind.
+        name: name of a new document; by default that of the shape or file.
+
+    Raises MeshError, one sentence, if the source means nothing or cannot be meshed.
+    """
+    _check_kind(kind)
+    found = resolve(source, name)
+    if not isinstance(found, Document):
+        from meshwright_core.domains import meshing
+
+        return Document(meshing.mesh_domain(found, kind or "quad"), name or found.name)
+    _require_kind(found, kind)
     return found
 
 
-def _found(source: Domain | str | Path | np.ndarray | list | tuple) -> HalfEdgeMesh | Domain:
-    """The mesh or the domain that is meant."""
-    from meshwright.document.storage import project_file
-    from meshwright_core.domains import gallery
-    from meshwright_core.domains.domain import Domain
-    from meshwright_core.io import drawings, mesh_files
+def domain(source: Any, *, corner_angle: float | None = None) -> Domain:
+    """The domain that a source means: a gallery shape, a drawing, a polygon or a domain.
 
-    if isinstance(source, Domain):
-        return source
-    if isinstance(source, np.ndarray | list | tuple):
-        return Domain(source)
-    if not isinstance(source, str | Path):
-        raise MeshError(f"A mesh cannot be made of {type(source).__name__}.")
-    path = Path(source)
-    if isinstance(source, str) and not path.suffix and not path.exists():
-        return gallery.shape(source)
-    if project_file.is_project(path):
-        return project_file.read(path).mesh
-    if drawings.is_geometry(path):
-        return drawings.read_domain(path)
-    return mesh_files.read(path)
+    Raises MeshError, one sentence, for any other source.
+    """
+    if names_file(source) and not document_file.is_drawing(source):
+        raise MeshError(f"{source}: a file of a shape ends in one of {' '.join(SHAPES)}.")
+    found = resolve(source, corner_angle=corner_angle)
+    if isinstance(found, Document):
+        raise MeshError("This is a mesh, not a shape that can be meshed.")
+    return found
+
+
+def _read(
+    path: Path, name: str, corner_angle: float | None, curve_step: float | None
+) -> Document | Domain:
+    """The document in a mesh file or project, or the domain in a drawing."""
+    found = document_file.read(path, corner_angle, curve_step)
+    if not isinstance(found, DocumentState):
+        return found
+    opened = Document()
+    opened.adopt(replace(found, name=name or found.name))
+    return opened
+
+
+def _check_kind(kind: str | None) -> None:
+    if kind is not None and kind not in KIND_NOUN:
+        raise MeshError(f"There is no kind of mesh {kind!r}: it is 'tri' or 'quad'.")
+
+
+def _require_kind(found: Document, kind: str | None) -> None:
+    if kind is not None and found.kind not in ("", kind):
+        raise MeshError(f"This is a mesh of {KIND_NOUN[found.kind]}, not of {KIND_NOUN[kind]}.")

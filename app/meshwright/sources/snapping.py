@@ -1,4 +1,4 @@
-"""Snapping: where a corner goes that is set near something, and the lines that show why."""
+"""Snapping of new corners to points, directions and a grid, with guide lines."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Snap:
-    """Where to go, what was met (``"point"``, ``"angle"``, ``"grid"`` or empty), and guides: lines
-    to show, each from one place to another.
+    """The snapped position, what it snapped to (``"point"``, ``"angle"``, ``"grid"`` or empty), and
+    guides: lines to show, each from one point to another.
     """
 
     place: Place
@@ -23,7 +23,7 @@ class Snap:
 
 @dataclass(frozen=True)
 class Snapper:
-    """What to snap to: existing points, right angles to other corners, a grid; each may be off."""
+    """Settings: snap to existing points, to right angles, to a grid; each may be off."""
 
     grid: float = 0.0
     points: bool = True
@@ -38,15 +38,15 @@ class Snapper:
         first: Place | None = None,
         behind: Place | None = None,
     ) -> Snap:
-        """Return where a corner goes that is set at `place`.
+        """Return the snapped position of a corner set at `place`.
 
         Args:
             place: where the mouse is.
-            reach: distance within which things attract.
+            reach: distance within which a corner snaps.
             corners: all that exist.
-            before: the corner that the new edge begins at; the edge is brought to the directions
-                of the axes, and to right angles with the edge before it.
-            first: the corner that the loop closes at; the new corner is brought in line with it.
+            before: the corner where the new edge begins; the edge snaps to the directions of the
+                axes, and to right angles with the edge before it.
+            first: the first corner of the loop; the new corner snaps to its row and column.
             behind: the corner before `before`.
         """
         if self.points and corners:
@@ -91,13 +91,13 @@ class Snapper:
         share = float(np.dot(np.subtract(place, start), along))
         x, y = start[0] + share * along[0], start[1] + share * along[1]
         if self.grid > 0 and 0.0 in along:
-            # along an axis the other coordinate keeps to the grid
+            # along an axis, the other coordinate snaps to the grid
             gx, gy = self._on_grid((x, y))
             x, y = (gx, start[1]) if along[1] == 0.0 else (start[0], gy)
         return Snap((x, y), "angle", ((start, (x, y)),))
 
     def _on_grid(self, place: Place) -> Place:
-        # by division with the nearest whole number, so that 0.1 steps stay short decimals
+        # rounded to 12 digits, so that steps of 0.1 give short decimals
         x, y = (float(f"{round(n / self.grid) * self.grid:.12g}") for n in place)
         return x, y
 

@@ -1,4 +1,4 @@
-"""Teaching: exercises that check themselves. No Qt, no torch."""
+"""Lessons and exercises that check the answers. Needs neither Qt nor torch."""
 
 from meshwright.teaching.exercises.example_meshes import patch
 from meshwright.teaching.exercises.exercise import Exercise, exercise

@@ -1,9 +1,9 @@
-"""The lessons that travel with the program: what they are called, what is in them, and copies.
+"""The shipped lessons: their titles, their exercises, and copies of their notebooks.
 
-A lesson is a Jupyter notebook in ``assets/lessons``. Its metadata say ``{"meshwright": {"lesson":
-number, "minutes": reading time}}``; the metadata of a cell with an exercise say ``{"meshwright":
-{"exercise": "1.2", "solution": code, "wrong": [code, ...]}}``. Solutions stand in the place of all
-lines above the one that checks.
+A lesson is a Jupyter notebook in ``meshwright_assets/lessons``. Its metadata are ``{"meshwright":
+{"lesson": number, "minutes": reading time}}``; the metadata of a cell with an exercise are
+``{"meshwright": {"exercise": "1.2", "solution": code, "wrong": [code, ...]}}``. A solution replaces
+all lines above the one that checks it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ENDING = ".ipynb"
 
 @dataclass(frozen=True)
 class ExerciseCell:
-    """A cell with an exercise: its source as shipped, a solution, and answers that are wrong."""
+    """A cell with an exercise: its source, a solution, and some wrong answers."""
 
     name: str
     source: str
@@ -33,7 +33,7 @@ class ExerciseCell:
     wrong: tuple[str, ...]
 
     def answered(self, code: str) -> str:
-        """The source with ``code`` in the place of the blank answer."""
+        """The source with ``code`` in place of the lines above the check."""
         lines = self.source.split("\n")
         last = max(i for i, line in enumerate(lines) if ".check(" in line)
         return "\n".join([code, *lines[last:]])
@@ -41,7 +41,7 @@ class ExerciseCell:
 
 @dataclass(frozen=True)
 class Lesson:
-    """One lesson, the notebook at ``path``."""
+    """A lesson: the notebook at ``path``."""
 
     path: Path
 
@@ -52,7 +52,7 @@ class Lesson:
 
     @cached_property
     def notebook(self) -> dict[str, Any]:
-        """The notebook as it is written."""
+        """The content of the notebook file."""
         return json.loads(self.path.read_text(encoding="utf-8"))
 
     @property
@@ -68,7 +68,7 @@ class Lesson:
 
     @property
     def minutes(self) -> int:
-        """How long it takes."""
+        """The reading time in minutes."""
         return int(self.notebook["metadata"]["meshwright"]["minutes"])
 
     def exercises(self) -> Iterator[ExerciseCell]:
@@ -81,17 +81,17 @@ class Lesson:
 
 
 def shipped() -> list[Lesson]:
-    """The lessons that travel with the program, in the order in which they are read."""
+    """The shipped lessons in their order."""
     return [Lesson(path) for path in sorted(FOLDER.glob(f"*{ENDING}"))]
 
 
 def copy_to(folder: str | Path, force: bool = False) -> list[Path]:
-    """Copy every lesson into ``folder``, which is made if need be; returns the files written.
+    """Copy all lessons into ``folder``, which is created if necessary; returns the files written.
 
-    Lessons that are there already may hold somebody's answers: they are overwritten only with
-    ``force``, and without it nothing at all is written. A lesson is written whole or not at all.
+    Existing lessons may contain answers: without ``force`` they are not overwritten, and nothing is
+    written. Each file is written atomically.
 
-    Raises MeshError, in one sentence, for a folder that cannot be written to.
+    Raises MeshError if a lesson exists already or the folder cannot be written to.
     """
     target = Path(folder)
     lessons = shipped()

@@ -15,25 +15,27 @@ if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
 
 GROUP, NAME = "meshwright.display", "figure"
-"""Group and name of the entry point. It is a function of a mesh that returns MIME types with their
-data, and MIME types with their metadata.
+"""Group and name of the entry point. It is a function of a mesh and a name for the caption, which
+may be empty, that returns MIME types with their data, and MIME types with their metadata.
 """
 
 Bundle = tuple[dict[str, Any], dict[str, Any]]
 
 
-def bundle(mesh: HalfEdgeMesh) -> Bundle:
-    """What a notebook may choose from: the mesh's line of text, and a picture if one is drawn."""
+def bundle(mesh: HalfEdgeMesh, name: str = "") -> Bundle:
+    """The MIME types a notebook may choose from: the mesh's line of text, and a picture if a
+    drawing function is installed. `name` goes into the caption of the picture.
+    """
     text = {"text/plain": repr(mesh)}
     draw = drawer()
     if draw is None:
         return text, {}
-    pictures, metadata = draw(mesh)
+    pictures, metadata = draw(mesh, name)
     return {**text, **pictures}, metadata
 
 
 @cache
-def drawer() -> Callable[[HalfEdgeMesh], Bundle] | None:
+def drawer() -> Callable[[HalfEdgeMesh, str], Bundle] | None:
     """The function that is installed for drawing, None if there is none."""
     found = [point for point in entry_points(group=GROUP) if point.name == NAME]
     return found[0].load() if found else None

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from meshwright_core.errors import MeshError
+from meshwright_core.errors import MeshError, capitalised
 
 Points = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -202,9 +202,9 @@ def _ring(ring: ArrayLike, what: str) -> Points:
             raise TypeError("complex numbers would lose their imaginary part")
         points = np.array(ring, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise MeshError(f"{_capital(what)} is not a list of [x, y] pairs of numbers.") from error
+        raise MeshError(f"{capitalised(what)} is not a list of [x, y] pairs of numbers.") from error
     if points.size and (points.ndim != 2 or points.shape[1] != 2):
-        raise MeshError(f"{_capital(what)} is not a list of [x, y] pairs of numbers.")
+        raise MeshError(f"{capitalised(what)} is not a list of [x, y] pairs of numbers.")
     points = points.reshape(-1, 2)
     bad = np.flatnonzero(~(np.abs(points) < _LARGEST).all(axis=1))
     if bad.size:
@@ -216,7 +216,7 @@ def _ring(ring: ArrayLike, what: str) -> Points:
     if len(points) < 3:
         plural = "" if len(points) == 1 else "s"
         raise MeshError(
-            f"{_capital(what)} has {len(points)} point{plural}, but a polygon needs at least 3."
+            f"{capitalised(what)} has {len(points)} point{plural}, but a polygon needs at least 3."
         )
     _refuse_repeats(points, what)
     return points
@@ -231,7 +231,7 @@ def _refuse_repeats(points: Points, what: str) -> None:
         raise MeshError(f"Points {i} and {j} of {what} are the same, {_place(points[j])}.")
     size = float(np.ptp(points, axis=0).max())
     if size < 1 / _LARGEST:
-        raise MeshError(f"{_capital(what)} encloses no area: it is only {size:.3g} across.")
+        raise MeshError(f"{capitalised(what)} encloses no area: it is only {size:.3g} across.")
     steps = np.abs(np.roll(points, -1, axis=0) - points).max(axis=1)
     near = np.flatnonzero(steps < _NEAR * size)
     if near.size:
@@ -242,7 +242,7 @@ def _refuse_repeats(points: Points, what: str) -> None:
         )
     centred = (points - points.mean(axis=0)) / size
     if np.linalg.svd(centred, compute_uv=False)[1] < _NEAR:
-        raise MeshError(f"{_capital(what)} encloses no area: all its points lie on one line.")
+        raise MeshError(f"{capitalised(what)} encloses no area: all its points lie on one line.")
 
 
 def _flags(flags: ArrayLike | None, ring: ArrayLike, loop: Points, what: str) -> Flags | None:
@@ -279,11 +279,11 @@ def _refuse_crossings(loops: list[Points], names: list[str]) -> None:
         edge_i, edge_j = (f"edge {index[e]}-{(index[e] + 1) % len(loops[ring[e]])}" for e in (i, j))
         if ring[i] == ring[j]:
             raise MeshError(
-                f"{_capital(names[ring[i]])} crosses or touches itself near {spot}: "
+                f"{capitalised(names[ring[i]])} crosses or touches itself near {spot}: "
                 f"{edge_i} meets {edge_j}."
             )
         raise MeshError(
-            f"{_capital(names[ring[j]])} crosses or touches {names[ring[i]]} near {spot}: "
+            f"{capitalised(names[ring[j]])} crosses or touches {names[ring[i]]} near {spot}: "
             f"{edge_j} meets {edge_i}."
         )
 
@@ -296,19 +296,15 @@ def _refuse_strays(loops: list[Points], names: list[str]) -> None:
         if not polygons[0].contains(spot):
             inverted = " and around it" if polygons[i].contains(shapely.Point(loops[0][0])) else ""
             raise MeshError(
-                f"{_capital(names[i])} lies outside the outline{inverted}: "
+                f"{capitalised(names[i])} lies outside the outline{inverted}: "
                 f"its point 0 is {_place(loops[i][0])}."
             )
         for j in range(1, len(loops)):
             if i != j and polygons[j].contains(spot):
                 raise MeshError(
-                    f"{_capital(names[i])} lies inside {names[j]}: "
+                    f"{capitalised(names[i])} lies inside {names[j]}: "
                     f"its point 0 is {_place(loops[i][0])}."
                 )
-
-
-def _capital(text: str) -> str:
-    return text[0].upper() + text[1:]
 
 
 def load_json(path: Path) -> Any:
@@ -366,7 +362,7 @@ def _pairs(ring: Any, what: str) -> list[list[float]]:
     if isinstance(ring, np.ndarray):
         ring = ring.tolist()
     if not isinstance(ring, Sequence) or isinstance(ring, str):
-        raise MeshError(f"{_capital(what)} is not a list of [x, y] pairs.")
+        raise MeshError(f"{capitalised(what)} is not a list of [x, y] pairs.")
     pairs = []
     for i, pair in enumerate(ring):
         numbers = isinstance(pair, Sequence) and len(pair) == 2 and all(map(_is_number, pair))

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from meshwright_agent.registration import QUADS, TRIANGLES
+from meshwright_agent import QUADS, TRIANGLES
+from meshwright_core import MeshError
 from meshwright_core.domains.meshing import benchmark_mesh
 
 
@@ -18,10 +19,22 @@ def test_passes_the_checker(name):
     check_env(gymnasium.make(name).unwrapped, skip_render_check=True)
 
 
-@pytest.mark.parametrize("name", [TRIANGLES, QUADS])
-def test_is_found_by_name_alone(name):
-    code = f"import gymnasium; gymnasium.make('meshwright_agent.registration:{name}').reset(seed=0)"
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import gymnasium; gymnasium.make('meshwright_agent:meshwright/Quads-v0')",
+        "import meshwright_agent, gymnasium; gymnasium.make('meshwright/Triangles-v0')",
+        "import gymnasium, meshwright_agent; gymnasium.make('meshwright/Quads-v0')",
+    ],
+)
+def test_is_registered_by_importing_the_package(code):
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_importing_the_package_does_not_import_the_environments():
+    code = "import sys, meshwright_agent; print({'torch', 'numba'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert done.stdout.strip() == "set()"
 
 
 @pytest.mark.parametrize("name", [TRIANGLES, QUADS])
@@ -56,6 +69,15 @@ def test_starts_from_a_given_mesh():
     assert info["score"] == mesh.score
     env.step(np.flatnonzero(info["action_mask"])[0])
     assert mesh.steps == 0
+
+
+def test_refuses_a_mesh_of_the_other_kind():
+    triangles = benchmark_mesh("tri", 12, np.random.default_rng(8))
+    env = gymnasium.make(QUADS)
+    with pytest.raises(MeshError, match="edits quads, but the mesh is of triangles"):
+        env.reset(options={"mesh": triangles})
+    with pytest.raises(TypeError, match="must be a HalfEdgeMesh, not str"):
+        env.reset(options={"mesh": "star.vtk"})
 
 
 def test_the_same_seed_gives_the_same_run():

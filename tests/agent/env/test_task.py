@@ -7,10 +7,11 @@ import torch
 from meshwright_agent.env.candidates import permitted, template_plan
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch, start_meshes
+from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.network import Architecture, PolicyNetwork
 from meshwright_agent.policy.policy_files import Policy, PolicyError
 from meshwright_agent.policy.rollout import Runner
-from meshwright_agent.training.ppo import decide, normalised_advantages
+from meshwright_agent.training.ppo import normalised_advantages
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import JOURNALLING, MeshArrays
 from meshwright_core.domains.meshing import benchmark_mesh

@@ -15,10 +15,10 @@ from safetensors.torch import load_file
 
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch, start_meshes
+from meshwright_agent.policy.inference import tensors
 from meshwright_agent.policy.network import Architecture, PolicyNetwork
 from meshwright_agent.training import checkpoint
 from meshwright_agent.training.distributed import DeviceError, Processes, joined
-from meshwright_agent.training.ppo import tensors
 from meshwright_agent.training.trainer import train
 
 ROOT = Path(__file__).parents[2]

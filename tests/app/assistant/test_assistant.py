@@ -36,7 +36,7 @@ def make(desk, greedy):
         )
         assistant.policy = "greedy"
         assistant.heard = []
-        assistant.said.connect(assistant.heard.append)
+        assistant.message.connect(assistant.heard.append)
         assistant.failed.connect(assistant.heard.append)
         made.append(assistant)
         return assistant
@@ -50,7 +50,7 @@ def make(desk, greedy):
         assert not thread.is_alive()
 
 
-def test_step_takes_one_operation_in_the_name_of_the_policy(make, desk, star):
+def test_step_records_the_policy_as_author(make, desk, star):
     document = Document(star)
     assistant = make(document)
     assistant.step()
@@ -65,7 +65,7 @@ def test_step_takes_one_operation_in_the_name_of_the_policy(make, desk, star):
     assert assistant.progress.decisions == document.history.cursor == 2
 
 
-def test_the_runner_goes_on_from_where_it_was_unless_a_person_edited(make, desk, star, greedy):
+def test_the_runner_is_reused_unless_the_user_has_edited(make, desk, star, greedy):
     document = Document(star)
     runners = []
 
@@ -85,7 +85,7 @@ def test_the_runner_goes_on_from_where_it_was_unless_a_person_edited(make, desk,
     assert document.history.cursor == 2
 
 
-def test_a_runner_at_rest_in_a_played_run_does_not_outlive_a_persons_edit(make, desk, star, greedy):
+def test_an_edit_discards_the_runner_of_a_played_run(make, desk, star, greedy):
     document = Document(star)
     runners = []
 
@@ -117,7 +117,7 @@ def test_a_search_reaches_the_optimum(make, desk, star):
     star.validate()
 
 
-def test_a_search_tells_its_best_and_stops_with_it(make, desk, star):
+def test_a_search_reports_its_best_and_applies_it_when_stopped(make, desk, star):
     document = Document(star)
     assistant = make(document, patient=True)
     assistant.search(Effort(seconds=60.0))
@@ -175,7 +175,7 @@ def test_a_slow_play_is_cancelled_at_once(make, desk, star):
     desk.until(lambda: document.history.cursor == 2, seconds=1.5)
 
 
-def test_a_person_takes_over_in_mid_run(make, desk, star):
+def test_an_edit_by_the_user_ends_the_run(make, desk, star):
     document = Document(star)
     assistant = make(document, longest=100, bad_steps=100)
     assistant.speed = 60
@@ -217,7 +217,7 @@ def test_nothing_to_do(make, desk, strip, star):
     assert assistant.heard == ["Choose a policy."]
 
 
-def test_a_policy_that_cannot_be_loaded_is_one_sentence(make, desk, star):
+def test_a_policy_that_cannot_be_loaded_is_reported(make, desk, star):
     def load(name):
         raise ValueError("greedy.safetensors is cut off.")
 
@@ -230,7 +230,7 @@ def test_a_policy_that_cannot_be_loaded_is_one_sentence(make, desk, star):
     assert not assistant.loading
 
 
-def test_a_bug_in_a_runner_is_told_too(make, desk, star, monkeypatch, greedy):
+def test_an_unexpected_error_in_a_runner_is_reported(make, desk, star, monkeypatch, greedy):
     monkeypatch.setattr(greedy, "step", lambda self: 1 / 0)
     assistant = make(Document(star))
     assistant.step()
@@ -238,7 +238,7 @@ def test_a_bug_in_a_runner_is_told_too(make, desk, star, monkeypatch, greedy):
     assert "ZeroDivisionError" in assistant.heard[-1]
 
 
-def test_a_runner_that_left_the_mesh_is_found_out(make, desk, star, greedy, monkeypatch):
+def test_a_runner_in_another_state_than_the_mesh_is_detected(make, desk, star, greedy, monkeypatch):
     monkeypatch.setattr(greedy, "step", lambda self: [("flip_left", 10**6)])
     document = Document(star)
     assistant = make(document)
@@ -290,7 +290,7 @@ def test_a_hint_that_comes_too_late_is_dropped(make, desk, star):
     assert assistant.hinting.hints == ()
 
 
-def test_a_hint_holds_a_run_that_plays_but_not_a_search(make, desk, star):
+def test_a_hint_pauses_a_played_run_but_not_a_search(make, desk, star):
     document = Document(star)
     assistant = make(document, longest=100, bad_steps=100)
     assistant.speed = 60
@@ -305,7 +305,7 @@ def test_a_hint_holds_a_run_that_plays_but_not_a_search(make, desk, star):
     assert assistant.state is State.SEARCHING and not assistant.hinting.asking
 
 
-def test_hints_that_cannot_be_had_are_one_sentence(make, desk, star):
+def test_failed_hints_are_reported(make, desk, star):
     def ask(mesh, policy, near):
         raise ValueError("This policy is for other meshes.")
 
@@ -319,7 +319,7 @@ def test_hints_that_cannot_be_had_are_one_sentence(make, desk, star):
     assert "no operation" in assistant.heard[-1]
 
 
-def test_watching_shows_what_is_done_next(make, desk, star):
+def test_the_insight_shows_the_next_decision(make, desk, star):
     document = Document(star)
     assistant = make(document)
     assistant.watch = True
@@ -339,13 +339,13 @@ def test_watching_shows_what_is_done_next(make, desk, star):
     assert assistant.insight is None
 
 
-def test_watching_follows_a_persons_edits(make, desk, star):
+def test_the_insight_follows_edits(make, desk, star):
     document = Document(star)
     assistant = make(document)
     assistant.watch = True
     desk.until(lambda: assistant.insight is not None)
     seen = []
-    assistant.looked.connect(lambda: seen.append(assistant.insight))
+    assistant.insight_changed.connect(lambda: seen.append(assistant.insight))
     choice = assistant.insight.choices[0]
     document.submit(choice.operation, choice.halfedge)
     assert assistant.insight is None
@@ -355,7 +355,7 @@ def test_watching_follows_a_persons_edits(make, desk, star):
     assert [insight is None for insight in seen] == [True, False, True, False]
 
 
-def test_a_played_run_that_is_watched_is_held_with_its_next_decision(make, desk, star):
+def test_pausing_a_watched_run_keeps_its_next_decision(make, desk, star):
     document = Document(star)
     assistant = make(document, longest=100, bad_steps=100)
     assistant.speed = 60
@@ -394,7 +394,7 @@ def test_progress_of_runs_and_searches(make, desk, star):
     assert assistant.progress.share is None
 
 
-def test_a_chosen_policy_is_taken_once_it_is_there(make, desk, star):
+def test_a_chosen_policy_is_used_once_it_is_loaded(make, desk, star):
     def load(name):
         if "bad" in name:
             raise ValueError(f"{name}: this is no policy file.")
@@ -415,7 +415,7 @@ def test_a_chosen_policy_is_taken_once_it_is_there(make, desk, star):
     assert assistant.heard[-1] == "bad.safetensors: this is no policy file."
 
 
-def test_a_program_that_breaks_off_is_not_held_by_a_run():
+def test_an_exiting_program_does_not_wait_for_a_run():
     """A worker waits until its decision is applied; nobody applies it once the program dies."""
     code = """if True:
         import time

@@ -18,7 +18,7 @@ def test_shipped_ones_begin_with_the_kind():
     assert all(name.startswith("quad") for name in shipped("quad"))
 
 
-def test_the_header_tells_the_kind(tmp_path):
+def test_the_kind_is_read_from_the_header(tmp_path):
     good = header(tmp_path / "mine.safetensors", {"__metadata__": {"kind": "tri"}})
     assert kind_of(good) == kind_of(str(good)) == "tri"
 
@@ -33,14 +33,14 @@ def test_the_header_tells_the_kind(tmp_path):
         b"\x02" + b"\0" * 7 + b"{}",
     ],
 )
-def test_what_is_no_policy_is_one_sentence(tmp_path, content):
+def test_files_that_are_no_policies_are_refused(tmp_path, content):
     bad = tmp_path / "bad.safetensors"
     bad.write_bytes(content)
     with pytest.raises(ValueError, match=r"bad\.safetensors: this is no policy file"):
         kind_of(bad)
 
 
-def test_a_folder_and_nothing_at_all(tmp_path):
+def test_folders_and_missing_files_are_refused(tmp_path):
     with pytest.raises(ValueError, match="a folder"):
         kind_of(tmp_path)
     with pytest.raises(ValueError, match="no such file"):

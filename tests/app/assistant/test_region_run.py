@@ -25,7 +25,7 @@ def assistant(document, desk):
     made = Assistant(document, desk.dispatch)
     made.policy = document.kind
     made.heard = []
-    made.said.connect(made.heard.append)
+    made.message.connect(made.heard.append)
     made.failed.connect(made.heard.append)
     yield made
     made.close()
@@ -65,7 +65,7 @@ def test_a_region_is_finished_and_the_rest_stays_to_the_bit(document, assistant,
     assert np.array_equal(mesh.arrays.vertex[: len(flags)], flags[: len(mesh.arrays.vertex)])
 
 
-def test_a_run_taken_over_in_the_middle_leaves_no_lock(document, assistant, desk):
+def test_an_interrupted_run_leaves_no_vertex_locked(document, assistant, desk):
     elements = around_the_middle(document.mesh, 3)
     assistant.search(Effort(rollouts=16, seconds=None, elements=elements))
     desk.until(lambda: document.history.cursor > 0, seconds=120.0)

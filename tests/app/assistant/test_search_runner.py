@@ -13,7 +13,7 @@ def _all_steps(runner):
     return steps
 
 
-def test_its_steps_lead_to_what_it_found(star):
+def test_steps_lead_to_the_result(star):
     told = []
     runner = SearchRunner(
         star.copy(),
@@ -32,7 +32,7 @@ def test_its_steps_lead_to_what_it_found(star):
     assert runner.step() == [] and runner.reason == ""
 
 
-def test_told_that_it_is_enough_it_comes_back_at_once_and_says_why(star):
+def test_a_stopped_search_returns_at_once_with_a_reason(star):
     enough = Event()
     enough.set()
     runner = SearchRunner(star.copy(), load("quad"), 3, Effort(seconds=60.0), enough, print)

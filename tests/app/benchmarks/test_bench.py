@@ -35,7 +35,7 @@ def test_fuzz_finds_no_violation(capsys):
     assert results["tri"]["violations"] == results["quad"]["violations"] == 0
 
 
-def test_parts_are_a_table_of_shapes(capsys):
+def test_parts_suite_prints_a_table(capsys):
     command = ["bench", "--suite", "parts", "--quick", "--seconds", "2"]
     assert cli.main([*command, "--json"]) == 0
     results = json.loads(capsys.readouterr().out)["results"]
@@ -48,7 +48,7 @@ def test_parts_are_a_table_of_shapes(capsys):
             assert (row["worst Jacobian"] > 0) == (row["inverted"] == 0)
 
 
-def test_seconds_are_for_suites_that_search(capsys):
+def test_seconds_option_is_refused_by_suites_without_search(capsys):
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--seconds", "2"]) == 2
     assert "takes no search time" in capsys.readouterr().err
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--meshes", "2"]) == 2

@@ -88,7 +88,7 @@ def test_user_error_is_one_line_whatever_the_message(broken, capsys):
     assert capsys.readouterr().err == "meshwright shapes: first second\n"
 
 
-def test_bug_is_not_disguised_as_bad_input(broken, capsys):
+def test_internal_error_is_not_reported_as_bad_input(broken, capsys):
     broken(ValueError("of ours"))
     assert cli.main(["shapes"]) == 1
     said = capsys.readouterr().err
@@ -97,7 +97,7 @@ def test_bug_is_not_disguised_as_bad_input(broken, capsys):
     assert "MESHWRIGHT_DEBUG=1" in said
 
 
-def test_bug_shows_its_traceback_when_asked(broken, capsys, monkeypatch):
+def test_internal_error_shows_its_traceback_with_the_debug_variable(broken, capsys, monkeypatch):
     broken(ValueError("of ours"))
     monkeypatch.setenv(cli.DEBUG, "1")
     assert cli.main(["shapes"]) == 1
@@ -110,13 +110,13 @@ def test_interrupt_is_one_line_and_code_2(broken, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_no_memory_is_one_line_and_code_2(broken, capsys):
+def test_memory_error_is_one_line_and_code_2(broken, capsys):
     broken(MemoryError())
     assert cli.main(["shapes"]) == 2
     assert "not enough memory" in capsys.readouterr().err
 
 
-def test_reader_that_goes_away_is_no_news():
+def test_closed_stdout_is_not_reported():
     code = (
         "import sys; from meshwright.cli import main; from meshwright.cli.commands import shapes; "
         "shapes.run = lambda _, report: report.result({}, 'text'); sys.exit(main(['shapes']))"
@@ -142,7 +142,7 @@ def test_json_turns_numpy_and_nan_into_plain_values():
     }
 
 
-def test_progress_is_silent_unless_a_terminal_listens(monkeypatch):
+def test_progress_is_shown_on_terminals_only(monkeypatch):
     stream = io.StringIO()
     monkeypatch.setattr(sys, "stderr", stream)
     with Report().progress("work", 3) as update:

@@ -67,7 +67,7 @@ def test_a_grid_is_aligned():
     assert lines == ["a      long", "-----------", "first     1", "b        22"]
 
 
-def test_a_training_writes_a_line_at_each_evaluation_into_a_log():
+def test_a_log_gets_a_line_for_each_evaluation():
     stream = io.StringIO()
     with training_progress.shown(stream, 3) as display:
         display.update(1, 3, {"decisions": 2048.0, "decisions_per_second": 1000.0, "entropy": 1.25})

@@ -86,7 +86,7 @@ def test_the_window_opens_a_drawing(here):
     assert (document.kind, document.name, document.path) == ("tri", "part", None)
 
 
-def test_a_document_opens_a_drawing_and_stays_as_it_was_where_it_is_bad(here, star):
+def test_a_document_opens_a_drawing_and_is_unchanged_by_a_bad_one(here, star):
     (here / "part.svg").write_text(SVG)
     (here / "cut.svg").write_text(SVG[:50])
     document = Document(star, "star")

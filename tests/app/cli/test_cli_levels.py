@@ -7,7 +7,7 @@ import pytest
 from meshwright import cli, desktop
 from meshwright.cli import display_check
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.progress import Progress
+from meshwright.puzzles.progress import LevelProgress
 
 
 @pytest.fixture(autouse=True)
@@ -19,13 +19,13 @@ def _own_stars(monkeypatch, tmp_path):
 def opened(monkeypatch):
     """The levels that the window was opened on."""
     found = []
-    monkeypatch.setattr(display_check.Probe, "problem", lambda self: "")
+    monkeypatch.setattr(display_check.DisplayProbe, "problem", lambda self: "")
     monkeypatch.setattr(desktop, "run", lambda level: found.append(level.name) or 0)
     return found
 
 
 def test_levels_are_listed_with_their_stars(capsys):
-    Progress().note("two-turns", 2, 3)
+    LevelProgress().note("two-turns", 2, 3)
     assert cli.main(["levels"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == len(levels.names())
@@ -44,13 +44,13 @@ def test_levels_as_json(capsys):
 def test_play_opens_the_window_on_a_level(capsys, opened):
     assert cli.main(["play", "star"]) == 0
     assert cli.main(["play"]) == 0
-    Progress().note("one-flip", 1, 4)
+    LevelProgress().note("one-flip", 1, 4)
     assert cli.main(["play", "--json"]) == 0
     assert opened == ["star", "one-flip", "quarter-turn"]
     assert json.loads(capsys.readouterr().out)["level"] == "quarter-turn"
 
 
-def test_a_level_that_is_none_is_refused_in_one_line(capsys, opened):
+def test_an_unknown_level_is_refused_in_one_line(capsys, opened):
     assert cli.main(["play", "two-flip"]) == 2
     said = capsys.readouterr().err
     assert "did you mean two-flips" in said
@@ -58,7 +58,7 @@ def test_a_level_that_is_none_is_refused_in_one_line(capsys, opened):
     assert opened == []
 
 
-def test_without_a_display_play_says_so(capsys, monkeypatch):
-    monkeypatch.setattr(display_check.Probe, "problem", lambda self: "There is no display")
+def test_play_without_a_display_is_refused(capsys, monkeypatch):
+    monkeypatch.setattr(display_check.DisplayProbe, "problem", lambda self: "There is no display")
     assert cli.main(["play"]) == 2
     assert "notebook" in capsys.readouterr().err

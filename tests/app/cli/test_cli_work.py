@@ -90,7 +90,7 @@ def test_same_seed_same_mesh(run, tmp_path):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
+def test_improve_keeps_corners_and_the_optimum(run, kind, tmp_path):
     made = run("mesh", "star", "-o", "in.vtk", "--kind", kind)
     words = ("improve", "in.vtk", "-o", "out.vtk", "--rollouts", "3", "--png", "out.png")
     said = run(*words, "--film", "out.gif")
@@ -114,7 +114,7 @@ def test_improve_keeps_what_it_must_keep(run, kind, tmp_path):
         assert film.n_frames == said["operations"] + 2  # the start, and the smoothing at the end
 
 
-def test_improve_says_why_the_first_time_takes_long(run, capfd, monkeypatch):
+def test_improve_announces_the_compilation(run, capfd, monkeypatch):
     run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
     monkeypatch.setattr(warm_up, "is_warm_on_disk", lambda: False)
     monkeypatch.setattr(warm_up, "warm", lambda: None)
@@ -135,7 +135,7 @@ def test_improve_in_place_with_a_budget_and_the_same_seed(run, tmp_path):
     assert len(written) == 1
 
 
-def test_improve_for_some_seconds_says_so_in_words(run, capfd):
+def test_improve_with_a_time_limit_as_text(run, capfd):
     run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
     assert cli.main(["improve", "a.vtk", "-o", "b.vtk", "--search", "0.5"]) == 0
     said = capfd.readouterr()

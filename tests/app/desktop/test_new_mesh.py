@@ -43,7 +43,7 @@ def dialog(qtbot):
     assert not [timer for timer in made.findChildren(QTimer) if timer.isActive()]
 
 
-def wait_for_mesh(qtbot, dialog) -> mesh_worker.Made:
+def wait_for_mesh(qtbot, dialog) -> mesh_worker.NewMesh:
     qtbot.waitUntil(lambda: dialog.made is not None, timeout=WAIT)
     return dialog.made
 

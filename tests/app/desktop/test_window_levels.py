@@ -8,14 +8,14 @@ from qtpy.QtWidgets import QApplication
 from meshwright.assistant.assistant import Assistant
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.puzzles import level
-from meshwright.puzzles.agent_opponent import Standing
-from meshwright.puzzles.progress import Progress
+from meshwright.puzzles.agent_opponent import OpponentState
+from meshwright.puzzles.progress import LevelProgress
 
 
 @pytest.fixture
 def window(open_window, tmp_path, greedy):
     made = open_window()
-    made.levels.play.progress = Progress(tmp_path / "levels.json")
+    made.levels.play.progress = LevelProgress(tmp_path / "levels.json")
 
     def rival(document):
         assistant = Assistant(
@@ -148,7 +148,7 @@ def test_agent_solves_a_copy_and_shows_its_solution(qtbot, window):
     click(qtbot, bar.answer)
     assert bar.agent.isVisible()
     rival = window.levels.play.rival
-    qtbot.waitUntil(lambda: rival.standing is not Standing.ASKED, timeout=WAIT)
+    qtbot.waitUntil(lambda: rival.standing is not OpponentState.ASKED, timeout=WAIT)
     assert bar.agent.text.startswith(str(len(rival.operations)))
     assert bar.answer.text() == "Show a solution"
     assert len(window.document.history) == 0

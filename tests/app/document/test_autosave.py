@@ -31,7 +31,7 @@ def recovered(folder) -> Document:
     return document
 
 
-def test_every_event_is_there_again(document, tmp_path):
+def test_every_event_is_recovered(document, tmp_path):
     keeper = Autosave(document, tmp_path)
     wander(document, 5, 1)
     document.go_to(2)
@@ -67,7 +67,7 @@ def test_every_event_is_there_again(document, tmp_path):
     other.mesh.validate()
 
 
-def test_a_mesh_that_outgrows_its_room_is_followed(document, tmp_path):
+def test_a_growing_mesh_is_recorded(document, tmp_path):
     keeper = Autosave(document, tmp_path)
     mesh = document.mesh
     slots = len(mesh.arrays.vertex)
@@ -81,7 +81,7 @@ def test_a_mesh_that_outgrows_its_room_is_followed(document, tmp_path):
     assert bits(recovered(tmp_path)) == bits(document)
 
 
-def test_there_is_a_file_only_while_there_is_something_to_lose(document, tmp_path):
+def test_the_file_exists_only_while_changes_are_unsaved(document, tmp_path):
     keeper = Autosave(document, tmp_path / "deep" / "folder")
     assert keeper.path is None
     document.smooth()
@@ -100,7 +100,7 @@ def test_there_is_a_file_only_while_there_is_something_to_lose(document, tmp_pat
     assert recovery.lost(tmp_path / "deep" / "folder") == []
 
 
-def test_closing_and_switching_off_remove_the_file(document, tmp_path):
+def test_closing_and_disabling_remove_the_file(document, tmp_path):
     keeper = Autosave(document, tmp_path)
     wander(document, 2, 1)
     keeper.enabled = False
@@ -114,7 +114,7 @@ def test_closing_and_switching_off_remove_the_file(document, tmp_path):
     keeper.close()
 
 
-def test_any_torn_end_gives_the_last_whole_state(document, tmp_path):
+def test_an_incomplete_end_gives_the_last_complete_state(document, tmp_path):
     keeper = Autosave(document, tmp_path)
     states = []
     sizes = []
@@ -142,7 +142,7 @@ def test_any_torn_end_gives_the_last_whole_state(document, tmp_path):
     assert not path.exists()  # there was no whole document in it
 
 
-def test_what_is_offered(document, tmp_path):
+def test_offered_operations(document, tmp_path):
     keeper = Autosave(document, tmp_path)
     wander(document, 4, 1)
     document.undo()
@@ -165,7 +165,7 @@ def test_what_is_offered(document, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_a_living_process_holds_is_left_alone(document, tmp_path):
+def test_files_of_running_processes_are_ignored(document, tmp_path):
     keeper = Autosave(document, tmp_path)
     wander(document, 1, 1)
     assert recovery.lost(tmp_path) == []
@@ -196,12 +196,12 @@ class FullDisk:
         return count
 
 
-def test_a_full_disk_is_one_sentence_and_is_made_good(document, tmp_path, monkeypatch):
+def test_a_full_disk_is_reported_and_writing_resumes(document, tmp_path, monkeypatch):
     disk = FullDisk(monkeypatch)
     keeper = Autosave(document, tmp_path)
     told, said = [], []
     keeper.failed.connect(told.append)
-    keeper.said.connect(said.append)
+    keeper.resumed.connect(said.append)
     wander(document, 2, 1)
     two = bits(document)
     disk.left = 100
@@ -237,7 +237,7 @@ def test_a_disk_that_is_full_from_the_start(document, tmp_path, monkeypatch):
     assert bits(recovered(tmp_path)) == bits(document)
 
 
-def test_a_folder_that_cannot_be_made_is_one_sentence(document, tmp_path):
+def test_a_folder_that_cannot_be_made_is_reported(document, tmp_path):
     (tmp_path / "file").write_text("in the way")
     keeper = Autosave(document, tmp_path / "file" / "state")
     told = []
@@ -249,7 +249,7 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(document, tmp_path):
     assert recovery.lost(tmp_path / "file" / "state") == []
 
 
-def test_what_is_whole_but_not_sound_is_told_and_stays(document, tmp_path):
+def test_a_complete_but_invalid_file_is_reported_and_kept(document, tmp_path):
     path = tmp_path / "1-a.journal"
     header = {"event": "document", "name": "odd", "version": 1}
     path.write_bytes(b"".join(autosave_log.encoded(header, {})))

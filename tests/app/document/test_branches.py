@@ -34,7 +34,7 @@ def serials(rows) -> list[int]:
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
-def test_the_undone_tail_is_kept_and_taken_again_to_the_bit(kind, star, triangles):
+def test_undone_steps_are_kept_as_a_branch_and_restored_exactly(kind, star, triangles):
     document = Document(star if kind == "quad" else triangles)
     wander(document, 8, 1)
     first = bits(document)
@@ -78,7 +78,7 @@ def test_branches_fork_on_branches(star):
     assert len(list(every(document.history.branches))) == 2
 
 
-def test_modified_is_about_the_state_and_not_about_the_way_there(star, tmp_path):
+def test_modified_compares_states_and_not_paths(star, tmp_path):
     document = Document(star)
     wander(document, 3, 1)
     document.save(tmp_path / "three.vtk")
@@ -107,7 +107,7 @@ def test_a_refused_or_idle_action_after_an_undo_leaves_what_can_be_redone(star):
     assert bits(document) == end
 
 
-def test_the_oldest_branches_go(star, monkeypatch):
+def test_the_oldest_branches_are_dropped(star, monkeypatch):
     monkeypatch.setattr(branches, "MOST_BRANCHES", 5)
     document = Document(star)
     wander(document, 1, 0)
@@ -127,7 +127,7 @@ def test_the_oldest_branches_go(star, monkeypatch):
     assert [serials(branch.rows) for branch in document.history.branches] == [[10]]
 
 
-def test_there_is_one_sentence_for_a_branch_that_is_not_there(star):
+def test_a_missing_branch_is_refused(star):
     document = Document(star)
     with pytest.raises(MeshError, match="no branch 0"):
         document.take_branch(0)

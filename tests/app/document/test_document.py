@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from meshwright.document.document import NO_MESH, Document
-from meshwright.document.history import History, normalised_return
+from meshwright.document.history import History
 from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
+from meshwright_core.core.score import normalised_return
 from meshwright_core.operations.catalogue import of_kind
 
 
@@ -86,7 +87,7 @@ def test_scores_and_normalised_return():
     assert normalised_return(4, 4, 4) == 1.0
 
 
-def test_history_keeps_the_best_on_the_way_and_what_was_undone_as_a_branch():
+def test_history_tracks_the_best_score_and_keeps_undone_steps_as_a_branch():
     history = History(10, 2)
     for before, after in ((10, 8), (8, 6), (6, 9)):
         history.append("flip", "Flip", 0, "you", before, after, 2)
@@ -105,7 +106,7 @@ def test_history_keeps_the_best_on_the_way_and_what_was_undone_as_a_branch():
     ]
 
 
-def test_another_desired_degree_is_another_task(star):
+def test_changing_a_desired_degree_restarts_the_return(star):
     document = Document(star)
     document.submit("flip_left", first_allowed(star, "flip_left"))
     interior = next(v for v in star.vertices().tolist() if not star.is_boundary(v))
@@ -152,7 +153,7 @@ def test_clean_all_removes_the_lines_of_a_grid():
     assert document.mesh.n_elements == 9
 
 
-def test_without_a_mesh_there_is_one_sentence():
+def test_an_empty_document_refuses_in_one_sentence():
     document = Document()
     assert document.empty
     assert document.score == document.optimum == 0
@@ -184,7 +185,7 @@ def test_files(star, tmp_path):
     assert other.mesh is kept
 
 
-def test_hover_goes_away_with_its_half_edge(star):
+def test_hover_ends_when_its_half_edge_is_deleted(star):
     document = Document(star)
     told: list[int] = []
     document.hover_changed.connect(told.append)

@@ -39,7 +39,7 @@ def test_a_ghost_lies_in_the_plane_and_within_its_bounds(star):
     assert len(seen.places) == len(seen.delta) > 0
 
 
-def test_walking_through_what_is_allowed(star):
+def test_cycling_through_allowed_operations(star):
     halfedge = next(h for h in range(40) if sum(c.allowed for c in choices(star, h)) > 2)
     offered = choices(star, halfedge)
     allowed = [choice.operation for choice in offered if choice.allowed]
@@ -53,7 +53,7 @@ def test_walking_through_what_is_allowed(star):
     assert following((), None, 1) is None
 
 
-def test_refused_ones_have_no_ghost(star):
+def test_refused_operations_have_no_preview(star):
     boundary = next(h for h in range(40) if star.twin(h) < 0)
     with pytest.raises(OperationRefused):
         ghost(star, "flip_left", boundary)

@@ -18,7 +18,7 @@ def grid(n: int) -> HalfEdgeMesh:
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
 @pytest.mark.parametrize("tilt", [False, True])
-def test_it_agrees_with_meshcore(kind, tilt, star, triangles):
+def test_summary_agrees_with_meshwright_core(kind, tilt, star, triangles):
     mesh = star if kind == "quad" else triangles
     if tilt:  # the same mesh in a slanted plane
         points = mesh.points @ np.array([[0.6, 0, 0.8], [0, 1, 0], [-0.8, 0, 0.6]]).T
@@ -36,7 +36,7 @@ def test_it_agrees_with_meshcore(kind, tilt, star, triangles):
     assert found.blocks == (block_count(mesh) if kind == "quad" else None)
 
 
-def test_inverted_elements_are_told_apart(star):
+def test_inverted_elements_are_listed(star):
     inside = np.flatnonzero(~star.boundary())
     star.move(inside[:1], star.points[inside[:1]] + (3.0, 0.0, 0.0))
     found = summarise(star)
@@ -47,13 +47,13 @@ def test_inverted_elements_are_told_apart(star):
     assert found.jacobian.counts.sum() == star.n_elements - len(found.inverted)
 
 
-def test_bins_say_between_which_values_they_lie(star):
+def test_bounds_of_bins(star):
     spread = summarise(star).angle
     assert spread.edges(0) == (0.0, 4.5)
     assert spread.edges(19) == pytest.approx((85.5, 90.0))
 
 
-def test_a_large_mesh_is_measured_part_by_part_and_can_be_called_off():
+def test_measuring_a_large_mesh_can_be_cancelled():
     mesh = grid(200)
     found = summarise(mesh)
     assert found.jacobian.counts[-1] == mesh.n_elements == 40_000

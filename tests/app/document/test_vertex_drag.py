@@ -17,7 +17,7 @@ def board() -> HalfEdgeMesh:
     return HalfEdgeMesh.from_elements(points, [(c, c + 1, c + 6, c + 5) for c in corners])
 
 
-def test_a_vertex_inside_goes_where_the_mouse_is_and_the_mesh_waits(board):
+def test_an_inner_vertex_follows_the_mouse_and_the_mesh_is_unchanged(board):
     drag = Drag(board, [12], 12)
     assert not drag.moved
     drag.to(2.4, 1.7)
@@ -44,7 +44,7 @@ def test_a_boundary_vertex_stays_on_its_side_and_between_its_neighbours(board):
     assert len(drag.folded) == 0
 
 
-def test_on_a_curve_it_follows_the_curve():
+def test_a_boundary_vertex_follows_a_curved_side():
     mesh = meshing.mesh_domain(gallery.shape("disc"), "quad")
     slides = mesh.boundary() & ~mesh.geometric()
     vertex = int(np.flatnonzero(slides)[0])
@@ -56,7 +56,7 @@ def test_on_a_curve_it_follows_the_curve():
     assert abs(np.hypot(*drag.places[0, :2]) - radius) < 0.02 * radius
 
 
-def test_corners_and_locked_vertices_stay_and_say_so(board):
+def test_corners_and_locked_vertices_are_refused(board):
     assert refusal(board, 0) == CORNER
     board.set_locked(12)
     assert refusal(board, 12) == LOCK

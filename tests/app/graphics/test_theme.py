@@ -1,4 +1,4 @@
-"""The themes can be read: contrast of words, and pairs of colours that do not rest on hue alone."""
+"""Themes: contrast of text and markers, and colours for colour-blind people."""
 
 import pytest
 
@@ -18,44 +18,49 @@ def contrast(one: str, other: str) -> float:
 
 
 @pytest.fixture(params=[(name, colours) for name in THEMES for colours in COLOURS])
-def look(request) -> Theme:
+def colours(request) -> Theme:
     return theme(*request.param)
 
 
-def test_words_can_be_read(look):
-    for ink in (look.text, look.muted, look.warning):
-        for ground in (look.panel, look.raised, look.background):
+def test_text_has_enough_contrast(colours):
+    for ink in (colours.text, colours.muted, colours.warning):
+        for ground in (colours.panel, colours.raised, colours.background):
             assert contrast(ink, ground) >= 4.5, (ink, ground)
-    assert contrast(look.accent_text, look.accent) >= 4.5
-    assert contrast(look.warning, look.warning_soft) >= 4.5
-    assert contrast(look.text, look.accent_soft) >= 4.5
+    assert contrast(colours.text, colours.panel) >= 7.0
+    assert contrast(colours.accent_text, colours.accent) >= 4.5
+    assert contrast(colours.warning, colours.warning_soft) >= 4.5
+    assert contrast(colours.text, colours.accent_soft) >= 4.5
 
 
-def test_markers_are_seen_and_their_numbers_can_be_read(look):
-    for disc in (look.plus, look.minus):
-        assert contrast(look.marker_text, disc) >= 3.0  # large and bold
-        assert contrast(disc, look.fill) >= 2.0
+def test_markers_and_their_numbers_have_enough_contrast(colours):
+    for disc in (colours.plus, colours.minus):
+        assert contrast(colours.marker_text, disc) >= 3.0  # large and bold
+        assert contrast(disc, colours.fill) >= 2.0
 
 
-def test_warm_and_cold_differ_in_what_every_eye_sees(look):
+def test_colour_blind_people_can_tell_plus_and_minus_apart(colours):
     """Blue against yellow is the axis that eyes without red or green cones have left."""
 
     def yellow(colour: str) -> float:
         red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
         return (red + green) / 2 - blue
 
-    assert yellow(look.plus) - yellow(look.minus) > 80
+    assert yellow(colours.plus) - yellow(colours.minus) > 80
 
 
-def test_an_unknown_theme_is_refused_in_words():
+def test_unknown_theme_is_refused():
     with pytest.raises(ValueError, match="There is no theme 'mauve'; choose one of light, dark"):
         theme("mauve")
 
 
-def test_every_icon_of_the_style_sheet_is_there(look):
+def test_style_sheet_has_no_open_placeholders(colours):
+    assert "{t." not in style_sheet(colours)
+
+
+def test_icons_of_the_style_sheet_exist(colours):
     import re
     from pathlib import Path
 
-    paths = re.findall(r"url\((.*?)\)", style_sheet(look))
+    paths = re.findall(r"url\((.*?)\)", style_sheet(colours))
     assert paths
     assert [path for path in paths if not Path(path).is_file()] == []

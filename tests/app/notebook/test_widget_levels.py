@@ -8,7 +8,7 @@ from porting import Port, script_agent
 from meshwright.notebook import MeshWidget
 from meshwright.notebook.protocol.level_bridge import Playing
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright_core import MeshError
 
 
@@ -152,7 +152,7 @@ def test_the_agent_answers_on_a_mesh_of_its_own(widget, port):
     play = Playing.of(widget.session).play
     port.ask("level", action="solve")
     assert told(port)["rival"]["standing"] == "asked"
-    assert widget.session.loop.pump(lambda: play.rival.standing is not Standing.ASKED, 20)
+    assert widget.session.loop.pump(lambda: play.rival.standing is not OpponentState.ASKED, 20)
     level = told(port)
     assert level["rival"]["standing"] == "done"
     assert level["rival"]["used"] == len(play.rival.operations) > 0

@@ -9,9 +9,9 @@ from meshwright.assistant.assistant import Assistant
 from meshwright.document.document import Document
 from meshwright.document.operation_preview import choices
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright.puzzles.play import LevelPlay, stars, tally
-from meshwright.puzzles.progress import Best, Progress, usual_path
+from meshwright.puzzles.progress import Best, LevelProgress, usual_path
 from meshwright_core import MeshError
 
 
@@ -23,7 +23,7 @@ class Playing:
         self.document = Document()
         self.assistant = self.assistant_on(self.document)
         self.play = LevelPlay(
-            self.document, self.assistant.hinting, self.assistant_on, Progress(path)
+            self.document, self.assistant.hinting, self.assistant_on, LevelProgress(path)
         )
         self.won = []
         self.play.won.connect(self.won.append)
@@ -71,7 +71,7 @@ def test_stars_are_three_at_par_two_a_little_above_one_beyond():
 
 
 @pytest.mark.parametrize("name", levels.names())
-def test_every_level_can_be_won(playing, name):
+def test_every_level_can_be_solved(playing, name):
     play = playing.play
     play.open(name)
     assert (play.used, play.stars, play.done, play.remark) == (0, 0, False, "")
@@ -116,7 +116,7 @@ def test_more_operations_win_fewer_stars_and_the_best_is_kept(playing):
     assert (play.stars, play.best) == (3, 3)
 
 
-def test_the_agents_operations_win_nothing(playing):
+def test_the_agents_operations_win_no_stars(playing):
     play, document = playing.play, playing.document
     play.open("two-turns")
     playing.solve(by="quad", last=1)
@@ -144,7 +144,7 @@ def test_a_hint_costs_a_star(playing, desk):
 
 
 @pytest.mark.parametrize("action", ["desired", "locked", "geometric", "clean_all", "strip"])
-def test_what_changes_the_task_does_not_count(playing, action):
+def test_steps_that_change_the_task_are_not_allowed(playing, action):
     play, document = playing.play, playing.document
     play.open("three-blocks")
     mesh = document.mesh
@@ -168,7 +168,7 @@ def test_what_changes_the_task_does_not_count(playing, action):
     assert play.stars == 3
 
 
-def test_the_play_says_what_it_refuses(playing):
+def test_refused_steps_have_reasons(playing):
     assert playing.play.refusal("clean_all") == ""
     playing.play.open("three-blocks")
     assert "one by one" in playing.play.refusal("clean_all")
@@ -176,7 +176,7 @@ def test_the_play_says_what_it_refuses(playing):
     assert playing.play.refusal("cleanup") == ""
 
 
-def test_what_is_not_played_is_not_offered(playing):
+def test_excluded_operations_are_not_offered(playing):
     playing.play.open("notch")
     document = playing.play._document
     offers = {str(c.operation): c for c in choices(document.mesh, 0, document.bar)}
@@ -188,24 +188,24 @@ def test_what_is_not_played_is_not_offered(playing):
     assert document.bar is None
 
 
-def test_better_than_par_is_praised(playing, monkeypatch):
+def test_headline_for_fewer_operations_than_par(playing, monkeypatch):
     import dataclasses
 
     play = playing.play
     play.open(dataclasses.replace(levels.load("quarter-turn"), par=2))
     playing.solve()
-    assert (play.stars, play.headline) == (3, "Better than the best we know")
+    assert (play.stars, play.headline) == (3, "Better than the best known")
 
 
-def test_the_agent_plays_on_a_mesh_of_its_own(playing, desk):
+def test_the_agent_solves_a_copy_of_the_level(playing, desk):
     play = playing.play
     play.open("two-flips")
     changes = []
     play.changed.connect(lambda: changes.append(play.rival))
     play.ask_agent()
-    assert play.rival.standing is Standing.ASKED
-    desk.until(lambda: play.rival.standing is not Standing.ASKED)
-    assert play.rival.standing is Standing.DONE
+    assert play.rival.standing is OpponentState.ASKED
+    desk.until(lambda: play.rival.standing is not OpponentState.ASKED)
+    assert play.rival.standing is OpponentState.DONE
     assert changes
     assert len(playing.document.history) == 0
     assert play.rival.operations
@@ -220,7 +220,7 @@ def test_the_agent_plays_on_a_mesh_of_its_own(playing, desk):
     assert play.rival is None
 
 
-def test_the_way_shown_is_the_best_known_before_the_agent_is_asked(playing):
+def test_the_stored_solution_is_shown_before_the_agent_has_one(playing):
     play = playing.play
     play.open("two-turns")
     play.show_answer()
@@ -230,7 +230,7 @@ def test_the_way_shown_is_the_best_known_before_the_agent_is_asked(playing):
     assert (play.stars, playing.won) == (0, [])
 
 
-def test_the_agent_that_breaks_off_can_be_asked_again(playing, desk, monkeypatch):
+def test_a_failed_agent_can_be_started_again(playing, desk, monkeypatch):
     play = playing.play
     play.open("two-turns")
 
@@ -244,12 +244,12 @@ def test_the_agent_that_breaks_off_can_be_asked_again(playing, desk, monkeypatch
 
     monkeypatch.setattr(play, "_make_rival", failing)
     play.ask_agent()
-    desk.until(lambda: play.rival.standing is not Standing.ASKED)
-    assert (play.rival.standing, play.rival.reason) == (Standing.FAILED, "no such policy")
+    desk.until(lambda: play.rival.standing is not OpponentState.ASKED)
+    assert (play.rival.standing, play.rival.reason) == (OpponentState.FAILED, "no such policy")
     monkeypatch.setattr(play, "_make_rival", playing.assistant_on)
     play.ask_agent()
-    desk.until(lambda: play.rival.standing is not Standing.ASKED)
-    assert play.rival.standing is Standing.DONE
+    desk.until(lambda: play.rival.standing is not OpponentState.ASKED)
+    assert play.rival.standing is OpponentState.DONE
 
 
 def test_levels_follow_each_other_to_the_last(playing):
@@ -274,7 +274,7 @@ def test_another_mesh_ends_the_level(playing, strip):
     assert not document.passing
 
 
-def test_a_level_that_is_left_is_a_mesh_like_others(playing):
+def test_leaving_a_level_keeps_its_mesh(playing):
     play, document = playing.play, playing.document
     play.open("two-turns")
     playing.solve(last=1)
@@ -298,16 +298,16 @@ def test_no_step_of_a_level_is_autosaved(playing, tmp_path):
     autosave.close()
 
 
-def test_progress_is_shared_by_all_who_play(tmp_path):
+def test_progress_is_shared_between_processes(tmp_path):
     path = tmp_path / "deep" / "levels.json"
-    one, other = Progress(path), Progress(path)
+    one, other = LevelProgress(path), LevelProgress(path)
     assert other.best("ell") == Best()
     assert one.note("ell", 2, 8)
     assert other.note("star", 3, 4)
     assert one.note("ell", 1, 12) is False
-    assert Progress(path).best("ell") == Best(2, 8)
-    assert Progress(path).best("star") == Best(3, 4)
-    assert Progress(path).stars == 5
+    assert LevelProgress(path).best("ell") == Best(2, 8)
+    assert LevelProgress(path).best("star") == Best(3, 4)
+    assert LevelProgress(path).stars == 5
     assert [file.name for file in path.parent.iterdir()] == ["levels.json"]
 
 
@@ -325,10 +325,10 @@ def test_progress_is_shared_by_all_who_play(tmp_path):
         "[" * 50_000,
     ],
 )
-def test_a_broken_file_is_left_aside(tmp_path, contents):
+def test_a_damaged_file_is_renamed(tmp_path, contents):
     path = tmp_path / "levels.json"
     path.write_text(contents)
-    progress = Progress(path)
+    progress = LevelProgress(path)
     assert progress.best("ell") == Best()
     assert "begin again" in progress.notice
     assert (tmp_path / "levels.broken").read_text() == contents
@@ -336,10 +336,10 @@ def test_a_broken_file_is_left_aside(tmp_path, contents):
     assert json.loads(path.read_text())["levels"] == {"ell": {"stars": 3, "used": 6}}
 
 
-def test_where_nothing_can_be_written_the_play_goes_on(playing, tmp_path):
+def test_a_level_can_be_played_when_progress_cannot_be_written(playing, tmp_path):
     (tmp_path / "file").write_text("")
     play = playing.play
-    play.progress = Progress(tmp_path / "file" / "levels.json")
+    play.progress = LevelProgress(tmp_path / "file" / "levels.json")
     play.open("one-flip")
     playing.solve()
     assert play.stars == 3
@@ -347,6 +347,6 @@ def test_where_nothing_can_be_written_the_play_goes_on(playing, tmp_path):
     assert play.best == 3
 
 
-def test_tests_keep_off_a_persons_own_stars(monkeypatch, tmp_path):
+def test_tests_do_not_touch_the_users_progress(monkeypatch, tmp_path):
     monkeypatch.setenv("MESHWRIGHT_STATE_DIR", str(tmp_path))
     assert usual_path() == tmp_path / "levels.json"

@@ -50,12 +50,12 @@ def test_a_level_is_a_valid_mesh_that_is_not_at_its_goal(level):
     assert level.text.endswith((".", "?"))
 
 
-def test_its_solution_reaches_the_goal_without_a_fold(level):
+def test_solutions_reach_the_goal_without_inverted_elements(level):
     assert played(level) == 0
     assert len(level.solution) == level.par
 
 
-def test_one_operation_fewer_does_not_do_where_that_is_shown_quickly(level):
+def test_par_is_proved_where_the_proof_is_quick(level):
     if not level.proved or level.par > 3:
         assert not fewest(level.mesh(), level.goal, level.most, deepest=2, slots=1 << 16).sequences
         return
@@ -70,7 +70,7 @@ def test_the_star_can_never_be_perfect():
     assert (star.par, star.proved) == (4, True)
 
 
-def test_the_shortest_way_is_found_whatever_the_score_does_on_it():
+def test_the_shortest_solution_is_found_even_if_the_score_rises():
     points = np.array([(i, j) for j in range(4) for i in range(5)], float)
     cells = np.array([(i, i + 1, i + 6, i + 5) for j in range(3) for i in range(5 * j, 5 * j + 4)])
     mesh = HalfEdgeMesh.from_elements(points, cells)
@@ -89,7 +89,7 @@ def test_the_shortest_way_is_found_whatever_the_score_does_on_it():
     assert (mesh.elements() == before).all()
 
 
-def test_a_search_that_is_cut_short_says_how_far_it_came():
+def test_a_stopped_search_reports_its_result():
     level = levels.load("notch")
     answer = fewest(level.mesh(), level.goal, nodes=100, slots=1 << 12)
     assert answer.sequences == ()
@@ -112,22 +112,27 @@ def broken(**changes):
 @pytest.mark.parametrize(
     ("contents", "why"),
     [
-        ("", "no sound level"),
-        ("[]", "not an object"),
-        ("[" * 100_000, "no sound level"),
+        ("", "no valid level"),
+        ("[]", "expected object, got array"),
+        ("[" * 100_000, "no valid level"),
         (broken(version=9), "version"),
-        (broken(kind="hex"), "kind is 'hex'"),
-        (broken(title=""), "'title' is no text"),
-        (broken(points=[[0, 0], [1]]), "'points' has not 2 numbers"),
-        (broken(points=[[0, True]]), "'points' has not 2 numbers"),
-        (broken(points=7), "'points' is no list"),
+        (broken(kind="hex"), "'kind' is wrong"),
+        (broken(title=""), "'title' is wrong"),
+        (broken(points=[[0, 0], [1]]), "'points[1]' is wrong: expected array of length 2"),
+        (broken(points=[[0, True]]), "'points[0][1]' is wrong: expected float, got bool"),
+        (broken(points=7), "'points' is wrong: expected array, got int"),
         (broken(elements=[[0, 1, 9999]]), "9999"),
-        (broken(elements=[[0, 1, 2]] * 2000), "more than 1000"),
-        (broken(corners=[-1]), "no vertex -1"),
-        (broken(corners=["a"]), "'corners'"),
+        (
+            broken(elements=[[0, 1, 2]] * 2000),
+            "array of length <= 1000",
+        ),
+        (broken(corners=[-1]), "'corners[0]' is wrong: expected int >= 0"),
+        (broken(corners=[9999]), "no vertex 9999"),
+        (broken(elements=[[0, 1]]), "3 vertices in each row"),
+        (broken(corners=["a"]), "'corners[0]' is wrong: expected int, got str"),
         (broken(desired=[6]), "'desired'"),
         (broken(goal=-1), "'goal'"),
-        (broken(solution=[["flip", 0]]), "'solution'"),
+        (broken(solution=[["flip", 0]]), "'solution[0]'"),
         (broken(solution=[["global_split", 0, 1]]), "'solution'"),
         (broken(solution=[["flip", 0, 18]]), "no half-edge"),
         (broken(solution=[]), "does not reach the goal"),
@@ -145,14 +150,14 @@ def test_a_bad_file_is_refused_with_one_sentence(tmp_path, contents, why):
     assert "\n" not in said
 
 
-def test_a_name_that_is_none_is_told_from_those_that_are():
+def test_an_unknown_name_is_refused_with_suggestions():
     with pytest.raises(MeshError, match="did you mean two-flips"):
         levels.load("two-flip")
     with pytest.raises(MeshError, match="there are one-flip"):
         levels.load("zzz")
 
 
-def test_a_goal_may_ask_for_few_elements_too():
+def test_a_goal_may_limit_the_elements():
     level = levels.load("three-blocks")
     mesh = level.mesh()
     assert mesh.score == level.goal

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshwright.sources.polygon_checks import Loop
+from meshwright.sources.polygon_checks import PolygonLoop
 from meshwright.sources.polygon_sketch import Sketch
 from meshwright.sources.snapping import Snapper
 from meshwright_core import MeshError
@@ -33,7 +33,7 @@ def test_a_square_with_a_hole_becomes_a_domain():
     assert [len(flags) for flags in domain.loop_corners] == [4, 3]
 
 
-def test_what_to_do_next_is_said():
+def test_hints_on_the_next_corner():
     sketch = Sketch()
     assert sketch.words == "Click to place the first corner of the outline."
     sketch.add((0, 0))
@@ -72,7 +72,7 @@ def test_what_to_do_next_is_said():
         ([[(0, 0), (1, 1), (2, 2)]], "itself", None),
     ],
 )
-def test_what_is_wrong_is_said_and_marked(loops, words, edges):
+def test_problems_have_a_sentence_and_marks(loops, words, edges):
     sketch = drawn(*loops)
     assert not sketch.complete
     assert words in sketch.words
@@ -81,7 +81,7 @@ def test_what_is_wrong_is_said_and_marked(loops, words, edges):
         sketch.domain()
 
 
-def test_an_edge_that_would_cross_is_seen_before_it_is_drawn():
+def test_a_crossing_edge_is_detected_before_it_is_added():
     sketch = drawn([(0, 0), (4, 0), (4, 4)], close=False)
     assert sketch.trial((0, 4)) is None
     assert "crosses" in sketch.trial((2, -2)).words
@@ -93,7 +93,7 @@ def test_corners_in_line_are_allowed():
     assert drawn([(0, 0), (2, 0), (4, 0), (4, 4), (0, 4)]).complete
 
 
-def test_every_edit_is_taken_back_and_done_again():
+def test_every_edit_is_undone_and_redone():
     sketch = drawn(SQUARE, [(1, 1), (2, 1), (2, 2)])
     sketch.set(0, 1, (5, 0))
     sketch.insert(0, 2, (5, 2))
@@ -118,10 +118,10 @@ def test_taking_back_opens_the_loop_then_takes_its_corners_then_the_hole():
     assert sketch.open and len(sketch.loops[1].corners) == 3
     for _ in range(4):
         sketch.take_back()
-    assert sketch.loops == (Loop(tuple(SQUARE), True),)
+    assert sketch.loops == (PolygonLoop(tuple(SQUARE), True),)
 
 
-def test_a_loop_that_loses_too_many_corners_opens_or_goes():
+def test_a_loop_of_fewer_than_three_corners_opens_or_is_removed():
     sketch = drawn(SQUARE, [(1, 1), (2, 1), (2, 2)], [(3, 3), (3.5, 3), (3, 3.5)])
     sketch.remove(1, 0)
     assert len(sketch.loops) == 2 and not sketch.open
@@ -129,7 +129,7 @@ def test_a_loop_that_loses_too_many_corners_opens_or_goes():
     assert len(sketch.loops) == 2 and sketch.open
 
 
-def test_the_same_place_twice_adds_nothing():
+def test_a_repeated_corner_is_not_added():
     sketch = drawn([(1, 1)], close=False)
     sketch.add((1, 1))
     assert sketch.loops[0].corners == ((1, 1),)
@@ -165,7 +165,7 @@ PLACES = st.tuples(st.integers(0, 5), st.integers(0, 5))
     st.lists(PLACES, min_size=3, max_size=7, unique=True),
     st.lists(PLACES, min_size=3, max_size=4, unique=True),
 )
-def test_what_is_complete_is_a_domain_and_the_other_way_round(outline, hole):
+def test_a_sketch_is_complete_exactly_if_it_is_a_domain(outline, hole):
     sketch = drawn(outline, hole)
     try:
         Domain(outline, [hole])

@@ -3,13 +3,15 @@
 import json
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import meshwright
 import meshwright_core
-from meshwright.sources.resolve import mesh
+from meshwright.document.document import Document
+from meshwright.sources.resolve import domain, mesh, resolve
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery
 
@@ -46,13 +48,13 @@ def test_a_mesh_is_copied():
         ([[0, 0], [1]], None, "not a list of"),
     ],
 )
-def test_what_is_no_source_is_refused_in_a_sentence(source, kind, sentence):
+def test_unusable_sources_are_refused_in_one_sentence(source, kind, sentence):
     with pytest.raises(MeshError, match=sentence):
         mesh(source, kind)
 
 
 def test_a_mesh_of_the_other_kind_is_refused():
-    with pytest.raises(MeshError, match="of kind 'quad', not 'tri'"):
+    with pytest.raises(MeshError, match="mesh of quads, not of triangles"):
         mesh(mesh("star"), "tri")
 
 
@@ -62,7 +64,7 @@ def test_every_name_of_the_package_is_there(name):
     assert name in dir(meshwright)
 
 
-def test_a_name_that_is_not_there():
+def test_an_unknown_name_of_the_package_is_refused():
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = meshwright.nothing
 
@@ -71,3 +73,35 @@ def test_importing_the_package_imports_little():
     code = "import sys, meshwright; print([m for m in ('numpy', 'qtpy') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_resolve_gives_documents_and_domains(tmp_path, monkeypatch):
+    star = mesh("star")
+    document = Document(star, "mine")
+    assert resolve(document) is document
+    assert resolve(star).mesh is star
+    assert resolve(SimpleNamespace(mesh=star)).mesh is star
+    assert resolve("star").name == "star"
+    document.submit("flip_left", next(h for h in range(96) if document.check("flip_left", h)))
+    document.save(tmp_path / "a.meshwright")
+    opened = resolve(str(tmp_path / "a.meshwright"), "other")
+    assert (opened.name, len(opened.history)) == ("other", 1)
+    document.save(tmp_path / "b.vtk")
+    opened = resolve(tmp_path / "b.vtk")
+    assert (opened.name, opened.path, opened.modified) == ("b", tmp_path / "b.vtk", False)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "star").mkdir()
+    assert resolve("star").name == "star"  # a folder does not hide the shape
+
+
+@pytest.mark.parametrize("source", [None, " ", SimpleNamespace(mesh=None)])
+def test_sources_without_a_mesh(source):
+    with pytest.raises(MeshError, match="There is no"):
+        resolve(source)
+
+
+def test_domain_of_a_mesh_file_is_refused(tmp_path):
+    with pytest.raises(MeshError, match=r"a\.vtk: a file of a shape ends in one of"):
+        domain(tmp_path / "a.vtk")
+    with pytest.raises(MeshError, match="not a shape"):
+        domain(mesh("star"))

@@ -1,4 +1,4 @@
-"""Exercises judge what students write: blank, wrong in many ways, right; lessons are copied out."""
+"""Checks of blank, wrong and right answers; listing and copying of lessons."""
 
 import json
 import subprocess
@@ -11,15 +11,15 @@ from meshwright import cli
 from meshwright.cli.commands import lessons as command
 from meshwright.teaching import Answer, exercise, lessons, patch
 from meshwright.teaching.exercises.answer_parsing import (
-    called,
     choice,
     mesh_of,
-    whole,
-    wholes,
+    result_of,
+    whole_number,
+    whole_numbers,
     yes_or_no,
 )
 from meshwright.teaching.exercises.example_meshes import PATCHES
-from meshwright.teaching.exercises.exercise import TOPICS, Blank, Wrong, declare
+from meshwright.teaching.exercises.exercise import MODULES, NoAnswer, WrongAnswer, declare
 from meshwright.teaching.exercises.result import MIME
 from meshwright.teaching.lessons import ExerciseCell
 from meshwright_core import MeshError
@@ -49,7 +49,7 @@ JUNK = (
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_whatever_is_given_is_an_answer(name):
+def test_check_never_raises(name):
     found = exercise(name)
     code = found.judge.__code__
     for junk in JUNK:
@@ -60,14 +60,14 @@ def test_whatever_is_given_is_an_answer(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_wrong_number_of_answers_is_said(name):
+def test_wrong_number_of_answers(name):
     answer = exercise(name).check(*[1] * 7)
     assert answer.state == "wrong"
     assert "7" in answer.sentence
 
 
 @pytest.mark.parametrize("blank", [..., None, "", "  ", [..., 1], {"a": ...}, (1, [None])])
-def test_dots_are_no_answer(blank):
+def test_blank_answers(blank):
     answer = exercise("1.1").check(blank)
     assert answer.state == "blank"
     assert not answer
@@ -75,16 +75,16 @@ def test_dots_are_no_answer(blank):
     assert exercise("1.1").check().state == "blank"
 
 
-def test_a_function_without_a_body_is_no_answer():
+def test_function_without_a_body_is_blank():
     assert exercise("1.4").check(lambda mesh, h: ...).state == "blank"
     assert exercise("1.4").check(lambda mesh, h: None).state == "blank"
 
 
-def test_an_untouched_mesh_is_no_answer():
+def test_unedited_mesh_is_blank():
     assert exercise("1.6").check(patch("flipped grid")).state == "blank"
 
 
-def test_an_answer_shows_itself():
+def test_display_of_an_answer():
     answer = exercise("1.2").check(4)
     assert answer.passed
     bundle = answer._repr_mimebundle_()
@@ -94,17 +94,17 @@ def test_an_answer_shows_itself():
     json.dumps(bundle)
 
 
-def test_what_a_student_writes_is_not_markup():
+def test_answers_are_escaped_in_html():
     answer = exercise("1.1").check("<script>alert(1)</script>")
     assert "<script" not in answer._repr_html_()
 
 
-def test_numbers_in_sentences_get_a_true_minus():
+def test_minus_signs_in_sentences():
     assert "\u22124" in Answer("2.1", "wrong", "It was -4, not non-negative.")._repr_html_()
     assert "non-negative" in Answer("2.1", "wrong", "It was -4, not non-negative.")._repr_html_()
 
 
-def test_an_unknown_exercise_is_said():
+def test_unknown_exercise():
     exercise("1.1")
     with pytest.raises(LookupError, match=r"no exercise '1\.77'"):
         exercise("1.77")
@@ -114,7 +114,7 @@ def test_an_unknown_exercise_is_said():
         exercise(3)
 
 
-def test_every_exercise_has_a_solution_that_is_code():
+def test_solutions_compile():
     for name in NAMES:
         solution = exercise(name).solution()
         compile(solution.code, name, "exec")
@@ -122,41 +122,40 @@ def test_every_exercise_has_a_solution_that_is_code():
         assert "<pre" in solution._repr_html_()
 
 
-def test_nudges_do_not_shout():
-    for name in NAMES:
-        assert 20 <= len(exercise(name).nudge) <= 160
-        assert exercise(name).nudge[-1] in ".?"
-
-
 def test_declared_checks_are_found_by_name():
     @declare("9.9", "Try it.")
     def judge(answer):
         if answer == 1:
-            raise Wrong("Not that.")
+            raise WrongAnswer("Not that.")
         if answer == 2:
-            raise Blank
+            raise NoAnswer
         return "So it is."
 
     states = [exercise("9.9").check(n).state for n in (1, 2, 3)]
     assert states == ["wrong", "blank", "right"]
 
 
-def test_reading_what_is_given():
-    assert whole(np.int64(3)) == whole(3.0) == 3
-    assert wholes(np.array([1, 2]), 2) == [1, 2]
+def test_answer_parsing():
+    assert whole_number(np.int64(3)) == whole_number(3.0) == 3
+    assert whole_numbers(np.array([1, 2]), 2) == [1, 2]
     assert yes_or_no(" No ") is False
     assert yes_or_no(np.True_) is True
     assert choice("B", "ab") == "b"
     assert mesh_of(patch("fan")).k == 3
-    for wrong in (lambda: whole(True), lambda: whole("1"), lambda: wholes(3), lambda: called(3)):
-        with pytest.raises(Wrong):
+    for wrong in (
+        lambda: whole_number(True),
+        lambda: whole_number("1"),
+        lambda: whole_numbers(3),
+        lambda: result_of(3),
+    ):
+        with pytest.raises(WrongAnswer):
             wrong()
-    with pytest.raises(Wrong, match="ZeroDivisionError"):
-        called(lambda: 1 / 0)
+    with pytest.raises(WrongAnswer, match="ZeroDivisionError"):
+        result_of(lambda: 1 / 0)
 
 
 @pytest.mark.parametrize("name", PATCHES)
-def test_patches_are_sound(name):
+def test_patches_are_valid(name):
     mesh = patch(name)
     mesh.validate()
     assert mesh.optimum == 0
@@ -166,12 +165,12 @@ def test_patches_are_sound(name):
         assert len(quality.inverted(mesh)) == 0
 
 
-def test_an_unknown_patch_is_said():
+def test_unknown_patch():
     with pytest.raises(MeshError, match="did you mean hexagon"):
         patch("hexagn")
 
 
-def test_a_solution_takes_the_place_of_the_blank():
+def test_solution_replaces_the_blank_answer():
     cell = ExerciseCell("1.1", 'answer = ...\nmw.exercise("1.1").check(answer)', "", ())
     assert cell.answered("answer = 96") == 'answer = 96\nmw.exercise("1.1").check(answer)'
 
@@ -179,7 +178,7 @@ def test_a_solution_takes_the_place_of_the_blank():
 def test_teaching_needs_neither_torch_nor_qt():
     code = "import meshwright.teaching, meshwright.teaching.lessons, sys; print(*sys.modules)"
     topics = "".join(
-        f"; import meshwright.teaching.exercises.{topic}" for topic in list(TOPICS.values())[:4]
+        f"; import meshwright.teaching.exercises.{topic}" for topic in list(MODULES.values())[:4]
     )
     done = subprocess.run(
         [sys.executable, "-c", code.replace("; print", f"{topics}; print")],
@@ -227,7 +226,7 @@ def test_lessons_are_copied_and_not_overwritten(tmp_path, capsys):
     assert {path.name for path in folder.iterdir()} == names
 
 
-def test_a_missing_jupyterlab_is_said(tmp_path, monkeypatch, capsys):
+def test_missing_jupyterlab_is_reported(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "find_spec", lambda name: None)
     _, out, _ = run(tmp_path, capsys=capsys)
     assert out.endswith(f"not installed here: {command.INSTALL}\n")
@@ -237,7 +236,7 @@ def test_a_missing_jupyterlab_is_said(tmp_path, monkeypatch, capsys):
     ("words", "reason"),
     [(["a-file"], "not a folder"), (["a-file/below"], "cannot be made"), ([""], "is empty")],
 )
-def test_bad_folders_are_one_sentence(words, reason, tmp_path, monkeypatch, capsys):
+def test_bad_folders_are_refused_in_one_sentence(words, reason, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a-file").write_text("x")
     code, out, err = run(*words, capsys=capsys)

@@ -21,7 +21,7 @@ def installed(monkeypatch, *points: EntryPoint) -> None:
     )
 
 
-def squares(mesh):
+def squares(mesh, name):
     """A drawer."""
     return {"image/svg+xml": f"<svg>{mesh.n_elements}</svg>"}, {"image/svg+xml": {"alt": "grid"}}
 

@@ -1,6 +1,6 @@
-"""The desktop measured: how soon the window is there, and how soon it answers.
+"""Desktop benchmarks: start-up time of the window, and response times.
 
-Every measurement is made in a process of its own that drives the window by Qt's own events. A
+Every measurement is made in a separate process that drives the window by Qt's own events. A
 display is needed; where there is none and Xvfb is installed, a virtual one is started.
 """
 
@@ -14,7 +14,7 @@ import time
 from typing import Any
 
 from meshwright.benchmarks.desktop.display import display
-from meshwright.console import Update
+from meshwright.console import Update, no_update
 
 SUMMARY = "start of the window, and its answers to mouse and keys"
 SIZES = (1_000, 10_000, 100_000)
@@ -25,9 +25,7 @@ LARGEST = 1_000_000
 LONGEST = 400.0
 
 
-def run(
-    seed: int = 0, quick: bool = False, update: Update = lambda done, remark: None
-) -> dict[str, Any]:
+def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[str, Any]:
     """Seconds from the start of a process to the first paint and to the mesh on the screen, and
     milliseconds from an event to what is drawn for it.
 
@@ -35,8 +33,8 @@ def run(
     Keys: ``start`` (``first_paint_s``, ``mesh_drawn_s``, ``kernels_ready_s``, and what was loaded
     at the first paint), ``answers`` by number of quads (``hover_ms``: mouse move to painted
     half-edge, with the slowest; ``operation_ms``: key to the frame on the screen, split into the
-    ``document``'s share, ``prepare`` (scene and overlay), ``frame`` (VTK) and ``show`` (Qt puts the
-    window together); ``frames_per_hover``, which shall be 0),
+    ``document``'s share, ``prepare`` (scene and overlay), ``frame`` (VTK) and ``show`` (Qt composes
+    the window); ``frames_per_hover``, which should be 0),
     ``play`` (operations and frames a second while the agent plays, and how long the window takes to
     answer a mouse move meanwhile), ``million`` (seconds to open, milliseconds to hover and edit).
     Raises RuntimeError without a display.
@@ -66,7 +64,7 @@ def _probe(what: str, environment: dict[str, str], *numbers: int) -> dict[str, A
     """
     command = [sys.executable, "-m", "meshwright.benchmarks.desktop.probe", what, repr(time.time())]
     command += [str(number) for number in numbers]
-    with tempfile.TemporaryDirectory() as home:  # nobody's settings are read or written
+    with tempfile.TemporaryDirectory() as home:  # the user's settings are neither read nor written
         apart = {**environment, "XDG_CONFIG_HOME": home, "XDG_STATE_HOME": home}
         done = subprocess.run(
             command, env=apart, capture_output=True, text=True, timeout=LONGEST, check=False

@@ -1,4 +1,4 @@
-"""A screen to measure windows on: the one that is there, or a virtual one."""
+"""Provides a display for measuring windows: the existing one, or a virtual one."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def display(size: str = "1920x1200") -> Iterator[dict[str, str]]:
     server = subprocess.Popen(command, pass_fds=(write,), stderr=subprocess.DEVNULL)
     os.close(write)
     try:
-        with os.fdopen(read) as told:
-            environment["DISPLAY"] = ":" + told.readline().strip()
+        with os.fdopen(read) as pipe:
+            environment["DISPLAY"] = ":" + pipe.readline().strip()
         yield environment
     finally:
         server.terminate()

@@ -1,14 +1,16 @@
-"""Measurements of the window in a process of its own: ``python -m`` this, WHAT, BEGAN, numbers.
+"""Measurements of the window, run as ``python -m`` this module with WHAT, BEGAN and numbers.
 
 Prints one JSON object.
 """
 
 from __future__ import annotations
 
+import itertools
 import json
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -17,14 +19,14 @@ import numpy as np
 HOVERS, OPERATIONS = 60, 15
 PLAY_SECONDS = 6.0
 PLAYED_SPEED = 20.0
-"""Operations a second that the agent is asked for."""
+"""Speed of the agent in operations per second."""
 KERNELS_S = 300.0
 SCRAMBLES = 50
-"""One in so many elements gets an operation before the window opens: meshes are never regular."""
+"""One in this many elements gets an operation first, so that the mesh is irregular."""
 
 
 def start(began: float, *numbers: int) -> dict[str, Any]:
-    """Open the window on the star and note when what is there."""
+    """Open the window on the star and record when each part is ready."""
     from qtpy.QtCore import QEvent, QObject
 
     from meshwright.desktop.main_window.startup import application, open_window
@@ -145,7 +147,7 @@ def _irregular(mesh: Any) -> int:
 
 
 def _hover(app: Any, window: Any, count: int) -> list[float]:
-    """Milliseconds from a mouse move until what it asks of the overlay has been painted."""
+    """Milliseconds from a mouse move until the overlay has been painted."""
     from qtpy.QtCore import QEvent, QObject, QPoint
     from qtpy.QtTest import QTest
 
@@ -164,20 +166,25 @@ def _hover(app: Any, window: Any, count: int) -> list[float]:
         before, halfedge, at = painted[0], window.document.hover, time.perf_counter()
         while window.document.hover == halfedge:  # a move within one half-edge paints nothing
             at = time.perf_counter()
-            _hover.step += 1
-            x = 200 + 17 * _hover.step % 300
-            QTest.mouseMove(plotter, QPoint(x, 200 + 11 * _hover.step % 200))
-        _spin(app, lambda before=before: painted[0] > before)
+            step = next(_steps)
+            x = 200 + 17 * step % 300
+            QTest.mouseMove(plotter, QPoint(x, 200 + 11 * step % 200))
+        _spin(app, partial(_above, painted, before))
         times.append(1000.0 * (time.perf_counter() - at))
     overlay.removeEventFilter(watch)
     return times
 
 
-_hover.step = 0
+def _above(counter: list[int], before: int) -> bool:
+    return counter[0] > before
+
+
+_steps = itertools.count(1)
+"""Positions of the mouse go on from one measurement to the next."""
 
 
 def _operate(app: Any, window: Any) -> dict[str, float]:
-    """Medians in milliseconds from a key to the drawn operation, and what the time went into."""
+    """Medians in milliseconds from a key to the drawn operation, in total and by part."""
     from qtpy.QtCore import QPoint, Qt
     from qtpy.QtTest import QTest
 
@@ -231,7 +238,7 @@ def _count_frames(window: Any) -> list[int]:
 
 
 def _frame(app: Any, window: Any) -> None:
-    """Let the event loop run until the plotter has drawn what is there now."""
+    """Run the event loop until the plotter has drawn the present state."""
     frames = _count_frames(window)
     _spin(app, lambda: bool(frames[0]))
 
@@ -245,7 +252,7 @@ def _spin(app: Any, condition: Callable[[], bool], seconds: float = 60.0) -> Non
 
 
 if __name__ == "__main__":
-    _measurement = {"start": start, "answer": answer, "play": play}[sys.argv[1]]
+    _measurement: Any = {"start": start, "answer": answer, "play": play}[sys.argv[1]]
     sys.stdout.write(
         json.dumps(_measurement(float(sys.argv[2]), *(int(n) for n in sys.argv[3:]))) + "\n"
     )

@@ -1,4 +1,4 @@
-"""The notebook's widget measured, in JupyterLab and a real Chromium.
+"""Benchmarks of the notebook widget, in JupyterLab and Chromium.
 
 A real mouse clicks at half-edges all over a scrambled mesh that is wholly in view, and the page
 notes when the click came, when the request went out, when the answer was there, and when a frame
@@ -13,9 +13,9 @@ from typing import Any
 
 from meshwright.benchmarks.notebook.chromium import browser
 from meshwright.benchmarks.notebook.jupyterlab import LabNotebook
-from meshwright.benchmarks.notebook.probe import NOTING, Probe
+from meshwright.benchmarks.notebook.probe import NOTING, WidgetProbe
 from meshwright.benchmarks.notebook.servers import jupyterlab
-from meshwright.console import Update
+from meshwright.console import Update, no_update
 
 SUMMARY = "the notebook's widget in JupyterLab: click to redrawn, panning, bytes sent"
 SIZES = (100, 1_000, 10_000)
@@ -23,12 +23,10 @@ SIZES = (100, 1_000, 10_000)
 CLICKS = 40
 QUICK = 3
 SECONDS_OF_PANNING = 3.0
-WINDOW = {"width": 1280, "height": 1000}
+WINDOW: Any = {"width": 1280, "height": 1000}
 
 
-def run(
-    seed: int = 0, quick: bool = False, update: Update = lambda done, remark: None
-) -> dict[str, Any]:
+def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[str, Any]:
     """Medians by number of elements; ``quick`` takes the smaller meshes and a few clicks.
 
     Keys of each size: ``click_to_redrawn_ms`` from the mouse button to the frame, with its parts
@@ -47,7 +45,7 @@ def run(
         notebook = LabNotebook(page, server)
         for size in sizes:
             update(0, f"{size:,} elements")
-            probe = Probe(notebook, size, seed)
+            probe = WidgetProbe(notebook, size, seed)
             clicks = [probe.click() for _ in range((QUICK if quick else CLICKS) + 2)][2:]
             results[f"{size:,} elements"] = {
                 "click_to_redrawn_ms": shares([click.milliseconds for click in clicks]),

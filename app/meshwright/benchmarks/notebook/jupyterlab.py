@@ -77,7 +77,7 @@ class LabNotebook:
         self.open()
 
     def open(self) -> None:
-        """Load the page, or load it again: the kernel goes on."""
+        """Load or reload the page; the kernel keeps running."""
         address = f"{self._server.url}/lab/tree/{self.name}?token={self._server.token}"
         self.page.goto(address, wait_until="domcontentloaded")
         self.wait()
@@ -87,17 +87,17 @@ class LabNotebook:
         self.page.wait_for_function(READY, timeout=60_000)
 
     def fill(self, *sources: str) -> None:
-        """Put cells of code in the place of those that are there."""
+        """Replace the cells of the notebook."""
         self.page.evaluate(FILL, [list(sources), "code"])
 
     def run(self, number: int = 0) -> None:
-        """Run one cell as a person does; RuntimeError if it raised."""
+        """Run one cell by its keyboard shortcut; RuntimeError if it raised."""
         errors = self.page.evaluate(RUN, number)
         if errors:
             raise RuntimeError(errors[0])
 
     def show(self, *sources: str) -> None:
-        """Put these cells there and run them one after the other."""
+        """Replace the cells and run them in order."""
         self.fill(*sources)
         for number in range(len(sources)):
             self.run(number)

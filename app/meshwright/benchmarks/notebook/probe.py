@@ -1,4 +1,4 @@
-"""What one click costs, told by the page, by its socket and by the kernel."""
+"""Times and traffic of one click, measured in the page, its socket and the kernel."""
 
 from __future__ import annotations
 
@@ -121,11 +121,11 @@ class Click:
     all_bytes: int
 
 
-class Probe:
+class WidgetProbe:
     """A widget with a scrambled mesh of ``size`` quads, ready to be clicked at."""
 
     def __init__(self, notebook: LabNotebook, size: int, seed: int) -> None:
-        """Show the widget in the place of what the notebook showed before."""
+        """Replace the notebook's cells by one that shows the widget."""
         self.notebook = notebook
         self.page = notebook.page
         self.page.evaluate("() => { noted.traffic.length = 0; }")
@@ -135,7 +135,7 @@ class Probe:
         self.state_bytes = [row["bytes"] for row in traffic if row["word"] == "state"][-1]
 
     def click(self) -> Click:
-        """Flip an edge somewhere by a real click; returns when the widget is at rest again."""
+        """Flip an edge by a real click; returns when the widget is idle again."""
         halfedge = self.notebook.ask("somewhere()")
         card = self.card
         card.hover(halfedge)
@@ -150,7 +150,7 @@ class Probe:
         sent = next(row["at"] for row in found["traffic"] if row["word"] == "operate")
         patch = next(row for row in found["traffic"] if row["word"] in ("patch", "state"))
         python = 1e3 * self.notebook.ask("spent[0][1] - spent[0][0]")
-        self.notebook.ask("None", "widget.undo()")  # the next one meets the same mesh
+        self.notebook.ask("None", "widget.undo()")  # the next click finds the same mesh
         card.await_head(cursor=0)
         total = found["painted"] - found["released"]
         milliseconds = {
@@ -164,8 +164,9 @@ class Probe:
         return Click(milliseconds, patch["bytes"], everything)
 
     def pan(self, seconds: float) -> dict[str, Any]:
-        """Drag the picture round and round; painted frames per second, and the slowest of them."""
+        """Drag the view in circles; painted frames per second, and the slowest frame."""
         box = self.card.root.locator(".mw-stage").bounding_box()
+        assert box is not None
         x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
         self.page.mouse.move(x, y)
         self.page.mouse.down()

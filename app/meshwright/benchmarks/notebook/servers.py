@@ -1,6 +1,6 @@
-"""A JupyterLab or a marimo of our own: a free port, temporary folders, ended whatever happens.
+"""Starts JupyterLab or marimo on a free port with temporary folders, and always ends it.
 
-Nothing of the person's own settings is read or written, and nothing outside this machine is asked.
+The user's settings are neither read nor written, and no other machine is contacted.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ KEEPER = """
 import os, subprocess, sys, threading
 server = subprocess.Popen(sys.argv[1:], stdin=subprocess.DEVNULL)
 threading.Thread(target=lambda: os._exit(server.wait()), daemon=True).start()
-sys.stdin.read()  # ends when whoever has started us closes it, or dies
+sys.stdin.read()  # ends when the parent process closes it or ends
 server.terminate()
 try:
     server.wait(10)
 except subprocess.TimeoutExpired:
     server.kill()
 """
-"""Ends a server when the process that wanted it is gone, even if that was killed."""
+"""Ends a server when the process that started it has ended, even if it was killed."""
 MARIMO = """[runtime]
 auto_instantiate = true
 auto_reload = "off"
@@ -123,7 +123,7 @@ def need(module: str, title: str) -> None:
 
 
 def free_port() -> int:
-    """A port that nobody listens at."""
+    """A free port."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         port: int = listener.getsockname()[1]
@@ -140,13 +140,13 @@ def apart(home: Path, own: dict[str, Path]) -> dict[str, str]:
 @contextmanager
 def running(command: Sequence[str], environment: dict[str, str], log: Path, url: str) -> Iterator:
     """Run a server until the block ends; the block begins when ``url`` answers."""
-    with log.open("w") as said:
+    with log.open("w") as output:
         process = subprocess.Popen(
             [sys.executable, "-c", KEEPER, *command],
             cwd=log.parent,  # python -m looks into the present folder first
             env=environment,
             stdin=subprocess.PIPE,
-            stdout=said,
+            stdout=output,
             stderr=subprocess.STDOUT,
             start_new_session=True,
         )
@@ -173,7 +173,7 @@ def _await(process: subprocess.Popen[bytes], url: str, log: Path) -> None:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """Ask the server to leave, with its kernels; then see to it."""
+    """Shut the server and its kernels down; kill it if it does not end."""
     if process.stdin is not None:
         process.stdin.close()
     try:

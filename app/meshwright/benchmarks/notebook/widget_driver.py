@@ -1,4 +1,4 @@
-"""The widget's card as a person meets it: real places on the screen, real events, real pixels."""
+"""Drives the widget in a page by real mouse and key events, and reads its pixels."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
 MOMENT = 20_000
-"""Milliseconds to wait for anything that should come at once, on a busy machine too."""
+"""Timeout, in milliseconds, of anything that should happen at once."""
 
 
 class Card:
@@ -31,7 +31,7 @@ class Card:
         self.root.wait_for(timeout=MOMENT)
         self.until("root => root.dataset.painted !== undefined")
 
-    # What it says of itself
+    # State of the widget
 
     def look(self, function: str, given: Any = None) -> Any:
         """Value of a JavaScript function of the card's element and of ``given``."""
@@ -56,7 +56,7 @@ class Card:
         return found
 
     def await_head(self, **wanted: Any) -> None:
-        """Wait until the head says so and the mesh of that revision is painted."""
+        """Wait until the head has these values and the mesh of that revision is painted."""
         self.until(
             "(root, wanted) => { const { mirror } = root.meshwright; return"
             " Object.entries(wanted).every(([name, value]) => mirror.head[name] === value)"
@@ -71,13 +71,13 @@ class Card:
     # Where things are, and what is done there
 
     def place(self, halfedge: int) -> tuple[float, float]:
-        """Where on the page a half-edge is to be pointed at, in CSS pixels of the viewport."""
+        """Position of a half-edge in CSS pixels of the viewport."""
         self.root.scroll_into_view_if_needed()
         at = self.look("(root, h) => root.meshwright.screenOf(h)", halfedge)
         return at["x"], at["y"]
 
     def hover(self, halfedge: int) -> None:
-        """Move the mouse to a half-edge, as a person does: not in one jump."""
+        """Move the mouse to a half-edge in several steps."""
         self.page.mouse.move(*self.place(halfedge), steps=2)
         self.until("(root, h) => Number(root.dataset.halfedge) === h", halfedge)
 
@@ -97,7 +97,7 @@ class Card:
             self.page.keyboard.press(key)
 
     def button(self, name: str) -> Locator:
-        """A button of the card by the words on it, or by what a screen reader begins with."""
+        """A button of the card by its text, or by the start of its accessible name."""
         return self.root.get_by_role("button", name=re.compile(rf"^{name}\b")).first
 
     def agent(self, name: str) -> Locator:
@@ -114,7 +114,7 @@ class Card:
         return self.root.locator(".mw-popup .mw-row", has_text=self.title(operation))
 
     def title(self, operation: str) -> str:
-        """What the operation is called."""
+        """The title of the operation."""
         found: str = self.look(
             "(root, name) => root.meshwright.mirror.catalogue"
             ".find(row => row.operation === name).title",
@@ -123,13 +123,13 @@ class Card:
         return found
 
     def arm(self, operation: str) -> None:
-        """Let each click on the mesh do this operation, by a click on its row."""
+        """Choose the operation that clicks on the mesh do, by a click on its row."""
         row = self.row(operation)
         if row.get_attribute("aria-pressed") != "true":
             row.click()
 
     def send(self, content: Any, buffers: list[int] | None = None) -> None:
-        """Send this to Python behind the card's back, with zeroed buffers of these lengths."""
+        """Send a message to Python directly, with zeroed buffers of these lengths."""
         self.look(
             "(root, [content, sizes]) => root.meshwright.link._model.send(content, undefined,"
             " sizes.map(size => new ArrayBuffer(size)))",
@@ -139,11 +139,11 @@ class Card:
     # What is to be seen
 
     def picture(self) -> np.ndarray:
-        """What the mesh's place on the screen shows, (height, width, 3) uint8."""
+        """Screenshot of the mesh's area, (height, width, 3) uint8."""
         return pixels(self.root.locator(".mw-stage").screenshot(animations="disabled"))
 
     def layer(self, name: str) -> np.ndarray:
-        """What one canvas alone has drawn, (height, width, 4) uint8.
+        """The pixels of one canvas, (height, width, 4) uint8.
 
         The ``lower`` shows the mesh, the ``upper`` what is pointed at.
         """

@@ -1,7 +1,6 @@
 """The subcommands of ``meshwright``, one module each.
 
-Such a module is light to import: it describes its arguments, and imports what it needs when it
-runs.
+The modules are light to import: heavy packages are imported when a command runs.
 """
 
 from __future__ import annotations
@@ -26,13 +25,13 @@ from meshwright.console import Report
 
 
 class Command(Protocol):
-    """What a module of a subcommand offers."""
+    """Interface of a subcommand's module."""
 
     SUMMARY: str
     DESCRIPTION: str
 
     def add_arguments(self, parser: argparse.ArgumentParser) -> None:
-        """Describe the arguments; ``--json`` is added to every command by the caller."""
+        """Add the arguments; the caller adds ``--json`` to every command."""
 
     def run(self, arguments: argparse.Namespace, report: Report) -> None:
         """Do the work and report the result, or raise UserError."""

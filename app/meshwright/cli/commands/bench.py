@@ -1,4 +1,4 @@
-"""``meshwright bench``: measure the program itself."""
+"""``meshwright bench``: run benchmarks."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from typing import Any
 from meshwright.cli import arguments as inputs
 from meshwright.console import Report, UserError, table
 
-SUMMARY = "measure the program itself on this machine"
-DESCRIPTION = "Run a suite of measurements and report the numbers."
+SUMMARY = "run benchmarks on this machine"
+DESCRIPTION = "Run a suite of benchmarks and report the numbers."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the suite."""
-    parser.add_argument("--suite", metavar="SUITE", help="what to measure; left out: list them")
+    """Add the arguments."""
     parser.add_argument(
-        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
+        "--suite", metavar="SUITE", help="suite to run; without it, list the suites"
     )
+    parser.add_argument("--seed", metavar="N", type=inputs.seed, default=0, help="random seed (0)")
     parser.add_argument(
-        "--quick", action="store_true", help="a small share of the work, to see that it runs"
+        "--quick", action="store_true", help="do a small part of the work, as a check that it runs"
     )
     parser.add_argument(
         "--seconds",
@@ -55,11 +55,11 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     options: dict[str, Any] = {}
     if arguments.seconds is not None:
         if not isinstance(getattr(suite, "SECONDS", None), float):
-            raise UserError(f"--seconds: the suite {arguments.suite} takes no search time")
+            raise UserError(f"--seconds: the suite {arguments.suite} has no search time")
         options["seconds"] = arguments.seconds
     if arguments.meshes is not None:
         if "meshes" not in inspect.signature(suite.run).parameters:
-            raise UserError(f"--meshes: the suite {arguments.suite} has meshes of its own")
+            raise UserError(f"--meshes: the suite {arguments.suite} has fixed meshes")
         options["meshes"] = arguments.meshes
     start = time.perf_counter()
     with report.progress(arguments.suite) as update:
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 
 def machine() -> dict[str, str]:
-    """Return what the numbers depend on."""
+    """Return the machine's properties that the numbers depend on."""
     import numba
 
     return {
@@ -92,7 +92,7 @@ def machine() -> dict[str, str]:
 
 
 def flat(values: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the numbers of nested results with the names on the way joined."""
+    """Yield the numbers of nested results with their joined names."""
     for name, value in values.items():
         if isinstance(value, Mapping):
             yield from flat(value, f"{before}{name}: ")

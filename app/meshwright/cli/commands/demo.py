@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from meshwright.cli import arguments as inputs
 from meshwright.cli import display_check
 from meshwright.cli.output_files import checked_output
-from meshwright.console import Report
+from meshwright.console import Report, UserError
 
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh
@@ -24,7 +24,7 @@ PICTURE = "meshwright-demo.png"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the shape and where a picture goes."""
+    """Add the arguments."""
     parser.add_argument("--shape", metavar="SHAPE", default="star", help="shape or file (star)")
     parser.add_argument(
         "--kind", choices=("tri", "quad"), default="quad", help="triangles or quads (quad)"
@@ -38,9 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """Open the window where that is possible and wanted, else write the picture."""
+    """Open the window, or write the picture."""
     output = _checked(arguments.output) if arguments.output else None
-    probe = None if output else display_check.Probe()
+    probe = None if output else display_check.DisplayProbe()
     domain = inputs.read_domain(arguments.shape)
     mesh = inputs.make_mesh(domain, arguments.kind)
     name = domain.name or Path(arguments.shape).stem
@@ -63,12 +63,15 @@ def _checked(path: str) -> Path:
 
 
 def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: Report) -> None:
-    from meshwright.cli.commands.improve import ROLLOUTS, normalised_return
+    from meshwright.cli.commands.improve import ROLLOUTS
     from meshwright.console import one_line
     from meshwright.graphics.export import filmstrip
+    from meshwright_core.core.kinds import KIND_NOUN
+    from meshwright_core.core.score import normalised_return
 
     policy = inputs.read_policy(None, mesh.kind)
     from meshwright_agent.search import solver
+    from meshwright_core.errors import MeshError, sentence
 
     inputs.prepare_agent(report)
     with report.progress("the policy is at work", ROLLOUTS) as update:
@@ -79,13 +82,16 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
             progress=lambda done, best: update(done, f"s = {best}, s* = {mesh.optimum}"),
         )
     start = mesh.score
-    filmstrip.write(output, mesh, solution.operations)
+    try:
+        filmstrip.write(output, mesh, solution.operations)
+    except MeshError as error:
+        raise UserError(str(error)) from error
     values = {
         "command": "demo",
         "shape": name,
         "window": False,
         "picture": str(output.resolve()),
-        "reason": problem or "a picture was asked for",
+        "reason": problem or "a picture was requested",
         "policy": policy.name,
         "kind": mesh.kind,
         "elements_before": mesh.n_elements,
@@ -99,10 +105,10 @@ def _picture(mesh: HalfEdgeMesh, name: str, output: Path, problem: str, report: 
         ", the optimum" if solution.score == mesh.optimum else f" (the optimum is {mesh.optimum})"
     )
     text = (
-        f"the policy took the {name}, {mesh.n_elements} {inputs.KIND_NOUN[mesh.kind]}, from "
+        f"the policy took the {name}, {mesh.n_elements} {KIND_NOUN[mesh.kind]}, from "
         f"s = {start} to s = {solution.score}{optimum}, in {len(solution.operations)} operations; "
         f"the picture of it is {output.resolve()}"
     )
     if problem:
         text = f"{problem}, so in place of the window: {text}"
-    report.result(values, one_line(text[:1].upper() + text[1:] + "."))
+    report.result(values, sentence(one_line(text)))

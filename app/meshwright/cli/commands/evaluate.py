@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from meshwright.cli import arguments as inputs
 from meshwright.cli.output_files import checked_folder, checked_output
-from meshwright.console import Report, UserError
-from meshwright.experiments import evaluation_table
+from meshwright.console import Report, Update, UserError
+from meshwright.sources.naming import looks_like_path
 
 if TYPE_CHECKING:
     from meshwright_agent.evaluation.table_row import Assessment
@@ -23,13 +23,13 @@ DESCRIPTION = (
     "paper's tables, or all of them."
 )
 STRIPS = {"tri": (20,), "quad": (10, 20)}
-"""Sides of the polygons whose rollouts are drawn, those of the paper's figures."""
+"""Sides of the polygons whose rollouts are drawn, as in the paper's figures."""
 BRIEF = 1.0
-"""Seconds of the race that a figure needs, where none is asked for."""
+"""Default time, in seconds, of the race that a figure needs."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the row, or the table: kind, sides, how many meshes and rollouts."""
+    """Add the arguments."""
     parser.add_argument("--kind", choices=("tri", "quad"), required=True, help="triangles or quads")
     rows = parser.add_mutually_exclusive_group()
     rows.add_argument(
@@ -46,9 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rollouts", metavar="K", type=inputs.positive_int, default=10, help="runs on each (10)"
     )
-    parser.add_argument(
-        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
-    )
+    parser.add_argument("--seed", metavar="N", type=inputs.seed, default=0, help="random seed (0)")
     parser.add_argument(
         "--policy", metavar="P", help="name of a shipped policy, or a policy file (the shipped one)"
     )
@@ -96,6 +94,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     folder = checked_folder(arguments.figure, "--figure") if arguments.figure else None
     noted = _checked_note(arguments) if arguments.note else None
     policy = inputs.read_policy(arguments.policy, arguments.kind)
+    from meshwright.experiments import evaluation_table
     from meshwright_agent.evaluation import paper_results, rollouts, table_row
 
     table = [row.sides for row in paper_results.ROWS[arguments.kind]]
@@ -112,10 +111,12 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     for sides in table if arguments.table else [arguments.sides]:
         title = evaluation_table.sides(sides)
         with report.progress(title, arguments.meshes) as update:
+
+            def show(what: str, done: int, update: Update = update) -> None:
+                update(done, what)
+
             try:
-                row = table_row.assess(
-                    played, sides, wanted, lambda what, done, update=update: update(done, what)
-                )
+                row = table_row.assess(played, sides, wanted, show)
             except rollouts.NothingToDo as error:
                 raise UserError(f"{title}, {arguments.meshes} meshes: {error}") from error
         found.append(row)
@@ -144,7 +145,9 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path) -> list[Path]:
     """Draw all figures; returns their paths."""
+    from meshwright.experiments import evaluation_table
     from meshwright_agent.evaluation import figures, paper_results, rollout_strip, rollouts
+    from meshwright_core.core.kinds import KIND_NOUN
 
     folder.mkdir(exist_ok=True)
     kind, written = policy.kind, []
@@ -155,7 +158,7 @@ def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path)
 
     curve = policy.header.get("progress", {}).get("curve", [])
     if len(curve) > 1:
-        noun = inputs.KIND_NOUN[kind].capitalize()
+        noun = KIND_NOUN[kind].capitalize()
         low, high = policy.header["training"]["sides"]
         title = f"{noun}, polygons of {low} to {high} sides"
         figures.learning_curve(curve, kind, title, path("learning"))
@@ -180,7 +183,7 @@ def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path)
 
 
 def note(policy: Policy, rows: Sequence[dict[str, Any]], path: Path) -> None:
-    """Write the table into the header of the policy's file, which stays whole if that fails."""
+    """Write the table into the header of the policy file, atomically."""
     from meshwright_agent.policy import policy_files
     from meshwright_core.errors import MeshError
 
@@ -192,10 +195,10 @@ def note(policy: Policy, rows: Sequence[dict[str, Any]], path: Path) -> None:
 
 
 def _checked_note(arguments: argparse.Namespace) -> Path:
-    """The file to write the table into."""
+    """The policy file to write the table into."""
     if not arguments.table or arguments.steps != 1.0:
         raise UserError("--note goes with --table, and not with --steps")
-    if arguments.policy is None or not inputs.looks_like_path(arguments.policy):
+    if arguments.policy is None or not looks_like_path(arguments.policy):
         raise UserError("--note writes into a policy file: name it by --policy")
     return checked_output(arguments.policy, option="--policy")
 

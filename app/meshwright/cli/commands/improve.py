@@ -29,7 +29,7 @@ PICTURE_SIZE = (1200, 900)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the files and how long to search."""
+    """Add the arguments."""
     parser.add_argument("input", metavar="IN", help="mesh file to read")
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="mesh file to write")
     effort = parser.add_mutually_exclusive_group()
@@ -43,21 +43,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--search",
         metavar="SECONDS",
         type=inputs.positive_float,
-        help="run the policy again and again for so long and keep the best",
+        help="run the policy repeatedly for this time and keep the best",
     )
     parser.add_argument(
         "--steps", metavar="N", type=inputs.positive_int, help="at most N operations in a run"
     )
-    parser.add_argument(
-        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
-    )
+    parser.add_argument("--seed", metavar="N", type=inputs.seed, default=0, help="random seed (0)")
     parser.add_argument(
         "--policy", metavar="P", help="name of a shipped policy, or a policy file (the shipped one)"
     )
-    parser.add_argument("--png", metavar="P.png", help="write a picture of the result too")
-    parser.add_argument(
-        "--film", metavar="F", help="write the run as a film too, F.gif or F.mp4, step by step"
-    )
+    parser.add_argument("--png", metavar="P.png", help="also write a picture of the result")
+    parser.add_argument("--film", metavar="F", help="also write the run as a film, F.gif or F.mp4")
     parser.add_argument(
         "--corner-angle",
         metavar="DEGREES",
@@ -68,7 +64,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """Check everything that can be checked, then search, replay, settle and write."""
+    """Check the inputs, then search, apply the result, smooth and untangle, write."""
+    from meshwright.document.position_repair import settle
+    from meshwright_core.core.score import normalised_return
+
     mesh_output.checked_mesh_output(arguments.output)
     png = checked_output(arguments.png, (".png",), "--png") if arguments.png else None
     film = checked_output(arguments.film, (".gif", ".mp4"), "--film") if arguments.film else None
@@ -81,12 +80,14 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     before = {"score": mesh.score, "elements": mesh.n_elements, "optimum": mesh.optimum}
     solution = _search(arguments, report, mesh, policy)
     first = mesh.copy() if film else mesh
-    replay(mesh, solution)
-    inverted = mesh_output.settle(mesh)
+    solution.replay(mesh)
+    inverted = settle(mesh)
     mesh.validate()
     if mesh.optimum != before["optimum"]:
         raise RuntimeError(f"s* changed from {before['optimum']} to {mesh.optimum}")
-    with ExitStack() as stack:  # all files or none: the others wait until the mesh is written
+    with (
+        ExitStack() as stack
+    ):  # all files or none: the others replace their targets after the mesh is written
         if png is not None:
             _write_picture(stack.enter_context(replacing(png)), mesh)
         if film is not None:
@@ -121,35 +122,22 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 def _write_picture(path: Path, mesh: HalfEdgeMesh) -> None:
     from meshwright.graphics.export import export_job
-    from meshwright.graphics.mesh_figure import Look
+    from meshwright.graphics.mesh_figure import FigureOptions
 
-    export_job.save_mesh_picture(mesh, path, Look(PICTURE_SIZE))
+    export_job.save_mesh_picture(mesh, path, FigureOptions(PICTURE_SIZE))
 
 
 def _write_film(
     path: Path, mesh: HalfEdgeMesh, solution: Solution, by: str, name: str, report: Report
 ) -> None:
-    """The operations one by one on ``mesh``, which is as it was before, smoothed on the way."""
+    """Write the operations as a film; ``mesh`` is in the state before the search."""
     from meshwright.graphics.export import export_job
     from meshwright.graphics.export.film import Film
 
     film = Film.of_run(mesh, solution.operations, by, name)
-    order = export_job.Order(ending=path.suffix.lower())
+    order = export_job.ExportOptions(ending=path.suffix.lower())
     with report.progress("filming", len(film.stops(order.stride(film)))) as update:
-        export_job.save_order(film, order, path, lambda done, total: update(done))
-
-
-def replay(mesh: HalfEdgeMesh, solution: Solution) -> None:
-    """Apply the operations of a solution to the mesh that it was found for."""
-    for operation, halfedge in solution.operations:
-        mesh.apply(operation, halfedge)
-    if mesh.score != solution.score:
-        raise RuntimeError(f"the replay ends at s = {mesh.score}, the search at {solution.score}")
-
-
-def normalised_return(start: int, end: int, optimum: int) -> float:
-    """Return (start - end) / (start - optimum), and 1 where there was nothing to gain."""
-    return (start - end) / (start - optimum) if start != optimum else 1.0
+        export_job.save_export(film, order, path, lambda done, total: update(done))
 
 
 def _search(
@@ -171,13 +159,15 @@ def _search(
 
 
 def _text(values: dict[str, Any]) -> str:
+    from meshwright_core.core.kinds import KIND_NOUN
+
     s = f"{values['score_before']} -> {values['score_after']}, s* = {values['optimum']}"
     if values["at_optimum"]:
         s += ", at the optimum"
     elements = f"{values['elements_before']} -> {values['elements']}"
     rows = [
         ("s", s),
-        ("elements", f"{elements} {inputs.KIND_NOUN[values['kind']]}"),
+        ("elements", f"{elements} {KIND_NOUN[values['kind']]}"),
         ("inverted", mesh_output.inverted_words(values["inverted_ids"]) or "none"),
         ("operations", f"{values['operations']} (best of {values['rollouts']})"),
         ("seconds", f"{values['seconds']:.1f}"),

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 SUMMARY = "list the lessons, or copy them into a folder"
 DESCRIPTION = (
     "List the lessons, or copy them into a folder to be opened in JupyterLab. They are notebooks "
-    "with exercises that check themselves, and take ten to twenty minutes each."
+    "with self-checking exercises, and take ten to twenty minutes each."
 )
 
 INSTALL = 'pip install "meshwright[notebook]"'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Take a folder, and leave to overwrite."""
+    """Add the arguments."""
     parser.add_argument("folder", metavar="FOLDER", nargs="?", help="where to copy the lessons to")
     parser.add_argument(
         "--force", action="store_true", help="overwrite lessons that are in the folder already"
@@ -30,14 +30,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """List the lessons, or copy them and say how to open them."""
+    """List the lessons, or copy them and print how to open them."""
     from meshwright.teaching import lessons
     from meshwright_core import MeshError
 
     found = lessons.shipped()
     if arguments.folder is None:
         if arguments.force:
-            raise UserError("--force is about a FOLDER to copy the lessons to; none was given")
+            raise UserError("--force needs a FOLDER to copy the lessons to")
         report.result({"command": "lessons", "lessons": [_row(one) for one in found]}, _list(found))
         return
     if not arguments.folder:

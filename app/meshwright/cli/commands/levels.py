@@ -14,16 +14,16 @@ DESCRIPTION = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Take none of its own."""
+    """Add no arguments."""
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """List each level with what it is and how well it was done."""
+    """List each level with its properties and the best result."""
     from meshwright.puzzles import level as levels
-    from meshwright.puzzles.progress import Progress
+    from meshwright.puzzles.progress import LevelProgress
     from meshwright_core import MeshError
 
-    progress, rows = Progress(), []
+    progress, rows = LevelProgress(), []
     lines: list[tuple[str, object]] = []
     try:
         found = levels.all()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from typing import Any
 
 from meshwright.cli import arguments as inputs
 from meshwright.cli import mesh_output
@@ -18,7 +19,7 @@ DESCRIPTION = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the shape, the kind and the size of the elements."""
+    """Add the arguments."""
     parser.add_argument("shape", metavar="SHAPE-or-FILE", help="name of a shape, or file")
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="mesh file to write")
     parser.add_argument(
@@ -37,19 +38,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a point of a file's outline is a corner where it turns by more (0.01); raise it "
         "where curved sides are drawn as short straight pieces",
     )
-    parser.add_argument(
-        "--seed", metavar="N", type=inputs.seed, default=0, help="seed of all that is random (0)"
-    )
+    parser.add_argument("--seed", metavar="N", type=inputs.seed, default=0, help="random seed (0)")
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """Make the mesh, settle its positions, write it."""
+    """Make the mesh, smooth and untangle it, write it."""
+    from meshwright.document.position_repair import settle
+
     output = mesh_output.checked_mesh_output(arguments.output, arguments.kind)
     domain = inputs.read_domain(arguments.shape, arguments.corner_angle)
     start = time.perf_counter()
     with report.progress(f"meshing {domain.name or arguments.shape}"):
         mesh = inputs.make_mesh(domain, arguments.kind, arguments.max_edge, arguments.seed)
-        inverted = mesh_output.settle(mesh)
+        inverted = settle(mesh)
         mesh.validate()
     mesh_output.write_mesh(output, mesh)
     values = {
@@ -69,8 +70,10 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     report.result(values, _text(values))
 
 
-def _text(values: dict[str, object]) -> str:
-    noun = inputs.KIND_NOUN[str(values["kind"])]
+def _text(values: dict[str, Any]) -> str:
+    from meshwright_core.core.kinds import KIND_NOUN
+
+    noun = KIND_NOUN[str(values["kind"])]
     text = (
         f"{values['output']}: {values['elements']} {noun}, {values['vertices']} vertices, "
         f"s = {values['score']}, s* = {values['optimum']}"

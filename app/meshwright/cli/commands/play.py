@@ -15,13 +15,13 @@ DESCRIPTION = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the level."""
+    """Add the arguments."""
     parser.add_argument("level", metavar="LEVEL", nargs="?", help="name of a level")
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Find the level, then open the window on it; return when it is closed."""
-    probe = display_check.Probe()
+    probe = display_check.DisplayProbe()
     from meshwright.puzzles import level as levels
     from meshwright_core import MeshError
 
@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 def _first() -> str:
     """The first level without a star, else the first of all."""
     from meshwright.puzzles import level as levels
-    from meshwright.puzzles.progress import Progress
+    from meshwright.puzzles.progress import LevelProgress
 
-    progress, names = Progress(), levels.names()
+    progress, names = LevelProgress(), levels.names()
     return next((name for name in names if not progress.best(name).stars), names[0])

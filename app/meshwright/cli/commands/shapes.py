@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from meshwright.console import Report, table
 
 SUMMARY = "list the shapes of the gallery"
-DESCRIPTION = "List the shapes that mesh, view and demo know by name."
+DESCRIPTION = "List the gallery shapes, which mesh, view and demo take by name."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Take none of its own."""
+    """Add no arguments."""
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """List each shape with its corners and holes."""
     from meshwright_core.domains import gallery
 
-    rows = []
+    rows: list[dict[str, Any]] = []
     for name, domain in gallery.gallery().items():
         corners = sum(int(flags.sum()) for flags in domain.loop_corners)
         rows.append({"name": name, "corners": corners, "holes": len(domain.holes)})

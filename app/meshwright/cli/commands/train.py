@@ -15,8 +15,9 @@ SUMMARY = "train a policy on random polygons"
 DESCRIPTION = (
     "Train a policy by self-play on random polygons of the benchmark (PPO). The folder gets the "
     "policy (policy.safetensors: the best by evaluation), its configuration, its learning curve, "
-    "events for TensorBoard, and a checkpoint: the same command goes on where it was stopped. "
-    "On N processes, each with its share of the runs: torchrun --nproc-per-node N -m app train ..."
+    "events for TensorBoard, and a checkpoint: the same command resumes a stopped training. "
+    "On N processes, each with its share of the runs: "
+    "torchrun --nproc-per-node N -m meshwright train ..."
 )
 NO_EVENTS = (
     "no events for TensorBoard are written: they need tensorboardX "
@@ -25,10 +26,14 @@ NO_EVENTS = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the kind, the configuration and the folder."""
+    """Add the arguments."""
     parser.add_argument("--kind", choices=("tri", "quad"), required=True, help="triangles or quads")
     parser.add_argument(
-        "-o", "--output", metavar="FOLDER", required=True, help="folder to write to, or to go on in"
+        "-o",
+        "--output",
+        metavar="FOLDER",
+        required=True,
+        help="folder to write to, or to resume in",
     )
     parser.add_argument(
         "--config",
@@ -39,18 +44,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--minutes", metavar="M", type=inputs.positive_float, help="stop after so many minutes"
     )
     parser.add_argument(
-        "--seed", metavar="N", type=inputs.seed, help="in place of the seed of the configuration"
+        "--seed", metavar="N", type=inputs.seed, help="replaces the seed of the configuration"
     )
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
-    """Train, then say how good the policy has become."""
+    """Train, then report the evaluation of the policy."""
     folder = checked_folder(arguments.output)
     configuration = inputs.read_configuration(arguments.config, arguments.kind)
     from meshwright.cli.training_progress import shown
     from meshwright_agent.training import tensorboard, trainer
 
-    # of the processes that torchrun starts, the first one speaks
+    # of the processes that torchrun starts, only the first one reports
     speaks = os.environ.get("RANK", "0") == "0"
     if speaks and not tensorboard.available():
         report.note(NO_EVENTS)

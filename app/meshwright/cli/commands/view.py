@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING
 from meshwright.cli import arguments as inputs
 from meshwright.cli import display_check
 from meshwright.console import Report, UserError
+from meshwright.sources.naming import looks_like_path
 
 if TYPE_CHECKING:
     from meshwright.document.document import Document
 
 SUMMARY = "open the window, on a mesh file or a shape if one is named"
-DESCRIPTION = "Open the window. The words view FILE may be shortened to FILE."
+DESCRIPTION = "Open the window. meshwright FILE is short for meshwright view FILE."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe what to open."""
+    """Add the arguments."""
     parser.add_argument(
         "file",
         metavar="FILE-or-SHAPE",
@@ -27,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "or name of a shape",
     )
     parser.add_argument(
-        "--kind", choices=("tri", "quad"), default="quad", help="how to mesh a shape (quad)"
+        "--kind", choices=("tri", "quad"), default="quad", help="elements of a shape (quad)"
     )
     parser.add_argument(
         "--corner-angle",
@@ -39,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Read what is to be opened, then open the window; return when it is closed."""
-    probe = display_check.Probe()
+    probe = display_check.DisplayProbe()
     document = _document(arguments)
     problem = probe.problem()
     if problem:
@@ -57,25 +58,9 @@ def _document(arguments: argparse.Namespace) -> Document | None:
     name = arguments.file
     if name is None:
         return None
-    from meshwright.document.document import Document
-    from meshwright.document.storage.project_file import is_project
-
-    path = Path(name)
-    is_file = path.exists() or inputs.looks_like_path(name)
-    if is_file and is_project(path):
-        return inputs.read_project(name)
-    if is_file and not _holds_shape(path):
-        return Document(inputs.read_mesh(name, arguments.corner_angle), path.name, path)
-    if not is_file:
+    if not looks_like_path(name) and not Path(name).exists():
         _refuse_near_command(name)
-    domain = inputs.read_domain(name, arguments.corner_angle)
-    return Document(inputs.make_mesh(domain, arguments.kind), domain.name or path.stem)
-
-
-def _holds_shape(path: Path) -> bool:
-    from meshwright_core.io import drawings
-
-    return drawings.is_geometry(path)
+    return inputs.read_document(name, arguments.kind, arguments.corner_angle)
 
 
 def _refuse_near_command(word: str) -> None:

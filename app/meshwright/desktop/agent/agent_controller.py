@@ -25,12 +25,11 @@ from meshwright.document.document import Document, title_of
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import Theme
 from meshwright_core.core.arrays import ORIGIN
+from meshwright_core.core.kinds import ELEMENT_NOUN
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
     from meshwright_core import HalfEdgeMesh
-
-KINDS = {"tri": "triangle", "quad": "quad"}
 
 
 class AgentController(Controller):
@@ -59,8 +58,8 @@ class AgentController(Controller):
         overlay.add(self.field, below=overlay.markers)
         overlay.add(self.field.above, below=overlay.arrow)
         self._connections.add(assistant.changed, self._on_changed)
-        self._connections.add(assistant.looked, self._on_looked)
-        self._connections.add(assistant.said, status.show_message)
+        self._connections.add(assistant.insight_changed, self._on_looked)
+        self._connections.add(assistant.message, status.show_message)
         self._connections.add(assistant.failed, notice.show_message)
 
     def set_theme(self, theme: Theme) -> None:
@@ -146,8 +145,8 @@ class AgentController(Controller):
             return
         if self._document.kind and kind != self._document.kind:
             self._notice.show_message(
-                f"{Path(path).name} is a policy for {KINDS[kind]} meshes; this is a"
-                f" {KINDS[self._document.kind]} mesh."
+                f"{Path(path).name} is a policy for {ELEMENT_NOUN[kind]} meshes; this is a"
+                f" {ELEMENT_NOUN[self._document.kind]} mesh."
             )
             return
         self._settings.put("agent/folder", str(Path(path).parent))

@@ -13,11 +13,12 @@ from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.operation_menu import OperationMenu
 from meshwright.desktop.levels.level_controller import LevelController
 from meshwright.desktop.widgets.status_bar import StatusBar
-from meshwright.desktop.widgets.wording import plural, sentence, step_message
+from meshwright.desktop.widgets.wording import plural, step_message
 from meshwright.document.document import Document
 from meshwright.document.operation_preview import choices
 from meshwright.graphics.theme import Theme
 from meshwright_core import Operation
+from meshwright_core.errors import sentence
 
 POINT_FIRST = "Point at a half-edge first, then press the key."
 

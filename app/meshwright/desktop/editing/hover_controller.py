@@ -14,7 +14,14 @@ from meshwright.desktop.controller import Controller
 from meshwright.desktop.editing.operations_panel import OperationsPanel
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
-from meshwright.document.operation_preview import GLOBAL, Choice, best, choices, following, ghost
+from meshwright.document.operation_preview import (
+    GLOBAL,
+    OperationOffer,
+    best,
+    choices,
+    following,
+    ghost,
+)
 from meshwright.graphics.theme import Theme
 from meshwright_core import HalfEdgeMesh, Operation
 
@@ -22,7 +29,7 @@ GHOSTS = "editing/ghosts"
 """The setting that shows previews."""
 LARGE = 5000
 """In meshes of more elements, previews of global operations wait until the mouse rests, to avoid
- flicker.
+flicker.
 """
 REST = 60
 """Milliseconds without a move after which the mouse rests."""
@@ -52,7 +59,7 @@ class HoverController(Controller):
         self._document, self._assistant, self._canvas = document, assistant, canvas
         self._settings, self._readiness, self._status = settings, readiness, status
         self.panel = OperationsPanel(document, theme)
-        self.choices: tuple[Choice, ...] = ()
+        self.choices: tuple[OperationOffer, ...] = ()
         self.armed: Operation | None = None
         self._at = (-1, -1)  # revision and half-edge that the choices are of
         self._picked: Operation | None = None
@@ -98,7 +105,7 @@ class HoverController(Controller):
         self._settings.put(GHOSTS, not self.ghosts)
 
     @property
-    def current(self) -> Choice | None:
+    def current(self) -> OperationOffer | None:
         """The current operation at the hovered half-edge; None if none is allowed."""
         wanted = self._previewed or self._picked or self.armed
         if wanted is None:
@@ -164,7 +171,7 @@ class HoverController(Controller):
             self.panel.offer(self.choices, operation)
             self._show_ghost(mesh, meant, halfedge)
 
-    def _show_ghost(self, mesh: HalfEdgeMesh, meant: Choice | None, halfedge: int) -> None:
+    def _show_ghost(self, mesh: HalfEdgeMesh, meant: OperationOffer | None, halfedge: int) -> None:
         self._rest.stop()
         if meant is None or not self.ghosts or self._assistant.running:
             self.layer.show(None)

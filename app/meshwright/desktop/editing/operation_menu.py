@@ -7,11 +7,11 @@ from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 from meshwright.desktop.canvas.layers.ghost import change_colour
 from meshwright.desktop.widgets.basic import tabular
 from meshwright.desktop.widgets.event_filters import OwnKeys
-from meshwright.desktop.widgets.wording import sentence
-from meshwright.document.operation_preview import Choice
+from meshwright.document.operation_preview import OperationOffer
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import GRID, Theme
 from meshwright_core import Operation
+from meshwright_core.errors import sentence
 
 WIDTH = 296
 
@@ -31,7 +31,7 @@ class OperationMenu(QFrame):
     def __init__(
         self,
         title: str,
-        offers: tuple[Choice, ...],
+        offers: tuple[OperationOffer, ...],
         theme: Theme,
         parent: QWidget,
     ) -> None:
@@ -112,7 +112,7 @@ class OperationRow(QFrame):
     taken = Signal(object)
     entered = Signal(object)
 
-    def __init__(self, choice: Choice, theme: Theme, parent: QWidget) -> None:
+    def __init__(self, choice: OperationOffer, theme: Theme, parent: QWidget) -> None:
         super().__init__(parent)
         self.setObjectName("Row")
         self.info = info = choice.info

@@ -11,11 +11,11 @@ from qtpy.QtWidgets import QAbstractButton, QVBoxLayout, QWidget
 from meshwright.desktop.canvas.layers.ghost import change_colour
 from meshwright.desktop.controller import Connections
 from meshwright.desktop.widgets.basic import named, tabular
-from meshwright.desktop.widgets.wording import sentence
 from meshwright.document.document import Document
-from meshwright.document.operation_preview import Choice
+from meshwright.document.operation_preview import OperationOffer
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import GRID, Theme
+from meshwright_core.errors import sentence
 from meshwright_core.operations.catalogue import Operation, OperationInfo, of_kind
 
 HEIGHT = 26
@@ -58,7 +58,7 @@ class OperationsPanel(QWidget):
         for row in self.rows:
             row.set_theme(theme)
 
-    def offer(self, choices: tuple[Choice, ...], current: Operation | None) -> None:
+    def offer(self, choices: tuple[OperationOffer, ...], current: Operation | None) -> None:
         """Show what is allowed at the hovered half-edge; an empty tuple without one."""
         by_operation = {choice.operation: choice for choice in choices}
         for row in self.rows:
@@ -110,7 +110,7 @@ class OperationButton(QAbstractButton):
         super().__init__()
         self.info = info
         self._theme = theme
-        self._choice: Choice | None = None
+        self._choice: OperationOffer | None = None
         self._current = False
         self.setText(info.title)
         self.setCheckable(True)
@@ -130,7 +130,7 @@ class OperationButton(QAbstractButton):
         """False if the operation is not allowed at the hovered half-edge."""
         return self._choice is None or self._choice.allowed
 
-    def offer(self, choice: Choice | None, current: bool) -> None:
+    def offer(self, choice: OperationOffer | None, current: bool) -> None:
         """Set the choice at the hovered half-edge; ``current``: this operation is previewed."""
         if choice != self._choice or current != self._current:
             self._choice, self._current = choice, current

@@ -20,12 +20,12 @@ from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.desktop.widgets.wording import plural
 from meshwright.document.document import Document
-from meshwright.document.selection import in_lasso
 from meshwright.document.vertex_drag import Drag, refusal
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
 from meshwright.signals import Signal
 from meshwright_core.core.arrays import FLAGS, LOCKED, ORIGIN
+from meshwright_core.geometry.polygons import points_inside
 
 LOCK_RADIUS = 17.0
 """Radius in pixels of the ring around a locked vertex that is selected."""
@@ -197,7 +197,7 @@ class SelectionController(Controller):
             return
         vertices = mesh.vertices()
         at = self._canvas.viewport.to_screen(mesh.points[vertices])
-        inside = vertices[in_lasso(at, outline)]
+        inside = vertices[points_inside(at, outline)]
         if remove:
             selection.set(np.setdiff1d(selection.vertices, inside))
         elif add:

@@ -23,11 +23,11 @@ from meshwright.desktop.files.unsaved_work import Guard, NoGuard, UnsavedWorkGua
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
-from meshwright.desktop.widgets.wording import sentence
 from meshwright.document.document import Document
 from meshwright.document.storage.project_file import ENDING, is_project
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import FARTHEST, NEAREST
+from meshwright_core.errors import sentence
 from meshwright_core.io import formats, mesh_files
 
 MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"

@@ -17,8 +17,9 @@ from qtpy.QtWidgets import (
 )
 
 from meshwright.desktop.widgets.basic import named
-from meshwright.document.storage.recovery import Lost
+from meshwright.document.storage.recovery import LostWork
 from meshwright.graphics.theme import GRID
+from meshwright_core.core.kinds import KIND_NOUN
 
 STORY = (
     "Meshwright ended before this work was saved. Every step until then was recorded and can be"
@@ -36,9 +37,9 @@ class RecoveryDialog(QDialog):
     What is discarded here is deleted at once, after a second click.
     """
 
-    def __init__(self, works: Sequence[Lost], parent: QWidget | None = None) -> None:
+    def __init__(self, works: Sequence[LostWork], parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.chosen: Lost | None = None
+        self.chosen: LostWork | None = None
         self.works = list(works)
         self.cards: list[LostWorkCard] = []
         self.setWindowTitle("Recover work")
@@ -87,7 +88,7 @@ class RecoveryDialog(QDialog):
         area.setFixedHeight(seen * CARD + (seen - 1) * GRID)
         return area
 
-    def _on_recover(self, work: Lost, checked: bool = False) -> None:
+    def _on_recover(self, work: LostWork, checked: bool = False) -> None:
         self.chosen = work
         self.accept()
 
@@ -107,7 +108,7 @@ class RecoveryDialog(QDialog):
 class LostWorkCard(QFrame):
     """One work: name, progress, time of the last step."""
 
-    def __init__(self, work: Lost) -> None:
+    def __init__(self, work: LostWork) -> None:
         super().__init__()
         self.work = work
         self.sure = False
@@ -144,7 +145,7 @@ class LostWorkCard(QFrame):
         self.discard.setText("Delete permanently?")
 
 
-def progress(work: Lost) -> str:
+def progress(work: LostWork) -> str:
     """``12 steps, s 8 (optimum 4), 1,024 quads``, as far as known."""
     now = {key: value for key, value in work.now.items() if isinstance(value, int | str)}
     parts = []
@@ -153,7 +154,7 @@ def progress(work: Lost) -> str:
     if "score" in now and "optimum" in now:
         parts.append(f"s {now['score']:,} (optimum {now['optimum']:,})")
     if "elements" in now:
-        noun = {"tri": "triangles", "quad": "quads"}.get(str(now.get("kind")), "elements")
+        noun = KIND_NOUN.get(str(now.get("kind")), "elements")
         parts.append(f"{now['elements']:,} {noun}")
     return ", ".join(parts)
 
@@ -166,7 +167,7 @@ def moment(when: float) -> str:
     return f"{day} at {then:%H:%M}"
 
 
-def origin(work: Lost) -> str:
+def origin(work: LostWork) -> str:
     """The file of the work, or that it was never saved."""
     if work.file is None:
         return "never saved to a file"

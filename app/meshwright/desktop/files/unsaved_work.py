@@ -19,7 +19,7 @@ from meshwright.document.storage.autosave import Autosave
 from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from meshwright.document.storage.recovery import Lost
+    from meshwright.document.storage.recovery import LostWork
 
 
 class Guard(Protocol):
@@ -97,7 +97,7 @@ class UnsavedWorkGuard:
         self.autosave = Autosave(document, folder)
         self.autosave.enabled = settings.autosave
         self.autosave.failed.connect(notice.show_message)
-        self.autosave.said.connect(status.show_message)
+        self.autosave.resumed.connect(status.show_message)
         self._connections = Connections()
         self._connections.add(settings.changed, self._on_setting_changed)
 
@@ -153,7 +153,7 @@ class UnsavedWorkGuard:
         else:
             self._status.show_message("There is no unsaved work to recover.")
 
-    def _offer(self, works: list[Lost]) -> None:
+    def _offer(self, works: list[LostWork]) -> None:
         from meshwright.desktop.files.recovery_dialog import RecoveryDialog
 
         dialog = RecoveryDialog(works, self._window)
@@ -166,7 +166,7 @@ class UnsavedWorkGuard:
         if chosen is not None:
             self._recover(chosen)
 
-    def _recover(self, work: Lost) -> None:
+    def _recover(self, work: LostWork) -> None:
         if not self.may_drop():
             work.release()
             return

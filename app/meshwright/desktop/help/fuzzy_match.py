@@ -15,7 +15,7 @@ class Match:
 
 def match(query: str, text: str) -> Match | None:
     """The best match of the letters of ``query`` in ``text``, in their order; None if there is
-     none.
+    none.
 
     Spaces and capitals of the query are ignored. Consecutive letters and letters at the start of
     words count most, so ``st`` finds "Step" first, then "Show the tour", and "Best" last.

@@ -4,12 +4,13 @@ import re
 from dataclasses import dataclass
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 
+from packaging.requirements import Requirement
+
 NAME = "meshwright"
 UNKNOWN = "not stated"
 _LONGEST = 60
 """A licence field longer than this is the licence's text, not its name."""
 _FILES = re.compile(r"(^|/)(licen[cs]e|copying|notice)[^/]*$", re.IGNORECASE)
-_REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
 _CLASSIFIER = "License :: "
 
 
@@ -41,9 +42,9 @@ def licences() -> list[Licence]:
             found.metadata["Name"] or name, found.version, licence_name(found), _url(found)
         )
         for requirement in found.requires or []:
-            named = _REQUIREMENT.match(requirement)
-            if named and "extra ==" not in requirement.partition(";")[2]:
-                waiting.append(named.group(1))
+            needed = Requirement(requirement)
+            if needed.marker is None or needed.marker.evaluate({"extra": ""}):
+                waiting.append(needed.name)
     seen.pop(_key(NAME), None)
     return sorted(seen.values(), key=lambda one: one.package.lower())
 

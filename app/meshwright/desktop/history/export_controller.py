@@ -18,7 +18,7 @@ from meshwright.desktop.controller import Controller
 from meshwright.desktop.widgets.basic import NoticeBar, named
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
-from meshwright.graphics.export.export_job import Order, write_order
+from meshwright.graphics.export.export_job import ExportOptions, write_export
 from meshwright.graphics.theme import GRID, Theme
 from meshwright_core.errors import MeshError
 
@@ -88,7 +88,7 @@ class ExportController(Controller):
         self._dispatch = Dispatcher()
         self._thread: threading.Thread | None = None
         self._stop = threading.Event()
-        self._order = Order()
+        self._order = ExportOptions()
         self.bar = ExportBar()
         self.bar.cancelled.connect(self.cancel)
 
@@ -119,7 +119,7 @@ class ExportController(Controller):
         if path:
             self.start(film, self._order, path)
 
-    def _ask_path(self, order: Order) -> str:
+    def _ask_path(self, order: ExportOptions) -> str:
         document = self._document
         folder = document.path.parent if document.path else Path()
         name = folder / f"{document.name or 'mesh'}{order.ending}"
@@ -131,7 +131,7 @@ class ExportController(Controller):
             path += order.ending
         return str(path)
 
-    def start(self, film: Film, order: Order, path: str) -> None:
+    def start(self, film: Film, order: ExportOptions, path: str) -> None:
         """Write ``order`` to ``path`` in the background; a message is shown at the end."""
         self._stop.clear()
         self.bar.show_progress(Path(path).name, 0, 1)
@@ -152,7 +152,7 @@ class ExportController(Controller):
             self._thread.join(10.0)
             self._thread = None
 
-    def _work(self, film: Film, order: Order, path: str) -> None:
+    def _work(self, film: Film, order: ExportOptions, path: str) -> None:
         """Write the file; runs in the thread and reports through the dispatcher."""
         name = Path(path).name
 
@@ -162,7 +162,7 @@ class ExportController(Controller):
             self._dispatch(partial(self._on_progress, name, done, total))
 
         try:
-            frames = write_order(film, order, path, progress)
+            frames = write_export(film, order, path, progress)
         except ExportCancelled:
             self._dispatch(partial(self._finish, f"Cancelled: {name} was not written.", False))
         except MeshError as error:

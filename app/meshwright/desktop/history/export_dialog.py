@@ -20,7 +20,7 @@ from qtpy.QtWidgets import (
 from meshwright.desktop.widgets.basic import named
 from meshwright.desktop.widgets.number_box import DecimalBox, IntegerBox
 from meshwright.graphics.drawing import raster
-from meshwright.graphics.export.export_job import SIZES, Order
+from meshwright.graphics.export.export_job import SIZES, ExportOptions
 from meshwright.graphics.export.film import FIRST, LAST, Film
 from meshwright.graphics.mesh_figure import figure
 from meshwright.graphics.theme import GRID, THEMES
@@ -45,11 +45,11 @@ LATER = 80
 
 
 class ExportDialog(QDialog):
-    """Asks for an :class:`meshwright.graphics.export.export_job.Order`, and shows the state where
-    ``film`` stands.
+    """Edits :class:`meshwright.graphics.export.export_job.ExportOptions`, with a preview of the
+    state where ``film`` stands.
     """
 
-    def __init__(self, film: Film, order: Order, parent: QWidget | None = None) -> None:
+    def __init__(self, film: Film, order: ExportOptions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setWindowTitle("Export video or image")
         self._film = film
@@ -207,7 +207,7 @@ class ExportDialog(QDialog):
             self.preview.setText("No preview of so many elements.")
             return
         order = self.order
-        image = raster(figure(self._film.mesh, order.look, self._moment), samples=2)
+        image = raster(figure(self._film.mesh, order.figure_options, self._moment), samples=2)
         ratio = self.devicePixelRatioF()
         scale = min(PREVIEW[0] / image.width, PREVIEW[1] / image.height) * ratio
         image = image.resize((round(image.width * scale), round(image.height * scale)))

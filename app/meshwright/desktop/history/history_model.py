@@ -7,7 +7,7 @@ from qtpy.QtCore import QAbstractListModel, QModelIndex, QPersistentModelIndex, 
 
 from meshwright.desktop.widgets.wording import branch_words, step_words
 from meshwright.document.branches import Branches
-from meshwright.document.history import History, Row
+from meshwright.document.history import History, HistoryStep
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class HistoryLine:
     """One line of the list: a state, or with ``branch`` >= 0 a branch that forks at ``state``."""
 
     state: int
-    row: Row | None
+    row: HistoryStep | None
     branch: int = -1
 
 
@@ -30,7 +30,7 @@ class HistoryModel(QAbstractListModel):
         self._branches: Branches = ()
         self._order: list[int] = []
         self._places: list[int] = []
-        self._rows: list[Row] = []  # a copy: the history may have changed since the last update
+        self._rows: list[HistoryStep] = []  # a copy: the history may have changed since
         self._empty = True
         self.highest = 0
         """The highest score in the list."""

@@ -16,7 +16,7 @@ from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document import score_series
 from meshwright.document.document import Document
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.theme import Theme
 
 PAUSE = 100
@@ -99,7 +99,7 @@ class PlaybackController(Controller):
 
     def go_to_best(self) -> None:
         """Go to the first state with the lowest score under the current desired degrees."""
-        track = Track()
+        track = ScoreSeries()
         track.follow(self._document.history)
         self.go_to(score_series.best_state(track.scores, track.optima))
 

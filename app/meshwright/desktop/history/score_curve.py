@@ -24,7 +24,7 @@ from meshwright.desktop.widgets.wording import branch_words, step_words
 from meshwright.document import score_series
 from meshwright.document.branches import Branches
 from meshwright.document.history import History
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.theme import GRID, Theme
 
 HEIGHT = 96
@@ -71,7 +71,7 @@ class ScoreCurve(QWidget):
         self._history = History(0, 0)
         self._branches: Branches = ()
         self._empty = True
-        self._track = Track()
+        self._track = ScoreSeries()
         self._frame = score_series.frame(np.empty(0), np.empty(0), 0, 0, 1, 1)
         self._best = 0
         self._forks: list[float] = []

@@ -11,7 +11,7 @@ from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright.puzzles.play import LevelPlay
 
 WIDE = 1120
@@ -154,15 +154,15 @@ class LevelBar(QFrame):
         level = play.level
         standing = rival.standing if rival is not None else None
         self.agent.setVisible(rival is not None)
-        if rival is not None and standing is Standing.ASKED:
+        if rival is not None and standing is OpponentState.ASKED:
             self.agent.show_value("\u2026")
         elif rival is not None:
             reached = level is not None and rival.score <= level.goal
-            shown = str(len(rival.operations)) if standing is Standing.DONE else "\u2013"
+            shown = str(len(rival.operations)) if standing is OpponentState.DONE else "\u2013"
             self.agent.show_value(shown if reached else f"{shown} (s {rival.score})")
-        knows = standing is Standing.DONE or (level is not None and bool(level.most))
+        knows = standing is OpponentState.DONE or (level is not None and bool(level.most))
         self.answer.setText("Show a solution" if knows else "Ask the agent")
-        self.answer.setEnabled(standing is not Standing.ASKED)
+        self.answer.setEnabled(standing is not OpponentState.ASKED)
         self.answer.setToolTip(
             "Restart with this solution: Redo steps through it"
             if knows

@@ -18,7 +18,7 @@ from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import Theme
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright.puzzles.level import Level
 from meshwright.puzzles.play import LevelPlay
 from meshwright_core import MeshError
@@ -99,7 +99,7 @@ class LevelController(Controller):
     def answer(self) -> None:
         """Let the agent solve the level; once it has, show its solution."""
         play = self.play
-        asked = play.rival is not None and play.rival.standing is Standing.DONE
+        asked = play.rival is not None and play.rival.standing is OpponentState.DONE
         if asked or (play.level is not None and play.level.most):
             self.show_way()
         else:

@@ -22,7 +22,7 @@ from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.level import Level
-from meshwright.puzzles.progress import MOST_STARS, Progress
+from meshwright.puzzles.progress import MOST_STARS, LevelProgress
 
 COLUMNS = 4
 CARD = QSize(184, 200)
@@ -37,7 +37,9 @@ STORY = (
 class LevelDialog(QDialog):
     """Offers all levels; :attr:`chosen` is the one to play, None for none."""
 
-    def __init__(self, progress: Progress, theme: Theme, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, progress: LevelProgress, theme: Theme, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.chosen: Level | None = None
         self.cards: list[LevelCard] = []
@@ -63,7 +65,7 @@ class LevelDialog(QDialog):
         self.resize(width, min(760, max(480, room - 4 * GRID)))
         self._focus_next(progress)
 
-    def _head(self, progress: Progress) -> QHBoxLayout:
+    def _head(self, progress: LevelProgress) -> QHBoxLayout:
         line = QHBoxLayout()
         line.addWidget(named("Levels", "EmptyTitle"), 1)
         total = MOST_STARS * len(levels.names())
@@ -71,7 +73,7 @@ class LevelDialog(QDialog):
         line.addWidget(named(f"{won} of {total} stars", "Label"))
         return line
 
-    def _grid(self, progress: Progress, theme: Theme) -> QScrollArea:
+    def _grid(self, progress: LevelProgress, theme: Theme) -> QScrollArea:
         inside = QWidget()
         inside.setObjectName("CardList")
         inside.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
@@ -103,7 +105,7 @@ class LevelDialog(QDialog):
         line.addWidget(close)
         return line
 
-    def _focus_next(self, progress: Progress) -> None:
+    def _focus_next(self, progress: LevelProgress) -> None:
         """Give the first level without a star the keyboard focus."""
         fresh = [card for card in self.cards if not progress.best(card.level.name).stars]
         for card in (fresh or self.cards)[:1]:
@@ -120,7 +122,7 @@ class LevelCard(QPushButton):
     def __init__(
         self,
         level: Level,
-        progress: Progress,
+        progress: LevelProgress,
         theme: Theme,
         focused: Callable[[QWidget], None],
     ) -> None:
@@ -163,10 +165,12 @@ class LevelCard(QPushButton):
 def picture(name: str, theme: Theme, ratio: float) -> QPixmap:
     """A picture of the start of a level."""
     from meshwright.graphics.drawing import raster
-    from meshwright.graphics.mesh_figure import Look, figure
+    from meshwright.graphics.mesh_figure import FigureOptions, figure
 
     size = PICTURE * ratio
-    look = Look((size.width(), size.height()), theme.name, numbers=False, score=False, curve=False)
+    look = FigureOptions(
+        (size.width(), size.height()), theme.name, numbers=False, score=False, curve=False
+    )
     drawn = raster(figure(levels.load(name).mesh(), look)).convert("RGBA")
     image = QImage(
         drawn.tobytes(), drawn.width, drawn.height, 4 * drawn.width, QImage.Format.Format_RGBA8888

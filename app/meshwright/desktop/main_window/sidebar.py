@@ -15,7 +15,7 @@ WIDTH = 312
 
 class Section(QWidget):
     """A heading with ``panel`` below it; a click on the heading folds the panel, and the setting is
-     saved.
+    saved.
 
     ``beside`` is placed at the right of the heading, and is folded with the panel.
     """

@@ -85,9 +85,11 @@ def open_window(
 
 def load(document: Document, source: str | Path, kind: str) -> None:
     """Put a gallery shape or a mesh file into ``document``."""
-    from meshwright_core.domains import gallery, meshing
+    from meshwright.sources.resolve import resolve
+    from meshwright_core.domains import meshing
 
-    if isinstance(source, str) and source in gallery.names():
-        document.replace(meshing.mesh_domain(gallery.shape(source), kind), source)
+    found = resolve(source)
+    if isinstance(found, Document):
+        document.adopt(found.state())
     else:
-        document.open(source)
+        document.replace(meshing.mesh_domain(found, kind), found.name)

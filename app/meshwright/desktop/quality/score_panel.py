@@ -23,7 +23,7 @@ _STALE = "\u2026"
 
 class ScorePanel(QWidget):
     """Shows the score of ``document`` at once, and measurements of ``monitor`` when they are
-     available.
+    available.
 
     ``delta_chosen(delta)`` when a column of the chart is clicked, ``inverted_chosen()`` when the
     number of inverted elements is.

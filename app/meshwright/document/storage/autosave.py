@@ -1,8 +1,8 @@
-"""Autosave: every step is written down at once, so that a killed process loses at most the last.
+"""Autosave: writes every step to a file at once, so that a killed process loses at most the last.
 
-The first step after a mesh has come or has been saved writes the whole document; each later event
-appends what it changed. Saving and closing remove the file. What a process that died has left
-behind is found by :mod:`meshwright.document.storage.recovery`.
+The first step after a mesh was opened or saved writes the whole document; each later event appends
+its change. Saving and closing remove the file. Files of processes that died are found by
+:mod:`meshwright.document.storage.recovery`.
 """
 
 import errno
@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import platformdirs
+from msgspec import to_builtins
 
 from meshwright.document.document import Document
 from meshwright.document.storage import document_state, file_lock
@@ -24,29 +25,29 @@ from meshwright_core.io.snapshot import Arrays
 
 ENDING = ".journal"
 WAITING_BYTES = 256 << 20
-"""Records that could not be written wait for the next event, up to so many bytes."""
+"""Limit on the bytes of records that could not be written and wait for the next event."""
 _PATIENCE = 20
-"""A whole document that could not be written is tried again after so many times as long."""
+"""After a failed write of the whole document, the wait is this many times its duration."""
 
 Buffers = list[bytes | memoryview]
 
 
 def folder() -> Path:
-    """Where the files are; `MESHWRIGHT_STATE_DIR` overrides the user's folder for such things."""
+    """The folder of the files; `MESHWRIGHT_STATE_DIR` overrides the user's state folder."""
     chosen = os.environ.get("MESHWRIGHT_STATE_DIR")
     return Path(chosen or platformdirs.user_state_path("meshwright")) / "autosave"
 
 
 class Autosave:
-    """Follows one document until :meth:`close` or :meth:`leave`.
+    """Records one document until :meth:`close` or :meth:`leave`.
 
-    ``failed(sentence)`` is emitted when writing fails for the first time; editing goes on, and it
-    is tried again with every later event. ``said(sentence)`` when it has worked again.
+    ``failed(sentence)`` is emitted when writing fails for the first time; it is tried again with
+    every later event. ``resumed(sentence)`` is emitted when writing works again.
     """
 
     def __init__(self, document: Document, where: Path | None = None) -> None:
         self.failed = Signal()
-        self.said = Signal()
+        self.resumed = Signal()
         self._document = document
         self._folder = where if where is not None else folder()
         self._enabled = True
@@ -56,17 +57,17 @@ class Autosave:
         self._waiting: list[Buffers] = []
         self._failing = False
         self._not_before = 0.0
-        document.noted.connect(self._on_noted)
+        document.recorded.connect(self._on_recorded)
         document.replaced.connect(self._remove)
 
     @property
     def path(self) -> Path | None:
-        """The file, None while there is nothing to lose."""
+        """The file, None while there are no unsaved changes."""
         return self._path
 
     @property
     def enabled(self) -> bool:
-        """Whether steps are written down."""
+        """Whether steps are recorded."""
         return self._enabled
 
     @enabled.setter
@@ -76,16 +77,16 @@ class Autosave:
             self._remove()
 
     def begin(self) -> bool:
-        """Write the whole document now, as after a recovery; True if that went well."""
+        """Write the whole document now, as after a recovery; True on success."""
         return self._enabled and self._begin()
 
     def close(self) -> None:
-        """Nothing is left to lose: remove the file, let go of the document."""
+        """Stop recording and remove the file."""
         self._disconnect()
         self._remove()
 
     def leave(self) -> None:
-        """Let go of the document, and leave the file for the next start."""
+        """Stop recording and leave the file for the next start."""
         self._disconnect()
         if self._descriptor is not None:
             file_lock.let_go(self._descriptor)
@@ -93,7 +94,7 @@ class Autosave:
 
     # Events
 
-    def _on_noted(self, event: str, number: int) -> None:
+    def _on_recorded(self, event: str, number: int) -> None:
         if event == "saved" or self._document.passing:
             self._remove()
         elif self._enabled and self._path is None:
@@ -106,12 +107,12 @@ class Autosave:
         mesh, row = self._document.mesh, self._document.history.last
         if event != "step" or mesh is None or row is None:
             return header, {}
-        header["row"] = document_state.row_record(row)
+        header["row"] = to_builtins(row)
         header["room"] = [len(mesh.arrays.vertex), len(mesh.arrays.element_mark)]
         return header, snapshot.steps_arrays([mesh.last_step()], "step")
 
     def _now(self) -> dict[str, Any]:
-        """What a person is told of the work when it is offered again."""
+        """Summary of the work, shown when it is offered for recovery."""
         document = self._document
         return {
             "steps": document.history.cursor,
@@ -124,11 +125,11 @@ class Autosave:
     # The file
 
     def _begin(self) -> bool:
-        """A new file with the whole document in it."""
+        """Begin a new file with the whole document."""
         begun = time.monotonic()
         if begun < self._not_before:
             return False
-        header, arrays = document_state.taken(self._document.kept())
+        header, arrays = document_state.packed(self._document.state())
         path = self._folder / f"{os.getpid()}-{secrets.token_hex(6)}{ENDING}"
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -154,14 +155,14 @@ class Autosave:
             self._cut()
             self._tell(error)
             if sum(len(part) for record in self._waiting for part in record) > WAITING_BYTES:
-                self._remove()  # the next event begins again with the whole document
+                self._remove()  # the next event writes the whole document
         else:
             if self._failing:
                 self._failing = False
-                self.said.emit("Autosave works again.")
+                self.resumed.emit("Autosave works again.")
 
     def _write(self, buffers: Buffers) -> None:
-        """Write one record whole; a small one by a single call of the system."""
+        """Write one record; a small one by a single system call."""
         if self._descriptor is None:
             raise OSError(errno.EBADF, os.strerror(errno.EBADF))
         if sum(map(len, buffers)) < 1 << 16:
@@ -176,7 +177,7 @@ class Autosave:
         self._length += written
 
     def _cut(self) -> None:
-        """Take away what a failed write has left at the end."""
+        """Remove the incomplete record of a failed write."""
         try:
             if self._descriptor is not None:
                 os.ftruncate(self._descriptor, self._length)
@@ -192,7 +193,7 @@ class Autosave:
             )
 
     def _remove(self) -> None:
-        """Forget the file: there is nothing in it to lose."""
+        """Close and delete the file."""
         path, descriptor = self._path, self._descriptor
         self._path = self._descriptor = None
         self._waiting.clear()
@@ -202,12 +203,12 @@ class Autosave:
             remove(path)
 
     def _disconnect(self) -> None:
-        self._document.noted.disconnect(self._on_noted)
+        self._document.recorded.disconnect(self._on_recorded)
         self._document.replaced.disconnect(self._remove)
 
 
 def remove(path: Path) -> bool:
-    """Delete a file of autosave; False where the system refuses."""
+    """Delete a file of autosave; False if the system refuses."""
     try:
         path.unlink(missing_ok=True)
     except OSError:

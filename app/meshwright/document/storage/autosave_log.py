@@ -1,4 +1,4 @@
-"""A file that only grows: records with their length and checksum, so that a torn end is noticed.
+"""Append-only file of records with length and checksum, so that an incomplete end is detected.
 
 A record is a header that JSON can hold and named arrays. On the disk: four letters, the length of
 what follows the checksum, the checksum (CRC-32), then the length of a JSON text, the text, and the
@@ -27,19 +27,19 @@ _KINDS = ("<i4", "<i8", "<f8")
 
 @dataclass(frozen=True)
 class Record:
-    """What was written at one time; ``arrays`` are views of the file's bytes."""
+    """One record; ``arrays`` are views of the file's bytes."""
 
     header: dict[str, Any]
     arrays: Arrays
 
 
 def encoded(header: dict[str, Any], arrays: Arrays) -> list[bytes | memoryview]:
-    """A record as buffers to be written in turn; arrays are not copied where that can be."""
+    """A record as buffers to be written in order; arrays are not copied if possible."""
     plain = {name: _plain(array) for name, array in arrays.items()}
     table = [(name, array.dtype.str, array.shape) for name, array in plain.items()]
     text = json.dumps([header, table]).encode()
     body: list[bytes | memoryview] = [_LENGTH.pack(len(text)), text]
-    body += [memoryview(array.reshape(-1).view(np.uint8)) for array in plain.values() if array.size]
+    body += [array.reshape(-1).view(np.uint8).data for array in plain.values() if array.size]
     checksum = 0
     for part in body:
         checksum = zlib.crc32(part, checksum)
@@ -47,7 +47,7 @@ def encoded(header: dict[str, Any], arrays: Arrays) -> list[bytes | memoryview]:
 
 
 def records(path: Path) -> Iterator[Record]:
-    """All whole records of a file in turn; the first one that is not whole ends them.
+    """The records of a file, up to the first that is incomplete or damaged.
 
     Raises OSError if the file cannot be read.
     """

@@ -1,6 +1,6 @@
-"""A file that a living process holds: the system lets go of it when the process dies, however.
+"""Exclusive locks on files, which the system releases when the process ends for any reason.
 
-Holding does not hinder reading. A second holder is refused in the same process too.
+A locked file can still be read. A second lock is refused in the same process too.
 """
 
 import os
@@ -9,9 +9,10 @@ from pathlib import Path
 
 
 def hold(path: Path, fresh: bool = False) -> int | None:
-    """A descriptor of the file for appending, held until :func:`let_go`; None if it is held.
+    """Lock the file; returns a descriptor for appending, or None if it is locked already.
 
-    ``fresh`` makes the file, which must not be there. Raises OSError where the system refuses.
+    ``fresh`` creates the file, which must not exist. The lock is held until :func:`let_go`. Raises
+    OSError if the system refuses.
     """
     flags = os.O_RDWR | os.O_APPEND | getattr(os, "O_BINARY", 0)
     descriptor = os.open(path, flags | (os.O_CREAT | os.O_EXCL if fresh else 0), 0o600)
@@ -22,7 +23,7 @@ def hold(path: Path, fresh: bool = False) -> int | None:
 
 
 def let_go(descriptor: int) -> None:
-    """Close the file; others may hold it now."""
+    """Close the file and release the lock."""
     os.close(descriptor)
 
 
@@ -50,5 +51,5 @@ else:
         except (BlockingIOError, PermissionError):
             return False
         except OSError:
-            return True  # a file system without locks: better offered twice than never
+            return True  # a file system without locks: offering work twice is better than never
         return True

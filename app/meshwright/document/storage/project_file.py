@@ -1,7 +1,7 @@
 """The project file, ``.meshwright``: a mesh with its whole history, branches, and settings.
 
 It is a zip archive, as ``numpy.load`` reads it: ``project.json`` and one ``.npy`` for each array
-(:mod:`meshwright_core.io.snapshot` tells which). Nothing in it is ever run.
+(:mod:`meshwright_core.io.snapshot` lists them). Nothing in it is executed.
 """
 
 import io
@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from meshwright.document.storage import document_state
-from meshwright.document.storage.document_state import Kept
+from meshwright.document.storage.document_state import DocumentState
 from meshwright_core import MeshError
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.io.file_checks import naming
@@ -27,7 +27,7 @@ _HEADER = "project.json"
 _FORMAT = "Meshwright project"
 _KINDS = (np.dtype(np.int32), np.dtype(np.int64), np.dtype(np.float64))
 _MOST_BYTES = 8 << 30
-_SWIFT = 1  # how hard to compress: the next levels take twice as long for a tenth less
+_SWIFT = 1  # compression level: higher ones take twice as long for files a tenth smaller
 _BROKEN = (
     zipfile.BadZipFile,
     zlib.error,
@@ -44,17 +44,17 @@ _BROKEN = (
 
 
 def is_project(path: str | os.PathLike[str]) -> bool:
-    """Whether the file's ending says that it is a project."""
+    """Whether the path has the ending of projects."""
     return Path(path).suffix.lower() == ENDING
 
 
-def write(path: str | os.PathLike[str], kept: Kept) -> None:
-    """Write a project, whole or not at all.
+def write(path: str | os.PathLike[str], kept: DocumentState) -> None:
+    """Write a project atomically.
 
-    Raises MeshError, one sentence that begins with the path, where the system refuses; an old file
-    is then as it was.
+    Raises MeshError, one sentence that begins with the path, if the system refuses; an old file is
+    then unchanged.
     """
-    header, arrays = document_state.taken(kept)
+    header, arrays = document_state.packed(kept)
     text = json.dumps({"format": _FORMAT, **header}, ensure_ascii=False)
     with (
         replacing(path) as temporary,
@@ -67,11 +67,11 @@ def write(path: str | os.PathLike[str], kept: Kept) -> None:
                 np.lib.format.write_array(member, plain, (1, 0), allow_pickle=False)
 
 
-def read(path: str | os.PathLike[str]) -> Kept:
+def read(path: str | os.PathLike[str]) -> DocumentState:
     """Read a project; its `path` is where it was read from.
 
-    Raises MeshError, one sentence that begins with the path: the file is missing, no project, cut
-    off, or holds what is no mesh.
+    Raises MeshError, one sentence that begins with the path, if the file is missing, no project,
+    truncated, or does not hold a valid mesh.
     """
     place = Path(path)
     with naming(place):
@@ -79,12 +79,12 @@ def read(path: str | os.PathLike[str]) -> Kept:
             header, arrays = _members(place)
             if not isinstance(header, dict) or header.get("format") != _FORMAT:
                 raise MeshError("it is not a Meshwright project")
-            kept = document_state.restored(header, arrays)
+            kept = document_state.unpacked(header, arrays)
         except MeshError:
             raise
         except _BROKEN as error:
             raise MeshError("it is not a Meshwright project, or not a whole one") from error
-    return Kept(
+    return DocumentState(
         kept.mesh,
         kept.history,
         place.stem,

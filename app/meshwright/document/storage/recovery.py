@@ -1,23 +1,27 @@
-"""Work that a process left behind when it died, as :mod:`meshwright.document.storage.autosave`
-wrote it down.
+"""Finds and restores documents of processes that died, from the files of
+:mod:`meshwright.document.storage.autosave`.
 """
 
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from msgspec import Struct
+
 from meshwright.document.document import Document
+from meshwright.document.history import HistoryStep
+from meshwright.document.json_records import Count, WholeNumber, converted
 from meshwright.document.storage import autosave, document_state, file_lock
 from meshwright.document.storage.autosave_log import Record, records
-from meshwright.document.storage.document_state import Kept
+from meshwright.document.storage.document_state import DocumentState
 from meshwright_core import MeshError
 from meshwright_core.io import snapshot
 
 
 @dataclass
-class Lost:
-    """One document that can be recovered. It is held for this process until one of
-    :meth:`discard` and :meth:`release` is called.
+class LostWork:
+    """A document that can be recovered. Its file is locked until :meth:`discard` or
+    :meth:`release` is called.
     """
 
     path: Path
@@ -27,13 +31,13 @@ class Lost:
     when: float
     """Time of the last step, in seconds since 1970."""
     now: dict[str, Any]
-    """What :meth:`meshwright.document.storage.autosave.Autosave` notes with every event: ``steps``,
-    ``score``, ``optimum``, ``elements``, ``kind``.
+    """The summary that autosave writes with every event: ``steps``, ``score``, ``optimum``,
+    ``elements``, ``kind``.
     """
     _descriptor: int | None = None
 
-    def read(self) -> Kept:
-        """The document as it was after the last whole record; MeshError if it is not sound."""
+    def read(self) -> DocumentState:
+        """The document after the last complete record; MeshError if it cannot be restored."""
         try:
             return _replayed(self.path)
         except MeshError as error:
@@ -51,14 +55,14 @@ class Lost:
         autosave.remove(self.path)
 
     def release(self) -> None:
-        """Leave it for another start."""
+        """Unlock the file and leave it for another start."""
         if self._descriptor is not None:
             file_lock.let_go(self._descriptor)
         self._descriptor = None
 
 
-def lost(where: Path | None = None) -> list[Lost]:
-    """What processes that are no longer alive have left, the latest first; held from here on."""
+def lost(where: Path | None = None) -> list[LostWork]:
+    """The documents of processes that have ended, the latest first; their files are locked."""
     found = []
     place = where if where is not None else autosave.folder()
     try:
@@ -70,14 +74,14 @@ def lost(where: Path | None = None) -> list[Lost]:
             descriptor = file_lock.hold(path)
             one = _look(path, descriptor) if descriptor is not None else None
         except OSError:
-            continue  # it may have gone meanwhile, or belong to somebody else
+            continue  # deleted in the meantime, or owned by another user
         if one is not None:
             found.append(one)
     return sorted(found, key=lambda one: one.when, reverse=True)
 
 
-def _look(path: Path, descriptor: int) -> Lost | None:
-    """Sum up a file from its headers; without a whole document in it there is nothing to offer."""
+def _look(path: Path, descriptor: int) -> LostWork | None:
+    """Summary of a file from its headers; None, and the file deleted, if it holds no document."""
     when = path.stat().st_mtime
     headers = [record.header for record in records(path)]
     if not headers or headers[0].get("event") != "document":
@@ -86,7 +90,7 @@ def _look(path: Path, descriptor: int) -> Lost | None:
         return None
     first, now = headers[0], headers[-1].get("now")
     file = first.get("path")
-    return Lost(
+    return LostWork(
         path,
         str(first.get("name") or ""),
         Path(file) if isinstance(file, str) else None,
@@ -96,53 +100,58 @@ def _look(path: Path, descriptor: int) -> Lost | None:
     )
 
 
-def _replayed(path: Path) -> Kept:
-    """Read the whole document, then do again what came after it."""
+def _replayed(path: Path) -> DocumentState:
+    """Read the document, then repeat the events recorded after it."""
     document = Document()
     for record in records(path):
         if document.empty:
-            document.adopt(document_state.restored(record.header, record.arrays))
+            document.adopt(document_state.unpacked(record.header, record.arrays))
         else:
             try:
-                _again(document, record)
+                _repeat(document, record)
             except MeshError:
-                break  # what came before is sound
+                break  # the records before it are valid
     if document.empty:
         raise MeshError("there is no whole document in it")
-    return document.kept()
+    return document.state()
 
 
-def _again(document: Document, record: Record) -> None:
-    event, number = record.header.get("event"), record.header.get("number")
-    if type(number) is not int:
-        raise MeshError("an event of the record is none")
-    if event == "go":
-        document.go_to(number)
-    elif event == "branch":
-        document.take_branch(number)
-    elif event == "step":
-        _make_room(document, record.header.get("room"))
+class _Event(Struct):
+    """What autosave appends after each change of the document."""
+
+    event: str
+    number: WholeNumber
+    row: HistoryStep | None = None
+    """The step, for the event "step"."""
+    room: tuple[Count, Count] | None = None
+    """Vertices and elements that the mesh had room for after the step."""
+
+
+def _repeat(document: Document, record: Record) -> None:
+    """Do what a record of autosave says; MeshError if it does not follow from here."""
+    event = converted(record.header, _Event)
+    if event.event == "go":
+        document.go_to(event.number)
+    elif event.event == "branch":
+        document.take_branch(event.number)
+    elif event.event == "step" and event.row is not None:
+        _make_room(document, event.room)
         mesh = document.mesh
         steps = snapshot.restored_steps(record.arrays, "step", mesh) if mesh else ()
-        document.again(document_state.row_of(record.header.get("row")), steps)
+        document.replay(event.row, steps)
     else:
         raise MeshError("an event of the record is unknown")
 
 
-def _make_room(document: Document, room: object) -> None:
-    """Have as much room as the mesh had then; MeshError for what is no room."""
+def _make_room(document: Document, room: tuple[int, int] | None) -> None:
+    """Reserve room for vertices and elements as the mesh had it when the step was recorded."""
     mesh = document.mesh
     if mesh is None:
         return
-    if not isinstance(room, list) or len(room) != 2 or any(type(one) is not int for one in room):
+    if room is None:
         raise MeshError("a step of the record lacks its room")
-    vertices, elements = (
-        wanted - have
-        for wanted, have in zip(
-            room, (len(mesh.arrays.vertex), len(mesh.arrays.element_mark)), strict=True
-        )
-    )
-    if max(vertices, elements) > snapshot.MOST:
+    missing = (room[0] - len(mesh.arrays.vertex), room[1] - len(mesh.arrays.element_mark))
+    if max(missing) > snapshot.MOST:
         raise MeshError("a step of the record wants too much room")
-    if max(vertices, elements) > 0:
+    if max(missing) > 0:
         mesh.room_for(*room)

@@ -1,4 +1,4 @@
-"""Pictures and films to order: what to write, how large, how long, and the writing of it."""
+"""Options of exported pictures and films, and functions that write them."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 from meshwright.graphics.drawing import Drawing, raster, svg
 from meshwright.graphics.export import video
 from meshwright.graphics.export.film import Film
-from meshwright.graphics.export.video import Progress
-from meshwright.graphics.mesh_figure import Look, figure
+from meshwright.graphics.export.video import ReportProgress
+from meshwright.graphics.mesh_figure import FigureOptions, figure
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.errors import MeshError
 from meshwright_core.io import atomic_write
@@ -17,15 +17,18 @@ from meshwright_core.io import atomic_write
 FILMS = video.ENDINGS
 STILLS = (".png", ".svg")
 SIZES = ((640, 480), (960, 720), (1280, 720), (1920, 1080), (1200, 1200))
-"""Pixels on offer; all sides are even, as films want it."""
+"""Sizes in pixels that the interface offers; sides are even, which H.264 requires."""
 MOST_FRAMES = 600
-"""A film that is not told otherwise leaves steps out rather than have more frames."""
+"""By default a film with more frames than this skips steps."""
 
 
 @dataclass(frozen=True)
-class Order:
-    """What a person wants written. ``seconds`` each frame stays; ``every`` how many steps a frame
-    stands for, 0 for as many as keep the film below :data:`MOST_FRAMES`.
+class ExportOptions:
+    """Options of an exported picture or film.
+
+    ``ending`` is that of the file, ``seconds`` the duration of each frame, ``every`` the number of
+    steps from frame to frame; 0: as many as keep the film below :data:`MOST_FRAMES`. The others are
+    those of :class:`meshwright.graphics.mesh_figure.FigureOptions`.
     """
 
     ending: str = ".gif"
@@ -45,9 +48,9 @@ class Order:
         return self.ending in FILMS
 
     @property
-    def look(self) -> Look:
-        """What its figures show."""
-        return Look(
+    def figure_options(self) -> FigureOptions:
+        """The options of its figures."""
+        return FigureOptions(
             size=self.size,
             theme=self.theme,
             numbers=self.numbers,
@@ -58,44 +61,50 @@ class Order:
         )
 
     def stride(self, film: Film) -> int:
-        """Steps that one frame stands for."""
+        """The number of steps from frame to frame."""
         return self.every or max(1, -(-len(film) // MOST_FRAMES))
 
 
-def write_order(
-    film: Film, order: Order, path: str | Path, progress: Progress | None = None
+def write_export(
+    film: Film, options: ExportOptions, path: str | Path, progress: ReportProgress | None = None
 ) -> int:
-    """Write as :func:`save_order` does, but whole or not at all: an old file stays as it was.
+    """Write as :func:`save_export` does, but atomically: if it fails, an existing file remains.
 
     Raises MeshError, which names ``path``, where the file cannot be written.
     """
     with atomic_write.replacing(path) as temporary:
-        return save_order(film, order, temporary, progress)
+        return save_export(film, options, temporary, progress)
 
 
-def save_order(film: Film, order: Order, path: Path, progress: Progress | None = None) -> int:
-    """Write a film, or a picture of the state where ``film`` stands; returns the frames written.
+def save_export(
+    film: Film, options: ExportOptions, path: Path, progress: ReportProgress | None = None
+) -> int:
+    """Write a film, or a picture of its present state; returns the number of frames.
 
-    ``progress(done, total)`` is called after each frame; what it raises ends the work. Raises
-    OSError where the file cannot be written, MeshError for an ending that no picture has.
+    ``progress(done, total)`` is called after each frame and may raise to cancel. Raises OSError if
+    the file cannot be written, MeshError for an unknown ending.
     """
-    if order.moving:
-        return film.save(path, order.look, order.seconds, order.stride(film), progress)
-    save_picture(figure(film.mesh, order.look, film.moment(film.state)), path)
+    if options.moving:
+        return film.save(
+            path, options.figure_options, options.seconds, options.stride(film), progress
+        )
+    save_picture(figure(film.mesh, options.figure_options, film.moment(film.state)), path)
     if progress is not None:
         progress(1, 1)
     return 1
 
 
-def save_mesh_picture(mesh: HalfEdgeMesh, path: str | Path, look: Look | None = None) -> None:
+def save_mesh_picture(
+    mesh: HalfEdgeMesh, path: str | Path, options: FigureOptions | None = None
+) -> None:
     """Write one picture of ``mesh``; raises as :func:`save_picture` does."""
-    save_picture(figure(mesh, look), path)
+    save_picture(figure(mesh, options), path)
 
 
 def save_picture(drawing: Drawing, path: str | Path) -> None:
-    """Write a drawing as PNG or SVG, as the ending says.
+    """Write a drawing as PNG or SVG, by the ending of ``path``.
 
-    Raises OSError where the file cannot be written, MeshError for another ending.
+    Raises OSError if the file cannot be written, MeshError for another ending.
     """
     path = Path(path)
     ending = path.suffix.lower()

@@ -1,7 +1,7 @@
-"""The film: every state of a history, exact to the bit, as figures and as a file.
+"""Films: all states of a document's history, as figures and as a GIF or MP4 file.
 
-A film is a copy. It is taken from a document in the document's thread and may then be played and
-written in any other, while the document goes on.
+A film holds a copy of the mesh and its history. It is made in the thread of the document and may
+then be used in another thread while the document changes.
 """
 
 from __future__ import annotations
@@ -12,25 +12,25 @@ from pathlib import Path
 import numpy as np
 
 from meshwright.document.document import NO_MESH, Document
-from meshwright.document.history import YOU, Row
-from meshwright.document.score_series import Track
+from meshwright.document.history import YOU, HistoryStep
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export import video
 from meshwright.graphics.markers import label
-from meshwright.graphics.mesh_figure import Look, Moment, edges, figure, fitted
+from meshwright.graphics.mesh_figure import FigureOptions, HistoryMoment, edges, figure, fitted
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 SAMPLES = 2
-"""Frames are drawn this many times larger: a still picture takes more care."""
+"""Frames are drawn at this many times their size and scaled down; single pictures at more."""
 FIRST, LAST = 1.0, 2.5
-"""Seconds for which the first and the last frame stay, at least."""
+"""The least duration of the first and of the last frame in seconds."""
 
 
 class Film:
     """The states of a document's history: state 0 is the start, state i the one after row i - 1.
 
-    Undone rows count too. Raises MeshError where the document has no mesh.
+    Undone rows are included. Raises MeshError if the document has no mesh.
     """
 
     def __init__(self, document: Document) -> None:
@@ -38,10 +38,10 @@ class Film:
         if mesh is None:
             raise MeshError(NO_MESH)
         self.name = document.name
-        self.rows: tuple[Row, ...] = tuple(document.history)
+        self.rows: tuple[HistoryStep, ...] = tuple(document.history)
         self._mesh = mesh.copy(history=True)
         self._state = document.history.cursor
-        track = Track()
+        track = ScoreSeries()
         track.follow(document.history)
         self.scores, self.optima = track.scores, track.optima
 
@@ -53,7 +53,7 @@ class Film:
         by: str,
         name: str = "",
     ) -> Film:
-        """The film of ``operations`` done on a copy of ``mesh``, smoothed as in the window."""
+        """The film of ``operations`` on a copy of ``mesh``, smoothed as in the window."""
         document = Document(mesh.copy(), name)
         for operation, halfedge in operations:
             document.submit(operation, halfedge, by)
@@ -65,7 +65,7 @@ class Film:
 
     @property
     def state(self) -> int:
-        """The state where the film stands."""
+        """The index of the present state."""
         return self._state
 
     @property
@@ -74,7 +74,7 @@ class Film:
         return self._mesh
 
     def go_to(self, state: int) -> None:
-        """Undo or redo until ``state``; beyond either end it stops there."""
+        """Undo or redo up to ``state``, which is clipped to the first and last state."""
         state = min(max(state, 0), len(self.rows))
         while self._state > state:
             self._mesh.undo()
@@ -84,16 +84,16 @@ class Film:
             self._state += 1
 
     def stops(self, every: int = 1) -> list[int]:
-        """Every ``every``-th state, with the first and the last one."""
+        """Every ``every``-th state from 0 on, and the last one."""
         states = list(range(0, len(self), max(every, 1)))
         if states[-1] != len(self.rows):
             states.append(len(self.rows))
         return states
 
-    def moment(self, state: int, since: int | None = None) -> Moment:
-        """Go to ``state`` and tell what differs from state ``since`` (by default the one before).
+    def moment(self, state: int, since: int | None = None) -> HistoryMoment:
+        """Go to ``state`` and compare it with state ``since``, by default the one before.
 
-        The edges of a state are found anew: in a row of frames use :meth:`moments`.
+        This computes the edges of both states; for several frames use :meth:`moments`.
         """
         before = max(state - 1, 0) if since is None else since
         self.go_to(before)
@@ -101,8 +101,8 @@ class Film:
         self.go_to(state)
         return self._moment(former, places, before)[0]
 
-    def moments(self, stops: Sequence[int]) -> Iterator[Moment]:
-        """Go to each of ``stops`` in turn and tell what differs from the one before."""
+    def moments(self, stops: Sequence[int]) -> Iterator[HistoryMoment]:
+        """Go to each of ``stops`` in turn and compare it with the one before."""
         former, places, before = np.empty((0, 2), dtype=np.int64), np.empty((0, 3)), -1
         for state in stops:
             self.go_to(state)
@@ -112,8 +112,8 @@ class Film:
 
     def _moment(
         self, former: np.ndarray, places: np.ndarray, before: int
-    ) -> tuple[Moment, np.ndarray]:
-        """The present moment, and the edges of the mesh."""
+    ) -> tuple[HistoryMoment, np.ndarray]:
+        """The present moment and the edges of the mesh (n, 2)."""
         state, present = self._state, edges(self._mesh)
         points = self._mesh.points
         added, removed = np.empty((0, 2, 2)), np.empty((0, 2, 2))
@@ -121,12 +121,12 @@ class Film:
             new, old = _keys(present), _keys(former)
             added = points[present[~np.isin(new, old)]][:, :, :2]
             gone = former[~np.isin(old, new)]
-            # where a vertex is still there it may have moved a little: the ghost goes with it
+            # vertices that still exist may have moved; removed edges are drawn at their new places
             alive = self._mesh.degree()[np.minimum(gone, len(points) - 1)] > 0
             alive &= gone < len(points)
             here = points[np.where(alive, gone, 0)]
             removed = np.where(alive[:, :, None], here, places[gone])[:, :, :2]
-        moment = Moment(
+        moment = HistoryMoment(
             title=self.title(state),
             detail=self._detail(state),
             added=added,
@@ -138,7 +138,7 @@ class Film:
         return moment, present
 
     def title(self, state: int) -> str:
-        """What led to ``state``, with the change of the score."""
+        """The title of the step to ``state``, with its change of the score."""
         if state == 0:
             return "Start"
         row = self.rows[state - 1]
@@ -151,37 +151,37 @@ class Film:
 
     # Pictures and files
 
-    def viewport(self, look: Look) -> Viewport:
-        """One view for all frames: that of the first state."""
+    def viewport(self, options: FigureOptions) -> Viewport:
+        """The viewport of all frames, fitted to the first state."""
         self.go_to(0)
-        return fitted(self._mesh, look, Moment(scores=self.scores, optima=self.optima))
+        return fitted(self._mesh, options, HistoryMoment(scores=self.scores, optima=self.optima))
 
-    def images(self, stops: Sequence[int], look: Look) -> Iterator[object]:
+    def images(self, stops: Sequence[int], options: FigureOptions) -> Iterator[object]:
         """A Pillow image for each of ``stops``."""
-        view = self.viewport(look)
+        view = self.viewport(options)
         for moment in self.moments(stops):
-            yield raster(figure(self._mesh, look, moment, view), SAMPLES)
+            yield raster(figure(self._mesh, options, moment, view), SAMPLES)
 
     def save(
         self,
         path: Path,
-        look: Look | None = None,
+        options: FigureOptions | None = None,
         seconds: float = 0.25,
         every: int = 1,
-        progress: video.Progress | None = None,
+        progress: video.ReportProgress | None = None,
     ) -> int:
         """Write the film as GIF or MP4, as the ending says; returns the number of frames.
 
         ``seconds`` is how long one frame stays, ``every`` how many steps it stands for. Raises,
         and calls ``progress``, as :func:`meshwright.graphics.export.video.save` does.
         """
-        look = look or Look()
+        options = options or FigureOptions()
         stops = self.stops(every)
         times = [seconds] * len(stops)
         times[0] = max(seconds, FIRST if len(stops) > 1 else LAST)
         times[-1] = max(seconds, LAST)
-        frames = zip(self.images(stops, look), times, strict=True)
-        video.save(path, frames, len(stops), look, progress)
+        frames = zip(self.images(stops, options), times, strict=True)
+        video.save(path, frames, len(stops), options, progress)
         return len(stops)
 
 

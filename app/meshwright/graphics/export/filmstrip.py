@@ -1,4 +1,4 @@
-"""A run of operations as one picture: the mesh at the start, half-way and at the end."""
+"""A sequence of operations as one picture: the mesh at the start, half-way and at the end."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshwright.cli.output_files import replacing
 from meshwright.graphics.drawing import raster
-from meshwright.graphics.mesh_figure import Look, Moment, elements, figure
+from meshwright.graphics.mesh_figure import FigureOptions, HistoryMoment, elements, figure
+from meshwright_core.io.atomic_write import replacing
 
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh, Operation
@@ -25,12 +25,12 @@ def write(
 ) -> None:
     """Write the three states side by side as a PNG of ``3 * size``; the mesh is not changed.
 
-    Raises UserError if the file cannot be written.
+    Raises MeshError, one sentence that begins with the path, if the file cannot be written.
     """
     from meshwright_core.geometry import smoothing
 
     work = mesh.copy()
-    look = Look(size, theme)
+    options = FigureOptions(size, theme)
     frames = []
     done = 0
     for stop in (0, len(operations) // 2, len(operations)):
@@ -39,7 +39,7 @@ def write(
         done = stop
         smoothing.relax(work)
         words = f"{done:,} of {len(operations):,} operations" if operations else ""
-        frames.append(raster(figure(work, look, Moment(elements(work), words))))
+        frames.append(raster(figure(work, options, HistoryMoment(elements(work), words))))
     with replacing(path) as temporary:
         side_by_side(frames).save(temporary, format="PNG")
 

@@ -1,7 +1,7 @@
-"""The still picture that stands for a mesh at the end of a notebook's cell.
+"""The picture of a mesh as the result of a notebook cell.
 
 It is found by the entry point ``meshwright.display`` (see
-:mod:`meshwright_core.core.notebook_display`), and it needs nothing but numpy and Pillow.
+:mod:`meshwright_core.core.notebook_display`) and needs only numpy and Pillow.
 """
 
 from __future__ import annotations
@@ -12,23 +12,23 @@ from html import escape
 from urllib.parse import quote
 
 from meshwright.graphics.drawing import raster, svg
-from meshwright.graphics.export.video import flat
-from meshwright.graphics.mesh_figure import Look, elements, figure
+from meshwright.graphics.export.video import quantised
+from meshwright.graphics.mesh_figure import FigureOptions, elements, figure
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.notebook_display import Bundle
 
 SIZE = (480, 360)
-"""Pixels that the picture takes on the page."""
+"""Size of the picture on the page in pixels."""
 SHARP = 2
-"""Pixels of a raster for one on the page: many screens have that many."""
+"""Image pixels for each pixel of the page, for screens of high resolution."""
 MOST_SHAPES = 300
-"""Elements beyond which a raster is smaller than vectors are."""
+"""For meshes of more elements than this a PNG is smaller than an SVG."""
 UNIT = 0.8
-"""Of the picture's lines and letters: it is small, and they shall be read."""
+"""Scale of lines and letters, larger than in proportion to the size, for legibility."""
 
 
 def mimebundle(mesh: HalfEdgeMesh, name: str = "") -> Bundle:
-    """HTML with a picture, its words for who cannot see it, and a caption; no metadata."""
+    """HTML with a picture, its alternative text and a caption; no metadata."""
     words = f"{name}: {caption(mesh)}" if name else caption(mesh)
     width, height = SIZE
     html = (
@@ -42,7 +42,7 @@ def mimebundle(mesh: HalfEdgeMesh, name: str = "") -> Bundle:
 
 
 def still(mesh: HalfEdgeMesh) -> Bundle:
-    """The picture for whoever shows images only: PNG, with its size and words as metadata."""
+    """The picture as PNG, with its size and alternative text as metadata."""
     data = {"image/png": b64encode(png(mesh)).decode("ascii")}
     return data, {"image/png": {"width": SIZE[0], "height": SIZE[1], "alt": caption(mesh)}}
 
@@ -54,16 +54,16 @@ def caption(mesh: HalfEdgeMesh) -> str:
 
 
 def address(mesh: HalfEdgeMesh) -> str:
-    """The picture as a ``data:`` address: vectors of a small mesh, pixels of a large one."""
+    """The picture as a ``data:`` URL: SVG for a small mesh, PNG for a large one."""
     if mesh.n_elements <= MOST_SHAPES:
-        drawing = figure(mesh, Look(SIZE, score=False, unit=UNIT))
+        drawing = figure(mesh, FigureOptions(SIZE, score=False, unit=UNIT))
         return "data:image/svg+xml," + quote(svg(drawing), safe=" /:;=,.()-'!*?")
     return "data:image/png;base64," + b64encode(png(mesh)).decode("ascii")
 
 
 def png(mesh: HalfEdgeMesh) -> bytes:
-    """The picture as a PNG of :data:`SHARP` times its size, in the few colours that it has."""
-    look = Look((SIZE[0] * SHARP, SIZE[1] * SHARP), score=False, unit=UNIT * SHARP)
+    """The picture as a PNG of :data:`SHARP` times its size, with a palette of 256 colours."""
+    options = FigureOptions((SIZE[0] * SHARP, SIZE[1] * SHARP), score=False, unit=UNIT * SHARP)
     file = io.BytesIO()
-    flat(raster(figure(mesh, look), SHARP), look.palette).save(file, format="PNG")
+    quantised(raster(figure(mesh, options), SHARP), options.palette).save(file, format="PNG")
     return file.getvalue()

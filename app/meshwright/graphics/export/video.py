@@ -1,4 +1,4 @@
-"""Moving pictures: frames into a GIF or an MP4 file, one at a time."""
+"""Writes frames to a GIF or an MP4 file, one at a time."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.graphics.mesh_figure import Look
+from meshwright.graphics.mesh_figure import FigureOptions
 from meshwright.graphics.theme import Theme
 from meshwright_core.errors import MeshError
 
 ENDINGS = (".gif", ".mp4")
 RATE = 20
-"""Frames per second of an MP4; a figure that stays longer is repeated."""
+"""Frames per second of an MP4; figures that last longer are repeated."""
 QUALITY = "18"
-"""The encoder's constant rate factor: lower is better and larger; 18 looks lossless."""
+"""The constant rate factor of the encoder; at 18 no loss is visible."""
 LEVELS = 14
-"""Shades of a GIF between two colours that meet."""
+"""Shades in the palette of a GIF between two adjacent colours."""
 NEAR = 4
-"""Shades that differ by less are one: there is room for 256 only."""
+"""Shades that differ by less in every channel share an entry of the palette."""
 SHORTEST = 0.02
-"""Seconds: viewers of GIF slow down what is shorter."""
+"""The shortest duration of a GIF frame in seconds; viewers slow down shorter ones."""
 
 Frames = Iterable[tuple[Any, float]]
-Progress = Callable[[int, int], None]
+ReportProgress = Callable[[int, int], None]
 
 
 def checked_ending(path: str | Path) -> str:
-    """The ending of a film's file in lower case; MeshError for one that cannot be written."""
+    """The ending of a film's file in lower case; MeshError unless it is one of ENDINGS."""
     ending = Path(path).suffix.lower()
     if ending not in ENDINGS:
         found = f"the ending {ending}" if ending else "a name without an ending"
@@ -39,23 +39,29 @@ def checked_ending(path: str | Path) -> str:
 
 
 def save(
-    path: Path, frames: Frames, count: int, look: Look, progress: Progress | None = None
+    path: Path,
+    frames: Frames,
+    count: int,
+    options: FigureOptions,
+    progress: ReportProgress | None = None,
 ) -> None:
-    """Write ``count`` frames, each a Pillow image of ``look.size`` and its seconds, to ``path``.
+    """Write ``count`` frames, each a Pillow image of ``options.size`` and its seconds, to ``path``.
 
-    ``progress(done, count)`` is called after each; what it raises ends the work, with a file that
-    is not whole: :func:`meshwright.graphics.export.export_job.write_order` sees to that. Raises
-    MeshError for another ending
-    or a size that cannot be encoded, OSError where the file cannot be written.
+    ``progress(done, count)`` is called after each and may raise to cancel, which leaves a partial
+    file; :func:`meshwright.graphics.export.export_job.write_export` writes atomically. Raises
+    MeshError for another ending or a size that cannot be encoded, OSError if the file cannot be
+    written.
     """
     followed = _followed(frames, count, progress)
     if checked_ending(path) == ".gif":
-        _save_gif(path, followed, look)
+        _save_gif(path, followed, options)
     else:
-        _save_mp4(path, followed, look)
+        _save_mp4(path, followed, options)
 
 
-def _followed(frames: Frames, count: int, progress: Progress | None) -> Iterator[tuple[Any, float]]:
+def _followed(
+    frames: Frames, count: int, progress: ReportProgress | None
+) -> Iterator[tuple[Any, float]]:
     for done, frame in enumerate(frames, start=1):
         yield frame
         if progress is not None:
@@ -65,14 +71,14 @@ def _followed(frames: Frames, count: int, progress: Progress | None) -> Iterator
 # GIF
 
 
-def _save_gif(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
-    """Frames of one palette, each cut down to what differs from the one before it."""
+def _save_gif(path: Path, frames: Iterator[tuple[Any, float]], options: FigureOptions) -> None:
+    """Write frames with one palette, each cropped to the pixels that differ from the last one."""
     from PIL.GifImagePlugin import getdata
 
     before: Any = None
     with path.open("wb") as file:
         for image, seconds in frames:
-            small = flat(image, look.palette)
+            small = quantised(image, options.palette)
             place, shown = (0, 0), small
             if before is None:
                 file.write(_gif_header(small))
@@ -87,7 +93,7 @@ def _save_gif(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> No
 
 
 def _differing(image: Any, before: Any) -> tuple[int, int, int, int]:
-    """The box of the pixels that differ; one pixel where none does, for the time must pass."""
+    """The bounding box of pixels that differ; one pixel if none do, as a frame needs some."""
     differs = np.asarray(image) != np.asarray(before)
     rows, columns = np.flatnonzero(differs.any(axis=1)), np.flatnonzero(differs.any(axis=0))
     if len(rows) == 0:
@@ -95,7 +101,7 @@ def _differing(image: Any, before: Any) -> tuple[int, int, int, int]:
     return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
 
 
-def flat(image: Any, colours: Theme) -> Any:
+def quantised(image: Any, colours: Theme) -> Any:
     """A Pillow image in the 256 colours of a theme's :func:`palette`."""
     from PIL import Image
 
@@ -106,7 +112,7 @@ def flat(image: Any, colours: Theme) -> Any:
 
 @cache
 def palette(colours: Theme) -> tuple[int, ...]:
-    """256 colours as 768 numbers: those of a theme, and shades between those that meet."""
+    """256 colours as 768 numbers: those of a theme, and shades between adjacent ones."""
     t = colours
     meeting = (
         (t.background, t.fill),
@@ -147,7 +153,7 @@ def _rgb(colour: str) -> np.ndarray:
 
 
 def _gif_header(image: Any) -> bytes:
-    """Size, the palette that all frames share, and that the film begins again for ever."""
+    """The header: size, the shared palette, and an endless loop."""
     width, height = image.size
     size = width.to_bytes(2, "little") + height.to_bytes(2, "little")
     table = bytes(image.getpalette()[:768]).ljust(768, b"\0")
@@ -158,15 +164,15 @@ def _gif_header(image: Any) -> bytes:
 # MP4
 
 
-def _save_mp4(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> None:
-    """H.264 in colours that every player knows; sides are made even, as it asks."""
+def _save_mp4(path: Path, frames: Iterator[tuple[Any, float]], options: FigureOptions) -> None:
+    """Write H.264 in YUV 4:2:0, which all players support; odd sides are cropped to even ones."""
     import av
     from av.error import FFmpegError
 
     try:
         with av.open(str(path), "w", format="mp4", options={"movflags": "faststart"}) as file:
             stream = file.add_stream("libx264", rate=RATE)
-            stream.width, stream.height = (side - side % 2 for side in look.size)
+            stream.width, stream.height = (side - side % 2 for side in options.size)
             stream.pix_fmt = "yuv420p"
             stream.options = {"crf": QUALITY, "preset": "veryfast", "tune": "animation"}
             for image, times in _repeated(frames):
@@ -182,7 +188,7 @@ def _save_mp4(path: Path, frames: Iterator[tuple[Any, float]], look: Look) -> No
 
 
 def _repeated(frames: Iterator[tuple[Any, float]]) -> Iterator[tuple[Any, int]]:
-    """How often each frame is shown, so that the sum of rounded times does not drift."""
+    """Each frame and how often it is repeated; rounding errors do not add up."""
     due, shown = 0.0, 0
     for image, seconds in frames:
         due += seconds * RATE

@@ -7,10 +7,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from meshwright.document.document import Document
-from meshwright.graphics.export.export_job import Order, save_order
+from meshwright.graphics.export.export_job import ExportOptions, save_export
 from meshwright.graphics.export.film import Film
 from meshwright.graphics.theme import THEMES
 from meshwright_core import MeshError
+from meshwright_core.arguments import is_whole_number
 from meshwright_core.io import atomic_write
 
 SIZE = (960, 720)
@@ -76,7 +77,7 @@ def _made(
     seconds: float = SECONDS,
 ) -> bytes:
     """The bytes of a picture or a film; without a path they go through a folder of their own."""
-    order = Order(
+    order = ExportOptions(
         ending, _checked_size(size), _checked_theme(theme), seconds=_checked_seconds(seconds)
     )
     if path is not None:
@@ -84,12 +85,12 @@ def _made(
     film = Film(document)
     if path is not None:
         with atomic_write.replacing(path) as temporary:
-            save_order(film, order, temporary)
+            save_export(film, order, temporary)
             return temporary.read_bytes()
     try:
         with TemporaryDirectory(prefix="meshwright-") as folder:
             made = Path(folder) / f"picture{ending}"
-            save_order(film, order, made)
+            save_export(film, order, made)
             return made.read_bytes()
     except OSError as error:
         raise MeshError(f"The picture cannot be made ({atomic_write.reason(error)}).") from error
@@ -98,8 +99,7 @@ def _made(
 def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
     sides = tuple(size) if isinstance(size, tuple | list) else ()
     fit = len(sides) == 2 and all(
-        isinstance(side, int) and not isinstance(side, bool) and SMALLEST <= side <= LARGEST
-        for side in sides
+        is_whole_number(side) and SMALLEST <= side <= LARGEST for side in sides
     )
     if not fit:
         raise MeshError(

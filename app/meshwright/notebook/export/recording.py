@@ -7,7 +7,7 @@ from typing import Any
 
 from meshwright.document.document import Document
 from meshwright.document.history import History
-from meshwright.document.storage.document_state import Kept
+from meshwright.document.storage.document_state import DocumentState
 from meshwright.notebook.protocol.document_status import Head
 from meshwright.notebook.protocol.mesh_sync import Mirror, Packet
 
@@ -52,10 +52,10 @@ def record(document: Document) -> dict[str, Any]:
 
 def _copied(document: Document) -> Document:
     """A document of the same mesh and history that may go back and forth on its own."""
-    kept, known = document.kept(), document.history
+    kept, known = document.state(), document.history
     history = History.of(*known.first, list(known), known.cursor, serial=known.given[0])
     copied = Document()
-    copied.adopt(Kept(kept.mesh.copy(history=True), history, kept.name))
+    copied.adopt(DocumentState(kept.mesh.copy(history=True), history, kept.name))
     return copied
 
 

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 from meshwright.assistant.assistant import FASTEST, Assistant
 from meshwright.assistant.policy_catalogue import kind_of, label, shipped
 from meshwright.assistant.search_runner import Effort
-from meshwright.cli.arguments import KIND_NOUN, looks_like_path
 from meshwright.document.document import NO_MESH, Document, title_of
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.thread_loop import Loop
+from meshwright.sources.naming import looks_like_path
 from meshwright_core import MeshError
+from meshwright_core.core.kinds import KIND_NOUN
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Choice

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from meshwright.document.document import Document
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN
 from meshwright_core.geometry.outline import Outline
@@ -61,7 +61,7 @@ class Head:
 
     def __init__(self, document: Document) -> None:
         self._document = document
-        self._track = Track()
+        self._track = ScoreSeries()
         self.folded = Folded()
 
     def reset(self) -> None:

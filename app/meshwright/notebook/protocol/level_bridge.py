@@ -8,7 +8,7 @@ from meshwright.assistant.assistant import Assistant
 from meshwright.document.document import Document
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.puzzles import level as levels
-from meshwright.puzzles.agent_opponent import Standing
+from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright.puzzles.level import Level
 from meshwright.puzzles.play import LevelPlay
 from meshwright_core import MeshError
@@ -82,7 +82,7 @@ class Playing:
     def _answered(self) -> bool:
         """Whether there is a way to show: the agent's, or that of a level it cannot play."""
         play = self.play
-        done = play.rival is not None and play.rival.standing is Standing.DONE
+        done = play.rival is not None and play.rival.standing is OpponentState.DONE
         return done or (play.level is not None and bool(play.level.most))
 
     # What browsers are told
@@ -152,6 +152,6 @@ class Playing:
             "standing": rival.standing.value,
             "used": len(rival.operations),
             "score": rival.score,
-            "reached": rival.standing is Standing.DONE and rival.score <= level.goal,
+            "reached": rival.standing is OpponentState.DONE and rival.score <= level.goal,
             "reason": rival.reason,
         }

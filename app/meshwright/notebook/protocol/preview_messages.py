@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.document.operation_preview import Choice, best, choices, ghost
+from meshwright.document.operation_preview import OperationOffer, best, choices, ghost
 from meshwright.notebook.protocol.mesh_sync import Frame, Packet
 from meshwright_core import HalfEdgeMesh
 
@@ -57,7 +57,7 @@ def no_ghost() -> Packet:
     return Packet(content, [b""] * 5)
 
 
-def _offer(choice: Choice) -> dict[str, Any]:
+def _offer(choice: OperationOffer) -> dict[str, Any]:
     return {
         "operation": str(choice.operation),
         "allowed": choice.allowed,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright.document.history import Row
+from meshwright.document.history import HistoryStep
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.operations.catalogue import of_kind
 
@@ -132,7 +132,7 @@ def _vertex(session: Session, request: Request) -> np.ndarray:
     return np.array([vertex])
 
 
-def _told(done: str, row: Row | None, otherwise: str) -> str:
+def _told(done: str, row: HistoryStep | None, otherwise: str) -> str:
     return otherwise if row is None else f"{done}: {row.title}."
 
 

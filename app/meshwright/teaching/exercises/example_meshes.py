@@ -1,4 +1,4 @@
-"""The small meshes that the lessons look at, by name."""
+"""The small example meshes of the lessons, by name."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from meshwright_core.geometry import smoothing
 
 
 def patch(name: str) -> HalfEdgeMesh:
-    """The small mesh called ``name``, one of :data:`PATCHES`, new each time.
+    """A new copy of the small mesh called ``name``, one of :data:`PATCHES`.
 
-    Raises MeshError, in one sentence, where there is none.
+    Raises MeshError for an unknown name.
     """
     if name not in PATCHES:
         near = difflib.get_close_matches(str(name), PATCHES, 3, 0.5)
@@ -60,8 +60,8 @@ def _hexagon(rings: int) -> HalfEdgeMesh:
 
 
 def trap() -> HalfEdgeMesh:
-    """A hexagon with two more vertices inside the triangle 9, 10, 14, whose sides cannot collapse:
-    their ends have the third corner in common besides the vertices across.
+    """A hexagon with two more vertices inside the triangle 9, 10, 14. The link condition forbids
+    the collapse of its sides: their ends share the third corner besides the opposite vertices.
     """
     mesh = hexagon()
     rows = [row for row in mesh.elements().tolist() if set(row) != {9, 10, 14}]
@@ -81,12 +81,12 @@ def split_hexagon() -> HalfEdgeMesh:
 
 
 def knot() -> HalfEdgeMesh:
-    """A hexagon after two flips near each other: s 4, s* 0, and no single flip back is enough."""
+    """A hexagon after two adjacent flips: s 4, s* 0; no single operation lowers s."""
     return _edited(hexagon(), ("flip", 5, 9), ("flip", 10, 14))
 
 
 def doublet() -> HalfEdgeMesh:
-    """A grid of 3 by 3 whose middle quad was cut by a vertex with two edges: s 4, s* 0."""
+    """A grid of 3 by 3 whose middle quad is cut by a vertex with two edges: s 4, s* 0."""
     mesh = grid(3, 3)
     rows = [row for row in mesh.elements().tolist() if row != [5, 6, 10, 9]]
     points = np.vstack([mesh.points, (1.6, 1.4, 0.0)])
@@ -95,14 +95,14 @@ def doublet() -> HalfEdgeMesh:
 
 
 def three_to_one() -> HalfEdgeMesh:
-    """A rectangle with three edges below and one above: s 4, s* 0."""
+    """A rectangle with three edges at the bottom and one at the top: s 4, s* 0."""
     points = [(0, 0), (1, 0), (2, 0), (3, 0), (3, 2), (0, 2), (1, 1), (2, 1)]
     rows = [(0, 1, 6, 5), (1, 2, 7, 6), (2, 3, 4, 7), (6, 7, 4, 5)]
     return HalfEdgeMesh.from_elements(np.array(points, dtype=float), np.array(rows))
 
 
 def fine_l() -> HalfEdgeMesh:
-    """An L of 5 by 5 squares without 2 by 3 of them, s 0: three blocks."""
+    """An L of 5 by 5 squares without 2 by 3 of them: s 0, three blocks."""
     wide, tall, low = 5, 5, 2
     kept = [(x, y) for y in range(tall) for x in range(wide) if x < 3 or y < low]
     squares = [((x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)) for x, y in kept]
@@ -113,9 +113,7 @@ def fine_l() -> HalfEdgeMesh:
 
 
 def _edited(mesh: HalfEdgeMesh, *edits: tuple[str, int, int]) -> HalfEdgeMesh:
-    """The mesh after operations at the half-edges between two vertices, smooth, and without a
-    history.
-    """
+    """The smoothed mesh after edits (operation, origin, target), without a history."""
     for operation, a, b in edits:
         mesh.apply(operation, mesh.halfedge(a, b))
     smoothing.relax(mesh)
@@ -135,4 +133,4 @@ PATCHES: dict[str, Callable[[], HalfEdgeMesh]] = {
     "knot": knot,
     "trap": trap,
 }
-"""What makes each of them."""
+"""The function that makes each mesh."""

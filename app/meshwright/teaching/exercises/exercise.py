@@ -1,7 +1,8 @@
-"""Exercises that check themselves.
+"""Exercises, and the registry of their checks.
 
-A lesson's cell ends with ``mw.exercise("1.2").check(answer)``. The checks stand in one module a
-lesson, as functions that :func:`declare` names; they are imported when one of theirs is asked for.
+A cell of a lesson ends with ``mw.exercise("1.2").check(answer)``. The checks of a lesson are
+functions in a module of its own, registered by :func:`declare`; the module is imported when
+:func:`exercise` is called for one of them.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from meshwright.teaching.exercises.result import BLANK, RIGHT, WRONG, Answer
 from meshwright.teaching.exercises.solution import Solution, solution_of
 
 Check = Callable[..., str]
-"""Takes what the student gives; returns why it is right, or raises :class:`Wrong` or
-:class:`Blank`.
+"""Takes the answer; returns a sentence on why it is right, or raises :class:`WrongAnswer` or
+:class:`NoAnswer`.
 """
 
-TOPICS = {
+MODULES = {
     "1": "lesson1_half_edges",
     "2": "lesson2_bound",
     "3": "lesson3_triangles",
@@ -33,59 +34,59 @@ TOPICS = {
 """The module of this package with the checks of each lesson."""
 
 
-class Wrong(Exception):
-    """An answer that is not right; its sentence helps without giving the answer away."""
+class WrongAnswer(Exception):
+    """Raised for a wrong answer, with a sentence that helps without giving the answer away."""
 
 
-class Blank(Exception):
-    """Nothing has been answered yet."""
+class NoAnswer(Exception):
+    """Raised if nothing has been answered yet."""
 
 
 @dataclass(frozen=True)
 class Exercise:
-    """An exercise of a lesson. ``name`` is the number of the lesson and its own, ``"1.2"``;
-    ``nudge`` says how to begin.
+    """An exercise. ``name`` is the number of its lesson and its own, ``"1.2"``; ``hint`` is a
+    sentence on how to begin; ``judge`` checks answers.
     """
 
     name: str
-    nudge: str
+    hint: str
     judge: Check
 
     def check(self, *given: Any) -> Answer:
-        """Judge what is given: a value, a function, or the widget that was clicked in.
+        """Check an answer: values, a function, or a widget that was edited.
 
-        Whatever a student may write is an answer: nothing is raised for it.
+        Never raises for any kind of answer.
         """
         if any(_has_gap(one) for one in given) or not given:
-            return Answer(self.name, BLANK, self.nudge)
+            return Answer(self.name, BLANK, self.hint)
         wanted = len(inspect.signature(self.judge).parameters)
         if len(given) != wanted:
-            said = f"{wanted} {'thing' if wanted == 1 else 'things'}"
-            return Answer(self.name, WRONG, f"This check takes {said}, not {len(given)}.")
+            count = f"{wanted} {'thing' if wanted == 1 else 'things'}"
+            return Answer(self.name, WRONG, f"This check takes {count}, not {len(given)}.")
         try:
             return Answer(self.name, RIGHT, self.judge(*given))
-        except Blank:
-            return Answer(self.name, BLANK, self.nudge)
-        except Wrong as wrong:
+        except NoAnswer:
+            return Answer(self.name, BLANK, self.hint)
+        except WrongAnswer as wrong:
             return Answer(self.name, WRONG, str(wrong))
 
     def solution(self) -> Solution:
-        """One solution, as code that may stand above the check."""
+        """A solution, as code that can stand above the check."""
         return solution_of(self.name)
 
     def __repr__(self) -> str:
-        """Its name and how to begin."""
-        return f"Exercise {self.name}. {self.nudge}"
+        """Name and hint."""
+        return f"Exercise {self.name}. {self.hint}"
 
 
 _DECLARED: dict[str, Exercise] = {}
 
 
-def declare(name: str, nudge: str) -> Callable[[Check], Check]:
-    """Make the decorated function the judge of the exercise called ``name``."""
+def declare(name: str, hint: str) -> Callable[[Check], Check]:
+    """Register the decorated function as the check of the exercise called ``name``."""
 
     def keep(judge: Check) -> Check:
-        _DECLARED[name] = Exercise(name, nudge, judge)
+        _DECLARED[name] = Exercise(name, hint, judge)
         return judge
 
     return keep
@@ -94,10 +95,10 @@ def declare(name: str, nudge: str) -> Callable[[Check], Check]:
 def exercise(name: str) -> Exercise:
     """The exercise called ``name``, such as ``"1.2"``.
 
-    Raises LookupError, in one sentence, where there is none.
+    Raises LookupError for an unknown name.
     """
     name = str(name)
-    topic = TOPICS.get(name.partition(".")[0])
+    topic = MODULES.get(name.partition(".")[0])
     if topic is not None:
         importlib.import_module(f"meshwright.teaching.exercises.{topic}")
     if name not in _DECLARED:
@@ -108,7 +109,7 @@ def exercise(name: str) -> Exercise:
 
 
 def _has_gap(given: Any) -> bool:
-    """Whether what is given, or a part of it, is still ``...``."""
+    """Whether an answer or a part of it is empty or still ``...``."""
     if isinstance(given, list | tuple | set):
         return any(_has_gap(one) for one in given)
     if isinstance(given, dict):

@@ -4,40 +4,46 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshwright.teaching.exercises.answer_parsing import edited, expect, mesh_of, whole, yes_or_no
+from meshwright.teaching.exercises.answer_parsing import (
+    edited_mesh,
+    mesh_of,
+    require,
+    whole_number,
+    yes_or_no,
+)
 from meshwright.teaching.exercises.exercise import declare
 
 
 @declare("4.1", "Follow the edge in the picture until it stands where it stood.")
 def turns(answer: object) -> str:
     """Flips to the left until the edge is back."""
-    n = whole(answer)
-    expect(n != 6, "The hexagon has six corners, but an edge has no head: look after half a turn.")
-    expect(n != 2, "Two flips of a triangle edge do it. In the hexagon the edge has more places.")
-    expect(n == 3, "Count the places that the edge can have in the hexagon.")
+    n = whole_number(answer)
+    require(n != 6, "The hexagon has six corners, but an edge has no head: look after half a turn.")
+    require(n != 2, "Two flips of a triangle edge do it. In the hexagon the edge has more places.")
+    require(n == 3, "Count the places that the edge can have in the hexagon.")
     return "Three places, so three flips to the left, or one to the right after one to the left."
 
 
 @declare("4.2", "Write down the four numbers after the split, that of the new vertex too.")
 def split_change(answer: object) -> str:
     """The change of s by a split with a +2, d -1, f -1."""
-    n = whole(answer)
-    expect(n != -3, "The new vertex counts too: it has three edges and wants four.")
-    expect(n != 2, "Say it as a change: after minus before.")
-    expect(n == -2, "a loses one, d and f gain one each, and a new vertex of degree 3 comes to be.")
+    n = whole_number(answer)
+    require(n != -3, "The new vertex counts too: it has three edges, and four are desired.")
+    require(n != 2, "Say it as a change: after minus before.")
+    require(n == -2, "a loses one, d and f gain one each, and a vertex of degree 3 is new.")
     return "4 before; +1, 0, 0 and the new -1 after: 2."
 
 
 @declare("4.3", "The blue -2 is the doublet. Collapse one of its two quads so that it goes.")
 def doublet(widget: object) -> str:
     """A doublet is removed, and the grid is regular."""
-    mesh = edited(widget)
+    mesh = edited_mesh(widget)
     inside = mesh.vertices()[~mesh.boundary()[mesh.vertices()]]
-    expect(
+    require(
         not np.any(mesh.degree()[inside] == 2),
         "There is still a vertex inside with only two edges.",
     )
-    expect(
+    require(
         mesh.score == 0,
         f"The doublet is gone, but s is {mesh.score}. Undo, and merge the doublet with the corner "
         "across, not its two neighbours with each other.",
@@ -48,7 +54,7 @@ def doublet(widget: object) -> str:
 @declare("4.4", "Remember what a flip, a split and a collapse do to the boundary: nothing.")
 def local_is_enough(answer: object) -> str:
     """Whether local operations can make the rectangle regular."""
-    expect(
+    require(
         not yes_or_no(answer),
         "A regular mesh of a rectangle is a grid, with as many edges above as below. Which local "
         "operation puts a vertex on the boundary?",
@@ -62,11 +68,11 @@ def local_is_enough(answer: object) -> str:
 )
 def three_to_one(widget: object) -> str:
     """The rectangle with unequal sides made regular."""
-    mesh = mesh_of(edited(widget))
-    expect(
+    mesh = mesh_of(edited_mesh(widget))
+    require(
         mesh.score == 0,
         f"s is {mesh.score} now. A global split gives an edge to the vertex where the arrow "
-        "starts, and takes one from the vertex where it ends: which wants which?",
+        "starts, and takes one from the vertex where it ends: which vertex needs which?",
     )
     return "Lines were carried to the upper side, and now it has as many edges as the lower one."
 
@@ -74,8 +80,8 @@ def three_to_one(widget: object) -> str:
 @declare("4.6", "Count the lines inside: across and down.")
 def lines_of_the_grid(answer: object) -> str:
     """Clean-ups of a grid of 4 by 3 quads."""
-    n = whole(answer)
-    expect(n != 7, "Sides of the rectangle are not lines to be deleted; only those inside count.")
-    expect(n != 12, "That is the number of quads.")
-    expect(n == 5, "A grid of 4 by 3 quads has lines from top to bottom and from left to right.")
+    n = whole_number(answer)
+    require(n != 7, "Sides of the rectangle are not lines to be deleted; only those inside count.")
+    require(n != 12, "That is the number of quads.")
+    require(n == 5, "A grid of 4 by 3 quads has lines from top to bottom and from left to right.")
     return "Three down and two across; then one quad is left, and the score was 0 all the time."

@@ -5,25 +5,31 @@ from __future__ import annotations
 from typing import Any
 
 from meshwright.experiments.comparison import Comparison
-from meshwright.teaching.exercises.answer_parsing import called, expect, letters, quoted, whole
-from meshwright.teaching.exercises.exercise import Wrong, declare
+from meshwright.teaching.exercises.answer_parsing import (
+    letters,
+    quoted,
+    require,
+    result_of,
+    whole_number,
+)
+from meshwright.teaching.exercises.exercise import WrongAnswer, declare
 
 POLICY = "quad-paper"
 PAIRS = (0.9 + 1.0 + 1.0) / 3.0
 
 
-@declare("7.1", "How much was won, as a share of all there was to win?")
+@declare("7.1", "What was gained, relative to the most that can be gained?")
 def normalised(function: object) -> str:
     """The normalised return."""
     for start, best, optimum in ((37, 4, 1), (12, 12, 4), (12, 4, 4), (10, 5, 0)):
-        found = _number(called(function, start, best, optimum))
+        found = _number(result_of(function, start, best, optimum))
         wanted = (start - best) / (start - optimum)
-        expect(
+        require(
             abs(found - wanted) < 1e-6,
             f"From s = {start} to {best} with s* = {optimum} it returns {found:.4g}. A run that "
-            "wins nothing has 0, one that reaches s* has 1.",
+            "gains nothing has 0, one that reaches s* has 1.",
         )
-    return "0 for a run that wins nothing and 1 at the optimum, however large the mesh."
+    return "0 for a run that gains nothing and 1 at the optimum, for meshes of any size."
 
 
 @declare("7.2", "both.rollout_rows has a row for each run, with best and optimum in it.")
@@ -31,21 +37,21 @@ def share_at_optimum(answer: object, both: object) -> str:
     """The share of a policy's runs that reach the optimum."""
     found = _number(answer)
     if not isinstance(both, Comparison) or POLICY not in both.rollouts:
-        raise Wrong("Give the comparison as well: check(share, both).")
+        raise WrongAnswer("Give the comparison as well: check(share, both).")
     runs = both.rollouts[POLICY]
     hits = sum(run.best == run.optimum for run in runs)
     wanted = hits / len(runs)
-    expect(
+    require(
         abs(found - hits) > 1e-9 or hits in (0, len(runs)),
         "That many runs there are; what share of all is it?",
     )
     every = [run for rows in both.rollouts.values() for run in rows]
     mixed = sum(run.best == run.optimum for run in every) / len(every)
-    expect(
+    require(
         abs(found - mixed) > 1e-9 or mixed == wanted,
         f"That is the share among the runs of all policies; take those of `{POLICY}`.",
     )
-    expect(
+    require(
         abs(found - wanted) < 1e-6,
         f"A run counts if its best is its optimum; there are {len(runs)} runs of `{POLICY}`.",
     )
@@ -56,10 +62,12 @@ def share_at_optimum(answer: object, both: object) -> str:
 def best_of_two(answer: object) -> str:
     """The expected best of two among 0.9, 0.9, 1.0."""
     found = _number(answer)
-    expect(abs(found - 1.0) > 1e-6, "That is the best of all three.")
-    expect(abs(found - 0.95) > 1e-6, "The pairs are not equally good: two of the three have the 1.")
-    expect(abs(found - 2.8 / 3.0) > 1e-3, "That is the mean of single rollouts.")
-    expect(
+    require(abs(found - 1.0) > 1e-6, "That is the best of all three.")
+    require(
+        abs(found - 0.95) > 1e-6, "The pairs are not equally good: two of the three have the 1."
+    )
+    require(abs(found - 2.8 / 3.0) > 1e-3, "That is the mean of single rollouts.")
+    require(
         abs(found - PAIRS) < 1e-3,
         "Write the three pairs down, and the larger number of each; then take the mean.",
     )
@@ -69,9 +77,9 @@ def best_of_two(answer: object) -> str:
 @declare("7.4", "The standard error is the deviation divided by the square root of the number.")
 def how_many_meshes(answer: object) -> str:
     """Meshes for a standard error of 0.003 where the deviation is 0.03."""
-    n = whole(answer)
-    expect(n != 10, "Ten times smaller than the deviation: and the square root?")
-    expect(n == 100, "0.03 / sqrt(n) has to be 0.003. What is n?")
+    n = whole_number(answer)
+    require(n != 10, "Ten times smaller than the deviation: and the square root?")
+    require(n == 100, "0.03 / sqrt(n) has to be 0.003. What is n?")
     return "100, as in the paper's tables. For one more digit it would take 10,000."
 
 
@@ -79,17 +87,17 @@ def how_many_meshes(answer: object) -> str:
 def fair(answer: object) -> str:
     """Which of four comparisons are fair."""
     found = letters(answer, "abcd")
-    expect("b" not in found, "In b one may have been given the easier polygons.")
-    expect("c" not in found, "In c one may try ten times: chance alone makes it look better.")
-    expect(found == {"a", "d"}, "One more of them is fair: look what is the same for both.")
+    require("b" not in found, "In b one may have been given the easier polygons.")
+    require("c" not in found, "In c one may try ten times: chance alone makes it look better.")
+    require(found == {"a", "d"}, "One more of them is fair: look what is the same for both.")
     return "The same meshes, the same number of tries, or the same time: then it is the policy."
 
 
 def _number(given: Any) -> float:
-    """A number, whatever kind of number it is."""
+    """A number of any type as a float."""
     try:
         if isinstance(given, bool | str):
             raise TypeError
         return float(given)
     except (TypeError, ValueError):
-        raise Wrong(f"A number is wanted here, not {quoted(given)}.") from None
+        raise WrongAnswer(f"A number is wanted here, not {quoted(given)}.") from None

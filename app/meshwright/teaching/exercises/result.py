@@ -1,4 +1,4 @@
-"""The answer to an exercise, as checked: a word, a sentence, and what a notebook shows of it."""
+"""The result of checking an answer, with its display in notebooks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from meshwright.graphics.theme import DARK, LIGHT, Theme
 RIGHT, WRONG, BLANK = "right", "wrong", "blank"
 
 MIME = "application/vnd.meshwright.answer+json"
-"""The same as data, for those who collect answers from notebooks that have run."""
+"""The type of the result as JSON data, for programs that collect results from notebooks."""
 
 _HEADS = {RIGHT: "Right.", WRONG: "Not yet.", BLANK: "Not answered yet."}
 _SIGNS = {RIGHT: "\u2713", WRONG: "\u2717", BLANK: "\u2026"}
@@ -25,8 +25,8 @@ _MARKS = {
 
 @dataclass(frozen=True)
 class Answer:
-    """What became of an answer. ``state`` is ``"right"``, ``"wrong"`` or ``"blank"``; ``sentence``
-    says why it is right, helps on, or says what to do.
+    """The result of checking an answer. ``state`` is ``"right"``, ``"wrong"`` or ``"blank"``;
+    ``sentence`` explains why it is right, gives help, or is the hint of the exercise.
     """
 
     exercise: str
@@ -43,11 +43,11 @@ class Answer:
         return self.passed
 
     def __repr__(self) -> str:
-        """A sign, the word, and the sentence."""
+        """A sign, the number of the exercise, the state and the sentence."""
         return f"{_SIGNS[self.state]} {self.exercise}  {_HEADS[self.state]} {self.sentence}"
 
     def _repr_html_(self) -> str:
-        """A quiet line that follows the theme of its host."""
+        """One line in a box; its colours follow the theme of the notebook."""
         return (
             f"<style>{STYLE}</style>"
             f'<div class="mw-answer mw-{self.state}" role="status">'
@@ -64,7 +64,7 @@ class Answer:
 
 
 def _marked_up(sentence: str) -> str:
-    """HTML of a sentence in which `code` stands between backquotes; numbers get a true minus."""
+    """HTML of a sentence with `code` in backquotes; hyphens before numbers become minus signs."""
     parts = escape(sentence, quote=False).split("`")
     return "".join(
         f"<code>{part}</code>" if i % 2 else re.sub(r"(?<!\w)-(?=[\d ])", "\u2212", part)
@@ -81,7 +81,7 @@ def _variables(theme: Theme) -> str:
 
 
 DARK_HOSTS = '[data-jp-theme-light="false"]', ".vscode-dark", ".dark"
-"""What JupyterLab, VS Code and marimo call themselves when they are dark."""
+"""CSS selectors of JupyterLab, VS Code and marimo with a dark theme."""
 
 STYLE = (
     f".mw-answer,.mw-code{{{_variables(LIGHT)}}}"

@@ -1,4 +1,4 @@
-"""Solutions: code that the shipped lessons carry unseen, in the metadata of an exercise's cell."""
+"""Solutions of exercises, which lessons store in the metadata of cells."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LOOK = (
 
 @dataclass(frozen=True)
 class Solution:
-    """One way to do an exercise: ``code`` that may stand above its check."""
+    """A solution of an exercise: ``code`` that can stand above its check."""
 
     exercise: str
     code: str
@@ -42,7 +42,7 @@ class Solution:
 def solution_of(name: str) -> Solution:
     """The solution of the exercise called ``name``.
 
-    Raises LookupError where no lesson has one.
+    Raises LookupError if no lesson has one.
     """
     for lesson in lessons.shipped():
         for cell in lesson.exercises():

@@ -29,9 +29,9 @@ from meshwright.desktop.files.new_mesh.page_base import Page
 from meshwright.desktop.files.new_mesh.random_page import RandomPage
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named
-from meshwright.desktop.widgets.wording import sentence
 from meshwright.graphics.theme import GRID, Theme
-from meshwright.sources.mesh_worker import Made
+from meshwright.sources.mesh_worker import NewMesh
+from meshwright_core.errors import sentence
 
 PAGES = (("gallery", "Gallery"), ("random", "Random"), ("draw", "Draw"), ("file", "File"))
 WOULD_BE_LOST = "The drawing would be lost: press Cancel to close without it."
@@ -57,7 +57,7 @@ class NewMeshDialog(QDialog):
         super().__init__(parent)
         self.setWindowTitle("New mesh")
         self.resize(1120, 720)
-        self.made: Made | None = None
+        self.made: NewMesh | None = None
         self.maker = MeshProcess(self)
         self.maker.start()
         self.options = Options(kind, theme)
@@ -199,7 +199,7 @@ class NewMeshDialog(QDialog):
                 self.options.show_words(WORKING, stale=True)
         self._refresh()
 
-    def _on_made(self, made: Made) -> None:
+    def _on_made(self, made: NewMesh) -> None:
         self.made = made
         self.options.set_extent(made.extent)
         self.options.show_made(made)

@@ -21,8 +21,7 @@ GONE = "Meshing failed: the process ended unexpectedly, perhaps for lack of memo
 
 
 class MeshProcess(QObject):
-    """Sends requests to the process, and emits ``made(Made)`` or ``failed(sentence)`` for the last
-     one.
+    """Sends requests to the process, and emits ``made(NewMesh)`` or ``failed(sentence)``.
 
     Requests are as :func:`meshwright.sources.mesh_worker.make` takes them. A new one replaces the
     previous one.

@@ -11,7 +11,7 @@ from meshwright.desktop.files.new_mesh.controls import OptionalNumber, Segmented
 from meshwright.desktop.files.new_mesh.preview import Preview
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.graphics.theme import GRID, Theme
-from meshwright.sources.mesh_worker import Made
+from meshwright.sources.mesh_worker import NewMesh
 
 WIDTH = 352
 KINDS = (("quad", "Quads"), ("tri", "Triangles"))
@@ -117,7 +117,7 @@ class Options(QWidget):
         """The counts that are shown: elements, vertices, score, optimum."""
         return {key: str(label.text()) for key, label in self._values.items()}
 
-    def show_made(self, made: Made) -> None:
+    def show_made(self, made: NewMesh) -> None:
         """Show the mesh and its counts."""
         self.preview.show_made(made)
         counts = {"elements": len(made.elements), "vertices": len(made.points)}

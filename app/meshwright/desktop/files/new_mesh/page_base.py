@@ -18,7 +18,7 @@ PICTURE = QSize(112, 88)
 
 class Page(QWidget):
     """One source of shapes. ``changed()`` when another shape is chosen; ``message(sentence)`` for
-     the status line.
+    the status line.
 
     A page fills itself when it is first shown.
     """

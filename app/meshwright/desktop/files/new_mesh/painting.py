@@ -20,7 +20,7 @@ from meshwright.graphics.markers import (
 )
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
-from meshwright.sources.mesh_worker import Made
+from meshwright.sources.mesh_worker import NewMesh
 
 LINES = 40_000
 """The area is tinted instead if more edges than this are visible."""
@@ -46,7 +46,7 @@ def paint_shape(
     painter.drawPath(path)
 
 
-def paint_mesh(painter: QPainter, view: Viewport, made: Made, theme: Theme) -> bool:
+def paint_mesh(painter: QPainter, view: Viewport, made: NewMesh, theme: Theme) -> bool:
     """Draw a mesh with its irregular vertices; False if it is too fine for its edges to show."""
     inner = _in_sight(made, view)
     fine = len(inner) > LINES
@@ -69,7 +69,7 @@ def paint_mesh(painter: QPainter, view: Viewport, made: Made, theme: Theme) -> b
     return not fine
 
 
-def _in_sight(made: Made, view: Viewport) -> np.ndarray:
+def _in_sight(made: NewMesh, view: Viewport) -> np.ndarray:
     """(e, 2) the inner edges that may be visible; all of a large mesh, if all may be."""
     box = view.to_screen(np.array([made.low, made.high]))
     if len(made.edges) > LINES and (box >= 0).all() and (box <= view.size).all():
@@ -94,7 +94,7 @@ def polygon(places: np.ndarray) -> QPolygonF:
     return QPolygonF([QPointF(x, y) for x, y in places.tolist()])
 
 
-def _discs(painter: QPainter, made: Made, view: Viewport, theme: Theme) -> None:
+def _discs(painter: QPainter, made: NewMesh, view: Viewport, theme: Theme) -> None:
     vertices = np.flatnonzero(made.delta)
     places = view.to_screen(made.points[vertices])
     inside = ((places >= -LARGEST) & (places <= np.array(view.size) + LARGEST)).all(axis=1)

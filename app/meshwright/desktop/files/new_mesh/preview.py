@@ -20,7 +20,7 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 from meshwright.desktop.files.new_mesh.painting import paint_mesh
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.graphics.viewport import Viewport
-from meshwright.sources.mesh_worker import Made
+from meshwright.sources.mesh_worker import NewMesh
 
 MARGIN = 20.0
 ROUND = 8.0
@@ -28,8 +28,8 @@ TOO_FINE = "Too fine to draw: zoom in to see it"
 
 
 class Preview(QWidget):
-    """Shows a :class:`meshwright.sources.mesh_worker.Made`, or nothing; an old one is paler while a
-    new one is made.
+    """Shows a :class:`meshwright.sources.mesh_worker.NewMesh`; an old one is paler while a new one
+    is made.
     """
 
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
@@ -39,7 +39,7 @@ class Preview(QWidget):
         self.setMinimumSize(240, 200)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._theme = theme
-        self._made: Made | None = None
+        self._made: NewMesh | None = None
         self._words = ""
         self._stale = False
         self._view = Viewport()
@@ -47,7 +47,7 @@ class Preview(QWidget):
         self._shows_edges = True
         self._dragged: QPointF | None = None
 
-    def show_made(self, made: Made) -> None:
+    def show_made(self, made: NewMesh) -> None:
         """Show a mesh; the view is refitted if the shape is another one."""
         before, self._made = self._made, made
         self._words, self._stale = "", False
@@ -163,6 +163,6 @@ class Preview(QWidget):
         self._redraw()
 
 
-def _same_extent(one: Made, other: Made) -> bool:
+def _same_extent(one: NewMesh, other: NewMesh) -> bool:
     apart = max(abs(one.low - other.low).max(), abs(one.high - other.high).max())
     return bool(apart < 1e-6 * max(one.extent, other.extent))

@@ -1,4 +1,4 @@
-"""Learning curves are read back as they were written; what is torn or foreign is refused."""
+"""Learning curves are read as they were written; damaged and other files are refused."""
 
 import json
 import shutil
@@ -32,17 +32,17 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Trainer, li
 
     folder = tmp_path_factory.mktemp("trainings") / "tiny"
     trainer = Trainer(configuration_of(TINY, "tiny"), folder)
-    events, told = Events(folder / EVENTS, 0), []
+    events, recorded = Events(folder / EVENTS, 0), []
     trainer.measure()
     for update in range(1, 4):
-        told.append(trainer.improve() | trainer.measure())
-        events.write(update, told[-1])
+        recorded.append(trainer.improve() | trainer.measure())
+        events.write(update, recorded[-1])
     events.close()
     trainer.save()
-    return folder, trainer, told
+    return folder, trainer, recorded
 
 
-def test_a_training_that_goes_on_is_read_from_its_checkpoint(trained) -> None:
+def test_running_training_is_read_from_its_checkpoint(trained) -> None:
     folder, trainer, _ = trained
     curves = learning_curves(folder)
     training = curves["tiny"]
@@ -53,7 +53,7 @@ def test_a_training_that_goes_on_is_read_from_its_checkpoint(trained) -> None:
     assert training.series("mean")[0].tolist() == training.points["decisions"].tolist()
 
 
-def test_curve_files_and_policies_are_read_too(trained, tmp_path: Path) -> None:
+def test_curve_files_and_policies_are_read(trained, tmp_path: Path) -> None:
     folder, trainer, _ = trained
     (tmp_path / "curve.json").write_text(json.dumps(trainer.progress.curve))
     assert learning_curves(tmp_path, names=["tiny"]).rows == learning_curves(folder).rows
@@ -64,30 +64,30 @@ def test_curve_files_and_policies_are_read_too(trained, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not available(), reason="events are written by an optional package")
-def test_numbers_of_every_update_come_from_the_events(trained) -> None:
-    folder, _, told = trained
+def test_quantities_of_updates_are_read_from_events(trained) -> None:
+    folder, _, recorded = trained
     curves = learning_curves(folder)
     for name in ("entropy", "policy", "value", "decisions"):
         steps, values = updates(folder)[name]
         assert steps.tolist() == [1, 2, 3]
-        assert values == pytest.approx([numbers[name] for numbers in told], rel=1e-6)
+        assert values == pytest.approx([numbers[name] for numbers in recorded], rel=1e-6)
     plotted = curves.plot("entropy", "decisions_per_second")
     assert "updates" in plotted.to_svg() and curves.quantities == ("mean", "at_optimum")
     with pytest.raises(MeshError, match="has no 'speed'"):
         curves.plot("speed")
 
 
-def test_torn_and_foreign_files_are_refused_in_a_sentence(trained, tmp_path: Path) -> None:
+def test_damaged_and_other_files_are_refused_in_one_sentence(trained, tmp_path: Path) -> None:
     folder = trained[0]
     whole = (folder / CHECKPOINT).read_bytes()
     for i, content in enumerate(
         (b"", whole[:4], whole[:100], whole[: len(whole) // 2], whole[:-1], b"\xff" * 64)
     ):
-        torn = tmp_path / f"{i}.safetensors"
-        torn.write_bytes(content)
-        with pytest.raises(MeshError, match="no learning curve") as told:
-            learning_curves(torn)
-        assert "\n" not in str(told.value)
+        damaged = tmp_path / f"{i}.safetensors"
+        damaged.write_bytes(content)
+        with pytest.raises(MeshError, match="no learning curve") as caught:
+            learning_curves(damaged)
+        assert "\n" not in str(caught.value)
     for text in ("", "{", "3", "[1]", '[{"mean": 1}]', '{"a": []}', "[" * 5000):
         (tmp_path / "curve.json").write_text(text)
         with pytest.raises(MeshError, match="no learning curve"):
@@ -98,7 +98,7 @@ def test_torn_and_foreign_files_are_refused_in_a_sentence(trained, tmp_path: Pat
 
 
 @pytest.mark.skipif(not available(), reason="events are written by an optional package")
-def test_torn_events_are_refused(trained, tmp_path: Path) -> None:
+def test_damaged_events_are_refused(trained, tmp_path: Path) -> None:
     copy = tmp_path / "copy"
     shutil.copytree(trained[0], copy)
     (path,) = (copy / EVENTS).iterdir()
@@ -107,7 +107,7 @@ def test_torn_events_are_refused(trained, tmp_path: Path) -> None:
     path.write_bytes(content[: len(content) // 2 + 3])
     with pytest.raises(MeshError, match="events"):
         learning_curves(copy)
-    for _ in range(60):  # whatever lies there, it ends in an answer or in a sentence
+    for _ in range(60):  # any content is either read or refused in one sentence
         noise = bytearray(content)
         for at in generator.integers(0, len(noise), 5).tolist():
             noise[at] = int(generator.integers(0, 256))
@@ -118,7 +118,7 @@ def test_torn_events_are_refused(trained, tmp_path: Path) -> None:
             assert "\n" not in str(error)
 
 
-def test_wrong_questions_are_refused(tmp_path: Path) -> None:
+def test_wrong_arguments_are_refused(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match="nothing to read"):
         learning_curves()
     with pytest.raises(MeshError, match="no such file"):

@@ -1,4 +1,4 @@
-"""Pictures of experiments: many meshes, blocks, what a policy sees; in files and in notebooks."""
+"""Pictures of experiments, in files and in notebooks: small multiples, blocks, policy views."""
 
 from io import BytesIO
 from pathlib import Path
@@ -26,7 +26,7 @@ def film() -> Film:
     return compare("l-shape", ["quad"], rollouts=2).film("quad")
 
 
-def test_many_meshes_are_data_and_a_grid() -> None:
+def test_small_multiples_have_data_and_a_picture() -> None:
     meshes = [star(), meshing.mesh_domain(gallery.shape("cross"), "quad"), star("tri")]
     grid = small_multiples([*meshes, Document(star()), "square"], columns=2)
     assert grid.scores.tolist()[:3] == [mesh.score for mesh in meshes]
@@ -36,11 +36,11 @@ def test_many_meshes_are_data_and_a_grid() -> None:
     assert ElementTree.fromstring(grid.to_svg()).tag.endswith("svg")
 
 
-def test_states_of_a_film(film: Film) -> None:
-    stood = film.state
+def test_small_multiples_of_a_film(film: Film) -> None:
+    before = film.state
     grid = small_multiples(film, every=3)
     assert grid.scores.tolist() == film.scores[film.stops(3)].tolist()
-    assert grid.titles[0] == "start" and film.state == stood
+    assert grid.titles[0] == "start" and film.state == before
     assert small_multiples([film], titles=["end"]).scores.tolist() == [film.mesh.score]
 
 
@@ -55,7 +55,9 @@ def test_states_of_a_film(film: Film) -> None:
         ({"items": [star()], "columns": 0}, "columns is a whole number"),
     ],
 )
-def test_wrong_multiples_are_refused(given: dict[str, object], words: str) -> None:
+def test_wrong_arguments_of_small_multiples_are_refused(
+    given: dict[str, object], words: str
+) -> None:
     with pytest.raises(MeshError, match=words):
         small_multiples(**given)  # type: ignore[arg-type]
 
@@ -70,7 +72,7 @@ def pictures() -> list[Picture]:
     ]
 
 
-def test_pictures_in_light_in_dark_and_in_their_host(tmp_path: Path) -> None:
+def test_pictures_in_light_and_dark_and_in_notebooks(tmp_path: Path) -> None:
     for picture in pictures():
         light, dark = picture.to_png(scale=1.0), picture.to_png(theme="dark", scale=1.0)
         size = picture.drawing().size
@@ -91,7 +93,7 @@ def test_pictures_in_light_in_dark_and_in_their_host(tmp_path: Path) -> None:
             picture.to_png(scale=0)
 
 
-def test_blocks_are_counted_and_tinted_apart() -> None:
+def test_block_view_has_all_blocks() -> None:
     view = block_view(meshing.mesh_domain(gallery.shape("square-with-hole"), "quad"))
     assert len(view) == len(view.rows) == len(view.grids)
     assert sum(row["elements"] for row in view.rows) == view.mesh.n_elements
@@ -101,7 +103,7 @@ def test_blocks_are_counted_and_tinted_apart() -> None:
 
 
 @pytest.mark.parametrize("policy", ["quad", "quad-paper", "tri", "tri-paper"])
-def test_what_a_policy_sees_is_data(policy: str) -> None:
+def test_policy_view_agrees_with_mesh_and_template(policy: str) -> None:
     mesh = star(policy.split("-")[0])
     view = policy_view(mesh, policy)
     assert view.probabilities.sum() == pytest.approx(1.0)
@@ -121,7 +123,7 @@ def test_what_a_policy_sees_is_data(policy: str) -> None:
     assert view.delta[known].tolist() == mesh.irregularity()[view.vertices[known]].tolist()
 
 
-def test_a_half_edge_that_is_asked_for_and_those_that_are_not_there() -> None:
+def test_policy_view_at_a_given_half_edge() -> None:
     view = policy_view("l-shape", "quad", 5)
     assert view.halfedge == 5 and 5 in view.halfedges
     for wrong in (-1, True, 2.5, "a"):
@@ -134,7 +136,7 @@ def test_a_half_edge_that_is_asked_for_and_those_that_are_not_there() -> None:
 
 
 @pytest.mark.parametrize(("k", "elements"), [(3, 1), (3, 4), (3, 10), (4, 1), (4, 5), (4, 17)])
-def test_the_flat_template_is_counter_clockwise_and_its_corners_fit(k: int, elements: int) -> None:
+def test_template_layout_is_counter_clockwise_without_overlaps(k: int, elements: int) -> None:
     plan = layout(k, elements)
     x, y = np.moveaxis(plan.corners, -1, 0)
     ahead = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
@@ -142,7 +144,7 @@ def test_the_flat_template_is_counter_clockwise_and_its_corners_fit(k: int, elem
     assert plan.own.sum() == k + (k - 2) * (elements - 1)
     slots = {slot_of_corner(k, e, i) for e in range(elements) for i in range(k)}
     assert slots == set(range(k * elements))
-    # nothing covers anything: the middle of an element lies in no other
+    # no overlaps: the middle of an element lies in no other
     for e, middle in enumerate(plan.corners.mean(axis=1)):
         ends = np.roll(plan.corners, -1, axis=1)
         side = ends - plan.corners

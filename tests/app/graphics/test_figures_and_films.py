@@ -1,4 +1,4 @@
-"""The score curve, figures, and films of a history, without a window."""
+"""The score curve, figures and films of a history."""
 
 import os
 import re
@@ -12,17 +12,17 @@ from PIL import Image
 
 from meshwright.document import score_series
 from meshwright.document.document import Document
-from meshwright.document.score_series import Track
+from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.drawing import Area, Drawing, Segments, hatching, raster, svg
 from meshwright.graphics.export import export_job, video
-from meshwright.graphics.export.export_job import Order
+from meshwright.graphics.export.export_job import ExportOptions
 from meshwright.graphics.export.film import Film
-from meshwright.graphics.mesh_figure import Look, edges, figure, summary
+from meshwright.graphics.mesh_figure import FigureOptions, edges, figure, summary
 from meshwright.graphics.theme import THEMES
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.geometry import smoothing
 
-SMALL = Look(size=(320, 240))
+SMALL = FigureOptions(size=(320, 240))
 
 
 @pytest.fixture
@@ -38,32 +38,32 @@ def walked(star, greedy) -> Document:
     return document
 
 
-def test_a_track_follows_every_way_a_history_can_go(walked):
-    history, track = walked.history, Track()
+def test_score_track_follows_edits_undo_and_branches(walked):
+    history, track = walked.history, ScoreSeries()
 
-    def told():
+    def expected():
         first = history.first
         rows = [(row.after, row.optimum) for row in history]
         return [first, *rows]
 
     assert track.follow(history) == 0
-    assert list(zip(track.scores.tolist(), track.optima.tolist(), strict=True)) == told()
+    assert list(zip(track.scores.tolist(), track.optima.tolist(), strict=True)) == expected()
     assert track.follow(history) == len(history) + 1  # nothing is new
     walked.go_to(3)
     walked.smooth()
     assert len(walked.history.branches) == 1
     track.follow(history)
-    assert list(zip(track.scores.tolist(), track.optima.tolist(), strict=True)) == told()
+    assert list(zip(track.scores.tolist(), track.optima.tolist(), strict=True)) == expected()
     walked.take_branch(0)
     track.follow(history)
-    assert list(zip(track.scores.tolist(), track.optima.tolist(), strict=True)) == told()
+    assert list(zip(track.scores.tolist(), track.optima.tolist(), strict=True)) == expected()
     for _ in range(3):
         walked.set_desired(0, int(walked.mesh.desired()[0]) + 1)
         track.follow(history)
-    assert list(zip(track.scores.tolist(), track.optima.tolist(), strict=True)) == told()
+    assert list(zip(track.scores.tolist(), track.optima.tolist(), strict=True)) == expected()
 
 
-def test_a_curve_of_many_states_is_no_longer_than_its_pixels():
+def test_curve_has_a_bounded_number_of_points_per_pixel():
     rng = np.random.default_rng(2)
     scores = 40 + rng.integers(-1, 2, 10_000).cumsum()
     scores -= scores.min()
@@ -81,7 +81,7 @@ def test_a_curve_of_many_states_is_no_longer_than_its_pixels():
     assert len(score_series.steps(level, score_series.frame(level, level, 0, 0, 100, 10))) == 2
 
 
-def test_a_far_optimum_does_not_flatten_the_curve():
+def test_far_optimum_does_not_flatten_the_curve():
     scores, optima = np.array([3336, 3340, 3330]), np.full(3, 20)
     box = score_series.frame(scores, optima, 0, 0, 100, 60)
     assert box.broken
@@ -113,7 +113,7 @@ def test_every_edge_is_drawn_once(kind, star, triangles):
     }
 
 
-def test_a_film_is_exact_and_leaves_the_document_alone(walked):
+def test_film_is_exact_and_does_not_change_the_document(walked):
     cursor, mesh = walked.history.cursor, walked.mesh
     points, elements = mesh.points.copy(), mesh.elements()
     film = Film(walked)
@@ -132,7 +132,7 @@ def test_a_film_is_exact_and_leaves_the_document_alone(walked):
     assert np.array_equal(film.mesh.points, points)
 
 
-def test_a_moment_tells_what_its_step_has_changed(walked):
+def test_moment_has_the_edges_that_its_step_changed(walked):
     film = Film(walked)
     for state in range(1, len(film)):
         row, moment = film.rows[state - 1], film.moment(state)
@@ -145,25 +145,26 @@ def test_a_moment_tells_what_its_step_has_changed(walked):
     assert film.stops(4)[-1] == len(film) - 1
 
 
-def test_figure_in_pixels_shows_the_loud_things_and_no_others(walked):
+def test_figure_as_png_has_the_colours_of_its_theme(walked):
     for name, colours in THEMES.items():
-        look = Look(size=(400, 300), theme=name)
+        options = FigureOptions(size=(400, 300), theme=name)
         moment = Film(walked).moment(4)
-        image = np.asarray(raster(figure(walked.mesh, look, moment))).reshape(-1, 3).astype(int)
+        image = np.asarray(raster(figure(walked.mesh, options, moment))).reshape(-1, 3).astype(int)
         for colour in (colours.plus, colours.minus, colours.background, colours.fill):
             wanted = [int(colour[i : i + 2], 16) for i in (1, 3, 5)]
             assert np.abs(image - wanted).max(axis=1).min() <= 6
-    plain = figure(walked.mesh, Look(size=(400, 300), score=False, numbers=False))
+    plain = figure(walked.mesh, FigureOptions(size=(400, 300), score=False, numbers=False))
     assert not [shape for shape in plain.shapes if type(shape).__name__ == "Text"]
 
 
-def test_a_picture_needs_neither_display_nor_vtk(tmp_path):
+def test_pictures_need_neither_display_nor_vtk(tmp_path):
     code = (
         "import sys; from meshwright.graphics.export import export_job; "
-        "from meshwright.graphics.mesh_figure import Look; "
+        "from meshwright.graphics.mesh_figure import FigureOptions; "
         "from meshwright_core.domains import gallery, meshing; "
         "m = meshing.mesh_domain(gallery.shape('star'), 'quad'); "
-        f"export_job.save_mesh_picture(m, r'{tmp_path / 'star.png'}', Look((300, 200), 'dark')); "
+        "options = FigureOptions((300, 200), 'dark'); "
+        f"export_job.save_mesh_picture(m, r'{tmp_path / 'star.png'}', options); "
         "assert not {'vtkmodules', 'pyvista', 'qtpy', 'torch'} & set(sys.modules)"
     )
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
@@ -178,7 +179,7 @@ def test_summary(star, triangles):
     assert summary(triangles).endswith("triangles")
 
 
-def test_figure_in_vectors_is_svg_with_its_words(walked):
+def test_figure_as_svg_is_well_formed_and_has_its_text(walked):
     text = svg(figure(walked.mesh, SMALL, Film(walked).moment(2)))
     root = ElementTree.fromstring(text)
     assert root.get("viewBox") == "0 0 320 240"
@@ -206,7 +207,7 @@ def test_inverted_elements_are_hatched(strip):
     assert ((lines >= -1e-9) & (lines <= 10 + 1e-9)).all()
 
 
-def test_holes_stay_open_in_both():
+def test_areas_with_holes_in_png_and_svg():
     outer = np.array([(0, 0), (20, 0), (20, 20), (0, 20)], dtype=float)
     hole = outer * 0.4 + 6
     drawing = Drawing((20, 20), "#ffffff", shapes=[Area([outer, hole], "#000000")])
@@ -217,7 +218,7 @@ def test_holes_stay_open_in_both():
     assert svg(drawing).count("evenodd") == 1
 
 
-def test_a_gif_has_one_frame_for_each_state_and_its_times(walked, tmp_path):
+def test_gif_has_one_frame_with_its_duration_for_each_state(walked, tmp_path):
     film, path = Film(walked), tmp_path / "star.gif"
     seen = []
     assert film.save(path, SMALL, 0.2, progress=lambda *done: seen.append(done)) == len(film)
@@ -236,11 +237,11 @@ def test_a_gif_has_one_frame_for_each_state_and_its_times(walked, tmp_path):
     assert np.abs(last - np.asarray(wanted)).mean() < 1.0
 
 
-def test_an_mp4_plays_as_long_as_it_should(walked, tmp_path):
+def test_mp4_duration(walked, tmp_path):
     import av
 
     film, path = Film(walked), tmp_path / "star.mp4"
-    frames = film.save(path, Look(size=(321, 241), theme="dark"), 0.25, every=2)
+    frames = film.save(path, FigureOptions(size=(321, 241), theme="dark"), 0.25, every=2)
     wanted = 1.0 + 0.25 * (frames - 2) + 2.5
     with av.open(str(path)) as file:
         stream = file.streams.video[0]
@@ -250,9 +251,9 @@ def test_an_mp4_plays_as_long_as_it_should(walked, tmp_path):
 
 
 @pytest.mark.parametrize("ending", [".gif", ".mp4", ".png", ".svg"])
-def test_a_cancelled_or_refused_export_leaves_nothing(walked, tmp_path, ending):
+def test_cancelled_or_failed_export_leaves_no_file(walked, tmp_path, ending):
     film, path = Film(walked), tmp_path / f"star{ending}"
-    order = Order(ending=ending, size=(320, 240))
+    order = ExportOptions(ending=ending, size=(320, 240))
 
     def stop(done, total):
         raise KeyboardInterrupt
@@ -260,24 +261,24 @@ def test_a_cancelled_or_refused_export_leaves_nothing(walked, tmp_path, ending):
     if order.moving:
         path.write_bytes(b"before")
         with pytest.raises(KeyboardInterrupt):
-            export_job.write_order(film, order, path, stop)
+            export_job.write_export(film, order, path, stop)
         assert path.read_bytes() == b"before"
-    assert export_job.write_order(film, order, path) == (len(film) if order.moving else 1)
+    assert export_job.write_export(film, order, path) == (len(film) if order.moving else 1)
     assert path.stat().st_size > 500
     assert [found.name for found in tmp_path.iterdir()] == [path.name]
     with pytest.raises(MeshError, match="does not exist"):
-        export_job.write_order(film, order, tmp_path / "none" / path.name)
+        export_job.write_export(film, order, tmp_path / "none" / path.name)
 
 
-def test_a_still_is_of_the_state_where_the_film_stands(walked, tmp_path):
+def test_exported_picture_shows_the_present_state_of_the_film(walked, tmp_path):
     film = Film(walked)
     state = film.state
-    export_job.write_order(film, Order(ending=".svg"), tmp_path / "a.svg")
+    export_job.write_export(film, ExportOptions(ending=".svg"), tmp_path / "a.svg")
     assert film.state == state
     assert f">s {walked.mesh.score}<" in (tmp_path / "a.svg").read_text()
 
 
-def test_other_endings_are_refused_in_one_sentence(walked, tmp_path):
+def test_other_endings_are_refused(walked, tmp_path):
     for name in ("film.avi", "film"):
         with pytest.raises(MeshError, match=r"\.gif or \.mp4"):
             Film(walked).save(tmp_path / name)
@@ -287,14 +288,14 @@ def test_other_endings_are_refused_in_one_sentence(walked, tmp_path):
         Film(Document())
 
 
-def test_a_long_history_leaves_out_steps(walked):
+def test_film_of_a_long_history_skips_steps(walked):
     film = Film(walked)
-    assert Order().stride(film) == 1
+    assert ExportOptions().stride(film) == 1
     film.rows = film.rows * 1000
-    assert len(film.stops(Order().stride(film))) <= export_job.MOST_FRAMES + 1
+    assert len(film.stops(ExportOptions().stride(film))) <= export_job.MOST_FRAMES + 1
 
 
-def test_the_palette_of_a_gif_holds_the_theme():
+def test_gif_palette_has_the_colours_of_the_theme():
     for colours in THEMES.values():
         rows = np.array(video.palette(colours)).reshape(-1, 3).tolist()
         assert len(rows) == 256

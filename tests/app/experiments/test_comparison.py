@@ -1,4 +1,4 @@
-"""Policies compared on one mesh: what is said of a run is what it does."""
+"""Comparisons of policies, rows of the paper's tables, and widgets side by side."""
 
 import subprocess
 import sys
@@ -25,7 +25,7 @@ def both(mesh: HalfEdgeMesh) -> Comparison:
     return compare(mesh, rollouts=4, seed=5)
 
 
-def test_importing_brings_no_torch_no_matplotlib_no_qt() -> None:
+def test_import_loads_no_heavy_libraries() -> None:
     code = (
         "import sys, meshwright.experiments;"
         "print([m for m in ('torch', 'matplotlib', 'qtpy', 'PIL', 'scipy.optimize') "
@@ -35,7 +35,7 @@ def test_importing_brings_no_torch_no_matplotlib_no_qt() -> None:
     assert done.stdout.strip() == "[]"
 
 
-def test_every_run_replays_to_its_scores(mesh: HalfEdgeMesh, both: Comparison) -> None:
+def test_rollouts_replay_to_their_scores(mesh: HalfEdgeMesh, both: Comparison) -> None:
     for runs in both.rollouts.values():
         assert len(runs) == 4
         for run in runs:
@@ -50,7 +50,7 @@ def test_every_run_replays_to_its_scores(mesh: HalfEdgeMesh, both: Comparison) -
             assert run.best == run.scores.min() == run.scores[run.decisions]
 
 
-def test_the_mesh_stays_as_it_was_and_the_same_seed_brings_the_same(mesh: HalfEdgeMesh) -> None:
+def test_mesh_is_unchanged_and_equal_seeds_give_equal_rollouts(mesh: HalfEdgeMesh) -> None:
     before = mesh.elements(), mesh.points.copy()
     one, two = (compare(mesh, ["quad-paper"], rollouts=3, seed=9) for _ in range(2))
     assert np.array_equal(before[0], mesh.elements()) and np.array_equal(before[1], mesh.points)
@@ -58,7 +58,7 @@ def test_the_mesh_stays_as_it_was_and_the_same_seed_brings_the_same(mesh: HalfEd
         assert a.steps == b.steps and np.array_equal(a.scores, b.scores)
 
 
-def test_rows_are_plain_and_say_what_the_runs_did(both: Comparison) -> None:
+def test_rows_agree_with_the_rollouts(both: Comparison) -> None:
     for row in both.rows:
         returns = both.returns(row["policy"])
         best = both.best(row["policy"])
@@ -72,7 +72,7 @@ def test_rows_are_plain_and_say_what_the_runs_did(both: Comparison) -> None:
     assert "quad-paper" in both.table() and repr(both) == both.table()
 
 
-def test_the_best_of_k_is_the_mean_over_all_choices(both: Comparison) -> None:
+def test_best_of_k_is_the_mean_over_all_subsets(both: Comparison) -> None:
     values = np.array([0.5, 0.9, 0.9, 0.2, 1.0])
     for k in range(1, 6):
         largest = [max(some) for some in combinations(values, k)]
@@ -88,7 +88,7 @@ def test_the_best_of_k_is_the_mean_over_all_choices(both: Comparison) -> None:
 
 
 @pytest.mark.parametrize("steps", [1, 3, 12])
-def test_steps_are_the_decisions_that_a_run_may_take(mesh: HalfEdgeMesh, steps: int) -> None:
+def test_steps_limit_the_decisions_of_a_rollout(mesh: HalfEdgeMesh, steps: int) -> None:
     found = compare(mesh, ["quad-paper"], rollouts=3, steps=steps)
     assert max(len(run.steps) for run in found.rollouts["quad-paper"]) <= steps
 
@@ -104,7 +104,7 @@ def test_the_film_goes_to_the_best_state(mesh: HalfEdgeMesh, both: Comparison) -
     assert both.document("quad-paper", 2).score == both.rollouts["quad-paper"][2].best
 
 
-def test_a_mesh_at_its_optimum_has_runs_without_steps(both: Comparison) -> None:
+def test_rollouts_from_the_optimum_have_no_steps(both: Comparison) -> None:
     done = both.meshes["quad"]
     assert done.score == done.optimum
     found = compare(done, rollouts=2)
@@ -113,7 +113,7 @@ def test_a_mesh_at_its_optimum_has_runs_without_steps(both: Comparison) -> None:
     assert "s 0" in found.to_svg()
 
 
-def test_triangles_documents_and_names_are_meshes_too() -> None:
+def test_compare_takes_triangles_documents_and_names() -> None:
     triangles = Document(meshing.mesh_domain(gallery.shape("star"), "tri"))
     found = compare(triangles, "tri-paper", rollouts=2, steps=4)
     assert found.policies == ("tri-paper",)
@@ -138,30 +138,30 @@ def test_triangles_documents_and_names_are_meshes_too() -> None:
         ({"mesh": 7}, "cannot be made of int"),
     ],
 )
-def test_what_is_wrong_is_said_in_a_sentence(
+def test_wrong_arguments_are_refused_in_one_sentence(
     mesh: HalfEdgeMesh, arguments: dict[str, object], words: str
 ) -> None:
-    with pytest.raises(MeshError, match=words) as told:
+    with pytest.raises(MeshError, match=words) as caught:
         compare(**({"mesh": mesh, "rollouts": 1} | arguments))  # type: ignore[arg-type]
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(caught.value)
 
 
-def test_unknown_runs_are_refused(both: Comparison) -> None:
+def test_unknown_rollouts_are_refused(both: Comparison) -> None:
     with pytest.raises(MeshError, match="no rollouts of 'tri'"):
         both.film("tri")
     with pytest.raises(MeshError, match="rollouts 0 to 3"):
         both.film("quad", 4)
 
 
-def test_a_row_of_the_table_is_what_the_command_line_measures() -> None:
+def test_table_row_agrees_with_the_command_line() -> None:
     from meshwright_agent.evaluation.rollouts import evaluate
     from meshwright_agent.policy.policy_files import load
 
     row = table_row("quad-paper", (10, 20), meshes=4, rollouts=2, seed=3)
-    told = evaluate("quad", (10, 20), 4, 2, 3, load("quad-paper"))
-    assert row.single == (told["single_mean"], told["single_std"])
-    assert row.best == (told["best_mean"], told["best_std"])
-    assert row.at_optimum == told["at_optimum"] and row.paper == (0.98, 0.03)
+    measured = evaluate("quad", (10, 20), 4, 2, 3, load("quad-paper"))
+    assert row.single == (measured["single_mean"], measured["single_std"])
+    assert row.best == (measured["best_mean"], measured["best_std"])
+    assert row.at_optimum == measured["at_optimum"] and row.paper == (0.98, 0.03)
     assert len(row.rows) == 8 and "best of 2" in repr(row) and "0.98" in repr(row)
     assert table_row("tri", (5, 5), meshes=3, rollouts=1).paper is None
 
@@ -177,12 +177,14 @@ def test_a_row_of_the_table_is_what_the_command_line_measures() -> None:
         ({"rollouts": 1.5}, "rollouts is a whole number"),
     ],
 )
-def test_wrong_rows_are_refused(arguments: dict[str, object], words: str) -> None:
+def test_wrong_arguments_of_a_table_row_are_refused(
+    arguments: dict[str, object], words: str
+) -> None:
     with pytest.raises(MeshError, match=words):
         table_row(**({"policy": "quad"} | arguments))  # type: ignore[arg-type]
 
 
-def test_side_by_side_are_two_widgets_on_the_best_runs(both: Comparison) -> None:
+def test_side_by_side_has_a_widget_for_each_best_rollout(both: Comparison) -> None:
     box = side_by_side(both, height=240)
     for name, column in zip(both.policies, box.children, strict=True):
         title, widget = column.children
@@ -197,7 +199,7 @@ def test_side_by_side_are_two_widgets_on_the_best_runs(both: Comparison) -> None
         side_by_side(both, ["tri"])
 
 
-def test_a_comparison_follows_the_kind_and_takes_one_policy_too(mesh: HalfEdgeMesh) -> None:
+def test_default_policies_follow_the_kind_and_one_policy_is_enough(mesh: HalfEdgeMesh) -> None:
     from importlib.resources import files
     from pathlib import Path
 
