@@ -218,7 +218,7 @@ class Monkey:
         from meshwright_core.operations.catalogue import of_kind
 
         canvas, mesh = self.window.canvas, self.window.document.mesh
-        if canvas.plotter is None or not canvas.isVisible():
+        if not canvas.built or not canvas.isVisible():
             return
         place = mesh.points[self._pick(mesh.vertices())]
         x, y = canvas.viewport.to_screen(place) + self.rng.normal(0.0, 12.0, 2)

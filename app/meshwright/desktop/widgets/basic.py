@@ -14,7 +14,6 @@ from qtpy.QtWidgets import (
 
 from meshwright.desktop.widgets import icons
 from meshwright.graphics.theme import GRID, Theme
-from meshwright_core.errors import sentence as sentence
 
 
 def tabular(font: QFont) -> QFont:
