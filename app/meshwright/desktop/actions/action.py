@@ -27,9 +27,9 @@ class Condition:
 
 @dataclass(frozen=True, kw_only=True)
 class Action(ActionEntry):
-    """``run`` does it, ``enabled`` says whether it is possible now.
+    """An action with what it does: ``run``, and when it is possible: ``enabled``.
 
-    An action with ``checked`` is a switch, which ``checked`` says is on or off.
+    An action with ``checked`` is a switch; ``checked`` returns whether it is on.
     """
 
     run: Run

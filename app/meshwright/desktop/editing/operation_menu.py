@@ -17,7 +17,8 @@ WIDTH = 296
 
 
 class OperationMenu(QFrame):
-    """A popup with a row for each operation; a refused one is grey and tells its reason.
+    """A popup with a row for each operation; rows of refused operations are grey and show the
+    reason.
 
     ``chosen(operation)``: an allowed operation was chosen by mouse, arrows and Return, or its key;
     ``hovered(operation)``: the row of an allowed operation is current, None for any other row;

@@ -21,7 +21,7 @@ from meshwright.graphics.theme import GRID, Theme
 
 
 class DropTarget(QObject):
-    """Lets files be dropped on ``window``; ``open_file(path)`` gets the first of them."""
+    """Accepts files dropped on ``window``, and calls ``open_file(path)`` with the first of them."""
 
     def __init__(self, window: QWidget, open_file: Callable[[str], object], theme: Theme) -> None:
         super().__init__(window)

@@ -18,7 +18,7 @@ _SHADE = 3
 
 
 class Callout(QWidget):
-    """Heading, text and the buttons of a tour. It never takes the keyboard by itself.
+    """Heading, text and the buttons of a tour. It does not take the keyboard focus.
 
     ``step_requested(step)`` with -1 for *Back* and 1 for *Next*; ``ended()`` for *Skip* and the
     last *Done*.

@@ -94,7 +94,7 @@ class HistoryModel(QAbstractListModel):
         known, count = len(self._rows), len(history)
         same = history is self._history and empty == self._empty
         same = same and self._branches is history.branches
-        # a row always comes after the same rows: see meshwright.document.score_series.Track
+        # a row always comes after the same rows: see meshwright.document.score_series.ScoreSeries
         kept = same and (
             known == 0 or (known <= count and history[known - 1] is self._rows[known - 1])
         )

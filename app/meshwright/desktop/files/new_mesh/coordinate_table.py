@@ -16,9 +16,10 @@ NOT_A_NUMBER = "{text!r} is not a number."
 
 
 class CoordinateTable(QTableWidget):
-    """A view on a :class:`meshwright.sources.polygon_sketch.Sketch`: one row for each corner, one
-    more while a loop is
-    open, to type the next corner in. ``picked(loop, corner)``; ``told(sentence)``.
+    """The corners of a :class:`meshwright.sources.polygon_sketch.Sketch`, one per row, and an empty
+    row for the next corner while a loop is open.
+
+    ``picked(loop, corner)`` when a row is selected; ``message(sentence)`` for the status line.
     """
 
     picked = Signal(int, int)

@@ -40,9 +40,10 @@ _DRAG = 4.0
 
 
 class DrawingArea(QWidget):
-    """A view on a :class:`meshwright.sources.polygon_sketch.Sketch`. ``hovered(x, y)`` where the
-    mouse is, snapped;
-    ``told(sentence)`` what is in the way of what the mouse would do; ``picked(loop, corner)``.
+    """Draws and edits a :class:`meshwright.sources.polygon_sketch.Sketch`.
+
+    ``hovered(x, y)``: the snapped position of the mouse; ``message(sentence)``: why a click would
+    be refused; ``picked(loop, corner)`` when a corner is selected.
     """
 
     hovered = Signal(float, float)
