@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwright_agent.search.exhaustive import Found
+from meshwright_agent.search.annealing import Operations
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.domains import gallery
 from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
 
 Make = Callable[[np.random.Generator], HalfEdgeMesh]
-Suits = Callable[[HalfEdgeMesh, Sequence[Found]], bool]
+Suits = Callable[[HalfEdgeMesh, Sequence[Operations]], bool]
 
 
 @dataclass(frozen=True)

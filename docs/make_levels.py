@@ -28,8 +28,9 @@ from meshwright.document.document import Document
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.level import Level
 from meshwright_agent.policy.policy_files import load, shipped
+from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.exhaustive import Answer, Found, fewest
+from meshwright_agent.search.exhaustive import FewestResult, fewest
 from meshwright_agent.search.shortening import shorten
 from meshwright_agent.search.solver import solve
 from meshwright_core import HalfEdgeMesh
@@ -49,7 +50,7 @@ WIDTH, DEPTH = 150, 14
 # Solutions
 
 
-def drawn(mesh: HalfEdgeMesh, way: Found) -> bool:
+def drawn(mesh: HalfEdgeMesh, way: Operations) -> bool:
     """Whether no element is inverted at the end, with smoothing as in the window."""
     document = Document(mesh.copy())
     for operation, halfedge in way:
@@ -57,7 +58,7 @@ def drawn(mesh: HalfEdgeMesh, way: Found) -> bool:
     return not len(quality.inverted(document.mesh))
 
 
-def best(mesh: HalfEdgeMesh, recipe: Recipe) -> tuple[Found, int, Answer] | None:
+def best(mesh: HalfEdgeMesh, recipe: Recipe) -> tuple[Operations, int, FewestResult] | None:
     """A shortest solution without inverted elements at its end, a lower bound, all solutions."""
     goal = mesh.optimum
     answer = fewest(mesh, goal, recipe.most, nodes=recipe.nodes)
@@ -73,7 +74,7 @@ def best(mesh: HalfEdgeMesh, recipe: Recipe) -> tuple[Found, int, Answer] | None
     return (ways[0], answer.proved, answer) if ways else None
 
 
-def solved(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
+def solved(mesh: HalfEdgeMesh, goal: int) -> list[Operations]:
     """Solutions of the agent."""
     policy = load(shipped(mesh.kind)[0])
     found = [
@@ -82,13 +83,13 @@ def solved(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
     return [s.operations for s in found if s.score <= goal and not s.inverted]
 
 
-def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
+def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Operations]:
     """Beam search: solutions from the best states of each depth; those of the first depth that
     reaches the goal.
     """
-    beam: list[Found] = [[]]
+    beam: list[Operations] = [[]]
     for _ in range(DEPTH):
-        found: list[tuple[int, int, Found]] = []
+        found: list[tuple[int, int, Operations]] = []
         for way in beam:
             work = replayed(mesh, way)
             for operation, halfedge in allowed(work):
@@ -100,7 +101,7 @@ def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Found]:
         ends = [way for way in ends[:40] if drawn(mesh, way)]
         if ends:
             return ends
-        kept: dict[tuple[int, ...], Found] = {}
+        kept: dict[tuple[int, ...], Operations] = {}
         for score, irregular, way in found[: 20 * WIDTH]:
             kept.setdefault((score, irregular, *fingerprint(replayed(mesh, way))), way)
             if len(kept) == WIDTH:
@@ -126,7 +127,7 @@ def fingerprint(mesh: HalfEdgeMesh) -> tuple[int, ...]:
     return (hash(tuple(sorted(pairs))),)
 
 
-def shorter(mesh: HalfEdgeMesh, way: Found, goal: int) -> Found:
+def shorter(mesh: HalfEdgeMesh, way: Operations, goal: int) -> Operations:
     """The solution with its end, from any of its states, replaced by shorter ones."""
     way = shorten(mesh, way, seconds=0.5)
     at = len(way)
@@ -153,7 +154,7 @@ def sound(mesh: HalfEdgeMesh) -> bool:
     return float(quality.scaled_jacobian(mesh).min()) > 0.25
 
 
-def fits(recipe: Recipe, mesh: HalfEdgeMesh, ways: Sequence[Found], length: int) -> bool:
+def fits(recipe: Recipe, mesh: HalfEdgeMesh, ways: Sequence[Operations], length: int) -> bool:
     """Whether the mesh and its solutions fulfil the recipe."""
     if not recipe.par[0] <= length <= recipe.par[1]:
         return False

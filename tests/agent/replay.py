@@ -1,4 +1,4 @@
-"""What several tests do with the operations that a search gives."""
+"""Replaying the operations that a search returns."""
 
 
 def replayed(mesh, operations):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from meshwright_agent.policy.explanation_types import Choice, Insight
+from meshwright_agent.policy.explanation_types import Insight, PolicyAction
 from meshwright_core import HalfEdgeMesh, Operation
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.operations.catalogue import of_kind
@@ -27,8 +27,8 @@ class Greedy:
         self.longest = longest
         self.steps = 0
         self.rng = np.random.default_rng(4)
-        self.choices: list[Choice] = []
-        self.wanted: Choice | None = None
+        self.choices: list[PolicyAction] = []
+        self.wanted: PolicyAction | None = None
         self.finished = False
         self.reason = ""
 
@@ -62,7 +62,7 @@ class Greedy:
             self._finish("out of steps")
         return [(wanted.operation, wanted.halfedge)]
 
-    def _choose(self) -> Choice | None:
+    def _choose(self) -> PolicyAction | None:
         if self.wanted is not None:
             return self.wanted
         if self.mesh.score == self.mesh.optimum and not self.bad_steps:
@@ -80,7 +80,7 @@ class Greedy:
                     changes.append((edit.score_change, info.operation, int(halfedge)))
         wanted = (max if self.steps < self.bad_steps else min)(change[0] for change in changes)
         changes = [change for change in changes if change[0] == wanted]
-        self.choices = [Choice(o, h, 1.0 / len(changes), change) for change, o, h in changes]
+        self.choices = [PolicyAction(o, h, 1.0 / len(changes), change) for change, o, h in changes]
         self.wanted = self.choices[self.rng.integers(len(changes))]
         return self.wanted
 
@@ -88,7 +88,9 @@ class Greedy:
         self.finished, self.reason = True, reason
 
 
-def ask_greedy(mesh: HalfEdgeMesh, policy: str, near: np.ndarray | None) -> tuple[Choice, ...]:
+def ask_greedy(
+    mesh: HalfEdgeMesh, policy: str, near: np.ndarray | None
+) -> tuple[PolicyAction, ...]:
     """Stands in for ``meshwright_agent.policy.explanation.hints``: the first five of the best
     operations.
     """

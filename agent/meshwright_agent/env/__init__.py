@@ -1,1 +1,1 @@
-"""The Markov decision process: task, candidate half-edges, observations, environments."""
+"""The Markov decision process (section 4): task, candidates, observations, environments."""

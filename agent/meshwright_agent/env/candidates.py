@@ -1,10 +1,10 @@
-"""Which half-edges the policy chooses among: the paper's template, or a shortlist over the mesh.
+"""The candidate half-edges of a decision: the paper's template, or a shortlist over the mesh.
 
-Template (section 4.2.1): around every half-edge lies a template; the half-edges of the one with the
-largest sum of |Delta| are the candidates, ties broken at random. Shortlist: the paper's candidate
-retrieval made wider; those half-edges near irregular vertices whose best operation lowers s most,
-perturbed by Gumbel noise. On large meshes both look at one region around an irregular vertex drawn
-at random, so that the cost of a decision does not grow with the mesh.
+Template (section 4.2.1): around every half-edge lies a template, a fixed pattern of half-edges; the
+candidates are those of the template with the largest sum of |Delta|, ties broken at random.
+Shortlist (ours): the half-edges near irregular vertices whose best operation lowers s most, ranked
+with Gumbel noise. With many irregular vertices both consider one region around an irregular vertex
+drawn at random, so that the cost of a decision does not grow with the mesh.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ from meshwright_core.operations.global_split import crossings
 from meshwright_core.operations.refusals import ALLOWED
 
 LOOKED_AT = 64
-"""Irregular vertices up to which a decision looks at all of them."""
+"""Irregular vertices up to which all of them are considered."""
 REGION = 256
-"""Elements that a decision looks at on a mesh with more."""
+"""Elements of the region that is considered on a mesh with more."""
 LONGEST_CUT = 200
-"""Quads that one half of a global split may cut, at most, when an agent asks for it."""
+"""Largest number of quads that each half of an agent's global split may cut."""
 
 
 @bare_kernel
@@ -59,12 +59,11 @@ def gather(m, h, k, source, turn, slots):
 
 @cache
 def template_plan(k: int, levels: int) -> tuple[np.ndarray, np.ndarray]:
-    """The template: the half-edges of all elements within `levels` steps of the first, as a
-    program.
+    """The template: the half-edges of the elements within `levels` steps, as instructions.
 
-    source (N,) int32: the slot from which a slot's half-edge is reached, slot 0 being the half-edge
-    itself; turn (N,) int32: -1 if it is the twin of the source, else how far it is turned on in its
-    element.
+    Slot 0 is the half-edge itself. source (N,) int32: the slot from which a slot's half-edge is
+    reached; turn (N,) int32: -1 if it is the twin of that, else by how many steps of `next` it
+    follows in the same element.
     """
     paths: list[tuple[int, ...]] = [()]
     ring: list[tuple[int, ...]] = [()]
@@ -83,9 +82,10 @@ def template_plan(k: int, levels: int) -> tuple[np.ndarray, np.ndarray]:
 
 @bare_kernel
 def permitted(m, operation, h, cap, floor, ceiling, extended):
-    """Whether the agent may apply `operation` to h:
-    :func:`meshwright_core.operations.catalogue.check`, the action
-    set, and a number of elements that stays within floor and ceiling.
+    """Whether the action mask allows `operation` at h.
+
+    It must be valid (:func:`meshwright_core.operations.catalogue.check`), belong to the action set,
+    and leave the number of elements between floor and ceiling.
     """
     elements = m.counters[ELEMENTS]
     if operation == TRI_COLLAPSE:
@@ -114,8 +114,10 @@ def permitted(m, operation, h, cap, floor, ceiling, extended):
 
 @bare_kernel
 def best_change(m, h, first, count, cap, floor, ceiling, extended):
-    """The lowest change of s among the permitted operations first ... first + count - 1 at h; 99 if
-    there is none. A global split is not walked out here: its change alone is looked at.
+    """The lowest change of s among the permitted operations first ... first + count - 1 at h.
+
+    99 if there is none. For a global split only its change of s counts: whether it is permitted
+    would need a walk along the whole split.
     """
     best = 99
     for operation in range(first, first + count):
@@ -139,11 +141,10 @@ def _collect(m, e, found, count):
 
 @kernel
 def near_irregular(m, k, rng, found):
-    """Elements that one decision looks at, into `found`; returns their number.
+    """Write the elements that one decision considers into `found` (N,); returns their number.
 
     With up to LOOKED_AT irregular vertices: the elements at each of them, and their neighbours.
-    With more: REGION elements that lie together around one of them, drawn at random, so that a
-    decision costs the same on a mesh of any size.
+    With more: a connected region of REGION elements around one of them, drawn at random.
     """
     total = m.counters[IRREGULAR]
     count = 0
@@ -183,9 +184,10 @@ def _collect_around(m, v, k, found, count):
 
 @kernel
 def shortlist(m, k, first, count, cap, floor, ceiling, extended, noise, rng, found, keys, chosen):
-    """Fill `chosen` (K,) with half-edges, -1 where there are fewer; returns how many.
+    """Fill `chosen` (K,) with half-edges, -1 where there are fewer; returns their number.
 
-    found, keys: scratch for element ids (N,) and for k N float keys.
+    The ranking key is minus the best change of s, plus Gumbel noise scaled by `noise`. found (N,),
+    keys (k N,): scratch.
     """
     elements = near_irregular(m, k, rng, found)
     for i in range(elements):
@@ -212,7 +214,7 @@ def shortlist(m, k, first, count, cap, floor, ceiling, extended, noise, rng, fou
 
 @bare_kernel
 def local_score(m, h, k, source, turn, slots):
-    """Sum of |Delta| over the template of h: of the vertices that its half-edges see."""
+    """The local score (section 4.2.1): the sum of |Delta| over the template of h."""
     gather(m, h, k, source, turn, slots)
     total = 0
     for i in range(len(source)):
@@ -224,8 +226,10 @@ def local_score(m, h, k, source, turn, slots):
 
 @kernel
 def best_template(m, k, source, turn, rng, found, slots, chosen):
-    """Fill `chosen` (K,) with the half-edges of the template of highest local score, -1 beyond the
-    boundary; returns how many are real. Half-edges far from irregular vertices need no look.
+    """Fill `chosen` (K,) with the template of highest local score (section 4.2.1).
+
+    -1 beyond the boundary and for repetitions; returns the number of the others. Only templates
+    near irregular vertices are compared, since all others have a lower score.
     """
     elements = near_irregular(m, k, rng, found)
     best, tied, at = -1, 0, -1
@@ -245,7 +249,7 @@ def best_template(m, k, source, turn, rng, found, slots, chosen):
     gather(m, at, k, source, turn, chosen)
     real = 0
     for i in range(len(chosen)):
-        # the same half-edge may stand in the template twice, around a vertex of low degree
+        # around a vertex of low degree the template contains a half-edge more than once
         for j in range(i):
             if chosen[i] == chosen[j]:
                 chosen[i] = -1
@@ -256,8 +260,9 @@ def best_template(m, k, source, turn, rng, found, slots, chosen):
 
 @bare_kernel
 def masks(m, chosen, first, count, cap, floor, ceiling, extended, mask, changes):
-    """For each candidate (K,) and operation (A,) whether it is permitted, and its change of s;
-    returns whether any is.
+    """Fill `mask` (K, A) and `changes` (K, A), the exact change of s of permitted operations.
+
+    Returns whether any operation is permitted.
     """
     some = False
     for i in range(len(chosen)):

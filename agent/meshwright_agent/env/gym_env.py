@@ -1,4 +1,4 @@
-"""The task as a Gymnasium environment: one mesh, one operation a step."""
+"""The Markov decision process as a Gymnasium environment: one mesh, one operation per step."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from meshwright_core.mesh import HalfEdgeMesh
 
 @bare_kernel
 def _describe_templates(m, chosen, k, source, turn, slots, field, out):
-    """Channels (K, T, C) of the templates of the candidates (K,), zero beyond the boundary."""
+    """Write the channels (K, T, C) of the templates of K candidates; 0 beyond the boundary."""
     solved = out.shape[2] > POTENTIALS
     elements = solve_potential(m, k, chosen, field) if solved else 0
     for i in range(len(chosen)):
@@ -39,24 +39,27 @@ def _describe_templates(m, chosen, k, source, turn, slots, field, out):
 
 
 class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
-    """Bring the vertices of a random polygon's mesh to their desired degrees.
+    """Edit a mesh until its vertices have their desired degrees (section 4).
 
-    Actions: ``Discrete(K * A)``: operation a of candidate half-edge i is i * A + a. The K
-    candidates are chosen anew in each step (:mod:`meshwright_agent.env.candidates`). An action that
-    the mask forbids changes nothing and costs a step.
+    Actions: ``Discrete(K * A)``; i * A + a is operation a at candidate half-edge i. The K
+    candidates are selected anew at each step (:mod:`meshwright_agent.env.candidates`). An action
+    that the mask forbids leaves the mesh as it is and uses up a step.
 
     Observation: ``template`` (K, T, C) int8, the channels
-    (:data:`meshwright_agent.env.local_patch.CHANNELS`) of the T
-    half-edges of each candidate's template; ``mask`` (K, A), which operations are permitted;
-    ``changes`` (K, A) int8, the exact change of s that each would make; ``state`` (3,) float32, a
-    tenth of s - s*, the share of steps left, and elements relative to the start.
+    (:data:`meshwright_agent.env.local_patch.CHANNELS`) of the T half-edges of each candidate's
+    template; ``mask`` (K, A) int8, 1 where an operation is permitted; ``changes`` (K, A) int8, the
+    exact change of s of each permitted operation; ``state`` (3,) float32, (s - s*) / 10, the share
+    of steps left, and the elements relative to the start.
 
-    Reward: s before less s after (equation 3).
+    Reward: s before less s after the step (equation 4).
 
-    End: terminated at the optimum, s = s*; truncated after a number of steps proportional to the
-    elements at the start, or when no operation is permitted.
+    Episode end: terminated at the optimum, s = s*; truncated after a number of steps proportional
+    to the elements at the start, or when no operation is permitted.
 
     Reset options: ``mesh``, a HalfEdgeMesh to start from in place of a random polygon.
+
+    Info: ``score`` s, ``optimum`` s*, ``elements`` their number, ``action_mask`` (K * A,) int8 as
+    ``Discrete.sample`` takes it.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - as Gymnasium declares it
@@ -68,7 +71,11 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
         task: Task | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """For polygons with so many sides (a closed range); `task` overrides `kind`."""
+        """Create an environment; it has no mesh before the first reset.
+
+        kind: "quad" or "tri". sides: least and largest number of sides of the random polygons.
+        task: all settings of the task; its kind is used in place of `kind`.
+        """
         if render_mode is not None:
             raise ValueError(f"render mode {render_mode!r} is not supported")
         self.render_mode = None
@@ -170,7 +177,7 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
     def step(
         self, action: np.int64
     ) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
-        """Do one operation and the clean-ups that it makes possible."""
+        """Apply one operation and the clean-ups that it makes possible."""
         if self.mesh is None:
             raise gymnasium.error.ResetNeeded("reset the environment before the first step")
         before = self.mesh.score

@@ -1,11 +1,10 @@
-"""The local patch of a decision: all that the DCEL convolution can see of its candidates (section
-4.2).
+"""The local patch of a decision: the half-edges that the convolution of section 4.2 reads.
 
-One block of the convolution gives a half-edge what the half-edges of its element and its twin held.
-The embedding of the candidates after B blocks therefore needs the half-edges within B such steps of
-them, and no others: that is the patch. It is listed so that what block b must compute is always the
-front part of the list; a half-edge that several candidates need is listed once. A decision costs
-the same on a mesh of any size.
+One block of the convolution combines the features of the half-edges of an element and of the twin.
+After B blocks the embeddings of the candidates therefore depend on the half-edges within B such
+steps of them, and on no others: these form the patch. It is ordered so that the half-edges for
+which block b must be computed are always a leading part of the list; a half-edge that several
+candidates need is listed once. The cost of a decision does not depend on the size of the mesh.
 """
 
 from __future__ import annotations
@@ -28,18 +27,18 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.compilation import bare_kernel, kernel
 
 CHANNELS = ("degree", "irregularity", "boundary", "geometric", "potential", "absolute potential")
-"""What is known of the vertex of a half-edge; the paper uses the first two. The last two are those
-of :mod:`meshwright_agent.env.potential`."""
+"""The features of a half-edge, those of its vertex; the paper uses the first two. The last two are
+computed by :mod:`meshwright_agent.env.potential`."""
 POTENTIALS = 4
-"""Channels that need no potential."""
+"""Number of channels before the potentials."""
 
 LARGEST = 8192
-"""Half-edges that a patch may hold; candidates far apart need more than such that lie together."""
+"""Largest number of half-edges in a patch; candidates that lie far apart need more."""
 
 
 @bare_kernel
 def seen_vertex(m, h, k):
-    """The vertex of a half-edge: opposite in a triangle, origin in a quad (section 4.1)."""
+    """The vertex of a half-edge: opposite in a triangle, origin in a quad (section 3.1)."""
     return m.edge[preceding(h, k) if k == 3 else h, ORIGIN]
 
 
@@ -57,10 +56,11 @@ def _list_up(h, listed, count, slot_of):
 def list_patch(m, chosen, k, sizes, listed, reads, slot_of):
     """List the patch of the candidates `chosen` (K,), -1 for none.
 
-    sizes (B+1,) receives how many half-edges hold values before block 1, 2, ... B and after it, the
-    list's length first; listed (N,) the half-edges; reads (N, k+1) the places in the list of h,
-    next, ..., previous, twin (-1 beyond the boundary) for all but the outermost. slot_of: zeros,
-    one for each half-edge of the mesh; zero again afterwards.
+    sizes (B+1,) receives the number of half-edges whose features are needed before block 1, 2,
+    ..., B and after block B, so the length of the list comes first; listed (N,) the half-edges;
+    reads (N, k+1), for all but the outermost, the positions in the list of h, next, ..., previous
+    and twin (-1 beyond the boundary). slot_of: scratch, one entry for each half-edge of the mesh,
+    zero before and after.
     """
     blocks = len(sizes) - 1
     count = 0
@@ -89,8 +89,9 @@ def list_patch(m, chosen, k, sizes, listed, reads, slot_of):
 
 @bare_kernel
 def describe(m, h, k, field, row):
-    """Write what is known of the vertex of h into `row`, as many of CHANNELS as it has room for;
-    field: solved, if there is room for the potentials.
+    """Write the features of h into `row` (C,): the first C of CHANNELS.
+
+    field: the solved potentials, needed if C includes them.
     """
     v = seen_vertex(m, h, k)
     row[0] = m.vertex[v, DEGREE]
@@ -106,13 +107,13 @@ def describe(m, h, k, field, row):
 
 @dataclass
 class Patches:
-    """The patches of D decisions, one behind the other."""
+    """The patches of D decisions, concatenated."""
 
     features: np.ndarray
     """(N, C) int8: the channels of each listed half-edge."""
     reads: np.ndarray
-    """(M, k+1) int16: for all but the outermost half-edges, places within the decision's own
-    list."""
+    """(M, k+1) int16: for all but the outermost half-edges, positions within the list of the same
+    decision."""
     sizes: np.ndarray
     """(D, B+1) int32, see :func:`list_patch`."""
 
@@ -128,9 +129,7 @@ class Patches:
 
 @kernel
 def _assemble(reads, sizes, read_starts, picked, level, beyond, out):
-    """Global reads of one block: places in the joined array of what the block before it
-    computed.
-    """
+    """Convert the reads of one block to positions in the concatenated rows of the block before."""
     at = 0
     base = 0
     for d in picked:
@@ -152,10 +151,10 @@ def _copy_rows(features, sizes, starts, picked, out):
 
 
 def assemble(patches: Patches, picked: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Features and reads of the decisions `picked`, ready for the network.
+    """The network's input for the decisions `picked` (M,).
 
-    Returns (N, C) int8 features and, for each block, (Q, k+1) int64 places among the rows that the
-    block before computed; the place behind the last row stands for "beyond the boundary".
+    Returns features (N, C) int8 and, for each block, reads (Q, k+1) int64 into the rows that the
+    block before computed; the index after the last row stands for "beyond the boundary".
     """
     sizes = patches.sizes
     starts = np.concatenate([[0], np.cumsum(sizes[:, 0])])

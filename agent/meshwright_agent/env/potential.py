@@ -1,9 +1,9 @@
-"""The potential: which way, and how far, the irregular vertices lie.
+"""Potentials of the irregularities: features that reach further than the convolution.
 
-Irregular vertices of opposite sign cancel when they meet, as charges do. So the irregularities
-Delta, and their amounts |Delta|, are taken as charges of a screened Poisson problem on the graph of
-vertices and edges, and some Jacobi sweeps of it tell every vertex in which direction the missing
-opposite sign lies. The convolution alone (section 4.2) sees no further than its blocks reach.
+Irregular vertices of opposite sign cancel when they meet, as charges do. Delta and |Delta| are
+therefore taken as the charges of a screened Poisson problem on the graph of vertices and edges. A
+few Jacobi sweeps give each vertex a value whose gradient points towards irregular vertices, also
+towards those beyond the field of view of the convolution (section 4.2). Not in the paper.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from meshwright_core.core.arrays import DEGREE, DESIRED, ELEMENT_SLOTS, ORIGIN, 
 from meshwright_core.core.compilation import bare_kernel
 
 SWEEPS = 16
-"""Jacobi sweeps: a charge is felt over as many edges."""
+"""Jacobi sweeps; a charge has an effect over as many edges."""
 NEIGHBOURHOOD = 1024
-"""Elements over which the potential is computed, at most, so that its cost is bounded."""
+"""Largest number of elements over which the potentials are computed; it bounds their cost."""
 SCREENING = 0.2
-"""Added to each vertex's degree: with it a potential falls to a third within some five edges."""
+"""Screening, added to the degree: a potential falls to a third in about 5 edges."""
 _SOFT = 0.05
 _SCALE = 25.0
 
 
 class Field(NamedTuple):
-    """Scratch arrays of one computation; its vertices and edges are numbered."""
+    """Work arrays of one computation, whose vertices and edges are numbered from 0."""
 
     place_of: np.ndarray
-    """(vertex slots,) number + 1 of each vertex with a potential; zeros between computations."""
+    """(vertex slots,) number + 1 of a vertex with a potential, 0 for others and between calls."""
     elements: np.ndarray
     ends: np.ndarray
     charge: np.ndarray
@@ -40,7 +40,7 @@ class Field(NamedTuple):
 
 
 def field(vertex_slots: int) -> Field:
-    """Arrays for meshes with at most so many vertex slots."""
+    """Allocate the arrays for meshes with at most so many vertex slots."""
     most = 4 * NEIGHBOURHOOD
     return Field(
         np.zeros(vertex_slots, np.int32),
@@ -85,7 +85,7 @@ def neighbourhood(m, k, near, elements):
 
 @bare_kernel
 def _number(m, v, field, count):
-    """Give vertex v a number, its charges and no potential yet; returns the new count."""
+    """Number vertex v, with its charges and potentials of zero; returns the new count."""
     if field.place_of[v] == 0:
         field.place_of[v] = count + 1
         amount = np.float32(m.vertex[v, DEGREE] - m.vertex[v, DESIRED])
@@ -100,8 +100,9 @@ def _number(m, v, field, count):
 
 @bare_kernel
 def solve_potential(m, k, near, field):
-    """Compute the potentials of Delta and of |Delta| around the half-edges `near` (K,); returns the
-    number of elements, which :func:`forget` wants to know afterwards.
+    """Compute the potentials of Delta and of |Delta| around the half-edges `near` (K,).
+
+    Returns the number of elements, which :func:`forget` needs afterwards.
     """
     elements, ends, value = field.elements, field.ends, field.value
     charge, next_value, valence = field.charge, field.next_value, field.valence
@@ -118,7 +119,7 @@ def solve_potential(m, k, near, field):
             valence[a] += 1.0
             edges += 1
             t = m.edge[h, TWIN]
-            # an edge of which only one side is listed is felt in both directions all the same
+            # the other half-edge of this edge is not listed: add its direction here
             if t < 0 or m.element_mark[t // k] == 0:
                 ends[edges, 0], ends[edges, 1] = b, a
                 valence[b] += 1.0
@@ -141,7 +142,7 @@ def solve_potential(m, k, near, field):
 
 @bare_kernel
 def forget(m, k, field, listed):
-    """Make place_of zero again after :func:`solve_potential`."""
+    """Reset place_of to zero after :func:`solve_potential`."""
     for i in range(listed):
         for h in range(field.elements[i] * k, field.elements[i] * k + k):
             field.place_of[m.edge[h, ORIGIN]] = 0
@@ -149,7 +150,8 @@ def forget(m, k, field, listed):
 
 @bare_kernel
 def as_feature(value):
-    """A potential as a whole number of -127 ... 127: linear near zero, logarithmic beyond, so that
-    far charges still show a direction.
+    """Quantise a potential to an integer from -127 to 127.
+
+    Linear near zero and logarithmic beyond, so that distant charges still yield a direction.
     """
     return min(max(np.rint(_SCALE * np.arcsinh(value / _SOFT)), -127.0), 127.0)

@@ -1,4 +1,10 @@
-"""The task: what the agent may do, what it sees, what a step is, when a run ends (section 4)."""
+"""The Markov decision process (section 4): actions, observations, transitions, episode length.
+
+An action is an operation at one of a few candidate half-edges. An observation describes the
+half-edges that the policy's convolution reads. A transition applies the operation and all clean-ups
+that it makes possible. An episode ends at the optimum s*, after a number of steps proportional to
+the elements at its start (section 4.1), or when no operation is permitted.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +13,12 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from meshwright_agent.env.candidates import best_template, masks, shortlist, template_plan
+from meshwright_agent.env.checked_settings import (
+    NonNegativeFloat,
+    NonNegativeInt,
+    PositiveFloat,
+    PositiveInt,
+)
 from meshwright_agent.env.local_patch import LARGEST, POTENTIALS, Patches, describe, list_patch
 from meshwright_agent.env.potential import field, forget, solve_potential
 from meshwright_core.core.arrays import HALF, NEW_COUNT, TOUCHED_COUNT, TRACE_IDS, MeshArrays
@@ -23,78 +35,78 @@ _FOUND = 1024
 
 @dataclass(frozen=True)
 class Task:
-    """Everything that a policy must agree on with its environment; saved with the policy."""
+    """The settings that policy and environment share; saved with the policy."""
 
     kind: str
     """"tri" or "quad"."""
     selection: str = "shortlist"
     """"shortlist" or "template", see :mod:`meshwright_agent.env.candidates`."""
-    candidates: int = 32
-    """Half-edges in the shortlist."""
-    levels: int = 1
-    """Rings of elements in the template."""
-    noise: float = 1.0
+    candidates: PositiveInt = 32
+    """Half-edges in the shortlist, K."""
+    levels: NonNegativeInt = 1
+    """Rings of elements in the template (section 4.2.1)."""
+    noise: NonNegativeFloat = 1.0
     """Scale of the Gumbel noise in the shortlist."""
-    blocks: int = 4
-    """Blocks of convolution, and with them the reach of the patch."""
+    blocks: PositiveInt = 4
+    """Blocks of convolution (section 4.2), which set how far the policy sees."""
     channels: int = 4
-    """How many of meshwright_agent.env.local_patch.CHANNELS the policy sees; the paper: 2."""
-    degree_cap: int = 0
-    """Highest degree that an operation may bring about; 0: 9 for triangles, 7 for quads."""
+    """How many of :data:`meshwright_agent.env.local_patch.CHANNELS` are observed; the paper: 2."""
+    degree_cap: NonNegativeInt = 0
+    """Highest degree that an operation may produce; 0 stands for 9 (triangles) or 7 (quads)."""
     extended: bool = False
-    """Whether boundary edges of triangle meshes may be collapsed (beyond the paper)."""
-    element_floor: float = 0.0
-    """Elements that a run must keep, relative to its start."""
-    element_ceiling: float = 2.0
-    """Elements that a run may reach, relative to its start."""
-    steps: float = 1.5
-    """Length of a run, relative to the number of elements at its start."""
+    """Whether boundary edges of triangle meshes may be collapsed; the paper does not."""
+    element_floor: NonNegativeFloat = 0.0
+    """Least number of elements in an episode, relative to its start."""
+    element_ceiling: PositiveFloat = 2.0
+    """Largest number of elements in an episode, relative to its start."""
+    steps: PositiveFloat = 1.5
+    """Largest number of steps of an episode, relative to the elements at its start."""
 
     def __post_init__(self) -> None:
-        """Refuse settings that mean nothing."""
+        """Raise ValueError for a kind, selection or number of channels that does not exist."""
         if self.kind not in OPERATION_COUNT:
-            raise ValueError(f'a task is of kind "tri" or "quad", not "{self.kind}"')
+            raise ValueError(f'kind must be "tri" or "quad", not "{self.kind}"')
         if self.selection not in ("shortlist", "template"):
-            raise ValueError(f'selection is "shortlist" or "template", not "{self.selection}"')
+            raise ValueError(f'selection must be "shortlist" or "template", not "{self.selection}"')
         if self.channels not in (2, 4, 6):
-            raise ValueError(f"a policy sees 2, 4 or 6 channels, not {self.channels}")
+            raise ValueError(f"channels must be 2, 4 or 6, not {self.channels}")
 
     @property
     def k(self) -> int:
-        """Sides of an element."""
+        """Sides of an element: 3 or 4."""
         return 3 if self.kind == "tri" else 4
 
     @property
     def cap(self) -> int:
-        """The degree cap in force."""
+        """The degree cap, with the default for the kind filled in."""
         return self.degree_cap or (9 if self.kind == "tri" else 7)
 
     @property
     def first_operation(self) -> int:
-        """Code of the first operation; the others follow."""
+        """Code of the first operation of the action set; the others follow."""
         return FIRST_OPERATION[self.kind]
 
     @property
     def operations(self) -> int:
-        """Number of operations per half-edge."""
+        """Number of operations per half-edge, A (section 3.2)."""
         return OPERATION_COUNT[self.kind]
 
     @property
     def template(self) -> tuple[np.ndarray, np.ndarray]:
-        """Source and turn of the template."""
+        """The template, see :func:`meshwright_agent.env.candidates.template_plan`."""
         return template_plan(self.k, self.levels)
 
     @property
     def rows(self) -> int:
-        """Half-edges among which one decision chooses."""
+        """Candidate half-edges of a decision, K."""
         return self.candidates if self.selection == "shortlist" else len(self.template[0])
 
     def step_limit(self, elements: int) -> int:
-        """Steps of a run that starts with so many elements."""
+        """Steps of an episode that starts with so many elements, at least 10."""
         return max(10, int(self.steps * elements))
 
     def bounds(self, elements: int) -> tuple[int, int]:
-        """Floor and ceiling of the number of elements of such a run."""
+        """Least and largest number of elements of an episode that starts with so many."""
         return int(np.ceil(self.element_floor * elements)), max(
             elements + 8, int(self.element_ceiling * elements)
         )
@@ -105,10 +117,10 @@ class Task:
 
 
 class Scratch:
-    """Arrays that looking at meshes needs and that nobody else looks at."""
+    """Work arrays of the observation and transition kernels, reused between calls."""
 
     def __init__(self, task: Task, halfedges: int, vertices: int) -> None:
-        """For meshes with at most so many half-edge slots and vertex slots."""
+        """Allocate for meshes with at most so many half-edge slots and vertex slots."""
         self.found = np.zeros(_FOUND, np.int64)
         self.keys = np.zeros(_FOUND * task.k)
         self.slots = np.zeros(len(task.template[0]), np.int64)
@@ -122,7 +134,7 @@ class Scratch:
 
 @bare_kernel
 def transition(m, operation, h, cap, touched, cleaned):
-    """One step of the run: the operation, then every clean-up that it makes possible (section 4.1).
+    """Apply an operation, then every global clean-up that it makes possible (section 3.2).
 
     touched (N,): scratch; cleaned (N,): receives the half-edges of the clean-ups. Returns their
     number.
@@ -133,7 +145,7 @@ def transition(m, operation, h, cap, touched, cleaned):
     new, total = m.trace[NEW_COUNT], m.trace[TOUCHED_COUNT]
     count = 0
     for i in range(total):
-        # of the new vertices of a global split the first two are where lines have changed
+        # a global split changes lines only at the first two of its new vertices
         if operation == GLOBAL_SPLIT and 2 <= i < new:
             continue
         if count < len(touched):
@@ -157,7 +169,7 @@ def choose_candidates(
     m, k, first, count, cap, floor, ceiling, extended, listed, noise, source, turn, rng,
     found, keys, slots, chosen,
 ):  # fmt: skip
-    """Fill `chosen` by the shortlist (listed) or the template; returns how many are real."""
+    """Fill `chosen` (K,) from the shortlist (listed) or the template; returns their number."""
     if listed:
         return shortlist(
             m, k, first, count, cap, floor, ceiling, extended, noise, rng, found, keys, chosen
@@ -167,8 +179,8 @@ def choose_candidates(
 
 @bare_kernel
 def look(m, chosen, k, sizes, listed, reads, slot_of, field, features):
-    """List the patch of the candidates and describe its half-edges: rows of `features` (N, C)
-    int8.
+    """List the local patch of the candidates and write the channels of its half-edges into
+    `features` (N, C) int8.
     """
     list_patch(m, chosen, k, sizes, listed, reads, slot_of)
     solved = features.shape[1] > POTENTIALS
@@ -180,19 +192,19 @@ def look(m, chosen, k, sizes, listed, reads, slot_of, field, features):
 
 @dataclass
 class Observation:
-    """What B decisions look at."""
+    """The observation of B decisions."""
 
     chosen: np.ndarray
-    """(B, K) int64 candidate half-edges, -1 for none."""
+    """(B, K) int64: candidate half-edges, -1 for none."""
     mask: np.ndarray
-    """(B, K, A) bool: permitted operations."""
+    """(B, K, A) bool: which operations are permitted."""
     changes: np.ndarray
     """(B, K, A) int8: exact change of s of each permitted operation."""
     state: np.ndarray
-    """(B, 3) float32: a tenth of the gap to the optimum, share of steps left, elements relative to
-    the start; for the value baseline only."""
+    """(B, 3) float32, for the value head only: (s - s*) / 10, the share of steps left, and the
+    elements relative to the start."""
     patches: Patches
-    """The patches of the candidates of each decision; the first rows belong to the real ones."""
+    """The local patch of each decision; its first rows are the candidates that exist."""
 
 
 def observe(
@@ -202,7 +214,10 @@ def observe(
     rng: np.random.Generator,
     scratch: Scratch,
 ) -> Observation | None:
-    """One decision on one mesh (B = 1); None where no operation is permitted."""
+    """The observation of one mesh (B = 1); None where no operation is permitted.
+
+    The state is left at zero for the caller to fill. bounds: least and largest number of elements.
+    """
     source, turn = task.template
     settings = (task.first_operation, task.operations, task.cap, *bounds, task.extended)
     chosen = np.full((1, task.rows), -1, np.int64)

@@ -1,7 +1,7 @@
-"""Many runs at once, in compiled code: the self-play of section 4.2.2.
+"""A vector environment: B episodes in parallel, in compiled code (self-play, section 4.2.2).
 
-The meshes of B runs lie in arrays with one more axis in front. A pool of start meshes is made once;
-each run that ends is followed by another from the pool.
+The meshes of the episodes lie in arrays with a leading axis of length B. Start meshes come from a
+pool that is generated once; where an episode ends, the next one starts from a mesh of the pool.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ from meshwright_core.domains.meshing import benchmark_mesh
 from meshwright_core.domains.random_parts import part_mesh
 from meshwright_core.mesh import HalfEdgeMesh
 
-_ROOM = 2.5  # slots of a run, relative to the largest start mesh; a run that needs more is masked
+_ROOM = 2.5  # slots relative to the largest start mesh; operations that need more are masked
 PART_CORNERS = (8, 30)
-"""Corners of the parts among start meshes."""
-_TRIES = 64  # random half-edges that a random step tries before it gives up
+"""Least and largest number of corners of the random parts among start meshes."""
+_TRIES = 64  # random half-edges that a random step draws before it does nothing
 
 
 def start_meshes(
@@ -51,8 +51,10 @@ def start_meshes(
     rng: np.random.Generator,
     parts: float = 0.0,
 ) -> list[HalfEdgeMesh]:
-    """So many meshes of the benchmark distribution, the number of sides drawn from a closed range;
-    a share `parts` of them are random parts instead, half of these with holes.
+    """`count` random start meshes (section 4.2.2).
+
+    Meshes of random polygons whose number of sides is drawn from the closed range `sides`; with
+    probability `parts` a random engineering part instead, half of these with holes.
     """
     meshes = []
     for i in range(count):
@@ -66,7 +68,7 @@ def start_meshes(
 
 
 def stack(meshes: list[HalfEdgeMesh], task: Task) -> MeshArrays:
-    """Meshes as arrays with one more axis in front, with room to grow and without a journal."""
+    """Meshes as arrays with a leading axis, with spare slots and without a journal."""
     vertices = int(_ROOM * max(mesh.slots for mesh in meshes)) + 16
     elements = int(_ROOM * max(mesh.n_elements for mesh in meshes)) + 16
     fields: list[list[np.ndarray]] = [[] for _ in MeshArrays._fields]
@@ -79,7 +81,7 @@ def stack(meshes: list[HalfEdgeMesh], task: Task) -> MeshArrays:
 
 
 def _trimmed(arrays: MeshArrays) -> MeshArrays:
-    """The same mesh in arrays without spare room and without history."""
+    """The same mesh in arrays without spare slots and without history."""
     slots, elements = int(arrays.counters[0]), int(arrays.counters[1])
     k = int(arrays.counters[10])
     empty = allocate(k, slots, elements, 1, 1)
@@ -91,7 +93,7 @@ def _trimmed(arrays: MeshArrays) -> MeshArrays:
 
 @kernel
 def member(meshes, b):
-    """Mesh b of stacked arrays. Views leave this function, so it must count references."""
+    """Mesh b of stacked arrays, as views; returning views needs reference counting."""
     return MeshArrays(
         meshes.edge[b],
         meshes.vertex[b],
@@ -107,7 +109,7 @@ def member(meshes, b):
 
 @kernel
 def _reset(meshes, pool, b, p):
-    """Start run b afresh from mesh p of the pool."""
+    """Start episode b from mesh p of the pool."""
     meshes.edge[b] = pool.edge[p]
     meshes.vertex[b] = pool.vertex[p]
     meshes.points[b] = pool.points[p]
@@ -122,7 +124,10 @@ def _observe_all(
     turn, rng, found, keys, slots, listed, reads, slot_of, field, chosen, mask, changes, sizes,
     features, all_reads,
 ):  # fmt: skip
-    """Candidates, masks and patches of every active run; rows of features and reads in use."""
+    """Candidates, masks and patches of every active episode.
+
+    Returns the numbers of rows of features and of reads.
+    """
     rows = read_rows = 0
     for b in range(len(chosen)):
         sizes[b] = 0
@@ -149,7 +154,7 @@ def _observe_all(
 
 @kernel
 def _act_all(meshes, first, actions, count, cap, chosen, touched, cleaned):
-    """Apply action = candidate * count + operation to every run; -1 leaves a run as it is."""
+    """Apply action = candidate * count + operation to every episode; -1 does nothing."""
     for b in range(len(actions)):
         if actions[b] < 0:
             continue
@@ -162,7 +167,7 @@ def _random_steps(
     meshes, pool, source, steps, limits, floors, ceilings, optima, first, count, cap, extended,
     touched, cleaned, useful, rounds, rng,
 ):  # fmt: skip
-    """Random permitted operations, `rounds` for each run; returns how many were done."""
+    """Apply `rounds` random permitted operations in each episode; returns how many were done."""
     done = 0
     k = meshes.counters[0, SIDES]
     for _ in range(rounds):
@@ -188,21 +193,22 @@ def _random_steps(
 
 @dataclass
 class Outcome:
-    """What one step of all runs brought."""
+    """The result of one step of all episodes."""
 
     rewards: np.ndarray
-    """(B,) s before - s after."""
+    """(B,) s before less s after (equation 4)."""
     growth: np.ndarray
-    """(B,) elements that came to be, less those that went."""
+    """(B,) change of the number of elements."""
     ended: np.ndarray
-    """(B,) bool: at the optimum, out of steps, or nothing left to do."""
+    """(B,) bool: the optimum is reached, the steps are used up, or no operation was permitted. All
+    three are terminations: the share of steps left is part of the state."""
     returns: np.ndarray
-    """(B,) normalised return, best state, of the runs that ended; NaN elsewhere and where it has no
-    meaning because a run started at the optimum."""
+    """(B,) undiscounted normalised return of the best state, of the episodes that ended; NaN
+    elsewhere."""
 
 
 class Batch:
-    """B runs side by side."""
+    """B episodes in parallel, each on a mesh of its own."""
 
     def __init__(
         self,
@@ -214,20 +220,22 @@ class Batch:
         endless: bool = True,
         bounds: tuple[int, int] | None = None,
     ) -> None:
-        """Runs from `meshes`; endless: a run that ends is followed by another, drawn at random.
+        """Start `size` episodes from `meshes`.
 
-        Otherwise run b starts from mesh b, and stands still when it has ended. bounds: floor and
-        ceiling of the number of elements of every run; by default those of the task.
+        endless: an episode that ends is followed by another from a mesh drawn at random. Otherwise
+        episode b starts from mesh b and does not change any more once it has ended. bounds: least
+        and largest number of elements in every episode; by default those of the task. Raises
+        ValueError if all meshes are at their optimum.
         """
         self.task, self.rng, self.endless = task, rng, endless
         self.pool = stack(meshes, task)
         self.start_scores = self.pool.counters[:, SCORE].astype(int)
         self.optima = np.abs(self.pool.counters[:, DELTA_SUM]).astype(int)
         self.start_elements = self.pool.counters[:, ELEMENTS].astype(int)
-        # a mesh that starts at its optimum teaches nothing
+        # an episode that starts at the optimum has no steps
         self.useful = np.flatnonzero(self.start_scores > self.optima)
         if not len(self.useful):
-            raise ValueError("every start mesh is at its optimum already: there is nothing to do")
+            raise ValueError("every start mesh is at its optimum already: nothing can be improved")
         self.source = np.zeros(size, int)
         self.steps = np.zeros(size, int)
         self.best = np.zeros(size, int)
@@ -252,16 +260,16 @@ class Batch:
 
     @property
     def scores(self) -> np.ndarray:
-        """(B,) s of each run now."""
+        """(B,) current s of each episode."""
         return self.meshes.counters[:, SCORE].astype(int)
 
     @property
     def gaps(self) -> np.ndarray:
-        """(B,) s - s* of each run now."""
+        """(B,) current s - s* of each episode."""
         return self.scores - self.optima[self.source]
 
     def observe(self) -> Observation:
-        """Look at all runs. What a run that has ended shows is all masked."""
+        """Observe all episodes; for one that has ended the mask is all False."""
         task, scratch = self.task, self.scratch
         size = len(self.active)
         chosen = np.empty((size, task.rows), np.int64)
@@ -284,9 +292,9 @@ class Batch:
         return Observation(chosen, mask, changes, state, patches)
 
     def play_at_random(self, rounds: int) -> int:
-        """Play so many random permitted operations in every run; returns how many were done.
+        """Apply `rounds` random permitted operations in every episode; returns how many were done.
 
-        It keeps no account of best states: a measure of speed, and the floor under any policy.
+        For measuring speed: best states are not recorded.
         """
         task, scratch = self.task, self.scratch
         bounds = self._bounds[self.source]
@@ -299,7 +307,7 @@ class Batch:
         return int(done)
 
     def step(self, observation: Observation, actions: np.ndarray) -> Outcome:
-        """Apply one action (B,) int64 to every run, -1 where nothing is permitted."""
+        """Apply one action (B,) int64 in every episode, -1 where no operation is permitted."""
         before, elements = self.scores, self.meshes.counters[:, ELEMENTS].copy()
         scratch, task = self.scratch, self.task
         _act_all(

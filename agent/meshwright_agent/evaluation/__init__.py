@@ -1,1 +1,1 @@
-"""Evaluation: rollouts, rows of the paper's tables, baselines, figures."""
+"""Evaluation (section 5): rollouts, rows of the paper's tables, baselines, figures."""

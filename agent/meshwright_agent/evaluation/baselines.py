@@ -1,7 +1,7 @@
-"""The policy's solver and methods that have learned nothing, on the same meshes for the same time.
+"""Baselines without learning, compared with the policy's solver on the same meshes.
 
-All have the same operations and the same bounds on the number of elements, those of the policy's
-task, and one core.
+All methods use the operations and the bounds on the number of elements of the policy's task, the
+same time, and one core.
 """
 
 from __future__ import annotations
@@ -20,28 +20,31 @@ from meshwright_core.core.score import normalised_return
 from meshwright_core.mesh import HalfEdgeMesh
 
 BASELINES = ("greedy", "plateaus", "annealing", "random walk")
-"""Strict descent, which takes no time to speak of; descent that may go sideways as many times in a
-row as there are elements, again and again; simulated annealing; a walk at random."""
+"""Greedy descent, once; greedy descent with plateau moves, restarted until the time is up;
+simulated annealing; a random walk."""
 RACERS = ("policy", "annealing", "plateaus")
-"""The methods of a race, the solver with the policy first."""
+"""The methods whose time to the optimum is compared; "policy" is the solver with the policy."""
 MOMENTS = (0.03, 0.1, 0.3, 1.0)
-"""When a race is looked at, relative to its end."""
+"""Times at which the share of solved meshes is reported, relative to the time limit."""
 
-_WARM = 0.05
+_WARM = 0.05  # seconds of a first attempt, which loads or compiles kernels and is not measured
 
 
 @dataclass
 class Attempt:
-    """What one method brought on one mesh."""
+    """The result of one method on one mesh."""
 
     score: int
     """The lowest s."""
     seconds: float
-    """Until it stopped, at the optimum or when its time was up."""
+    """Until it stopped, at the optimum or at the time limit."""
 
 
 def attempt(method: str, mesh: HalfEdgeMesh, policy: Policy, seconds: float, seed: int) -> Attempt:
-    """One method at work on one mesh, at most so long, and no longer than until the optimum."""
+    """Run one method on one mesh until the optimum, for at most `seconds`.
+
+    method: one of BASELINES or RACERS.
+    """
     began = time.perf_counter()
     if method == "policy":
         return _solve(mesh, policy, seconds, seed)
@@ -58,7 +61,7 @@ def attempt(method: str, mesh: HalfEdgeMesh, policy: Policy, seconds: float, see
 
 
 def _solve(mesh: HalfEdgeMesh, policy: Policy, seconds: float, seed: int) -> Attempt:
-    """The solver, stopped at the first state at the optimum."""
+    """Run the solver until the optimum, without shortening or coarsening the result."""
     began = time.perf_counter()
     reached: list[float] = []
 
@@ -74,8 +77,10 @@ def _solve(mesh: HalfEdgeMesh, policy: Policy, seconds: float, seed: int) -> Att
 
 
 def _descend(mesh: HalfEdgeMesh, task: Task, seconds: float | None, seed: int) -> int:
-    """The best of as many descents with sideways steps as there is time for; None: one strict
-    descent.
+    """The lowest s of repeated greedy descents with plateau moves within `seconds`.
+
+    With None, of a single descent without plateau moves. A descent makes at most as many plateau
+    moves in a row as the mesh has elements.
     """
     end = time.perf_counter() + (seconds or 0.0)
     floor, ceiling = task.bounds(mesh.n_elements)
@@ -99,8 +104,11 @@ def baselines(
     seed: int,
     progress: Callable[[str, int], None] | None = None,
 ) -> dict[str, dict[str, float]]:
-    """For each of BASELINES mean and standard deviation of the normalised return, the share at s*
-    and the mean seconds a mesh, at most `seconds`. Every mesh must start above its optimum.
+    """Run each of BASELINES on each mesh for at most `seconds`.
+
+    Returns for each method the mean and standard deviation of the normalised return (equation 6),
+    the share of meshes at s*, and the mean seconds per mesh. Every mesh must start above s*.
+    `progress(method, meshes done)` is called after each mesh.
     """
     rows = {}
     for method in BASELINES:
@@ -124,7 +132,10 @@ def race(
     seed: int,
     progress: Callable[[str, int], None] | None = None,
 ) -> dict[str, np.ndarray]:
-    """For each of RACERS the seconds (M,) until s*, infinite where it was not reached in time."""
+    """The time to the optimum: for each of RACERS the seconds (M,) until s*, at most `seconds`.
+
+    Infinite where s* was not reached in time.
+    """
     times = {}
     for method in RACERS:
         found = _attempts(method, meshes, policy, seconds, seed, progress)
@@ -138,7 +149,7 @@ def race(
 
 
 def share_within(times: np.ndarray, seconds: float) -> float:
-    """The share of meshes that a racer brought to s* within so many seconds."""
+    """The share of meshes on which a method reached s* within so many seconds."""
     return float((times <= seconds).mean())
 
 
@@ -150,7 +161,6 @@ def _attempts(
     seed: int,
     progress: Callable[[str, int], None] | None,
 ) -> list[Attempt]:
-    # what is compiled or loaded at the first use is not measured
     attempt(method, meshes[0], policy, _WARM, seed)
     found = []
     for i, mesh in enumerate(meshes):

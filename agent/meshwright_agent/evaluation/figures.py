@@ -1,4 +1,4 @@
-"""Figures of trainings and evaluations, as in the paper's section 5."""
+"""Figures of training and evaluation, as in section 5 of the paper."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#0F766E"
 INK, MUTED, LINE = "#1E2329", "#5D656E", "#DEDED7"
 DOTS = 160
-"""Per inch, of a PNG."""
+"""Dots per inch of a PNG."""
 _LINES = {
     "policy": (BLUE, "-", 2.2, "solver with the policy"),
     "annealing": (VERMILION, "--", 1.8, "annealing"),
@@ -30,9 +30,9 @@ _PANEL = 2.75
 def learning_curve(
     curve: Sequence[Mapping[str, float]], kind: str, title: str, path: str | Path
 ) -> None:
-    """Draw mean and standard deviation of single rollouts against decisions into a PNG or SVG file.
+    """Plot the mean and standard deviation of single rollouts against decisions (PNG or SVG).
 
-    curve: points of :class:`meshwright_agent.training.trainer.Progress`.
+    curve: points of :class:`meshwright_agent.training.trainer.TrainingProgress`.
     """
     decisions = [point["decisions"] / 1000.0 for point in curve]
     mean = [point["mean"] for point in curve]
@@ -41,7 +41,7 @@ def learning_curve(
     solved = [point["at_optimum"] for point in curve]
     figure = _figure(6.4, 3.8)
     axes = figure.subplots()
-    _calm(axes)
+    _style(axes)
     axes.fill_between(decisions, low, high, color=BLUE, alpha=0.15, linewidth=0)
     axes.plot(decisions, mean, color=BLUE, label="normalised return, single rollout")
     axes.plot(decisions, solved, color=VERMILION, linestyle="--", label="share at the optimum")
@@ -67,11 +67,15 @@ def learning_curve(
 def returns_by_steps(
     rows: Sequence[tuple[str, Rollouts, float | None]], kind: str, path: str | Path
 ) -> None:
-    """Draw the normalised return against the operations done, one panel for each row.
+    """Plot the normalised return against the number of operations, one panel for each row.
 
-    rows: title, rollouts, and the paper's mean best of ten, if it gives one. Solid: best state so
-    far, mean over all runs, with a band of one standard deviation, cut at 1; dashed: the state at
-    that moment, which need not rise.
+    Solid: the best state so far, mean over all episodes, with a band of one standard deviation that
+    is clipped to [0, 1]. Dashed: the current state.
+
+    Args:
+        rows: title, rollouts, and the paper's mean best of ten, or None.
+        kind: "tri" or "quad".
+        path: PNG or SVG file to write.
     """
     figure, panels = _panels(len(rows))
     for axes, (title, rolled, paper) in zip(panels, rows, strict=True):
@@ -94,7 +98,7 @@ def returns_by_steps(
             color=VERMILION,
             linestyle="--",
             linewidth=1.3,
-            label="state now",
+            label="current state",
         )
         if paper is not None:
             axes.axhline(
@@ -108,9 +112,7 @@ def returns_by_steps(
 
 
 def _histories(rolled: Rollouts) -> tuple[np.ndarray, np.ndarray]:
-    """Normalised return (T + 1, N) of every run after each step: of the state, and of the best so
-    far.
-    """
+    """Normalised returns (T + 1, N) after each step: of the current and of the best state."""
     longest = max(len(trace.gaps) for trace in rolled.traces)
     padded = [
         np.concatenate([trace.gaps, np.repeat(trace.gaps[-1:], longest - len(trace.gaps), axis=0)])
@@ -127,10 +129,14 @@ def shares_by_seconds(
     kind: str,
     path: str | Path,
 ) -> None:
-    """Draw the share of meshes at s* against the time for each method, one panel for each row.
+    """Plot the share of meshes at s* against the time, one panel for each row.
 
-    races: title, and for each method the seconds (M,) until s*, infinite where it was not reached
-    within `seconds`.
+    Args:
+        races: title, and for each method the seconds (M,) until s*, infinite where it was not
+            reached within `seconds`.
+        seconds: the time limit, where the axis ends.
+        kind: "tri" or "quad".
+        path: PNG or SVG file to write.
     """
     figure, panels = _panels(len(races))
     reached = [float(t.min()) for _, times in races for t in times.values()]
@@ -153,7 +159,7 @@ def shares_by_seconds(
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter("{x:g}")
         axes.set_title(title, loc="left", fontsize=10, color=INK)
-        axes.set(ylim=(0.0, 1.02), xlim=(first, seconds), xlabel="seconds a mesh, one core")
+        axes.set(ylim=(0.0, 1.02), xlim=(first, seconds), xlabel="seconds per mesh, one core")
     panels[0].set_ylabel("share at the optimum")
     _share_legend(figure, panels[0], KIND_NOUN[kind].capitalize())
     _write(figure, path)
@@ -166,16 +172,16 @@ def _figure(width: float, height: float) -> Any:
 
 
 def _panels(count: int) -> tuple[Any, list[Any]]:
-    """A figure with so many panels side by side that share their vertical axis."""
+    """A figure with `count` panels side by side that share their vertical axis."""
     figure = _figure(_PANEL * max(count, 2) + 0.4, 3.6)
     panels = list(figure.subplots(1, count, sharey=True, squeeze=False)[0])
     for axes in panels:
-        _calm(axes)
+        _style(axes)
     return figure, panels
 
 
-def _calm(axes: Any) -> None:
-    """Thin axes, faint grid."""
+def _style(axes: Any) -> None:
+    """Thin axes and a light horizontal grid."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(MUTED)
     axes.tick_params(colors=MUTED, labelsize=8.5)

@@ -1,48 +1,48 @@
-"""What the paper reports (section 5), to stand beside our own numbers."""
+"""The results that the paper reports (sections 5.1 and 5.2), for comparison with ours."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 
-class Measured(NamedTuple):
-    """A normalised return over 100 random polygons."""
+class ReturnStatistics(NamedTuple):
+    """Statistics of the normalised return over 100 random polygons."""
 
     mean: float
     deviation: float
 
 
-class Row(NamedTuple):
-    """What the paper gives for polygons of so many sides, a closed range."""
+class PaperRow(NamedTuple):
+    """The results of the paper for polygons with so many sides, a closed range."""
 
     sides: tuple[int, int]
-    best: Measured
-    """Of the best of ten rollouts."""
-    single: Measured | None = None
-    """Of one rollout, where the paper gives it."""
+    best: ReturnStatistics
+    """The best of ten rollouts."""
+    single: ReturnStatistics | None = None
+    """A single rollout, if the paper reports it."""
 
 
 ROWS = {
     "tri": (
-        Row((3, 10), Measured(0.83, 0.19)),
-        Row((10, 20), Measured(0.87, 0.08)),
-        Row((20, 30), Measured(0.83, 0.10)),
-        Row((30, 40), Measured(0.78, 0.08)),
-        Row((40, 50), Measured(0.75, 0.07)),
-        Row((10, 30), Measured(0.86, 0.08), Measured(0.81, 0.11)),
+        PaperRow((3, 10), ReturnStatistics(0.83, 0.19)),
+        PaperRow((10, 20), ReturnStatistics(0.87, 0.08)),
+        PaperRow((20, 30), ReturnStatistics(0.83, 0.10)),
+        PaperRow((30, 40), ReturnStatistics(0.78, 0.08)),
+        PaperRow((40, 50), ReturnStatistics(0.75, 0.07)),
+        PaperRow((10, 30), ReturnStatistics(0.86, 0.08), ReturnStatistics(0.81, 0.11)),
     ),
     "quad": (
-        Row((10, 20), Measured(0.98, 0.03)),
-        Row((20, 30), Measured(0.97, 0.06)),
-        Row((30, 40), Measured(0.94, 0.14)),
-        Row((40, 50), Measured(0.91, 0.13)),
-        Row((10, 30), Measured(0.992, 0.02), Measured(0.95, 0.05)),
+        PaperRow((10, 20), ReturnStatistics(0.98, 0.03)),
+        PaperRow((20, 30), ReturnStatistics(0.97, 0.06)),
+        PaperRow((30, 40), ReturnStatistics(0.94, 0.14)),
+        PaperRow((40, 50), ReturnStatistics(0.91, 0.13)),
+        PaperRow((10, 30), ReturnStatistics(0.992, 0.02), ReturnStatistics(0.95, 0.05)),
     ),
 }
-"""The rows of its tables, and last what its text says of the polygons it trains on."""
+"""The rows of the paper's tables; last, from its text, the range of sides used in training."""
 
 
-def row(kind: str, sides: tuple[int, int]) -> Row | None:
+def row(kind: str, sides: tuple[int, int]) -> PaperRow | None:
     """The paper's row for exactly these sides, if it has one."""
     return next((row for row in ROWS[kind] if row.sides == sides), None)
 

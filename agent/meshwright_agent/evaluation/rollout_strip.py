@@ -1,4 +1,4 @@
-"""Strips of pictures: a rollout as in the paper's figures, from the start to its best state."""
+"""Pictures of a rollout side by side, from the start to its best state, as in section 5."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from meshwright_agent.evaluation.figures import BLUE, DOTS, GREEN, INK, MUTED, VERMILION
-from meshwright_agent.policy.rollout import Step
+from meshwright_agent.policy.rollout import PolicyStep
 from meshwright_core.geometry import smoothing
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.mesh import HalfEdgeMesh
@@ -17,17 +17,21 @@ from meshwright_core.mesh import HalfEdgeMesh
 PICTURES = 5
 _FILL, _EDGE, _OUTLINE = "#F1F2ED", "#8D99A6", "#2F3B48"
 _SIZE = 3.0  # inches, width of one picture
-_HEAD = 0.55  # inches, for the words above it
+_HEAD = 0.55  # inches, for the text above it
 
 
 def rollout_strip(
-    mesh: HalfEdgeMesh, steps: Sequence[Step], path: str | Path, pictures: int = PICTURES
+    mesh: HalfEdgeMesh, steps: Sequence[PolicyStep], path: str | Path, pictures: int = PICTURES
 ) -> None:
-    """Draw the mesh at the start, at the end, and at even distances between, as a PNG or SVG file.
+    """Draw the mesh at the start, at the end, and after equal numbers of steps between.
 
-    steps: operations that belong together, as
-    :meth:`meshwright_agent.evaluation.rollouts.Rollouts.steps` gives them;
-    `mesh` is not changed. Vertices move between the pictures, so that elements can be seen.
+    The mesh is smoothed before each picture.
+
+    Args:
+        mesh: the start, which is not changed.
+        steps: from :meth:`meshwright_agent.evaluation.rollouts.Rollouts.steps`.
+        path: PNG or SVG file to write.
+        pictures: number of pictures.
     """
     from matplotlib.figure import Figure
 
@@ -53,7 +57,7 @@ def rollout_strip(
 
 
 def draw_mesh(axes: Any, mesh: HalfEdgeMesh) -> None:
-    """Draw elements, outline, corners, and the irregular vertices with their signed numbers."""
+    """Draw elements, outline, corners, and irregular vertices labelled with their Delta."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     ends, points = mesh.elements(), mesh.points[:, :2]
@@ -97,13 +101,13 @@ def _outline(ends: np.ndarray) -> np.ndarray:
 
 
 def _marker_size(mesh: HalfEdgeMesh) -> float:
-    """Points across a disc: what fits between vertices, but never too small to be read."""
+    """Diameter of a vertex marker in points: fits between vertices, yet its label is legible."""
     spacing = 72.0 * _SIZE * 0.8 / np.sqrt(max(mesh.n_vertices, 1))
     return float(np.clip(0.45 * spacing, 8.0, 12.0))
 
 
 def _title(axes: Any, name: str, mesh: HalfEdgeMesh) -> None:
-    """Two lines above a picture: what it shows, and the score."""
+    """Two lines of text above a picture: its name, and s and s*."""
     at_optimum = mesh.score == mesh.optimum
     score = f"s = {mesh.score}, s* = {mesh.optimum}"
     lines = [

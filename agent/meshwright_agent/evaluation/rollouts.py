@@ -1,4 +1,4 @@
-"""How good a policy is: rollouts on unseen polygons, as in the paper's tables (section 5)."""
+"""Rollouts of a policy on unseen polygons and their statistics, as in the tables of section 5."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from meshwright_agent.env.vector_env import Batch, start_meshes
 from meshwright_agent.evaluation import paper_results
 from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy, load, shipped
-from meshwright_agent.policy.rollout import Step
+from meshwright_agent.policy.rollout import PolicyStep
 from meshwright_core.core.arrays import ELEMENTS, JOURNALLING
 from meshwright_core.core.score import normalised_return
 from meshwright_core.mesh import HalfEdgeMesh
@@ -24,7 +24,7 @@ from meshwright_core.operations.catalogue import NAMES, Operation
 
 
 class NothingToDo(ValueError):
-    """Polygons that all are at their optimum from the start."""
+    """All start meshes are at their optimum already, so that there is nothing to evaluate."""
 
 
 @dataclass
@@ -32,37 +32,38 @@ class Trace:
     """One rollout on each of M meshes, step by step."""
 
     gaps: np.ndarray
-    """(T + 1, M) s - s* at the start and after each step; a run that has ended stays as it is."""
+    """(T + 1, M) s - s* at the start and after each step; constant once an episode has ended."""
     codes: np.ndarray
-    """(T, M) int8 code of the operation of each step, -1 when the run has ended."""
+    """(T, M) int8: code of the operation of each step, -1 after the end of the episode."""
     halfedges: np.ndarray
-    """(T, M) int64 half-edge of each step, -1 when the run has ended."""
+    """(T, M) int64: half-edge of each step, -1 after the end of the episode."""
 
 
 @dataclass
 class Rollouts:
-    """What K rollouts on each of M meshes brought."""
+    """The results of K rollouts on each of M meshes."""
 
     returns: np.ndarray
-    """(M, K) normalised return, best state of each run."""
+    """(M, K) undiscounted normalised return (equation 6) of the best state of each rollout."""
     gaps: np.ndarray
     """(M, K) s - s* at the best state."""
     operations: np.ndarray
-    """(M, K) operations to the best state."""
+    """(M, K) number of operations to the best state."""
     elements: np.ndarray
     """(M, K) elements at the best state, relative to the start."""
     traces: list[Trace]
-    """K: what the runs did."""
+    """K traces of M meshes each."""
 
     def best(self) -> np.ndarray:
-        """(M,) the best rollout on each mesh, that with fewest operations among equals."""
+        """(M,) index of the best rollout on each mesh, of equals that with fewest operations."""
         rank = self.gaps * (self.operations.max(initial=0) + 1) + self.operations
         numbers: np.ndarray = rank.argmin(axis=1)
         return numbers
 
-    def steps(self, task: Task, mesh: HalfEdgeMesh, i: int, k: int) -> list[Step]:
-        """The steps of rollout k on mesh i to its best state, each the operation and the clean-ups
-        that followed; the operations replay on `mesh`, which is not changed.
+    def steps(self, task: Task, mesh: HalfEdgeMesh, i: int, k: int) -> list[PolicyStep]:
+        """The steps of rollout k on mesh i up to its best state.
+
+        mesh: the start mesh, which is not changed; the operations can be replayed on it.
         """
         played = mesh.copy()
         played.arrays.counters[JOURNALLING] = 0
@@ -84,8 +85,10 @@ def roll_out(
     seed: int,
     progress: Callable[[int], None] | None = None,
 ) -> Rollouts:
-    """Run the policy so often from each mesh, all meshes side by side. Every mesh must start above
-    its optimum. `progress` is called with the number of rollouts done on all meshes.
+    """Play `rollouts` episodes from each mesh, all meshes in parallel.
+
+    Every mesh must start above its optimum. `progress(rollouts done on all meshes)` is called after
+    each round.
     """
     rng = np.random.default_rng(seed)
     generator = torch.Generator().manual_seed(seed)
@@ -107,7 +110,10 @@ def roll_out(
 
 
 def _play(batch: Batch, policy: Policy, generator: torch.Generator) -> tuple[np.ndarray, Trace]:
-    """Play all runs of the batch to their ends; elements (M,) at the best states, and the trace."""
+    """Play all episodes to their end.
+
+    Returns the elements (M,) at the best states, and the trace.
+    """
     task = policy.task
     elements = batch.start_elements.copy()
     gaps, codes, halfedges = [batch.gaps], [], []
@@ -134,18 +140,19 @@ def _play(batch: Batch, policy: Policy, generator: torch.Generator) -> tuple[np.
 
 
 def unseen(kind: str, sides: tuple[int, int], meshes: int, seed: int) -> list[HalfEdgeMesh]:
-    """The polygons of one row of an evaluation: those of so many drawn that are not at their
-    optimum from the start. Raises NothingToDo if none is left.
+    """Meshes of random polygons that training has not used, without those that start at s*.
+
+    meshes: how many are drawn. Raises NothingToDo if none is left.
     """
     drawn = start_meshes(kind, sides, meshes, np.random.default_rng([seed, 1]))
     useful = [mesh for mesh in drawn if mesh.score > mesh.optimum]
     if not useful:
-        raise NothingToDo("every polygon that was drawn is at its optimum from the start")
+        raise NothingToDo("every polygon that was drawn starts at its optimum")
     return useful
 
 
 def longer(policy: Policy, factor: float) -> Policy:
-    """The same policy with runs that are so many times as long."""
+    """The same policy with episodes that are `factor` times as long."""
     if factor == 1.0:
         return policy
     network = copy.copy(policy.network)
@@ -162,12 +169,12 @@ def evaluate(
     policy: Policy | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> dict[str, float | int]:
-    """One row of the paper's tables on so many unseen polygons of the benchmark distribution.
+    """One row of the paper's tables (section 5): statistics over `meshes` unseen random polygons.
 
-    single: the first rollout on each mesh; best: the best of `rollouts`. Meshes that are at their
-    optimum from the start are left out and counted. `operations_median`: operations to the best
-    state of the best rollout, the shortest among equals; `elements_mean`: elements there, relative
-    to the start.
+    `single_*`: of the first rollout on each mesh; `best_*`: of the best of `rollouts`. Meshes that
+    start at their optimum are left out and counted in `started_at_optimum`. `operations_median`:
+    operations to the best state of the best rollout, the shortest among equals; `elements_mean`:
+    elements there, relative to the start.
     """
     began = time.perf_counter()
     chosen = policy if policy is not None else load(shipped(kind)[0])
@@ -185,7 +192,7 @@ def evaluate(
 
 
 def summary(rolled: Rollouts) -> dict[str, float | int]:
-    """The numbers of a row."""
+    """The statistics of a row; see :func:`evaluate`."""
     single, best = rolled.returns[:, 0], rolled.returns.max(axis=1)
     chosen = (np.arange(len(best)), rolled.best())
     return {
@@ -203,7 +210,7 @@ def summary(rolled: Rollouts) -> dict[str, float | int]:
 def paper_table(
     kind: str, meshes: int, rollouts: int, seed: int, policy: Policy
 ) -> list[dict[str, Any]]:
-    """All rows that the paper gives for this kind, each as :func:`evaluate` measures it."""
+    """Evaluate the policy on every row that the paper reports for this kind."""
     return [
         {"sides": list(row.sides), **evaluate(kind, row.sides, meshes, rollouts, seed, policy)}
         for row in paper_results.ROWS[kind]

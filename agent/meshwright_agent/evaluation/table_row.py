@@ -1,4 +1,4 @@
-"""All that is measured of a policy on the polygons of one row, and of its rivals there."""
+"""One row of the paper's tables: the policy and, on request, the baselines and the solver."""
 
 from __future__ import annotations
 
@@ -18,85 +18,92 @@ from meshwright_agent.search.shortening import shorten
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import Operation
 
-Progress = Callable[[str, int], None]
-"""Called as ``progress(what, meshes done)``."""
+ProgressCallback = Callable[[str, int], None]
+"""Called as ``progress(what is measured, meshes done)``."""
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """How much is to be measured."""
+class RowSettings:
+    """What is measured for a row."""
 
     meshes: int = 100
     rollouts: int = 10
     seed: int = 0
     baselines: bool = False
-    """Whether methods that have learned nothing get the same time."""
+    """Whether the baselines without learning are run too, for the time of the rollouts."""
     race: float | None = None
-    """Seconds on each mesh for the solver and its rivals."""
+    """Time limit in seconds per mesh for comparing the time to the optimum; None: not compared."""
     polish: float | None = None
-    """Seconds on each mesh for making its solution short, and then coarse."""
+    """Seconds per mesh for shortening the best rollout, and for coarsening it; None: not done."""
 
 
 @dataclass
-class Assessment:
-    """One row."""
+class RowResult:
+    """The measurements of one row."""
 
     sides: tuple[int, int]
     numbers: dict[str, Any]
-    """What is to be reported: plain values."""
+    """The statistics, as plain values."""
     meshes: list[HalfEdgeMesh]
-    """The polygons, without those that start at their optimum."""
+    """The start meshes, without those that start at their optimum."""
     rolled: Rollouts
     times: dict[str, np.ndarray] = field(default_factory=dict)
-    """Of the race: for each method the seconds until s*."""
+    """For each method of the time comparison the seconds (M,) until s*."""
 
 
 def assess(
-    policy: Policy, sides: tuple[int, int], wanted: Wanted, progress: Progress | None = None
-) -> Assessment:
-    """Measure one row. numbers: those of :func:`meshwright_agent.evaluation.rollouts.evaluate`, the
-    paper's, and what else is wanted.
+    policy: Policy,
+    sides: tuple[int, int],
+    settings: RowSettings,
+    progress: ProgressCallback | None = None,
+) -> RowResult:
+    """Measure one row for polygons with so many sides (a closed range).
+
+    The numbers are those of :func:`meshwright_agent.evaluation.rollouts.evaluate`, the paper's, and
+    those that `settings` asks for.
     """
-    tell = progress or (lambda what, done: None)
-    meshes = unseen(policy.kind, sides, wanted.meshes, wanted.seed)
+    report = progress or (lambda what, done: None)
+    meshes = unseen(policy.kind, sides, settings.meshes, settings.seed)
 
     def on_rollout(done: int) -> None:
-        tell("rollouts", done * wanted.meshes // wanted.rollouts)
+        report("rollouts", done * settings.meshes // settings.rollouts)
 
-    # what is compiled or loaded at the first use is not measured
-    roll_out(policy, meshes[:1], 1, wanted.seed)
+    # the first call loads or compiles kernels, which must not be measured
+    roll_out(policy, meshes[:1], 1, settings.seed)
     began = time.perf_counter()
-    rolled = roll_out(policy, meshes, wanted.rollouts, wanted.seed, on_rollout)
+    rolled = roll_out(policy, meshes, settings.rollouts, settings.seed, on_rollout)
     seconds = time.perf_counter() - began
     numbers: dict[str, Any] = {
         "sides": list(sides),
         **summary(rolled),
-        "started_at_optimum": wanted.meshes - len(meshes),
+        "started_at_optimum": settings.meshes - len(meshes),
         "seconds": seconds,
         "seconds_per_mesh": seconds / len(meshes),
         "paper": _paper(policy.kind, sides),
     }
-    found = Assessment(sides, numbers, meshes, rolled)
-    if wanted.baselines:
+    found = RowResult(sides, numbers, meshes, rolled)
+    if settings.baselines:
         numbers["baselines"] = baselines(
-            meshes, policy, numbers["seconds_per_mesh"], wanted.seed, tell
+            meshes, policy, numbers["seconds_per_mesh"], settings.seed, report
         )
-    if wanted.race is not None:
-        found.times = race(meshes, policy, wanted.race, wanted.seed, tell)
+    if settings.race is not None:
+        found.times = race(meshes, policy, settings.race, settings.seed, report)
         numbers["race"] = {
             method: {
-                f"{moment * wanted.race:g}": share_within(times, moment * wanted.race)
+                f"{moment * settings.race:g}": share_within(times, moment * settings.race)
                 for moment in MOMENTS
             }
             for method, times in found.times.items()
         }
-    if wanted.polish is not None:
-        numbers["polished"] = polished(policy, meshes, rolled, wanted.polish, wanted.seed, tell)
+    if settings.polish is not None:
+        numbers["polished"] = polished(
+            policy, meshes, rolled, settings.polish, settings.seed, report
+        )
     return found
 
 
 def _paper(kind: str, sides: tuple[int, int]) -> dict[str, float] | None:
-    """The paper's numbers for this row, if it has it."""
+    """The paper's numbers for this row, None if it has no such row."""
     row = paper_results.row(kind, sides)
     if row is None:
         return None
@@ -112,13 +119,14 @@ def polished(
     rolled: Rollouts,
     seconds: float,
     seed: int,
-    progress: Progress,
+    progress: ProgressCallback,
 ) -> dict[str, float]:
-    """How short and how coarse the best rollouts become that end at s*.
+    """Operations and elements of the best rollouts that reach s*, shortened and coarsened.
 
-    operations (all of them, and without clean-ups, which the paper's agent does not decide on) and
-    elements relative to the start: after shortening for at most `seconds`; coarse: after coarsening
-    for as long and shortening once more. NaN where no rollout reached s*.
+    Medians of `operations` and of `decisions`, which leave out the automatic clean-ups, and the
+    mean of `elements` relative to the start: after shortening for at most `seconds`, and, with the
+    prefix `coarse_`, after coarsening for as long and shortening again. NaN where no rollout
+    reached s*.
     """
     rows = []
     best = rolled.best()
@@ -145,6 +153,6 @@ def polished(
 
 
 def _measured(mesh: HalfEdgeMesh, operations: list[Any]) -> tuple[int, int, float]:
-    """Operations, those that are no clean-ups, and elements afterwards relative to the start."""
+    """Number of operations, of those that are not clean-ups, and elements relative to the start."""
     decisions = sum(operation != Operation.CLEANUP for operation, _ in operations)
     return len(operations), decisions, replayed(mesh, operations).n_elements / mesh.n_elements

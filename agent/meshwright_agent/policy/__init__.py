@@ -1,1 +1,1 @@
-"""The policy: network, inference, files, rollouts, and what it sees."""
+"""The policy: network, inference, files, single episodes, and what its decisions rest on."""

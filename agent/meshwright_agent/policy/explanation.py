@@ -1,7 +1,7 @@
-"""Looking into a policy: its probabilities, its template and its field of view at one state.
+"""What a decision of a policy rests on: its probabilities, template and field of view in one state.
 
-Nothing here decides anything or changes a mesh. :func:`insight` is for a decision that is about to
-be taken, :func:`hints` for a person who asks what the policy would do.
+:func:`insight` describes the next decision of an episode, :func:`hints` lists the operations that
+the policy prefers on a mesh. Neither changes the mesh.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import torch
 
 from meshwright_agent.env.candidates import LOOKED_AT
 from meshwright_agent.env.task import Observation, Scratch, Task, observe
-from meshwright_agent.policy.explanation_types import Choice, Insight
+from meshwright_agent.policy.explanation_types import Insight, PolicyAction
 from meshwright_agent.policy.inference import tensors
 from meshwright_agent.policy.network import PolicyNetwork
 from meshwright_agent.policy.policy_files import Policy, require_kind
@@ -22,15 +22,15 @@ from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 
 HINTS = 5
-"""Hints that are given at once."""
+"""Default number of hints."""
 WEIGHED = 128
-"""Half-edges among which hints are sought: more than a decision looks at, and without chance."""
-_FAINT = 5e-4  # choices less likely than this are not worth a line
+"""Candidates that hints are chosen among: more than in a decision, and selected without noise."""
+_FAINT = 5e-4  # operations less likely than this are left out
 
 
 @torch.no_grad()
-def weigh(network: PolicyNetwork, seen: Observation) -> tuple[np.ndarray, float]:
-    """The probability of each candidate's operations (K, A) float64, and the value."""
+def action_probabilities(network: PolicyNetwork, seen: Observation) -> tuple[np.ndarray, float]:
+    """Probabilities (K, A) float64 of all actions of one decision, and the predicted value."""
     logits, values = network(*tensors(seen))
     spread = torch.softmax(logits[0].double(), dim=0).numpy()
     mask = seen.mask[0]
@@ -38,18 +38,16 @@ def weigh(network: PolicyNetwork, seen: Observation) -> tuple[np.ndarray, float]
 
 
 def insight(arrays: MeshArrays, policy: Policy, seen: Observation, action: int) -> Insight:
-    """What the policy sees at the state that `seen` (of one decision) was made from, where it is
-    about to take `action`.
-    """
+    """The basis of one decision: `seen` is the observation (B = 1), `action` what was sampled."""
     task = policy.task
-    probabilities, value = weigh(policy.network, seen)
+    probabilities, value = action_probabilities(policy.network, seen)
     row, column = divmod(action, task.operations)
     h = int(seen.chosen[0, row])
     real = seen.chosen[0] >= 0
     template, missing = template_of(arrays, task, h)
     return Insight(
         choices=_merged(arrays, task, seen, probabilities),
-        wanted=Choice(
+        wanted=PolicyAction(
             NAMES[task.first_operation + column],
             h,
             float(probabilities[row, column]),
@@ -66,14 +64,15 @@ def insight(arrays: MeshArrays, policy: Policy, seen: Observation, action: int) 
 
 def hints(
     mesh: HalfEdgeMesh, policy: Policy, count: int = HINTS, near: np.ndarray | None = None
-) -> tuple[Choice, ...]:
-    """The policy's best few operations on the mesh, the likeliest first.
+) -> tuple[PolicyAction, ...]:
+    """The `count` operations to which the policy gives the highest probabilities, best first.
 
-    near (n,): vertex ids; only the irregular ones among them, the first LOOKED_AT, are looked
-    around, as long as there are any. A policy looks at a few half-edges at a time, drawn with some
-    noise; here it is asked about WEIGHED of them, those whose best operation lowers s most, without
-    noise, so that the same question gets the same answer. Raises PolicyError if the policy is for
-    the other kind of mesh.
+    In an episode a policy chooses among a few candidates that are selected with noise. Here the
+    candidates are the WEIGHED half-edges whose best operation lowers s most, without noise, so that
+    the result is reproducible.
+
+    near (n,): vertex ids; if irregular vertices are among them, only the first LOOKED_AT of these
+    are considered. Raises PolicyError if the policy is for the other kind of mesh.
     """
     require_kind(policy, mesh.kind)
     task = replace(policy.task, selection="shortlist", candidates=WEIGHED, noise=0.0)
@@ -85,11 +84,11 @@ def hints(
     if seen is None:
         return ()
     seen.state[0] = ((mesh.score - mesh.optimum) / 10.0, 1.0, 1.0)
-    return _merged(arrays, task, seen, weigh(policy.network, seen)[0])[:count]
+    return _merged(arrays, task, seen, action_probabilities(policy.network, seen)[0])[:count]
 
 
 def _narrowed(mesh: HalfEdgeMesh, near: np.ndarray | None) -> MeshArrays:
-    """The mesh with only the irregular vertices listed that are to be looked at."""
+    """The mesh with its list of irregular vertices restricted to those that are considered."""
     arrays = mesh.arrays
     listed = arrays.irregular[: mesh.irregular_count]
     if near is not None:
@@ -105,7 +104,7 @@ def _narrowed(mesh: HalfEdgeMesh, near: np.ndarray | None) -> MeshArrays:
 
 
 def template_of(arrays: MeshArrays, task: Task, h: int) -> tuple[np.ndarray, int]:
-    """The template of h as :attr:`Insight.template` has it, and its slots beyond the boundary."""
+    """:attr:`Insight.template` of h, and the number of slots beyond the boundary."""
     k = task.k
     source, turn = task.template
     slots = np.full(len(source), -1, np.int64)
@@ -129,12 +128,12 @@ def template_of(arrays: MeshArrays, task: Task, h: int) -> tuple[np.ndarray, int
 
 
 def _seen_vertex(arrays: MeshArrays, h: int, k: int) -> int:
-    """The vertex of a half-edge: opposite in a triangle, origin in a quad (section 4.1)."""
+    """The vertex of a half-edge: opposite in a triangle, origin in a quad (section 3.1)."""
     return int(arrays.edge[preceding(h, k) if k == 3 else h, ORIGIN])
 
 
 def _ring(element: int, k: int) -> int:
-    """The ring of the element with this number in the template: 1, then k, then k (k - 1), ..."""
+    """The ring of an element from its number in the template; rings hold 1, k, k (k - 1), ..."""
     ring, last, size = 0, 0, k
     while element > last:
         ring, last, size = ring + 1, last + size, size * (k - 1)
@@ -142,10 +141,10 @@ def _ring(element: int, k: int) -> int:
 
 
 def field_of_view(arrays: MeshArrays, k: int, blocks: int, h: int) -> np.ndarray:
-    """Elements on which the embedding of h depends after so many blocks, and the block that each
-    comes in with: (M, 2), the nearest first.
+    """The elements on which the embedding of h depends (section 4.2), nearest first.
 
-    One block gives a half-edge what its element and its twin held.
+    (M, 2) int64: element, and the block of convolution that adds it. Each block combines the
+    half-edges of an element and the twin.
     """
     reached = {h}
     elements = {h // k: 0}
@@ -166,13 +165,13 @@ def field_of_view(arrays: MeshArrays, k: int, blocks: int, h: int) -> np.ndarray
 
 def _merged(
     arrays: MeshArrays, task: Task, seen: Observation, probabilities: np.ndarray
-) -> tuple[Choice, ...]:
-    """The permitted operations, the likeliest first, those with the same result taken together."""
-    found: dict[tuple[int, int], Choice] = {}
+) -> tuple[PolicyAction, ...]:
+    """The permitted operations, likeliest first; those with the same result are merged."""
+    found: dict[tuple[int, int], PolicyAction] = {}
     chosen, changes = seen.chosen[0], seen.changes[0]
     for row, column in np.argwhere(probabilities > 0.0).tolist():
         h, code = int(chosen[row]), task.first_operation + column
-        choice = Choice(
+        choice = PolicyAction(
             NAMES[code], h, float(probabilities[row, column]), int(changes[row, column])
         )
         key = code, same_result(arrays, task.k, NAMES[code], h)
@@ -187,7 +186,7 @@ def _merged(
 
 
 def same_result(arrays: MeshArrays, k: int, operation: Operation, h: int) -> int:
-    """The lowest of the half-edges on which the operation has the same result as on h."""
+    """The lowest half-edge at which the operation has the same result as at h."""
     twin = int(arrays.edge[h, TWIN])
     if k == 3 or operation in (Operation.FLIP_LEFT, Operation.FLIP_RIGHT):
         return h if twin < 0 else min(h, twin)

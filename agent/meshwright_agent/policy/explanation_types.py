@@ -1,6 +1,6 @@
-"""What a policy is seen to think at one state of a mesh: plain data, for people who watch it.
+"""Descriptions of a policy's decisions, as plain data that is shown to people.
 
-No torch here: whoever shows an insight need not import what made it.
+Does not import PyTorch, so that the user interface can import it cheaply.
 """
 
 from __future__ import annotations
@@ -13,40 +13,36 @@ from meshwright_core.operations.catalogue import Operation
 
 
 @dataclass(frozen=True)
-class Choice:
-    """One operation that a policy may take."""
+class PolicyAction:
+    """One operation that a policy may take, with its probability."""
 
     operation: Operation
     halfedge: int
     probability: float
-    """From 0 to 1, among all that was looked at."""
+    """From 0 to 1, among all operations of the decision."""
     change: int
-    """The exact change of s that it makes."""
+    """The exact change of s."""
 
 
 @dataclass(frozen=True, eq=False)
 class Insight:
-    """What a policy sees, and what it wants, before it takes a decision.
+    """The basis of a policy's next decision. All ids are those of the mesh in its present state."""
 
-    All ids are those of the mesh that it looks at.
-    """
-
-    choices: tuple[Choice, ...]
-    """The operations it weighs, the likeliest first; those with the same result are one."""
-    wanted: Choice
-    """The one that it will take; drawn by these probabilities, so not always the likeliest."""
+    choices: tuple[PolicyAction, ...]
+    """The permitted operations, likeliest first; those with the same result are merged."""
+    wanted: PolicyAction
+    """The operation that was sampled and will be applied; not always the likeliest."""
     halfedges: np.ndarray
-    """(K,) int64: the half-edges among which it chooses."""
+    """(K,) int64: the candidate half-edges."""
     weights: np.ndarray
-    """(K,) float64: the probability of each of them, over all its operations."""
+    """(K,) float64: the probability of each candidate, summed over its operations."""
     template: np.ndarray
-    """(T, 3) int64: the template of the wanted half-edge (section 4.2.1), a row for each vertex in
-    the order in which it is met: vertex, slot, and ring, 0 for the element itself."""
+    """(T, 3) int64: the template of the sampled operation's half-edge (section 4.2.1). One row per
+    vertex, in the order of the slots: vertex, slot, and ring, 0 for the element itself."""
     missing: int
-    """Slots of the template that lie beyond the boundary."""
+    """Number of slots of the template that lie beyond the boundary."""
     field: np.ndarray
-    """(M, 2) int64: elements that the embedding of the wanted half-edge depends on, and after how
-    many blocks of convolution each comes in; the nearest first."""
+    """(M, 2) int64: the elements on which the embedding of that half-edge depends, and the block of
+    convolution that adds each; nearest first."""
     value: float
-    """What its value head expects of the normalised return; means nothing where the policy was
-    trained without a baseline."""
+    """The predicted normalised return; meaningless if the policy has no trained baseline."""

@@ -1,7 +1,8 @@
-"""The policy network: the DCEL convolution on a local patch (section 4.2), or on a whole mesh.
+"""The policy network: the DCEL convolution (section 4.2) on a local patch or on a whole mesh.
 
-Both evaluate the same layers; only what they gather from differs. Logits may carry a prior: minus
-beta times the exact change of s of the operation, with beta learned.
+Both evaluate the same layers and differ only in the indices that they gather from. Beyond the
+paper, logits may contain a prior: minus beta times the exact change of s of the operation, with
+beta learned.
 """
 
 from __future__ import annotations
@@ -12,45 +13,49 @@ from itertools import pairwise
 import torch
 from torch import Tensor, nn
 
+from meshwright_agent.env.checked_settings import PositiveInt
 from meshwright_agent.env.task import Task
 
 SCALES = (6.0, 1.0, 1.0, 1.0, 32.0, 32.0)
-"""Divisors that bring the channels of a patch to order one."""
+"""Divisors that scale the channels of a patch to order one."""
 NEVER = -1e9
-"""The logit of what is not permitted."""
+"""The logit of an operation that is not permitted."""
 
 
 @dataclass(frozen=True)
 class Architecture:
-    """Size and form of the network; saved with the policy."""
+    """Hyperparameters of the network; saved with the policy."""
 
-    width: int = 32
-    """Features per half-edge."""
-    embedding: int = 16
+    width: PositiveInt = 32
+    """Features per half-edge in and after each block."""
+    embedding: PositiveInt = 16
     """Features per half-edge before the first block."""
     prior: bool = True
-    """Whether exact one-step changes of s enter the logits."""
+    """Whether the exact changes of s enter the logits."""
     prior_weight: float = 4.0
-    """Where beta starts."""
+    """Initial value of beta."""
     global_split_bias: float = -3.0
-    """Where the prior's constant for global splits starts."""
-    value_width: int = 64
-    """Width of the value head."""
+    """Initial value of the constant that the prior adds for global splits."""
+    value_width: PositiveInt = 64
+    """Hidden units of the value head."""
 
 
 class Block(nn.Module):
-    """One convolution: cycle, twin, linear layer, normalisation, ReLU."""
+    """One convolution (section 4.2): cycle, twin, linear layer, layer normalisation, ReLU."""
 
     def __init__(self, k: int, width_in: int, width_out: int) -> None:
-        """k + 1 half-edges of `width_in` features in, one of `width_out` out."""
+        """From `width_in` features of k + 1 half-edges to `width_out` of one."""
         super().__init__()
         self.beyond = nn.Parameter(torch.zeros(1, width_in))
-        """What a half-edge on the boundary gets for its twin."""
+        """Learned features in place of the twin on the boundary."""
         self.linear = nn.Linear((k + 1) * width_in, width_out)
         self.norm = nn.LayerNorm(width_out)
 
     def forward(self, x: Tensor, reads: Tensor) -> Tensor:
-        """x (N, F), reads (Q, k+1) into its rows, N for beyond the boundary: (Q, width_out)."""
+        """From x (N, width_in) and reads (Q, k+1) to (Q, width_out).
+
+        reads: rows of x, or N for "beyond the boundary".
+        """
         gathered = torch.cat([x, self.beyond]).index_select(0, reads.reshape(-1))
         gathered = gathered.view(len(reads), self.linear.in_features)  # reads may be empty
         out: Tensor = torch.relu(self.norm(self.linear(gathered)))
@@ -58,10 +63,10 @@ class Block(nn.Module):
 
 
 class PolicyNetwork(nn.Module):
-    """Logits of every candidate's operations, and a value for the baseline."""
+    """The policy and value network: logits of all actions, and the predicted normalised return."""
 
     def __init__(self, task: Task, architecture: Architecture) -> None:
-        """For the candidates, patches and operations of `task`."""
+        """Initialise the weights from PyTorch's global random state."""
         super().__init__()
         self.task, self.architecture = task, architecture
         width = architecture.width
@@ -85,15 +90,16 @@ class PolicyNetwork(nn.Module):
         self.register_buffer("scales", torch.tensor(SCALES[: task.channels]), persistent=False)
 
     def convolve(self, features: Tensor, tables: list[Tensor]) -> Tensor:
-        """Embeddings (Q, width): features (N, C), and for each block the rows that it reads."""
+        """Embeddings (Q, width) from features (N, C) and the reads of each block."""
         x = self.embed(features.float() / self.scales)
         for block, reads in zip(self.blocks, tables, strict=True):
             x = block(x, reads)
         return x
 
     def convolve_mesh(self, features: Tensor, twins: Tensor) -> Tensor:
-        """The same embeddings of all half-edges of a whole mesh: features (H, C), twins (H,), -1 on
-        the boundary; half-edges in element order, so that the cycle is a reshape.
+        """Embeddings (H, width) of all half-edges of a mesh, in element order.
+
+        features: (H, C). twins: (H,), -1 on the boundary.
         """
         k = self.task.k
         index = torch.arange(len(twins))
@@ -102,7 +108,7 @@ class PolicyNetwork(nn.Module):
         return self.convolve(features, [torch.stack([*cycle, twin], dim=1)] * len(self.blocks))
 
     def logits_of(self, embedding: Tensor, changes: Tensor) -> Tensor:
-        """Logits (..., A) from embeddings (..., width) and exact changes of s (..., A)."""
+        """Logits (..., A) from embeddings (..., width) and the exact changes of s (..., A)."""
         logits: Tensor = self.head(embedding)
         if self.architecture.prior:
             logits = logits - self.beta * changes.float() + self.operation_bias
@@ -119,10 +125,15 @@ class PolicyNetwork(nn.Module):
     ) -> tuple[Tensor, Tensor]:
         """Logits (B, K A), NEVER where not permitted, and values (B,).
 
-        features, tables: from :func:`meshwright_agent.env.local_patch.assemble`; real (B, K): which
-        candidates there
-        are; mask, changes (B, K, A) and state (B, 3) from an Observation. All come from the
-        processor's memory and the results go there, wherever the network is.
+        All tensors are on the CPU, and so are the results, on whatever device the network is.
+
+        Args:
+            features: (N, C) from :func:`meshwright_agent.env.local_patch.assemble`.
+            tables: the reads of each block, from the same.
+            real: (B, K) bool, which candidates exist.
+            mask: (B, K, A) bool, permitted operations.
+            changes: (B, K, A) exact changes of s.
+            state: (B, 3), see :class:`meshwright_agent.env.task.Observation`.
         """
         place, width = self.scales.device, self.architecture.width
         real, mask, changes, state = (x.to(place) for x in (real, mask, changes, state))

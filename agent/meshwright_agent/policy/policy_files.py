@@ -1,7 +1,7 @@
-"""Saved policies: safetensors with a JSON header, never pickle.
+"""Policy files: safetensors with a JSON header.
 
-The header holds kind, task, architecture, training configuration, evaluation and the version of
-this layout, so that a file says what it is and how well it does.
+The header holds the format version, kind, task, architecture, training configuration and evaluation
+results. Pickle is not used, since loading a pickle can execute code.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 
+from meshwright_agent.env.checked_settings import settings_from
 from meshwright_agent.env.task import Task
 from meshwright_agent.policy.network import Architecture, PolicyNetwork
 from meshwright_core.core.kinds import KIND_NOUN
@@ -27,21 +28,21 @@ _ENDING = ".safetensors"
 
 
 class PolicyError(ValueError):
-    """A policy that cannot be had; the message says which and why."""
+    """A policy that cannot be loaded or used; the message names it and the reason."""
 
 
 @dataclass
 class Policy:
-    """A network, the task that it was trained for, and where it came from."""
+    """A trained network with its name and the rest of its file header."""
 
     name: str
     network: PolicyNetwork
     header: dict[str, Any] = field(default_factory=dict)
-    """training, evaluation: plain values."""
+    """Training configuration, progress and evaluation, as plain values."""
 
     @property
     def task(self) -> Task:
-        """What it may do and what it sees."""
+        """The task that it was trained for."""
         return self.network.task
 
     @property
@@ -67,32 +68,34 @@ def _shipped_folder() -> Path:
 
 
 def shipped(kind: str | None = None) -> list[str]:
-    """Names of the policies that travel with the program, of one kind or of both, in order.
+    """Names of the policies installed with the program, for one kind or both, sorted.
 
-    A name begins with the kind; the one that is just the kind is the default, and the first.
+    A name begins with the kind; the one that equals the kind comes first and is the default.
     """
     names = sorted(path.name[: -len(_ENDING)] for path in _shipped_folder().glob(f"*{_ENDING}"))
     return [name for name in names if kind is None or name.split("-")[0] == kind]
 
 
 def decide_on_one_thread() -> None:
-    """Let torch use one thread in this process, for programs that play policies.
+    """Limit PyTorch to one thread in this process, for programs that run policies.
 
-    The matrices of a decision are small: more threads gain little on an idle machine, and where
-    other processes want the cores a decision waits for them, fifty times as long as it takes.
+    The matrices of a decision are small: more threads gain little on an idle machine, and on a busy
+    one waiting for them makes a decision up to fifty times slower.
     """
     torch.set_num_threads(1)
 
 
 def load(name_or_path: str | os.PathLike[str]) -> Policy:
-    """A shipped policy by name, or one from a file. Raises PolicyError with one sentence."""
+    """Load a shipped policy by name, or any policy file by path. Raises PolicyError."""
     text = os.fspath(name_or_path)
     path = Path(text)
     if text in shipped():
         path = _shipped_folder() / f"{text}{_ENDING}"
     elif not path.exists():
         known = ", ".join(shipped()) or "none"
-        raise PolicyError(f"{text}: there is no such policy file, nor a shipped policy ({known})")
+        raise PolicyError(
+            f"{text}: there is no such policy file and no installed policy of that name ({known})"
+        )
     elif path.is_dir():
         raise PolicyError(f"{text}: this is a folder, not a policy file")
     try:
@@ -101,7 +104,7 @@ def load(name_or_path: str | os.PathLike[str]) -> Policy:
             weights = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118
     except (SafetensorError, OSError) as error:
         raise PolicyError(
-            f"{text}: this is no policy file, or only part of one ({error})"
+            f"{text}: this is not a policy file, or it is incomplete ({error})"
         ) from None
     return _rebuild(text, path.name.removesuffix(_ENDING), metadata, weights)
 
@@ -113,9 +116,10 @@ def _rebuild(
         header = json.loads(metadata["meshwright"])
         if header["format"] != FORMAT:
             raise PolicyError(
-                f"{text}: policy format {header['format']}, this program reads {FORMAT}"
+                f"{text}: this is policy format {header['format']}, but this program reads {FORMAT}"
             )
-        task, architecture = Task(**header["task"]), Architecture(**header["architecture"])
+        task = settings_from(header["task"], Task)
+        architecture = settings_from(header["architecture"], Architecture)
     except PolicyError:
         raise
     except (KeyError, TypeError, ValueError) as error:
@@ -128,7 +132,7 @@ def _rebuild(
     except RuntimeError:
         raise PolicyError(f"{text}: its weights do not fit its header") from None
     if not all(bool(torch.isfinite(value).all()) for value in weights.values()):
-        raise PolicyError(f"{text}: it holds weights that are no numbers")
+        raise PolicyError(f"{text}: some of its weights are not finite numbers")
     network.eval()
     return Policy(name, network, {k: v for k, v in header.items() if k not in _OWN})
 
@@ -137,7 +141,7 @@ _OWN = ("format", "kind", "task", "architecture")
 
 
 def save_policy(policy: Policy, path: str | os.PathLike[str]) -> None:
-    """Write the policy. An older file of that name stays whole if this fails, with MeshError."""
+    """Write the policy file atomically: if it fails, with MeshError, an older file is kept."""
     header = {
         "format": FORMAT,
         "kind": policy.kind,

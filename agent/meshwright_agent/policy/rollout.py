@@ -1,4 +1,4 @@
-"""One run of a policy on one mesh, step by step: what editors and searches watch and replay."""
+"""One episode of a policy on one mesh, step by step, for editors and searches."""
 
 from __future__ import annotations
 
@@ -15,20 +15,22 @@ from meshwright_core.core.arrays import JOURNALLING
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 
-Step = list[tuple[Operation, int]]
+PolicyStep = list[tuple[Operation, int]]
+"""An operation and the clean-ups that follow it, each with its half-edge."""
 
 _SPARE = 4 * LONGEST_CUT + 64  # slots that the longest global split may take
 
 
 class Runner:
-    """Plays a policy on a copy of a mesh; each step replays on the mesh that was given."""
+    """Runs a policy on a copy of a mesh; the steps can be replayed on the mesh itself."""
 
     def __init__(
         self, mesh: HalfEdgeMesh, policy: Policy, seed: int, max_steps: int | None = None
     ) -> None:
-        """max_steps: default is what the policy was trained with, relative to the size of the mesh.
+        """Start an episode from `mesh`.
 
-        Raises PolicyError if the policy is for the other kind of mesh.
+        seed: of all random choices. max_steps: length of the episode, by default that of the
+        policy's task. Raises PolicyError if the policy is for the other kind of mesh.
         """
         require_kind(policy, mesh.kind)
         self.mesh = mesh.copy()
@@ -42,35 +44,32 @@ class Runner:
         self._scratch = Scratch(self._task, 0, 0)
         self.best_score = mesh.score
         self.reason = ""
-        """Why the run is over, in words; empty while it goes on."""
+        """Why the episode has ended, in words; empty before."""
         self.last: Observation | None = None
-        """What the last decision looked at."""
+        """The observation of the last decision."""
         self._next: tuple[Observation, int] | None = None
 
     @property
     def score(self) -> int:
-        """s now."""
+        """Current s."""
         return self.mesh.score
 
     @property
     def finished(self) -> bool:
-        """Whether there is nothing more to do."""
+        """Whether the episode has ended."""
         return bool(self.reason)
 
     def look(self) -> Insight | None:
-        """What the policy sees now, and will do at the next step; None when finished.
+        """The basis of the next decision, without applying it; None when finished.
 
-        Looking makes the next decision, but does not carry it out: a run that is looked at is the
-        same run.
+        The decision is kept for :meth:`step`, so calling this does not change the episode.
         """
         if self._next is None:
             self._next = self._decide()
         return None if self._next is None else insight(self.mesh.arrays, self.policy, *self._next)
 
-    def step(self) -> Step:
-        """Decide and do the next operation; returns it and the clean-ups that follow, or [] at the
-        end.
-        """
+    def step(self) -> PolicyStep:
+        """Sample and apply the next operation and the clean-ups that follow; [] at the end."""
         decision = self._next or self._decide()
         self._next = None
         if decision is None:
@@ -88,14 +87,14 @@ class Runner:
         return [(NAMES[code], h)] + [(Operation.CLEANUP, line) for line in cleaned]
 
     def _decide(self) -> tuple[Observation, int] | None:
-        """What the next decision looks at, and the action; None at the end."""
+        """The next observation and the sampled action; None at the end."""
         if self._ended():
             return None
         self._make_room()
         seen = observe(self.mesh.arrays, self._task, self._bounds, self._rng, self._scratch)
         self.last = seen
         if seen is None:
-            self.reason = "no operation that the policy may use is allowed here"
+            self.reason = "no operation of the policy is permitted here"
             return None
         seen.state[0] = (
             (self.mesh.score - self.mesh.optimum) / 10.0,
@@ -108,11 +107,11 @@ class Runner:
         if not self.reason and self.mesh.score == self.mesh.optimum:
             self.reason = "at the optimum"
         if not self.reason and self.steps >= self.max_steps:
-            self.reason = f"its {self.max_steps} steps are used up"
+            self.reason = f"all {self.max_steps} steps are used"
         return self.finished
 
     def _make_room(self) -> None:
-        """Have slots enough for any operation, so that none is left out for want of them."""
+        """Reserve slots for the largest operation, which would be refused without them."""
         arrays = self.mesh.arrays
         if self.mesh.slots + _SPARE > len(arrays.vertex) or (
             len(self.mesh.arrays.element_mark) < int(arrays.counters[1]) + _SPARE

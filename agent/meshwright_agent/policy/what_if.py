@@ -1,7 +1,7 @@
-"""What a policy would make of given half-edges, whether or not it would look at them now.
+"""A policy's probabilities at half-edges of one's choice, also where they are not its candidates.
 
-For people who study a policy: :mod:`meshwright_agent.policy.explanation` shows what it looks at in
-a run. Nothing here decides anything or changes a mesh.
+For studying a policy; :mod:`meshwright_agent.policy.explanation` describes the decisions of an
+episode. Nothing here changes the mesh.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from meshwright_agent.env.candidates import gather, masks
 from meshwright_agent.env.local_patch import LARGEST, Patches
 from meshwright_agent.env.task import Observation, Scratch, Task, choose_candidates, look
-from meshwright_agent.policy.explanation import weigh
+from meshwright_agent.policy.explanation import action_probabilities
 from meshwright_agent.policy.policy_files import Policy, PolicyError, require_kind
 from meshwright_core.core.arrays import ORIGIN, MeshArrays
 from meshwright_core.mesh import HalfEdgeMesh
@@ -21,25 +21,25 @@ from meshwright_core.mesh import HalfEdgeMesh
 
 @dataclass(frozen=True, eq=False)
 class Outlook:
-    """One decision among given half-edges."""
+    """A policy's decision among given half-edges."""
 
     halfedges: np.ndarray
-    """(K,) int64: among which is chosen."""
+    """(K,) int64: the candidates."""
     probabilities: np.ndarray
-    """(K, A) float64, of each operation at each of them; they sum to 1, or to 0 where nothing is
-    permitted at all."""
+    """(K, A) float64: of each operation at each candidate. They sum to 1, or to 0 where no
+    operation is permitted."""
     permitted: np.ndarray
-    """(K, A) bool: the action mask. What it leaves out has no probability."""
+    """(K, A) bool: the action mask; the others have probability 0."""
     changes: np.ndarray
-    """(K, A) int64: the exact change of s of what is permitted."""
+    """(K, A) int64: the exact change of s of each permitted operation."""
     value: float
-    """What the value head expects of the normalised return."""
+    """The predicted normalised return; NaN where no operation is permitted."""
 
 
 def outlook(mesh: HalfEdgeMesh, policy: Policy, halfedges: np.ndarray) -> Outlook:
-    """The policy's probabilities if it had to choose among these half-edges (K,).
+    """The policy's probabilities if these half-edges (K,) were its candidates.
 
-    Raises PolicyError if the policy is for the other kind of mesh, or a half-edge is not there.
+    Raises PolicyError if the policy is for the other kind of mesh, or a half-edge does not exist.
     """
     task, arrays = policy.task, mesh.arrays
     _require(mesh, policy, halfedges)
@@ -60,12 +60,14 @@ def outlook(mesh: HalfEdgeMesh, policy: Policy, halfedges: np.ndarray) -> Outloo
     )  # fmt: skip
     patches = Patches(features[: sizes[0, 0]], scratch.reads[: sizes[0, 1]].copy(), sizes)
     state = np.array([[(mesh.score - mesh.optimum) / 10.0, 1.0, 1.0]], np.float32)
-    probabilities, value = weigh(policy.network, Observation(chosen, mask, changes, state, patches))
+    probabilities, value = action_probabilities(
+        policy.network, Observation(chosen, mask, changes, state, patches)
+    )
     return Outlook(chosen[0], probabilities, mask[0], changes[0].astype(np.int64), value)
 
 
 def template_slots(arrays: MeshArrays, task: Task, h: int) -> np.ndarray:
-    """(N,) int64 the half-edge in each slot of the template of h, -1 beyond the boundary."""
+    """(N,) int64: the half-edge in each slot of the template of h, -1 beyond the boundary."""
     source, turn = task.template
     slots = np.full(len(source), -1, np.int64)
     gather(arrays, h, task.k, source, turn, slots)
@@ -73,9 +75,10 @@ def template_slots(arrays: MeshArrays, task: Task, h: int) -> np.ndarray:
 
 
 def candidates(mesh: HalfEdgeMesh, policy: Policy, h: int = -1, seed: int = 0) -> np.ndarray:
-    """(K,) the half-edges among which the policy chooses, without the noise of its shortlist.
+    """(K,) int64: the candidates of the policy's next decision, without the noise of the shortlist.
 
-    With h, those of the template of h, or the shortlist with h in the place of its last.
+    With h, the template of h, or a shortlist whose last entry is replaced by h if h is not in it.
+    seed: of the random choices that remain.
     """
     task, arrays = policy.task, mesh.arrays
     _require(mesh, policy, np.array([h] if h >= 0 else [], np.int64))

@@ -1,1 +1,1 @@
-"""Search for better connectivity: the anytime solver, annealing, patches, shortening."""
+"""Search: the anytime solver, simulated annealing, patches, shortening, coarsening."""

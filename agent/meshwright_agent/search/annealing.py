@@ -1,11 +1,10 @@
-"""Simulated annealing in compiled code: the strongest search that learns nothing, and a worker of
-the solver; with two weaker baselines, greedy descent and a random walk.
+"""Simulated annealing in compiled code, and two simpler searches: greedy descent and random walk.
 
-A proposal is one operation of the agent's action set near an irregular vertex. Its exact change of
-s is known before it is applied, so that most proposals cost a few look-ups. Metropolis' rule
-accepts by s + price * elements at a temperature that falls geometrically over a sweep; every sweep
-starts from the best state so far. All that is applied is logged, so that the operations to the best
-state replay on the mesh that was given.
+A proposal is an operation of the agent's action set near an irregular vertex. Its exact change of s
+is computed before it is applied, so a rejected proposal is cheap. The Metropolis rule accepts by
+the energy s + price * elements at a temperature that falls geometrically over a sweep; each sweep
+starts from the best state so far. Accepted operations are logged, so that the operations that lead
+to the best state can be replayed on the given mesh.
 """
 
 from __future__ import annotations
@@ -56,32 +55,32 @@ from meshwright_core.operations.refusals import ALLOWED
 Operations = list[tuple[Operation, int]]
 
 TEMPERATURES = {"tri": (0.35, 0.35), "quad": (0.4, 0.3)}
-"""Temperature at the start and at the end of a sweep; on a hotter one triangles never settle."""
+"""Temperature at the start and the end of a sweep; at higher ones triangles do not converge."""
 SWEEP = 500
-"""Proposals of a sweep, relative to the number of elements."""
+"""Proposals in a sweep, relative to the number of elements."""
 PRICE = {"tri": 0.6, "quad": 0.0}
-"""Price of an element, in units of s: without it meshes grow, and large ones hold more defects."""
+"""Price of an element, in units of s; without it triangle meshes grow, with more defects."""
 SPLIT_PRICE = 1.0
 """Price of a global split, in units of s."""
 WEIGHTS = {"tri": (0.5, 0.25, 0.25, 0.0, 0.0, 0.0), "quad": (0.3, 0.3, 0.15, 0.15, 0.1, 0.0)}
-"""How often each of the agent's operations is proposed; the last is the collapse of a strip."""
+"""Probability of proposing each operation; the last is the collapse of a chord of quads."""
 ANYWHERE = 0.02
-"""Share of proposals that look at any half-edge."""
+"""Share of proposals at a half-edge drawn from the whole mesh."""
 SLICE = 20_000
-"""Proposals between two looks at the clock."""
+"""Proposals between two checks of the time."""
 
-_SPARE = 900  # slots that the longest global split may want beyond what the mesh may grow to
+_SPARE = 900  # slots for the longest global split beyond the largest allowed mesh
 _LOG = 1 << 14
 _LONGEST_LOG = 1 << 23
-# what a search counts: rows of the integer state that its kernels share
+# entries of the integer state that the kernels share
 LENGTH, BEST_LENGTH, BEST_SCORE, BEST_ELEMENTS, PROPOSALS, APPLIED, SAVED_AT, SWEEP_AT = range(8)
-# what a slice ends with
+# return codes of a slice
 USED_UP, AT_GOAL, SHORT = 0, 1, 2
 
 
 @bare_kernel
 def copy_mesh(source, target):
-    """Make `target` what `source` is, in arrays of the same sizes; the history stays behind."""
+    """Copy `source` into `target`, whose arrays have the same sizes; the journal is not copied."""
     k = source.counters[SIDES]
     for h in range(k * max(source.counters[ELEMENT_SLOTS], target.counters[ELEMENT_SLOTS])):
         target.edge[h, 0] = source.edge[h, 0]
@@ -99,8 +98,9 @@ def copy_mesh(source, target):
 
 @bare_kernel
 def propose(m, k, anywhere, rng):
-    """A half-edge of an element at a random irregular vertex, or of one beside that element; with
-    probability `anywhere` any half-edge. -1 for a dead one.
+    """A random half-edge of an element at a random irregular vertex, or of a neighbour of it.
+
+    With probability `anywhere` a half-edge drawn from all slots; -1 if that slot is unused.
     """
     total = m.counters[IRREGULAR]
     if total == 0 or rng.random() < anywhere:
@@ -124,7 +124,7 @@ def propose(m, k, anywhere, rng):
 
 @bare_kernel
 def draw_operation(weights, rng):
-    """The index of a weight (N,), drawn in proportion; the weights sum to one."""
+    """An index drawn with the probabilities `weights` (N,), which sum to one."""
     r = rng.random()
     for i in range(len(weights)):
         r -= weights[i]
@@ -135,7 +135,7 @@ def draw_operation(weights, rng):
 
 @bare_kernel
 def growth(m, operation, h):
-    """Elements that an operation adds; 0 for those whose number depends on the way they go."""
+    """Elements that an operation adds; 0 for global operations, where it depends on their path."""
     if operation == TRI_SPLIT:
         return 2 if m.edge[h, TWIN] >= 0 else 1
     if operation == TRI_COLLAPSE:
@@ -147,7 +147,7 @@ def growth(m, operation, h):
 
 @bare_kernel
 def needs_twin(operation):
-    """Whether the operation is never allowed on the boundary, where its change is not defined."""
+    """Whether the operation is undefined at a half-edge without twin."""
     return (
         operation == TRI_FLIP
         or operation == FLIP_LEFT
@@ -159,7 +159,7 @@ def needs_twin(operation):
 
 @bare_kernel
 def save_best(m, best, state):
-    """Keep the present state as the best one."""
+    """Record the current state as the best one."""
     state[BEST_SCORE] = m.counters[SCORE]
     state[BEST_ELEMENTS] = m.counters[ELEMENTS]
     state[BEST_LENGTH] = state[LENGTH]
@@ -169,7 +169,7 @@ def save_best(m, best, state):
 
 @bare_kernel
 def is_better(m, state, fewer):
-    """Whether the present state beats the best: by s, then (fewer) by its elements."""
+    """Whether the current state beats the best: lower s or, with `fewer`, fewer elements."""
     score = m.counters[SCORE]
     if score != state[BEST_SCORE]:
         return score < state[BEST_SCORE]
@@ -178,7 +178,7 @@ def is_better(m, state, fewer):
 
 @bare_kernel
 def restart(m, best, state):
-    """Go back to the best state, and begin a sweep."""
+    """Return to the best state and begin a new sweep."""
     copy_mesh(best, m)
     state[LENGTH] = state[BEST_LENGTH]
     state[SWEEP_AT] = 0
@@ -215,7 +215,7 @@ def anneal_slice(
             continue
         cleanups = 0
         if operation > GLOBAL_SPLIT:
-            # merging the ends of the rungs adds up their irregularities: s never rises
+            # it merges pairs of vertices and adds their Delta, so s never rises
             operation = CHORD_COLLAPSE
             if m.counters[ELEMENTS] <= floor or check_chord_collapse(m, h, cap) != ALLOWED:
                 continue
@@ -237,7 +237,7 @@ def anneal_slice(
         state[APPLIED] += 1
         if not is_better(m, state, fewer):
             continue
-        # a copy costs as much as the mesh is large: on large ones it waits for some more progress
+        # copying takes time proportional to the mesh: on large ones it waits for more progress
         due = 64 * (state[APPLIED] - state[SAVED_AT]) >= m.counters[ELEMENTS] - 256
         if due or fewer or m.counters[SCORE] <= goal:
             save_best(m, best, state)
@@ -273,7 +273,7 @@ def descent_step(m, plateau, first, count, cap, floor, ceiling, extended, touche
 
 
 class Annealer:
-    """One annealing, slice by slice; what it has found stays valid in between."""
+    """Simulated annealing that can be run in slices, with the best state available after each."""
 
     def __init__(
         self,
@@ -292,11 +292,23 @@ class Annealer:
         fewer: bool = False,
         goal: int | None = None,
     ) -> None:
-        """`mesh` is copied. extended: triangles may collapse boundary edges.
+        """Start from a copy of `mesh`.
 
-        floor, ceiling: bounds of the number of elements; by default triangles keep as many as there
-        are, and a mesh may become twice as large. fewer: among equal s look for fewer elements.
-        goal: s at which to stop, by default s*.
+        Args:
+            mesh: the start.
+            seed: of the random choices.
+            extended: whether boundary edges of triangle meshes may be collapsed.
+            floor: least number of elements; by default for triangles that of the start, else 1.
+            ceiling: largest number of elements; by default twice that of the start.
+            temperatures: at the start and the end of a sweep; by default TEMPERATURES.
+            sweep: proposals in a sweep, relative to the number of elements.
+            price: of an element, in units of s; by default PRICE.
+            split_price: of a global split, in units of s.
+            weights: (6,) how often each operation is proposed; by default WEIGHTS.
+            anywhere: share of proposals at a half-edge drawn from the whole mesh.
+            fewer: prefer fewer elements among states of equal s, and stop a slice at each
+                improvement.
+            goal: s at which to stop, by default s*.
         """
         kind, size = mesh.kind, mesh.n_elements
         task = Task(kind)
@@ -335,12 +347,15 @@ class Annealer:
         return self.best_score <= self.goal
 
     def operations(self) -> Operations:
-        """What leads from the mesh to the best state."""
+        """The operations that lead from the start to the best state."""
         rows = self.log[: self.state[BEST_LENGTH]].tolist()
         return [(NAMES[code], h) for code, h in rows]
 
     def run(self, proposals: int = SLICE) -> bool:
-        """So many proposals more; True if they ended early, with the goal or something better."""
+        """Make `proposals` more; True if it stopped early.
+
+        That is at the goal or, with `fewer`, at an improvement.
+        """
         ended = anneal_slice(
             self.arrays, self.best, self.log, self.state, proposals, *self._temperatures,
             self._sweep, *self._prices, self.fewer, self._weights, self._anywhere,
@@ -358,7 +373,7 @@ class Annealer:
         restart(self.arrays, self.best, self.state)
 
     def _lengthen(self) -> None:
-        """A longer log; one that would be too long is cut back to the best state instead."""
+        """Double the log or, at its largest size, return to the best state, which shortens it."""
         if len(self.log) < _LONGEST_LOG:
             self.log = np.concatenate([self.log, np.zeros_like(self.log)])
         else:
@@ -366,7 +381,7 @@ class Annealer:
 
 
 def with_room(mesh: HalfEdgeMesh, elements: int) -> MeshArrays:
-    """A copy without journal that has room for so many elements."""
+    """The arrays of a copy without journal and with slots for so many elements."""
     copied = mesh.copy()
     copied.arrays.counters[JOURNALLING] = 0
     more = max(elements - mesh.n_elements, 0) + _SPARE
@@ -383,8 +398,11 @@ def anneal(
     cancelled: Callable[[], bool] | None = None,
     **settings: object,
 ) -> tuple[Operations, int]:
-    """Operations to the best state found within `seconds` or `proposals` (one second if neither is
-    given), and its s. `mesh` is not changed. settings: those of :class:`Annealer`.
+    """Simulated annealing from `mesh`, which is not changed; stops early at the goal.
+
+    Ends after `seconds` or `proposals`, by default after one second, or when `cancelled()` is true.
+    settings: keyword arguments of :class:`Annealer`. Returns the operations to the best state, and
+    its s.
     """
     began = time.perf_counter()
     if seconds is None and proposals is None:
@@ -410,7 +428,7 @@ def random_walk(
     cancelled: Callable[[], bool] | None = None,
     **settings: object,
 ) -> tuple[Operations, int]:
-    """The best state on a random walk of permitted operations, as :func:`anneal` says it."""
+    """A random walk of permitted operations; arguments and result as in :func:`anneal`."""
     return anneal(
         mesh, seconds=seconds, proposals=proposals, seed=seed, cancelled=cancelled,
         temperatures=(1e9, 1e9), anywhere=1.0, price=0.0, split_price=0.0, **settings,
@@ -427,8 +445,10 @@ def greedy(
     ceiling: int | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> tuple[Operations, int]:
-    """Steepest descent: always the operation that lowers s most; operations to the best state and
-    its s. plateau: operations in a row that may leave s as it is; 0 is strict descent.
+    """Steepest descent: repeatedly the operation that lowers s most.
+
+    plateau: how many operations in a row may leave s unchanged. Returns the operations to the best
+    state, and its s. The other arguments are those of :class:`Annealer`.
     """
     limits = Annealer(mesh, seed, extended=extended, floor=floor, ceiling=ceiling)
     task, arrays = Task(mesh.kind), limits.arrays

@@ -1,7 +1,7 @@
-"""The same answer with its lines left in: where clean-ups made a quad mesh too coarse to be drawn.
+"""Removing clean-ups from a list of operations, for quad meshes that became too coarse to draw.
 
-A clean-up changes no irregularity, so leaving clean-ups out of a list of operations leaves s as it
-is wherever the others still apply.
+A clean-up changes no irregularity. Without the clean-ups the result therefore has the same s,
+provided that the other operations can still be applied, but more elements.
 """
 
 from __future__ import annotations
@@ -18,8 +18,10 @@ _UNLIMITED = 1 << 40
 
 
 def without_cleanups(mesh: HalfEdgeMesh, operations: Operations) -> Operations:
-    """The operations but for the clean-ups, as far as they still apply, up to the first state with
-    s as low as theirs; the operations themselves if there is none.
+    """The operations without clean-ups, and without those that then cannot be applied.
+
+    They end at the first state whose s is as low as at the end of `operations`; if there is no such
+    state, `operations` is returned.
     """
     codes = np.array([CODES[mesh.k][operation] for operation, _ in operations], np.int32)
     halfedges = np.array([h for _, h in operations], np.int64)

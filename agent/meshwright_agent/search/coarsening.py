@@ -1,10 +1,9 @@
-"""Coarser quad meshes at the same s: towards the coarsest block decomposition.
+"""Coarsening quad meshes at the same s, towards the coarsest block decomposition.
 
-Annealing with a price on elements and with the collapse of strips, which never raises s, among the
-operations. A state counts as better only if s is no higher than at the start, and if it can be
-drawn at least as well: it has no more obstacles, nor, smoothed, more inverted elements. Where a
-mesh cannot be drawn, states that can be come first, however many elements they have, and it grows
-no coarser before.
+Simulated annealing with a price on elements; its operations include the collapse of chords, which
+never raises s. A state is better if s is lower; at equal s if it has fewer flaws, that is obstacles
+to drawing it and elements that stay inverted when it is smoothed; without flaws if it has fewer
+elements.
 """
 
 from __future__ import annotations
@@ -28,24 +27,25 @@ from meshwright_core.geometry import smoothing
 from meshwright_core.mesh import HalfEdgeMesh
 
 DRAWN = 20_000
-"""Elements above which no mesh is drawn between two operations: it would take seconds."""
+"""Elements up to which a mesh is smoothed to count inverted elements; larger ones take seconds."""
 TEMPERATURES = (0.5, 0.25)
-"""Of a sweep, see :mod:`meshwright_agent.search.annealing`."""
+"""At the start and the end of a sweep, see :mod:`meshwright_agent.search.annealing`."""
 PRICE = 0.4
-"""Of an element, in units of s."""
+"""Price of an element, in units of s."""
 WEIGHTS = (0.27, 0.27, 0.12, 0.24, 0.04, 0.06)
-"""How often each operation is proposed; the last is the collapse of a strip."""
+"""Probability of proposing each operation; the last is the collapse of a chord."""
 APART = 512
-"""Proposals between a state that was rejected and the next that is looked at."""
+"""Proposals after a rejected state before the next one is tested: close states are alike."""
 AFRESH = 0.2
-"""Probability that a state that was found is followed by a new sweep, down to another floor."""
+"""Probability of starting a new sweep with another least number of elements after a state."""
 SWEEP = 300
-"""Proposals of a sweep, relative to the number of elements."""
+"""Proposals in a sweep, relative to the number of elements."""
 
 
 def undrawable(mesh: HalfEdgeMesh, operations: Operations) -> int:
-    """Elements that stay inverted when the operations are done and the mesh is smoothed; 0 is said
-    of meshes too large to be drawn.
+    """Number of elements that stay inverted when the mesh after the operations is smoothed.
+
+    0 for meshes with more than DRAWN elements, which are not tested.
     """
     if mesh.n_elements > DRAWN:
         return 0
@@ -53,7 +53,7 @@ def undrawable(mesh: HalfEdgeMesh, operations: Operations) -> int:
 
 
 def replayed(mesh: HalfEdgeMesh, operations: Operations) -> HalfEdgeMesh:
-    """A copy of the mesh on which the operations are done."""
+    """A copy of the mesh with the operations applied."""
     reached = mesh.copy()
     for operation, h in operations:
         reached.apply(operation, h)
@@ -69,10 +69,10 @@ def coarsen(
     floor: int = 1,
     cancelled: Callable[[], bool] | None = None,
 ) -> Operations:
-    """Operations from a quad mesh, which is not changed, to one with s no higher that is drawn
-    better, or as well with fewer elements; none for triangles, and where nothing is found.
+    """Operations that lead from a quad mesh to a coarser one with s no higher and no more flaws.
 
-    Stops after `seconds` or `proposals` (None: no such limit). floor: elements to be left at least.
+    `mesh` is not changed. Returns [] for triangles, and if nothing better is found. Stops after
+    `seconds` or `proposals` (None: no such limit). floor: least number of elements.
     """
     began = time.perf_counter()
     if mesh.kind != "quad":
@@ -85,13 +85,13 @@ def coarsen(
         if cancelled is not None and cancelled():
             break
         before = coarser.proposals
-        coarser.look(min(left, SLICE))
+        coarser.advance(min(left, SLICE))
         left -= coarser.proposals - before
     return coarser.operations
 
 
 class _Coarser:
-    """One coarsening: an annealer whose discoveries are test-drawn before they count."""
+    """An annealer whose improvements are accepted only after they have been tested for flaws."""
 
     def __init__(self, mesh: HalfEdgeMesh, seed: int, floor: int) -> None:
         self._mesh, self._floor = mesh, floor
@@ -106,7 +106,7 @@ class _Coarser:
         self._keep()
 
     def _flaws_of(self, operations: Operations) -> int:
-        """Obstacles, and elements that stay inverted; not drawn if the former are too many."""
+        """Obstacles, plus elements inverted after smoothing unless the former are too many."""
         if self._mesh.n_elements > DRAWN:
             return 0
         reached = replayed(self._mesh, operations)
@@ -118,32 +118,32 @@ class _Coarser:
     def _keep(self) -> None:
         self._kept = MeshArrays(*(array.copy() for array in self._annealer.best))
         if self._flaws:
-            # any state with s as low is worth a look
+            # with flaws, any state with s as low may be better
             self._annealer.state[BEST_ELEMENTS] = self._annealer.ceiling + 1
         self._kept_state = self._annealer.state.copy()
 
     @property
     def proposals(self) -> int:
-        """How many have been made."""
+        """Number of proposals so far."""
         return int(self._annealer.state[PROPOSALS])
 
-    def look(self, proposals: int) -> None:
-        """Make so many proposals, or fewer if something coarser comes up; draw that."""
+    def advance(self, proposals: int) -> None:
+        """Make up to `proposals` proposals, stopping at a coarser state, and test that."""
         found = self._annealer.run(proposals)
         if found and not self._accept():
-            self._go_back()
-            # on from there for a while without a look: what comes next is much the same
+            self._reset_best()
+            # the next states are much like the rejected one: continue without testing them
             self._annealer.fewer = False
             self._annealer.run(APART)
             self._annealer.fewer = True
         if not found or self._annealer.rng.random() < AFRESH:
-            # not always as far as it goes: the coarsest states can often not be drawn
+            # the coarsest states often have flaws, so the floor of a sweep is random
             most = max(self._floor + 1, int(self._kept.counters[ELEMENTS]))
             self._annealer.floor = int(self._annealer.rng.integers(self._floor, most))
             self._annealer.restart()
 
     def _accept(self) -> bool:
-        """Whether the state just found is new, and drawn as well as the one kept."""
+        """Accept the annealer's best state if it is new and no worse than the one kept."""
         best = self._annealer.best
         slots = 4 * int(best.counters[ELEMENT_SLOTS])
         key = best.edge[:slots, 0].tobytes()
@@ -160,8 +160,8 @@ class _Coarser:
         self._keep()
         return True
 
-    def _go_back(self) -> None:
-        """Let the state kept be the best again; the sweep goes on from where it is."""
+    def _reset_best(self) -> None:
+        """Reset the annealer's best state to the one kept; the sweep continues where it is."""
         copy_mesh(self._kept, self._annealer.best)
         for row in (BEST_LENGTH, BEST_SCORE, BEST_ELEMENTS):
             self._annealer.state[row] = self._kept_state[row]

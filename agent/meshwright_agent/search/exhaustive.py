@@ -1,10 +1,10 @@
-"""The fewest operations that lead from a mesh to a goal, by looking at every way.
+"""The fewest operations from a mesh to a goal, by exhaustive iterative deepening.
 
-Depth by depth, all sequences of the paper's operations (and collapses of boundary edges) are tried,
-whatever they do to the score on the way. A state that has been met with as many operations left is
-not looked at again; states count as the same if the same named vertices are joined, a vertex being
-named after the operation that made it. The last operation is judged by its exact change of s. So
-the answer for a depth is a proof, but for a clash of 64-bit sums.
+For each length all sequences of the paper's operations, and of collapses of boundary edges, are
+tried, whatever they do to s on the way. A state that was reached before with as many operations
+left is skipped; two states are the same if the same named vertices are joined, where a vertex is
+named after the operation that created it. The last operation is judged by its exact change of s.
+The result for a length is a proof, except for collisions of 64-bit hashes.
 """
 
 from __future__ import annotations
@@ -44,30 +44,28 @@ from meshwright_core.operations.catalogue import (
 )
 from meshwright_core.operations.refusals import ALLOWED
 
-Found = list[tuple[Operation, int]]
-
 KEPT = 64
-"""Shortest sequences that are kept, to choose one that can be drawn."""
+"""Largest number of shortest sequences that are returned, to choose one that can be drawn."""
 DEEPEST = 12
+"""Default for the largest number of operations."""
 PER_OPERATION = 4
-"""Irregular vertices that one operation mends at most: a flip changes four degrees, a collapse
-makes three vertices of four, all others change fewer.
-"""
+"""Largest decrease of the number of irregular vertices by one operation: a flip changes four
+degrees, a collapse replaces four vertices by three, all others change fewer."""
 _ROOM = 64
-"""Times the room of the mesh: no sequence that is looked at makes more."""
-_EXHAUSTED, _FULL, _SPENT, _CRAMPED = 0, 1, 2, 3
+"""Slots reserved, relative to the size of the mesh: no sequence that is tried needs more."""
+_EXHAUSTED, _FULL, _NODES_USED, _NO_SLOTS = 0, 1, 2, 3
 
 
 @dataclass(frozen=True)
-class Answer:
-    """What a search has shown."""
+class FewestResult:
+    """The result of an exhaustive search."""
 
     sequences: tuple[tuple[tuple[Operation, int], ...], ...]
-    """Some of the shortest sequences; none where none was found."""
+    """Some of the shortest sequences; empty if none was found."""
     proved: int
-    """No sequence of so many operations reaches the goal."""
+    """It is proved that no sequence of up to so many operations reaches the goal."""
     nodes: int
-    """States that were looked at."""
+    """Number of states that were visited."""
 
 
 def fewest(
@@ -77,27 +75,33 @@ def fewest(
     deepest: int = DEEPEST,
     nodes: int = 20_000_000,
     slots: int = 1 << 24,
-) -> Answer:
-    """The shortest ways from ``mesh``, which is not changed, to s <= ``goal``.
+) -> FewestResult:
+    """The shortest sequences of operations from ``mesh``, which is not changed, to s <= ``goal``.
 
-    ``most``: elements that the mesh may have then, 0 for any number. The search ends, without an
-    answer, beyond ``deepest`` operations or ``nodes`` states; ``slots`` of 9 bytes
-    remember states.
+    Args:
+        mesh: the start.
+        goal: s to be reached.
+        most: largest number of elements at the goal, 0 for any.
+        deepest: largest number of operations; beyond it the search ends without a result.
+        nodes: largest number of states, likewise.
+        slots: size of the table of visited states, a power of two; 9 bytes each.
+
+    Raises RuntimeError if the reserved slots of the mesh do not suffice.
     """
     if mesh.score <= goal and (not most or mesh.n_elements <= most):
-        return Answer(((),), 0, 0)
+        return FewestResult(((),), 0, 0)
     seen = 0
     for depth in range(1, deepest + 1):
         search = _Search(mesh, goal, most, depth, slots)
         ended = search.run(nodes - seen)
         seen += search.nodes
-        if search.sequences or ended == _SPENT:
-            return Answer(search.sequences, depth - 1, seen)
-    return Answer((), deepest, seen)
+        if search.sequences or ended == _NODES_USED:
+            return FewestResult(search.sequences, depth - 1, seen)
+    return FewestResult((), deepest, seen)
 
 
 class _Search:
-    """All sequences of one length."""
+    """The search through all sequences of one length."""
 
     def __init__(self, mesh: HalfEdgeMesh, goal: int, most: int, depth: int, slots: int) -> None:
         self._mesh, self._goal, self._most, self._depth = mesh, goal, most, depth
@@ -106,7 +110,7 @@ class _Search:
         self.sequences: tuple[tuple[tuple[Operation, int], ...], ...] = ()
 
     def run(self, nodes: int) -> int:
-        """Look at up to so many states; how it ended."""
+        """Visit up to `nodes` states; returns the code with which the kernel ended."""
         work = self._mesh.copy()
         room = _ROOM * (work.n_elements + 16)
         work.room_for(room, room)
@@ -125,8 +129,8 @@ class _Search:
                 np.zeros(self._slots, np.uint64), np.zeros(self._slots, np.int8), ways, told,
             )
         )  # fmt: skip
-        if ended == _CRAMPED:
-            raise RuntimeError("the search has outgrown its room")
+        if ended == _NO_SLOTS:
+            raise RuntimeError("the search needs more slots than it has reserved")
         self.nodes = int(told[1])
         self.sequences = tuple(
             tuple((NAMES[int(code)], int(h)) for code, h in way) for way in ways[: told[0]]
@@ -135,13 +139,13 @@ class _Search:
 
 
 def _first_names(count: int) -> np.ndarray:
-    """(count,) uint64 numbers without order, one for each vertex slot."""
+    """(count,) uint64 random names, one for each vertex slot."""
     return np.random.default_rng(7).integers(1, 1 << 63, count).astype(np.uint64)
 
 
 @bare_kernel
 def _mixed(x, y):
-    """One 64-bit number of two, in this order."""
+    """A 64-bit hash of an ordered pair."""
     z = (x ^ (x >> np.uint64(29))) * np.uint64(0x9E3779B97F4A7C15)
     z = (z ^ (z >> np.uint64(32))) + y * np.uint64(0xBF58476D1CE4E5B9)
     z = (z ^ (z >> np.uint64(31))) * np.uint64(0x94D049BB133111EB)
@@ -150,7 +154,7 @@ def _mixed(x, y):
 
 @bare_kernel
 def _state(m, names, k):
-    """A sum over all half-edges of their named ends: the same for the same connectivity."""
+    """A hash of the connectivity: the sum over all half-edges of the hash of their ends' names."""
     total = np.uint64(0)
     for h in range(k * m.counters[ELEMENT_SLOTS]):
         if m.edge[h, ORIGIN] >= 0:
@@ -159,8 +163,8 @@ def _state(m, names, k):
 
 
 @bare_kernel
-def _christen(m, names, base, ids, former):
-    """Name the vertices that the last operation has made; returns how many there are."""
+def _name_created(m, names, base, ids, former):
+    """Name the vertices that the last operation created; returns their number."""
     made = m.trace[NEW_COUNT]
     for i in range(made):
         v = m.trace[TRACE_IDS + i]
@@ -171,7 +175,7 @@ def _christen(m, names, base, ids, former):
 
 @bare_kernel
 def _same_as_other(m, code, h, k):
-    """Whether the operation does what it does on a half-edge that comes before this one."""
+    """Whether the operation has the same result at a half-edge with a lower number."""
     twin = m.edge[h, TWIN]
     if code <= TRI_COLLAPSE or code == FLIP_LEFT or code == FLIP_RIGHT or code == CLEANUP:
         return 0 <= twin < h
@@ -182,7 +186,7 @@ def _same_as_other(m, code, h, k):
 
 @bare_kernel
 def _base(m, names, code, h, k):
-    """A name for what the operation makes; for triangles it is the same from both sides."""
+    """A name for the result of the operation; for triangles it is the same at the twin."""
     a, b = names[m.edge[h, ORIGIN]], names[m.edge[following(h, k), ORIGIN]]
     if k == 3 and a > b:
         a, b = b, a
@@ -191,7 +195,7 @@ def _base(m, names, code, h, k):
 
 @bare_kernel
 def _met(keys, left, key, remaining):
-    """Whether the state was met with as many operations left; it is remembered with these."""
+    """Whether the state was reached before with as many operations left; if not, it is recorded."""
     mask = np.uint64(len(keys) - 1)
     place = key & mask
     for _ in range(64):
@@ -214,8 +218,8 @@ def _reached(m, goal, most):
 
 
 @bare_kernel
-def _promises(m, code, h, goal, most):
-    """False if this operation cannot be the last one, allowed or not."""
+def _can_be_last(m, code, h, goal, most):
+    """False if the goal is out of reach with this as the last operation, allowed or not."""
     if code == CLEANUP:
         return most > 0 and m.counters[SCORE] <= goal
     if m.edge[h, TWIN] < 0 and code != TRI_SPLIT and code != TRI_COLLAPSE and code != QUAD_COLLAPSE:
@@ -225,7 +229,7 @@ def _promises(m, code, h, goal, most):
 
 @bare_kernel
 def _last(m, code, h, goal, most):
-    """Whether this allowed operation reaches the goal; for those that :func:`_promises` says."""
+    """Whether this operation, which must be allowed, leads to the goal."""
     rewrite(m, code, h)
     reached = _reached(m, goal, most)
     undo(m)
@@ -236,7 +240,7 @@ def _last(m, code, h, goal, most):
 def _explore(
     m, names, depth, goal, most, nodes, stack, ids, former, keys, left, ways, told
 ):  # fmt: skip
-    """Try all sequences of `depth` operations that no shorter one makes superfluous.
+    """Try all sequences of `depth` operations, skipping states that were reached before.
 
     stack (depth + 1, 2): the place in the list of candidates, and the number of vertices made;
     ids, former: of those vertices, their former names. told: sequences found, states looked at.
@@ -258,12 +262,12 @@ def _explore(
         stack[level, 0] = at + 1
         if m.edge[h, ORIGIN] < 0 or _same_as_other(m, code, h, k):
             continue
-        if level == depth - 1 and not _promises(m, code, h, goal, most):
+        if level == depth - 1 and not _can_be_last(m, code, h, goal, most):
             continue
         verdict = check(m, code, h, 0)
         if verdict != ALLOWED:
             if verdict == 99:
-                return _CRAMPED
+                return _NO_SLOTS
             continue
         ways[told[0], level, 0], ways[told[0], level, 1] = code, h
         if level == depth - 1:
@@ -278,17 +282,17 @@ def _explore(
             continue
         base = _base(m, names, code, h, k)
         rewrite(m, code, h)
-        made = _christen(m, names, base, ids[level], former[level])
+        made = _name_created(m, names, base, ids[level], former[level])
         remaining = depth - 1 - level
-        hopeless = m.counters[IRREGULAR] - goal > PER_OPERATION * remaining
-        if hopeless or _met(keys, left, _state(m, names, k), remaining):
+        unreachable = m.counters[IRREGULAR] - goal > PER_OPERATION * remaining
+        if unreachable or _met(keys, left, _state(m, names, k), remaining):
             undo(m)
             for i in range(made - 1, -1, -1):
                 names[ids[level, i]] = former[level, i]
             continue
         told[1] += 1
         if told[1] > nodes:
-            return _SPENT
+            return _NODES_USED
         stack[level, 1] = made
         level += 1
         stack[level, 0] = 0

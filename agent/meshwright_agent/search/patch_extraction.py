@@ -1,10 +1,10 @@
-"""Cutting patches out of a large mesh, to be worked on as meshes of their own, and the way back.
+"""Extracting patches of a large mesh as separate meshes, and applying their operations to it.
 
-A patch is a set of elements that hang together, without a pinched vertex. Patches that are worked
-on at the same time share no vertex. In its own mesh every vertex of a patch has the Delta that it
-has in the large one, so that s changes by the same amounts; the vertices of the rim along which it
-was cut are locked. Half-edge j of element i of the patch is half-edge j of the i-th element that
-was cut out, and stays so when operations take and free elements in step.
+A patch is a connected set of elements without a pinched vertex. Patches that are edited at the same
+time share no vertex. Each vertex of a patch has the same Delta as in the large mesh, so an
+operation changes s by the same amount in both; vertices on the rim, where the patch was cut, are
+locked. Half-edge j of element i of a patch corresponds to half-edge j of the i-th extracted
+element. The correspondence is kept up when operations create and delete elements in both meshes.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from meshwright_core.operations.catalogue import check, rewrite, score_change
 from meshwright_core.operations.refusals import ALLOWED
 
 MOST_TAKEN = 2
-"""Element slots that one local operation takes, at most."""
+"""Largest number of element slots that a local operation takes."""
 
 
 @bare_kernel
@@ -83,8 +83,9 @@ def _is_free(m, a, e, k, number):
 
 @bare_kernel
 def _take(m, a, e, k, number, found, count):
-    """Take element e into the patch, if there is room and no other patch in the way: returns the
-    new count, or -1.
+    """Add element e to the patch; returns the new count.
+
+    -1 if `found` is full or another patch has a vertex of e.
     """
     if a.place[e]:
         return count
@@ -99,7 +100,7 @@ def _take(m, a, e, k, number, found, count):
 
 @bare_kernel
 def _take_star(m, a, v, k, number, found, count):
-    """Take all elements at v; returns the new count, and whether all could be had."""
+    """Add all elements at v; returns the new count, and whether all could be added."""
     start = m.vertex[v, HALF]
     h = start
     for _ in range(m.vertex[v, DEGREE]):
@@ -115,7 +116,7 @@ def _take_star(m, a, v, k, number, found, count):
 
 @bare_kernel
 def _pinched(m, a, v, k):
-    """Whether the patch's elements at v do not hang together there."""
+    """Whether the patch is pinched at v: its elements at v are not connected by shared edges."""
     gaps = 0
     start = m.vertex[v, HALF]
     h = start
@@ -131,8 +132,9 @@ def _pinched(m, a, v, k):
 
 @bare_kernel
 def _grow(m, a, v, k, size, number, found):
-    """Elements around v, nearest first, some `size` of them, then all those at pinched vertices;
-    returns their number, 0 if another patch is in the way.
+    """Grow a patch of about `size` elements around v, then add all elements at pinched vertices.
+
+    Returns the number of elements, 0 if another patch is in the way.
     """
     if a.owner[v] != 0:
         return 0
@@ -144,7 +146,7 @@ def _grow(m, a, v, k, size, number, found):
             if t >= 0 and count < size:
                 count = max(count, _take(m, a, t // k, k, number, found, count))
         at += 1
-    # what is taken here comes last in the list, and so is looked at too
+    # elements added here are appended to the list, so they are checked too
     at = 0
     while whole and at < count:
         for h in range(found[at] * k, found[at] * k + k):
@@ -210,7 +212,7 @@ def cut_out(m, a, k, found, whole_rim, out, ids):
 
 @bare_kernel
 def _copy_vertex(m, v, out, w):
-    """Give vertex w of the patch, whose degree is known, the place and the Delta of v."""
+    """Give vertex w of the patch, whose degree is known, the position and the Delta of v."""
     for axis in range(3):
         out.points[w, axis] = m.points[v, axis]
     delta = m.vertex[v, DEGREE] - m.vertex[v, DESIRED]
@@ -226,8 +228,9 @@ def _copy_vertex(m, v, out, w):
 
 @kernel
 def mask_rim(patches, chosen, mask):
-    """Forbid all operations on edges of the rim of triangle patches: in the large mesh such an edge
-    has another triangle. mask (B, K, A) for the candidates `chosen` (B, K) of B patches.
+    """Forbid operations on the rim of triangle patches, whose edges are not boundary in the mesh.
+
+    mask (B, K, A) bool: the action mask for the candidates `chosen` (B, K) of B patches.
     """
     for b in range(len(chosen)):
         m = member(patches, b)
@@ -242,7 +245,7 @@ def mask_rim(patches, chosen, mask):
 
 @bare_kernel
 def _coming(m, k, slots):
-    """The element slots (N,) that will be taken next."""
+    """Write the element slots that operations will take next into `slots` (N,)."""
     e, unused = m.counters[FREE_ELEMENT], m.counters[ELEMENT_SLOTS]
     for i in range(len(slots)):
         if e >= 0:
@@ -255,7 +258,7 @@ def _coming(m, k, slots):
 
 @bare_kernel
 def _put_back(m, patch, k, cap, elements, operations, halfedges, slots, done, done_at):
-    """Do on the large mesh what was done on a patch; see :func:`put_back`."""
+    """Apply the operations of one patch to the large mesh; see :func:`put_back`."""
     counters = m.counters
     counters[JOURNALLING] = 1
     counters[JOURNAL_TOP] = counters[STEP] = counters[STEP_END] = 0

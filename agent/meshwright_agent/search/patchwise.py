@@ -1,14 +1,13 @@
-"""Meshes of any size: many disjoint patches, each a small mesh of its own, decided in one batch.
+"""Improving meshes of any size: disjoint patches around irregular vertices, decided in one batch.
 
-A large mesh is repaired where it is irregular. First a compiled descent does whatever lowers s by
-itself. Then patches of some 128 elements are cut out around irregular vertices, 64 at a time, and
-the policy plays on all of them side by side, as it does on polygons; of each patch the operations
-up to its best state are done on the large mesh, so that s never rises. A patch that did not get
-better is looked at again later, within a larger one, and in the end left alone. So the time is
-proportional to what there is to repair, a decision costs the same at any size, and the memory that
-it takes is that of the patches.
+First, greedy descent applies every operation that lowers s by itself. Then patches of about 128
+elements are extracted around irregular vertices, 64 at a time, and the policy plays an episode on
+each in parallel; the operations up to the best state of each patch are applied to the large mesh,
+so s never rises. A patch without improvement is tried again later with more elements, and finally
+given up. The time is therefore proportional to the number of irregular vertices, and the cost of a
+decision does not depend on the size of the mesh.
 
-Operations stay inside their patch: global splits, whose cuts would run on through others, and
+Operations must stay inside their patch. Global splits, which would continue through others, and
 clean-ups, which do not change s, are left to solvers of the whole mesh.
 """
 
@@ -47,35 +46,34 @@ from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 
 LARGE, MANY = 5_000, 500
-"""Elements of a large mesh; irregular vertices that make a mesh large, whatever its elements."""
+"""Elements above which a mesh counts as large, and irregular vertices above which any mesh does."""
 PATCHES = 64
-"""Patches that are worked on side by side."""
+"""Patches in a round."""
 SMALLEST, LARGEST = 128, 512
-"""Elements of a patch at the first visit, and when it has been doubled as often as it may."""
+"""Elements of a patch at the first visit, and at most; each visit without success doubles them."""
 VISITS = 2
-"""Visits in vain after which an irregular vertex is left alone."""
+"""Visits without improvement after which an irregular vertex is given up."""
 PATIENCE = 25
-"""Decisions that a patch may take without getting better than its best state."""
+"""Decisions without improvement after which the episode on a patch ends."""
 CANDIDATES = 12
-"""Half-edges that one decision chooses among; with more a decision costs more and gains nothing."""
+"""Candidates of a decision on a patch; more make it slower, but not better."""
 CEILING = 1.1
-"""Elements that a patch may reach, relative to its start."""
-_FOUND = 1024  # elements of the largest patch when its pinched vertices are filled up
-_LOOKS = 10_000  # vertices that the descent looks at between two questions whether to go on
-_ENTRIES = 100  # journal entries of a local operation, at most
-_SPARE = 4 * PATCHES * LARGEST  # slots that are free before a round of patches is put back
+"""Largest number of elements of a patch, relative to its start."""
+_FOUND = 1024  # largest number of elements of a patch, with those at pinched vertices
+_LOOKS = 10_000  # vertices that the descent processes between two checks of the time
+_ENTRIES = 100  # largest number of journal entries of a local operation
+_SPARE = 4 * PATCHES * LARGEST  # free slots before the operations of a round are applied
 
 
 @dataclass
 class LargeRun:
-    """What :func:`improve_large` did."""
+    """The result of :func:`improve_large`."""
 
     mesh: HalfEdgeMesh
     """The result; without history."""
     operations: np.ndarray
-    """(N,) codes of :mod:`meshwright_core.operations.catalogue`, which replay in this order on the
-    mesh given.
-    """
+    """(N,) codes of :mod:`meshwright_core.operations.catalogue`; they can be replayed in this order
+    on the given mesh."""
     halfedges: np.ndarray
     """(N,) the half-edge of each."""
     score: int
@@ -85,14 +83,14 @@ class LargeRun:
     """Irregular vertices at the start."""
     start_elements: int
     descent: int = 0
-    """How many of the operations the descent did, first."""
+    """Number of operations of the descent; they come first."""
     decisions: int = 0
-    """Of the policy."""
+    """Number of decisions of the policy."""
     patches: int = 0
-    """Patches that were played on."""
+    """Number of patches on which the policy played."""
     seconds: float = 0.0
     reason: str = ""
-    """Why it ended, in words."""
+    """Why the search ended, in words."""
 
     @property
     def irregular(self) -> int:
@@ -101,19 +99,19 @@ class LargeRun:
 
     @property
     def removed(self) -> float:
-        """Share of the irregular vertices that are gone."""
+        """Share of the irregular vertices that were removed."""
         return 1.0 - self.irregular / self.start_irregular if self.start_irregular else 0.0
 
     def steps(self) -> list[tuple[Operation, int]]:
-        """Operations and half-edges as the searches give them."""
+        """The operations with their half-edges, in the format of the other searches."""
         pairs = zip(self.operations.tolist(), self.halfedges.tolist(), strict=True)
         return [(NAMES[code], h) for code, h in pairs]
 
 
 def is_large(mesh: HalfEdgeMesh) -> bool:
-    """Whether a mesh is better repaired patch by patch, first, than as a whole.
+    """Whether a mesh should first be improved patch by patch.
 
-    Not where a decision can look at all irregular vertices anyway, at any size.
+    Never if it has so few irregular vertices that each decision considers all of them.
     """
     return mesh.irregular_count > (LOOKED_AT if mesh.n_elements > LARGE else MANY)
 
@@ -130,13 +128,23 @@ def improve_large(
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> LargeRun:
-    """Repair a mesh of any size, which is not changed; s of the result is never higher.
+    """Improve a mesh of any size, which is not changed; s of the result is never higher.
 
-    Ends when nothing is left that is worth a visit, after `seconds`, after `max_steps` decisions of
-    the policy, or when `cancelled()` says so, and then keeps what it has.
-    `progress(operations, s)` is called now and then. within (N,): ids of the only elements that may
-    change; their rim must be locked. floor: elements that each patch keeps, relative to its start,
-    where the policy asks for less. Raises PolicyError if the policy is for the other kind of mesh.
+    Ends at the optimum, when all irregular vertices are removed or given up, after `seconds`, after
+    `max_steps` decisions of the policy, or when `cancelled()` is true.
+
+    Args:
+        mesh: the start.
+        policy: for meshes of the same kind, else PolicyError is raised.
+        seconds: time limit.
+        max_steps: largest number of decisions of the policy.
+        seed: of the random choices.
+        within: (N,) ids of the only elements that may change; the vertices on their rim must be
+            locked.
+        floor: least number of elements of each patch, relative to its start; that of the policy's
+            task is used if it is larger.
+        progress: called with (number of operations, s) after each round.
+        cancelled: polled now and then.
     """
     require_kind(policy, mesh.kind)
     began = time.perf_counter()
@@ -150,9 +158,9 @@ def improve_large(
         if cancelled is not None and cancelled():
             return "cancelled"
         if seconds is not None and time.perf_counter() - began > seconds:
-            return f"its {seconds:g} seconds are used up"
+            return f"all {seconds:g} seconds are used"
         if max_steps is not None and work.decisions >= max_steps:
-            return f"its {max_steps} decisions are used up"
+            return f"all {max_steps} decisions are used"
         return ""
 
     reason = work.descend(stop) if within is None else stop()
@@ -161,7 +169,7 @@ def improve_large(
         progress(work.count, work.mesh.score)
     while not reason:
         if not work.play_round(stop):
-            reason = "nothing is left that is worth another visit"
+            reason = "all irregular vertices are removed or given up"
         if progress is not None:
             progress(work.count, work.mesh.score)
         reason = stop() or reason
@@ -188,23 +196,24 @@ class _Patch:
     """One patch of a round."""
 
     elements: np.ndarray
-    """(N,) of the large mesh."""
+    """(N,) ids in the large mesh."""
     vertices: np.ndarray
-    """(M,) of the large mesh."""
+    """(M,) ids in the large mesh."""
     irregular: np.ndarray
-    """Those that were irregular."""
+    """Those of the vertices that were irregular."""
     mesh: HalfEdgeMesh
 
     @property
-    def hopeless(self) -> bool:
-        """Whether nothing can be gained: Delta has one sign only."""
+    def at_optimum(self) -> bool:
+        """Whether nothing can be gained, since all Delta have the same sign (section 4.1)."""
         return self.mesh.score == self.mesh.optimum
 
 
 @dataclass
 class _Played:
-    """Operations (T, B) and half-edges (T, B) of a round, and how many lead each patch to its best
-    state.
+    """The operations (T, B) and half-edges (T, B) of a round of B patches.
+
+    counts (B,): how many of them lead each patch to its best state.
     """
 
     operations: list[np.ndarray] = field(default_factory=list)
@@ -213,7 +222,7 @@ class _Played:
 
 
 class _Work:
-    """A copy of the mesh and everything that is known of it while it is repaired."""
+    """The state of an improvement: a copy of the mesh, the agenda and the operations so far."""
 
     def __init__(self, mesh: HalfEdgeMesh, policy: Policy, seed: int, floor: float = 0.0) -> None:
         self.policy, self.task = policy, policy.task
@@ -238,23 +247,23 @@ class _Work:
         enlist(self.agenda, self.rng.permutation(arrays.irregular[: self.mesh.irregular_count]))
 
     def _longest(self) -> int:
-        """Steps that a patch can take at most."""
+        """Largest number of steps on a patch."""
         return self.task.step_limit(_FOUND)
 
     @property
     def _local(self) -> tuple[int, int]:
-        """Code of the first operation and the number of those that stay local."""
+        """Code of the first operation, and the number of local operations."""
         return self.task.first_operation, 3 if self.mesh.k == 3 else 4
 
     def _patch_task(self) -> Task:
-        """The policy's task, as it is played on a patch."""
+        """The policy's task with the settings for patches."""
         candidates = min(CANDIDATES, self.task.candidates)
         return replace(
             self.task, candidates=candidates, element_floor=self._floor, element_ceiling=CEILING
         )
 
     def _make_room(self) -> None:
-        """Have slots enough for a round of operations, and an agenda of the same size."""
+        """Reserve slots for a round of operations, and enlarge the agenda to the same size."""
         mesh = self.mesh
         slots = max(mesh.slots, int(mesh.arrays.counters[1]))
         if min(len(mesh.arrays.vertex), len(mesh.arrays.element_mark)) < slots + _SPARE // 2:
@@ -264,9 +273,9 @@ class _Work:
             self.agenda = enlarged(self.agenda, *sizes)
 
     def confine(self, elements: np.ndarray) -> None:
-        """Leave alone all but `elements` (N,): the others belong to a patch that never ends.
+        """Restrict patches to `elements` (N,) by giving the other vertices to a patch -1.
 
-        The descent, which looks around vertices and not within patches, must not be used then.
+        The descent does not respect patches and must not be used after this.
         """
         mesh, k = self.mesh, self.mesh.k
         inside = (k * elements[:, None] + np.arange(k)).ravel()
@@ -284,12 +293,12 @@ class _Work:
         return np.concatenate(self._operations or empty), np.concatenate(self._halfedges or empty)
 
     def result(self) -> HalfEdgeMesh:
-        """The mesh as it is, to be changed further by whoever gets it."""
+        """The mesh in its current state, with its journal switched on again."""
         self.mesh.arrays.counters[JOURNALLING] = 1
         return self.mesh
 
     def descend(self, stop: Callable[[], str]) -> str:
-        """Do what lowers s by itself; returns why it was stopped, empty if it came to its end."""
+        """Greedy descent; returns why it was stopped, empty if it was completed."""
         task = self.task
         buffers = np.zeros((2, _LOOKS), np.int64)
         reason = stop()
@@ -307,17 +316,17 @@ class _Work:
         return reason
 
     def play_round(self, stop: Callable[[], str]) -> bool:
-        """Play on as many patches as there are side by side; False when there are none left."""
+        """Play one episode on up to PATCHES patches in parallel; False if there are none left."""
         self._make_room()
-        patches, hopeless = self._pick()
+        patches, skipped = self._pick()
         if patches:
             self._put_back(patches, self._play([patch.mesh for patch in patches], stop))
-        return bool(patches) or hopeless > 0
+        return bool(patches) or skipped > 0
 
     def _pick(self) -> tuple[list[_Patch], int]:
-        """Patches for one round, and how many were not worth playing."""
+        """Patches for one round, and how many were skipped because they are at the optimum."""
         patches: list[_Patch] = []
-        hopeless = 0
+        skipped = 0
         tries = int(self.agenda.state[FILL])
         while len(patches) < PATCHES:
             count, tries, _ = next_patch(
@@ -327,12 +336,12 @@ class _Work:
             if count == 0:
                 break
             patch = self._cut_out(self._found[:count].copy())
-            if patch.hopeless:
-                hopeless += 1
+            if patch.at_optimum:
+                skipped += 1
                 self._settle(patch, patch.elements, False)
             else:
                 patches.append(patch)
-        return patches, hopeless
+        return patches, skipped
 
     def _cut_out(self, elements: np.ndarray) -> _Patch:
         k = self.mesh.k
@@ -347,14 +356,14 @@ class _Work:
         settle(arrays, self.agenda, k, patch.vertices, elements, better, patch.irregular)
 
     def _play(self, meshes: list[HalfEdgeMesh], stop: Callable[[], str]) -> tuple[Batch, _Played]:
-        """Let the policy play on all patches until each is done or has lost patience."""
+        """Play an episode on each patch, which ends early after PATIENCE steps without progress."""
         task = self._patch_task()
         batch = Batch(task, meshes, len(meshes), self.rng, endless=False)
         played = _Played()
         while batch.active.any() and not stop():
             seen = batch.observe()
             if task.kind == "quad":
-                seen.mask[:, :, -1] = False  # a global split does not end at the rim
+                seen.mask[:, :, -1] = False  # a global split would continue beyond the rim
             else:
                 mask_rim(batch.meshes, seen.chosen, seen.mask)
             actions = decide(self.policy.network, seen, self.generator)[0]
@@ -369,7 +378,7 @@ class _Work:
         return batch, played
 
     def _put_back(self, patches: list[_Patch], played: tuple[Batch, _Played]) -> None:
-        """Do on the large mesh what led each patch to its best state."""
+        """Apply the operations up to the best state of each patch to the large mesh."""
         batch, record = played
         elements = np.full((len(patches), batch.pool.element_mark.shape[1]), -1, np.int64)
         for row, patch in zip(elements, patches, strict=True):

@@ -1,8 +1,9 @@
-"""Search in a part of a mesh: what is outside keeps its connectivity, and the rim its vertices.
+"""Search in a region of a mesh; the connectivity outside and the vertices on the rim do not change.
 
-The part is cut out as a mesh of its own in which the rim is locked and every vertex has the Delta
-that it has in the whole, so that a lower s there is a lower s of the whole. What leaves the part is
-not allowed: global splits, whose cuts would run on, and splits of edges of the rim.
+The region is extracted as a separate mesh in which the rim is locked and every vertex has the same
+Delta as in the whole mesh, so that s of the region and of the mesh change by the same amount.
+Operations that would leave the region are forbidden: global splits, whose cuts would continue
+outside, and splits of edges on the rim.
 """
 
 from __future__ import annotations
@@ -40,33 +41,33 @@ from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import CODES, NAMES, Operation
 
 MANY = 128
-"""Irregular vertices above which a part is repaired patch by patch first."""
+"""Irregular vertices above which a region is first improved patch by patch."""
 SIDE_BY_SIDE = 16
-"""Rollouts that are played at the same time."""
+"""Rollouts in parallel."""
 POLISH = 0.15
-"""Share of the time that is kept for leaving out operations that are not needed."""
+"""Share of the time that is reserved for shortening the operations."""
 SHORTENING = 0.3
-"""The most seconds of that where only a number of rollouts is asked for."""
+"""Time limit for shortening, in seconds, if only a number of rollouts is given."""
 KEEP, GROW = 0.75, 1.5
-"""Elements that a part keeps at least, and has at most, relative to its start: the rim holds the
-sizes of the elements along it, and much larger ones cannot be drawn beside them."""
+"""Least and largest number of elements of a region, relative to its start: the rim fixes the size
+of the elements along it, and much larger ones beside them cannot be drawn."""
 FLAW = 2
-"""What an element costs that stays inverted when the part is smoothed, in units of s."""
+"""Cost, in units of s, of an element that stays inverted when the region is smoothed."""
 DRAWN = 4
-"""States of a round that are drawn, at most, where several are equally good."""
+"""Largest number of states of a round that are smoothed and tested for inverted elements."""
 
 
 @dataclass
-class Confined:
-    """The best that was found for a part of a mesh."""
+class RegionSolution:
+    """The best result found for a region of a mesh."""
 
     operations: Operations
-    """Operations and half-edges of the whole mesh, to be applied in this order, while the vertices
-    that the part does not own are held (:func:`meshwright_core.analysis.submesh.holding`)."""
+    """Operations and half-edges of the whole mesh, to be applied in this order while the vertices
+    outside the region are held (:func:`meshwright_core.analysis.submesh.holding`)."""
     score: int
-    """s of the whole mesh after them."""
+    """s of the whole mesh after the operations."""
     optimum: int
-    """The lowest s that the whole mesh can have when only this part is changed."""
+    """Lower bound of s of the whole mesh if only the region changes."""
     rollouts: int = 0
     seconds: float = 0.0
 
@@ -81,27 +82,32 @@ def solve_within(
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
-) -> Confined:
-    """The best state found from `mesh`, which is not changed, by changing only `elements` (n,).
+) -> RegionSolution:
+    """Improve `mesh`, which is not changed, by changing only `elements`.
 
-    The best of so many rollouts of the policy, within `seconds` if given; with `seconds` alone
-    rollouts, and for quads annealing, in turn; with neither SIDE_BY_SIDE rollouts. Better is: the
-    lower s, where an element that stays inverted when the part is smoothed counts FLAW; then fewer
-    operations. Ends early where s is proved to be as low as it can be and nothing is inverted, and
-    when `cancelled()` says so, with the best so far.
-    `progress(rollouts done, best s of the whole mesh)` is called now and then. Raises PolicyError
-    if the policy is for the other kind of mesh, MeshError if no vertex lies inside the part.
+    Better means lower s plus FLAW for each element that stays inverted when the region is smoothed,
+    then fewer operations. Ends early when the lower bound is reached without inverted elements.
+
+    Args:
+        mesh: the whole mesh.
+        policy: for meshes of the same kind, else PolicyError is raised.
+        elements: (n,) ids; MeshError is raised if no vertex lies inside this region.
+        rollouts: number of rollouts; SIDE_BY_SIDE if `seconds` is not given either.
+        seconds: time limit. Without `rollouts`, rollouts alternate with annealing (quads only).
+        seed: of the random choices.
+        progress: called with (rollouts done, lowest s of the whole mesh) now and then.
+        cancelled: polled; the search ends with the best result so far when it is true.
     """
     require_kind(policy, mesh.kind)
     prepare(policy)
     search = _Search(mesh, policy, elements, rollouts, seconds, seed, progress, cancelled)
-    search.repair()
-    search.look()
-    return search.answer()
+    search.improve_patches()
+    search.improve()
+    return search.result()
 
 
-class _Part:
-    """A part as a mesh of its own, and where its elements are in the whole."""
+class _Region:
+    """A region as a separate mesh, and the ids of its elements in the whole mesh."""
 
     def __init__(self, mesh: HalfEdgeMesh, elements: np.ndarray) -> None:
         arrays, k, count = mesh.arrays, mesh.k, len(elements)
@@ -112,10 +118,12 @@ class _Part:
         self.mesh, self.elements = HalfEdgeMesh(out, []), elements
 
     def put_back(self, whole: HalfEdgeMesh, operations: Operations) -> Operations:
-        """Do on `whole` what the operations do on the part, as far as it is the same there and up
-        to its lowest s; returns that with the half-edges of the whole.
+        """Apply operations of the region to `whole`, up to its lowest s.
+
+        Stops where one is refused there or changes s by another amount. Returns the applied
+        operations with the half-edges of the whole mesh.
         """
-        part, k = self.mesh.copy(), whole.k
+        region, k = self.mesh.copy(), whole.k
         place = dict(enumerate(self.elements.tolist()))
         trial = whole.copy()
         done: Operations = []
@@ -124,10 +132,10 @@ class _Part:
             there = place[h // k] * k + h % k
             if not trial.check(operation, there):
                 break
-            new = zip(_coming(part.arrays, k), _coming(trial.arrays, k), strict=True)
+            new = zip(_next_slots(region.arrays, k), _next_slots(trial.arrays, k), strict=True)
             place.update(new)
             changed = trial.apply(operation, there).score_change
-            if changed != part.apply(operation, h).score_change:
+            if changed != region.apply(operation, h).score_change:
                 break
             done.append((operation, there))
             if trial.score < best:
@@ -137,8 +145,8 @@ class _Part:
         return done[:kept]
 
 
-def _coming(arrays: MeshArrays, k: int) -> list[int]:
-    """The element slots that a local operation will take, in their order."""
+def _next_slots(arrays: MeshArrays, k: int) -> list[int]:
+    """The element slots that a local operation will take, in this order."""
     e, unused = int(arrays.counters[FREE_ELEMENT]), int(arrays.counters[ELEMENT_SLOTS])
     slots = []
     for _ in range(MOST_TAKEN):
@@ -152,7 +160,7 @@ def _coming(arrays: MeshArrays, k: int) -> list[int]:
 
 
 class _Search:
-    """The whole mesh as far as it is improved, the part, and the time."""
+    """The state of a search: the whole mesh, the region, the best result and the time."""
 
     def __init__(
         self,
@@ -178,13 +186,13 @@ class _Search:
         self.outside = np.setdiff1d(mesh.element_ids(), enclosure.elements, assume_unique=True)
         self._ends = self._outside_ends()
         self.operations: Operations = []
-        self.part = _Part(self.mesh, enclosure.elements)
-        self.optimum = mesh.score - self.part.mesh.score + self.part.mesh.optimum
+        self.region = _Region(self.mesh, enclosure.elements)
+        self.optimum = mesh.score - self.region.mesh.score + self.region.mesh.optimum
         self.done = 0
         self.best: Operations = []
-        self.best_score = self.part.mesh.score
+        self.best_score = self.region.mesh.score
         self.flaws = self._flaws_of([])
-        size = self.part.mesh.n_elements
+        size = self.region.mesh.n_elements
         floor = max(KEEP, self.task.element_floor)
         self.bounds = int(np.ceil(floor * size)), max(size + 8, int(GROW * size))
 
@@ -194,7 +202,7 @@ class _Search:
         return self.mesh.arrays.edge[halfedges, ORIGIN].copy()
 
     def over(self, share: float = 1.0) -> bool:
-        """Whether that share of the time is used up, or somebody said stop."""
+        """Whether this share of the time has passed, or the search was cancelled."""
         if self._cancelled is not None and self._cancelled():
             return True
         return self.seconds is not None and self._seconds() > share * self.seconds
@@ -202,31 +210,29 @@ class _Search:
     def _seconds(self) -> float:
         return time.perf_counter() - self.began
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         if self._progress is not None:
-            gained = self.part.mesh.score - self.best_score
+            gained = self.region.mesh.score - self.best_score
             self._progress(self.done, self.mesh.score - gained)
 
-    def repair(self) -> None:
-        """Where much of the part is irregular, repair it patch by patch first."""
-        if self.part.mesh.irregular_count <= MANY:
+    def improve_patches(self) -> None:
+        """If the region has many irregular vertices, improve it patch by patch first."""
+        if self.region.mesh.irregular_count <= MANY:
             return
         run = improve_large(
             self.mesh, self.policy, seconds=None if self.seconds is None else 0.6 * self.seconds,
-            seed=self.seed, cancelled=self._cancelled, within=self.part.elements, floor=KEEP,
+            seed=self.seed, cancelled=self._cancelled, within=self.region.elements, floor=KEEP,
             progress=None if self._progress is None else self._progress,
         )  # fmt: skip
         self.operations = run.steps()
         self.mesh = run.mesh
         here = np.setdiff1d(self.mesh.element_ids(), self.outside, assume_unique=True)
-        self.part = _Part(self.mesh, here)
-        self.best_score = self.part.mesh.score
+        self.region = _Region(self.mesh, here)
+        self.best_score = self.region.mesh.score
         self.flaws = self._flaws_of([])
 
-    def look(self) -> None:
-        """Rollouts, and for quads annealing, until the optimum, the end of the time or of the
-        rollouts.
-        """
+    def improve(self) -> None:
+        """Rollouts, and annealing for quads, until the optimum or the limit of time or rollouts."""
         while not self._perfect and not self.over(1.0 - POLISH):
             left = SIDE_BY_SIDE if self.wanted is None else self.wanted - self.done
             if left <= 0:
@@ -238,12 +244,12 @@ class _Search:
 
     @property
     def _perfect(self) -> bool:
-        """Whether s is as low as it can be, and nothing inverted."""
-        return self.best_score == self.part.mesh.optimum and self.flaws == 0
+        """Whether s is at its lower bound without inverted elements."""
+        return self.best_score == self.region.mesh.optimum and self.flaws == 0
 
     def _roll(self, size: int) -> None:
-        """So many rollouts side by side."""
-        task, mesh = self.task, self.part.mesh
+        """Play `size` rollouts in parallel."""
+        task, mesh = self.task, self.region.mesh
         if mesh.score == mesh.optimum:
             self.done += size
             return
@@ -256,7 +262,7 @@ class _Search:
         ):
             seen = batch.observe()
             if task.kind == "quad":
-                seen.mask[:, :, -1] = False  # a global split does not end at the rim
+                seen.mask[:, :, -1] = False  # a global split would continue beyond the rim
             else:
                 mask_rim(batch.meshes, seen.chosen, seen.mask)
             actions = decide(self.policy.network, seen, self.generator)[0]
@@ -270,12 +276,12 @@ class _Search:
                 break
             count = int(batch.best_step[at])
             codes = [int(row[at]) for row in operations[:count]]
-            self._offer(self._played(codes, [int(row[at]) for row in halfedges[:count]]))
-        self._tell()
+            self._offer(self._with_cleanups(codes, [int(row[at]) for row in halfedges[:count]]))
+        self._report()
 
-    def _played(self, codes: list[int], halfedges: list[int]) -> Operations:
-        """What a rollout did, with the clean-ups that followed by themselves."""
-        arrays = with_room(self.part.mesh, 3 * self.part.mesh.n_elements)
+    def _with_cleanups(self, codes: list[int], halfedges: list[int]) -> Operations:
+        """The operations of a rollout with the automatic clean-ups."""
+        arrays = with_room(self.region.mesh, 3 * self.region.mesh.n_elements)
         touched, cleaned = np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64)
         found: Operations = []
         for code, h in zip(codes, halfedges, strict=True):
@@ -289,7 +295,7 @@ class _Search:
         weights[CODES[4][Operation.GLOBAL_SPLIT] - CODES[4][Operation.FLIP_LEFT]] = 0.0
         floor, ceiling = self.bounds
         annealer = Annealer(
-            self.part.mesh, int(self.rng.integers(1 << 31)), weights=tuple(weights), floor=floor,
+            self.region.mesh, int(self.rng.integers(1 << 31)), weights=tuple(weights), floor=floor,
             ceiling=ceiling,
         )  # fmt: skip
         while not annealer.finished and self._seconds() < until and not self.over(1.0 - POLISH):
@@ -297,41 +303,43 @@ class _Search:
         self._offer(annealer.operations())
 
     def _offer(self, operations: Operations) -> None:
-        """Keep the state that the operations lead to, if it is better."""
-        reached = self.part.mesh.copy()
+        """Keep the result of the operations if it is better than the best so far."""
+        reached = self.region.mesh.copy()
         for operation, h in operations:
             reached.apply(operation, h)
-        # clean-ups are not asked whether they leave elements enough
+        # automatic clean-ups may go below the least number of elements
         if reached.score <= self._cost and reached.n_elements >= self.bounds[0]:
             flaws = self._flaws_of(operations)
             cost = reached.score + FLAW * flaws
             if (cost, len(operations)) < (self._cost, len(self.best)):
                 self.best, self.best_score, self.flaws = operations, reached.score, flaws
-        self._tell()
+        self._report()
 
     @property
     def _cost(self) -> int:
-        """What the best state is measured by."""
+        """The cost of the best state, which a better one must undercut."""
         return self.best_score + FLAW * self.flaws
 
     def _flaws_of(self, operations: Operations) -> int:
-        """Elements that stay inverted around the part when it is smoothed after the operations."""
+        """Inverted elements around the region when it is smoothed after the operations."""
         whole = self.mesh.copy()
-        self.part.put_back(whole, operations)
+        self.region.put_back(whole, operations)
         here = np.setdiff1d(whole.element_ids(), self.outside, assume_unique=True)
         corners = (whole.k * here[:, None] + np.arange(whole.k)).ravel()
         vertices = np.unique(whole.arrays.edge[corners, ORIGIN]).astype(np.int64)
         return len(relax(whole, vertices[~whole.locked()[vertices]]))
 
-    def answer(self) -> Confined:
-        """The best that was found, short, and on the whole mesh."""
+    def result(self) -> RegionSolution:
+        """The best operations, shortened and applied to the whole mesh."""
         left = SHORTENING if self.seconds is None else self.seconds - self._seconds()
         found = shorten(
-            self.part.mesh, self.best, seconds=max(0.0, left), cancelled=self._cancelled
+            self.region.mesh, self.best, seconds=max(0.0, left), cancelled=self._cancelled
         )
         if len(found) < len(self.best) and self._flaws_of(found) > self.flaws:
             found = self.best
-        self.operations += self.part.put_back(self.mesh, found)
+        self.operations += self.region.put_back(self.mesh, found)
         if not np.array_equal(self._ends, self._outside_ends()):
-            raise RuntimeError("a search within a region has changed what is outside")
-        return Confined(self.operations, self.mesh.score, self.optimum, self.done, self._seconds())
+            raise RuntimeError("a search within a region has changed elements outside")
+        return RegionSolution(
+            self.operations, self.mesh.score, self.optimum, self.done, self._seconds()
+        )

@@ -1,8 +1,8 @@
-"""What is left to do on a large mesh: a queue of irregular vertices, kept true by every change.
+"""A queue of the irregular vertices of a large mesh, and greedy descent along it.
 
-Nothing here looks at the whole mesh but :func:`enlist`, once at the beginning. An operation puts
-the irregular vertices that it touched back into the queue, so work is proportional to what there is
-to repair. The descent, the cheapest repair, works off the queue one vertex after another.
+The queue is filled with all irregular vertices once, at the beginning. After that each operation
+adds the irregular vertices that it touched, so the work is proportional to their number and not to
+the size of the mesh.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from meshwright_core.operations.catalogue import (
     score_change,
 )
 
-# places in Agenda.state
+# indices in Agenda.state
 HEAD, FILL = 0, 1
 
 
@@ -39,23 +39,23 @@ class Agenda(NamedTuple):
     """Arrays by vertex slot (V,) and element slot (E,) of one mesh."""
 
     queue: np.ndarray
-    """(V,) int32: a ring of vertices, each at most once."""
+    """(V,) int32: a ring buffer of vertices, each at most once."""
     queued: np.ndarray
-    """(V,) int8: whether a vertex is in the ring."""
+    """(V,) int8: 1 if a vertex is in the queue."""
     visits: np.ndarray
-    """(V,) int8: how often in a row a patch around the vertex was worked on in vain."""
+    """(V,) int8: consecutive patches around the vertex that brought no improvement."""
     owner: np.ndarray
-    """(V,) int32: the number of the patch that a vertex is being worked on in, from 1; else 0."""
+    """(V,) int32: the number of the current patch of a vertex, from 1; 0 if it is in none."""
     place: np.ndarray
     """(E,) int32: scratch, zeros between calls."""
     number: np.ndarray
     """(V,) int32: scratch, zeros between calls."""
     state: np.ndarray
-    """(2,) int64: where the ring begins, how many are in it."""
+    """(2,) int64: the index of the first vertex in the ring buffer, and their number."""
 
 
 def agenda(vertices: int, elements: int) -> Agenda:
-    """An empty agenda for a mesh with so many slots."""
+    """An empty agenda for a mesh with so many vertex and element slots."""
     return Agenda(
         np.zeros(vertices, np.int32),
         np.zeros(vertices, np.int8),
@@ -68,7 +68,7 @@ def agenda(vertices: int, elements: int) -> Agenda:
 
 
 def enlarged(old: Agenda, vertices: int, elements: int) -> Agenda:
-    """The same agenda for a mesh that has outgrown its slots."""
+    """A copy of an agenda for a mesh with more slots."""
     new = agenda(vertices, elements)
     fill = int(old.state[FILL])
     new.queue[:fill] = np.roll(old.queue, -int(old.state[HEAD]))[:fill]
@@ -80,7 +80,7 @@ def enlarged(old: Agenda, vertices: int, elements: int) -> Agenda:
 
 @bare_kernel
 def enqueue(a, v):
-    """Put v at the end of the queue unless it is there."""
+    """Append v to the queue unless it is in it."""
     if a.queued[v] == 0:
         a.queued[v] = 1
         a.queue[(a.state[HEAD] + a.state[FILL]) % len(a.queue)] = v
@@ -89,7 +89,7 @@ def enqueue(a, v):
 
 @bare_kernel
 def dequeue(a):
-    """Take the first vertex from the queue, which must not be empty."""
+    """Remove and return the first vertex of the queue, which must not be empty."""
     v = a.queue[a.state[HEAD]]
     a.state[HEAD] = (a.state[HEAD] + 1) % len(a.queue)
     a.state[FILL] -= 1
@@ -99,13 +99,13 @@ def dequeue(a):
 
 @bare_kernel
 def irregular(m, v):
-    """Whether v lives and has another degree than desired."""
+    """Whether v exists and is irregular."""
     return m.vertex[v, HALF] >= 0 and m.vertex[v, PLACE] >= 0
 
 
 @bare_kernel
 def enlist(a, vertices):
-    """Put vertices (N,) into the queue in this order."""
+    """Append vertices (N,) to the queue in this order."""
     for v in vertices:
         enqueue(a, v)
 
@@ -130,7 +130,7 @@ def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operati
         for _ in range(m.vertex[v, DEGREE]):
             for g in range(h - h % k, h - h % k + k):
                 for j in range(first, first + count):
-                    # a change is cheap to tell where the operation makes sense at all
+                    # the change is cheap to compute, but undefined without a twin
                     if m.edge[g, TWIN] < 0 and not _on_boundary_edges(j):
                         continue
                     change = score_change(m, j, g)
@@ -155,19 +155,21 @@ def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operati
 
 @bare_kernel
 def _on_boundary_edges(operation):
-    """Whether the operation has a meaning at a half-edge without twin: splits and collapses of
-    triangles, collapses of quads.
+    """Whether the operation is defined at a half-edge without twin.
+
+    These are splits and collapses of triangles, and collapses of quads.
     """
     return operation == TRI_SPLIT or operation == TRI_COLLAPSE or operation == QUAD_COLLAPSE
 
 
 @bare_kernel
 def settle(m, a, k, vertices, elements, better, seeds):
-    """Account for a patch that has been worked on.
+    """Update the agenda after an attempt to improve a patch.
 
-    vertices (N,): its vertices before, free again for other patches; elements (M,): its elements
-    now, -1 for none. If it got better, its irregular vertices are due again, with those in `seeds`;
-    if not, each of them counts one more visit in vain.
+    vertices (N,): its former vertices, which become free for other patches; elements (M,): its
+    current elements, -1 for none; seeds (L,): its former irregular vertices. If it was improved,
+    its irregular vertices are queued again; if not, the visits of `seeds` are counted up, and they
+    are queued again.
     """
     for v in vertices:
         a.owner[v] = 0

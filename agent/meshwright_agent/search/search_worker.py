@@ -1,5 +1,7 @@
-"""One thread of the solver: rollouts from the start, rollouts from the best state, and annealing
-from it, in turn. Each is given the same time, and more once it has found something better.
+"""One thread of the solver, which shares its time among three methods.
+
+These are rollouts from the start, rollouts from the best state, and annealing from the best state.
+The next turn goes to the method with the least time per improvement.
 """
 
 from __future__ import annotations

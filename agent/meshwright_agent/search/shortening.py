@@ -1,9 +1,9 @@
-"""Shorter lists of operations that end as well: loops cut out, then delta debugging.
+"""Shortening a list of operations without losing its result: loop removal, then delta debugging.
 
-A deleted operation changes the ids that later operations are given, since slots are reused. So
-every vertex gets a name of its own when it is made, and an operation is kept as its two named ends;
-in a replay it means the half-edge between the vertices of those names, and drops out where there is
-none. Clean-ups, automatic in a run of the agent, are entries like any other.
+Leaving out an operation changes the ids of elements that later ones create, since slots are reused.
+Every vertex is therefore given a unique name when it is created, and an operation is stored by the
+names of the ends of its half-edge. In a replay it is applied to the half-edge between the vertices
+with these names, and skipped if there is none. Clean-ups are entries like any other.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from meshwright_core.operations.catalogue import CODES, NAMES, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
 
 SLICE = 20_000
-"""Operations replayed between two looks at the clock."""
+"""Operations replayed between two checks of the time."""
 
 _NOWHERE = -1
 
 
 class Names(NamedTuple):
-    """Which vertex has which name now."""
+    """The current names of the vertices."""
 
     vertex_of: np.ndarray
     """(names,) int32 vertex ids, -1 for none."""
@@ -50,15 +50,15 @@ class Names(NamedTuple):
 
 
 def first_names(slots: int, capacity: int, count: int) -> Names:
-    """The names at the start: those of the first vertices are their ids."""
+    """The names at the start, where each vertex is named by its id."""
     vertex_of, name_of = np.full(count, _NOWHERE, np.int32), np.full(capacity, _NOWHERE, np.int32)
     vertex_of[:slots] = name_of[:slots] = np.arange(slots)
     return Names(vertex_of, name_of)
 
 
 @bare_kernel
-def _christen(m, vertex_of, name_of, first, count):
-    """Name the vertices that the last operation has made; those too many stay without a name."""
+def _name_created(m, vertex_of, name_of, first, count):
+    """Name the vertices that the last operation created, at most `count`."""
     made = m.trace[NEW_COUNT]
     for i in range(made):
         v = m.trace[TRACE_IDS + i]
@@ -110,7 +110,7 @@ def name_all(m, codes, halfedges, slots, cap, entries, states):
 
 @bare_kernel
 def connectivity_hash(m, k, name_of):
-    """A hash of the set of edges by the names of their ends: the same for the same connectivity."""
+    """A hash of the set of edges by the names of their ends; equal for equal connectivity."""
     total = np.uint64(0)
     for h in range(k * m.counters[ELEMENT_SLOTS]):
         if m.edge[h, ORIGIN] >= 0:
@@ -124,7 +124,7 @@ def connectivity_hash(m, k, name_of):
 
 @bare_kernel
 def named_halfedge(m, k, entry, vertex_of, name_of):
-    """The half-edge that an entry means now; -1 if there is none."""
+    """The half-edge between the vertices named by an entry; -1 if there is none."""
     a, b = vertex_of[entry[1]], vertex_of[entry[2]]
     if a < 0 or b < 0 or name_of[a] != entry[1] or name_of[b] != entry[2]:
         return -1
@@ -150,7 +150,7 @@ def replay(m, vertex_of, name_of, entries, start, stop, cap, floor, goal, most, 
         kept[i] = True
         halfedges[i] = h
         rewrite(m, entries[i, 0], h)
-        _christen(m, vertex_of, name_of, entries[i, 3], entries[i, 4])
+        _name_created(m, vertex_of, name_of, entries[i, 3], entries[i, 4])
         if m.counters[ELEMENTS] < floor:
             return -1
     return stop if m.counters[SCORE] <= goal and m.counters[ELEMENTS] <= most else -1
@@ -198,7 +198,7 @@ def debug_pass(
             progress[1] = left
             continue
         end = min(at + chunk, total)
-        # the goal and the bounds are those of the whole list, so nothing ends early here
+        # goal and bounds apply to the whole list, so they are switched off for this part
         replay(
             prefix, vertex_of, name_of, entries, at, end, cap, 0, -1, 0, kept, halfedges
         )  # fmt: skip
@@ -207,8 +207,9 @@ def debug_pass(
 
 
 def without_loops(states: np.ndarray) -> np.ndarray:
-    """Places of the operations that are left when every return to a former connectivity is cut
-    out; states: (N+1,) hashes before each operation and at the end.
+    """Indices of the operations that remain when all loops through a former state are removed.
+
+    states: (N+1,) connectivity hashes before each operation and at the end.
     """
     last = {state: i for i, state in enumerate(states.tolist())}
     kept = []
@@ -231,26 +232,27 @@ def shorten(
     seconds: float = 0.3,
     cancelled: Callable[[], bool] | None = None,
 ) -> Operations:
-    """A list, never longer, that ends with s no higher and with no more elements than `operations`
-    on `mesh`, which is not changed, and never has fewer elements on its way than they had.
+    """The same result with fewer operations, where that is possible within `seconds`.
 
-    The answer replays with :meth:`HalfEdgeMesh.apply`. Raises ValueError if `operations` do not.
+    The returned list is never longer. Applied to `mesh`, which is not changed, it ends with s no
+    higher and no more elements than `operations`, and at no step has fewer elements than the fewest
+    of theirs. Raises ValueError if `operations` cannot be applied to `mesh`.
     """
     deadline = time.perf_counter() + seconds
 
-    def late() -> bool:
+    def time_is_up() -> bool:
         return time.perf_counter() > deadline or (cancelled is not None and cancelled())
 
     if not operations:
         return []
     shortener = _Shortener(mesh, operations)
     shortener.cut_loops()
-    shortener.debug(late)
-    return shortener.answer(operations)
+    shortener.debug(time_is_up)
+    return shortener.result(operations)
 
 
 class _Shortener:
-    """The arrays of one shortening."""
+    """A list of operations that is shortened in place, with the work arrays for that."""
 
     def __init__(self, mesh: HalfEdgeMesh, operations: Operations) -> None:
         codes = CODES[mesh.k]
@@ -274,7 +276,7 @@ class _Shortener:
         self.floor = int(self.states[:, 2].min())
 
     def _relax_bounds(self, failed: int, operations: Operations) -> None:
-        """Where an operation is refused: do without the degree cap, then with more room."""
+        """After a refused operation: drop the degree cap, then reserve more slots."""
         if self.cap:
             self.cap = 0
         elif len(self.start.element_mark) < 64 * (self.mesh.n_elements + 100):
@@ -287,7 +289,7 @@ class _Shortener:
         return MeshArrays(*(array.copy() for array in self.start))
 
     def _replayed(self, entries: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
-        """Where a replay meets the goal (-1: nowhere), which entries are done, and on what."""
+        """Where a replay reaches the goal (-1: nowhere), the entries applied, their half-edges."""
         names = first_names(self.mesh.slots, len(self.start.vertex), self.names)
         kept, halfedges = np.zeros(len(entries), np.bool_), np.zeros(len(entries), np.int64)
         stop = replay(
@@ -298,25 +300,25 @@ class _Shortener:
         return int(stop), kept, halfedges
 
     def cut_loops(self) -> None:
-        """End at the first state that is good enough, and cut out returns to former states."""
+        """End at the first state that reaches the goal, and remove loops."""
         good = (self.states[:, 1] <= self.goal) & (self.states[:, 2] <= self.most)
         end = int(np.argmax(good))
         shorter = self.entries[:end][without_loops(self.states[: end + 1, 0])]
         stop, kept, _ = self._replayed(shorter)
         self.entries = shorter[kept] if stop >= 0 else self.entries[:end]
 
-    def debug(self, late: Callable[[], bool]) -> None:
-        """Delete chunks of falling size, until nothing more can go or time is up."""
-        while not late():
+    def debug(self, time_is_up: Callable[[], bool]) -> None:
+        """Delta debugging: delete chunks of decreasing size until none can be deleted."""
+        while not time_is_up():
             before = len(self.entries)
             chunk = max(1, before // 2)
-            while chunk and not late():
-                self._delete(chunk, late)
+            while chunk and not time_is_up():
+                self._delete(chunk, time_is_up)
                 chunk //= 2
             if len(self.entries) == before:
                 return
 
-    def _delete(self, chunk: int, late: Callable[[], bool]) -> None:
+    def _delete(self, chunk: int, time_is_up: Callable[[], bool]) -> None:
         prefix, work = self._copied(), self._copied()
         names = first_names(self.mesh.slots, len(self.start.vertex), self.names)
         scratch = Names(*(array.copy() for array in names))
@@ -325,15 +327,15 @@ class _Shortener:
         progress = np.array([0, total])
         kept, halfedges = np.zeros(total, np.bool_), np.zeros(total, np.int64)
         ended = False
-        while not ended and not late():
+        while not ended and not time_is_up():
             ended = debug_pass(
                 prefix, work, *names, *scratch, entries, np.zeros_like(entries), progress, chunk,
                 self.cap, self.floor, self.goal, self.most, kept, halfedges, SLICE,
             )  # fmt: skip
         self.entries = entries[: progress[1]]
 
-    def answer(self, operations: Operations) -> Operations:
-        """The operations as they are applied to the mesh, checked on a copy of it."""
+    def result(self, operations: Operations) -> Operations:
+        """The shortened operations with their half-edges, checked on a copy of the mesh."""
         stop, kept, halfedges = self._replayed(self.entries)
         if stop < 0 or int(kept.sum()) >= len(operations):
             return operations

@@ -1,8 +1,8 @@
-"""The anytime solver: rollouts of a policy and annealing, then the answer made short and coarse.
+"""The anytime solver: rollouts of a policy and annealing, then shortening and coarsening.
 
-Better is: the lower s; among equals fewer elements that cannot be drawn without folding; then fewer
-elements (quads); then fewer operations. At s = s* nothing is left to prove. The answer is a list of
-operations that replays on the mesh it was found for.
+Better means lower s; at equal s fewer elements that stay inverted when the mesh is smoothed; then,
+for quads, fewer elements; then fewer operations. s = s* proves that s cannot be lower (section
+4.1). The result is a list of operations that can be applied to the given mesh.
 """
 
 from __future__ import annotations
@@ -31,34 +31,34 @@ from meshwright_core.geometry.boundary_spacing import anchors
 from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
-"""Share of the time that is left for shortening where the optimum is not found."""
+"""Share of the time that is reserved for shortening."""
 POLISHED = 0.5
-"""Share of the time that shortening and coarsening may take at the optimum."""
+"""Largest share of the time that shortening and coarsening may take."""
 ALONE = 0.5
-"""Seconds of shortening, and of coarsening, where only a number of rollouts is asked for."""
+"""Seconds for shortening, and for coarsening, if only a number of rollouts is given."""
 
 PER_IRREGULAR = 50
-"""Steps of a rollout for each irregular vertex that patches have left on a large mesh."""
+"""Steps of a rollout per irregular vertex that is left on a large mesh after the patches."""
 
 
 @dataclass
 class Solution:
-    """The best that a search has found."""
+    """The best result of a search."""
 
     operations: Operations
-    """Operations and half-edges, to be applied in this order."""
+    """Operations and their half-edges, to be applied in this order."""
     score: int
     optimum: int
     inverted: int
-    """Elements that stay inverted, or degenerate, when the mesh is smoothed."""
+    """Elements that stay inverted or degenerate when the mesh is smoothed."""
     elements: int = 0
     rollouts: int = 0
     seconds: float = 0.0
     method: str = "none"
-    """What found it: "rollouts", "annealing", "patches" on large meshes, or "none" where nothing
-    better was found."""
+    """The method that found it: "rollouts", "annealing", "patches" (large meshes), or "none" if
+    nothing better than the start was found."""
     coarse: bool = True
-    """Whether fewer elements are better."""
+    """Whether fewer elements count as better."""
 
     @property
     def rank(self) -> tuple[int, int, int, int]:
@@ -78,7 +78,7 @@ class Solution:
 
     @property
     def perfect(self) -> bool:
-        """At the optimum, which is a proof that s cannot be lower, and drawn without a fold."""
+        """Whether s = s*, so that it cannot be lower, without inverted elements."""
         return self.score == self.optimum and self.inverted == 0
 
 
@@ -98,18 +98,23 @@ def solve(
 ) -> Solution:
     """The best state found from `mesh`, which is not changed.
 
-    With `rollouts`, the best of so many runs of the policy, within `seconds` if given; with
-    `seconds` alone, rollouts and annealing in turn; with neither, one rollout. max_steps: of a
-    rollout, by default what the policy was trained with. workers: threads, with seeds of their own.
-    coarsen: at equal s look for fewer elements (quads only). shorten: leave out operations that are
-    not needed. Ends early, with a proof, at s*; `cancelled()` ends it at any time with the best so
-    far. `progress(rollouts done, best s)` is called, from the worker threads, after rollouts and
-    whenever s falls.
+    A mesh with many irregular vertices is first improved patch by patch
+    (:mod:`meshwright_agent.search.patchwise`); the remaining time is used for the whole mesh. Ends
+    early at s* if no element stays inverted.
 
-    A mesh with many irregular vertices is repaired patch by patch first
-    (:mod:`meshwright_agent.search.patchwise`); what time is left goes into the few that remain.
-
-    Raises PolicyError if the policy is for the other kind of mesh.
+    Args:
+        mesh: the start.
+        policy: for meshes of the same kind, else PolicyError is raised.
+        rollouts: number of rollouts, the best of which counts; 1 if `seconds` is not given either.
+        seconds: time limit. Without `rollouts`, rollouts alternate with annealing.
+        max_steps: length of a rollout, by default that of the policy's task.
+        seed: of the random choices.
+        workers: number of threads, each with a seed of its own.
+        coarsen: whether to look for fewer elements at equal s (quads only).
+        shorten: whether to leave out operations that are not needed.
+        progress: called with (rollouts done, lowest s) after rollouts and whenever s falls, from
+            the worker threads.
+        cancelled: polled; the search ends with the best result so far when it is true.
     """
     require_kind(policy, mesh.kind)
     prepare(policy)
@@ -137,8 +142,9 @@ def solve(
 
 
 def _anchored(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
-    """A copy in which sides that bend keep their look: a solution must not turn a disc into a
-    square. Locks only refuse operations, so that what is found replays on the mesh itself.
+    """A copy with vertices locked on curved sides, so that a disc does not become a square.
+
+    Locks only forbid operations: what is allowed on the copy is allowed on the mesh itself.
     """
     held = anchors(mesh).tolist() if mesh.n_elements <= SIDE_BY_SIDE else []
     if not held:
@@ -159,9 +165,7 @@ def _patch_by_patch(
     cancelled: Callable[[], bool] | None,
     go_on: Callable[..., Solution],
 ) -> Solution:
-    """Repair a large mesh patch by patch; where few irregular vertices are left, go on with the
-    whole.
-    """
+    """Improve a large mesh patch by patch; with few irregular vertices left continue by `go_on`."""
     began = time.perf_counter()
     run = improve_large(
         mesh, policy, seconds=seconds, max_steps=max_steps, seed=seed, cancelled=cancelled,

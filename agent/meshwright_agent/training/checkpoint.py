@@ -1,4 +1,4 @@
-"""A checkpoint: all tensors of a training and its notes in one safetensors file, never pickle."""
+"""Checkpoints: the tensors of a training and plain values, in one safetensors file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _NOTES = "checkpoint"
 
 
 def pack(parts: Mapping[str, Mapping[str, Tensor]], notes: Mapping[str, Any]) -> bytes:
-    """The content of a checkpoint: named tensors in named parts, and plain values."""
+    """Serialise named groups of named tensors, and plain values as JSON in the header."""
     tensors = {
         f"{part}.{name}": value.detach().cpu().contiguous()
         for part, values in parts.items()
@@ -25,7 +25,7 @@ def pack(parts: Mapping[str, Mapping[str, Tensor]], notes: Mapping[str, Any]) ->
 
 
 def unpack(content: bytes) -> tuple[dict[str, dict[str, Tensor]], dict[str, Any]]:
-    """Parts and notes. Raises ValueError if this is no checkpoint, or only part of one."""
+    """The parts and notes of :func:`pack`. Raises ValueError if the content is damaged."""
     try:
         size = int.from_bytes(content[:8], "little")
         notes = json.loads(json.loads(content[8 : 8 + size])["__metadata__"][_NOTES])
@@ -49,7 +49,7 @@ def optimiser_tensors(optimiser: torch.optim.Optimizer) -> dict[str, Tensor]:
 
 
 def restore_optimiser(optimiser: torch.optim.Optimizer, tensors: Mapping[str, Tensor]) -> None:
-    """Put such a dictionary back."""
+    """Load the state that :func:`optimiser_tensors` returned."""
     state: dict[int, dict[str, Tensor]] = {}
     for key, value in tensors.items():
         i, _, name = key.partition(".")

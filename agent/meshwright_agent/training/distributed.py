@@ -1,8 +1,8 @@
-"""The processes that train together: one alone, or those that ``torchrun`` has started.
+"""Data-parallel training: a single process, or those that ``torchrun`` has started.
 
-Each plays its share of the runs; gradients are averaged and statistics summed over all, so that
-every process makes the same step and their networks stay equal. Only the first process evaluates
-and writes.
+Each process plays its share of the episodes. Gradients are averaged and statistics summed over all
+processes, so that each makes the same update and the networks stay equal. Only the first process
+evaluates and writes files.
 """
 
 from __future__ import annotations
@@ -19,33 +19,33 @@ import torch.distributed as distributed
 
 T = TypeVar("T")
 
-_LONGEST_WAIT = timedelta(hours=2)  # the others wait while the first evaluates
+_LONGEST_WAIT = timedelta(hours=2)  # the other processes wait while the first evaluates
 
 
 class DeviceError(ValueError):
-    """A device that is not there; the message says which."""
+    """The device of the configuration does not exist; the message names it."""
 
 
 class Processes:
-    """This process among `size` of them. Alone, everything here is the identity."""
+    """This process as one of `size`. For a single process every method returns its input."""
 
     def __init__(self, rank: int = 0, size: int = 1, device: torch.device | str = "cpu") -> None:
-        """As number `rank` of `size`; device: where the network of this process is."""
+        """rank: the number of this process, from 0. device: of its network."""
         self.rank, self.size, self.device = rank, size, torch.device(device)
         over_nccl = size > 1 and distributed.get_backend() == "nccl"
         self._wire = self.device if over_nccl else torch.device("cpu")
 
     @property
     def first(self) -> bool:
-        """Whether this is the process that evaluates and writes."""
+        """Whether this process evaluates and writes files."""
         return self.rank == 0
 
     def share(self, count: int) -> int:
-        """How many of `count` pieces of work are this process's, one at least."""
+        """The share of this process when `count` items are divided, at least 1."""
         return max(1, count // self.size + (self.rank < count % self.size))
 
     def average_gradients(self, parameters: Iterable[torch.nn.Parameter]) -> None:
-        """Replace each gradient by its mean over all processes; one that is missing counts 0."""
+        """Replace each gradient by its mean over all processes; a missing one counts as zero."""
         if self.size == 1:
             return
         learned = [parameter for parameter in parameters if parameter.requires_grad]
@@ -60,7 +60,7 @@ class Processes:
             parameter.grad = piece.view_as(parameter)
 
     def totals(self, values: np.ndarray) -> np.ndarray:
-        """The sum over all processes, float64, of an array that has the same shape in each."""
+        """The sum over all processes, as float64, of an array with the same shape in each."""
         if self.size == 1:
             return values.astype(np.float64)
         sums = torch.from_numpy(values.astype(np.float64)).to(self._wire)
@@ -77,7 +77,7 @@ class Processes:
         return float(mean), float(np.sqrt(spread / max(count, 1.0)))
 
     def least(self, number: int) -> int:
-        """The smallest of the numbers that the processes bring."""
+        """The smallest `number` over all processes."""
         if self.size == 1:
             return number
         smallest = torch.tensor([number], device=self._wire)
@@ -85,15 +85,15 @@ class Processes:
         return int(smallest.item())
 
     def from_first(self, value: T) -> T:
-        """What the first process brings, in all of them; it must be something to pickle."""
+        """The `value` of the first process, in all processes; it must be picklable."""
         if self.size == 1:
             return value
         carried = [value]
         distributed.broadcast_object_list(carried, src=0, device=self._wire)
         return carried[0]
 
-    def start_alike(self, tensors: Iterable[torch.Tensor]) -> None:
-        """Overwrite tensors by those of the first process."""
+    def copy_from_first(self, tensors: Iterable[torch.Tensor]) -> None:
+        """Overwrite the tensors with those of the first process."""
         if self.size == 1:
             return
         for tensor in tensors:
@@ -105,10 +105,10 @@ class Processes:
 
 @contextmanager
 def joined(device: str = "auto") -> Iterator[Processes]:
-    """Join the processes that ``torchrun`` has started, if it has; leave them at the end.
+    """Join the process group of ``torchrun``, if there is one; leave it at the end.
 
-    device: "cpu", "cuda" or "auto", a GPU if there is one; each process takes its own. Raises
-    DeviceError where a GPU is asked for and there is none.
+    device: "cpu", "cuda", or "auto" for a GPU if there is one. With several GPUs each process uses
+    another. Raises DeviceError for "cuda" without a GPU.
     """
     place, size = _place(device), int(os.environ.get("WORLD_SIZE", "1"))
     if size == 1 or not distributed.is_available():
@@ -116,7 +116,7 @@ def joined(device: str = "auto") -> Iterator[Processes]:
         return
     if place.type == "cuda":
         torch.cuda.set_device(place)
-    # two processes on one GPU: nccl refuses, gloo goes by way of the processor
+    # NCCL refuses two processes on one GPU; Gloo copies by way of the CPU
     here = int(os.environ.get("LOCAL_WORLD_SIZE", size))
     own_gpu = place.type == "cuda" and torch.cuda.device_count() >= here
     distributed.init_process_group("nccl" if own_gpu else "gloo", timeout=_LONGEST_WAIT)

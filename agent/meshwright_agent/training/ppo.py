@@ -1,19 +1,30 @@
-"""Proximal policy optimisation in the paper's order (section 4.2.2): self-play, advantages, update.
+"""Proximal policy optimisation (section 4.2.2): collect experience, compute advantages, update.
 
-The advantage is the paper's normalised return (equation 5), G_t / (s_t - s*). With a baseline,
+The advantage is the paper's normalised return (equation 6), G_t / (s_t - s*). With a baseline,
 which the paper does without, a learned value of the same quantity is subtracted, and G_t is a
-lambda-return. A run ends at the optimum or after a number of steps proportional to its size; that
-number is part of the task, and the value sees how many steps are left, so that nothing is
-bootstrapped at the end of a run.
+lambda-return (generalised advantage estimation).
+
+An episode terminates at the optimum, when its steps are used up, or when no operation is permitted.
+The number of steps is part of the task and the value head sees the share of steps left, so all
+three are terminations: nothing follows them. Only the horizon truncates: an episode that goes on
+beyond it is bootstrapped with the value of its last state.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import torch
+from torch import Tensor
 
+from meshwright_agent.env.checked_settings import (
+    Fraction,
+    NonNegativeFloat,
+    PositiveFloat,
+    PositiveInt,
+)
 from meshwright_agent.env.local_patch import Patches, assemble
 from meshwright_agent.env.task import Observation
 from meshwright_agent.env.vector_env import Batch
@@ -23,53 +34,58 @@ from meshwright_agent.training.distributed import Processes
 
 
 @dataclass(frozen=True)
-class Settings:
-    """Numbers of the algorithm."""
+class PPOSettings:
+    """Hyperparameters of the algorithm."""
 
-    environments: int = 256
-    """Runs side by side."""
-    horizon: int = 32
-    """Steps of every run between updates."""
-    epochs: int = 2
+    environments: PositiveInt = 256
+    """Episodes in parallel, B."""
+    horizon: PositiveInt = 32
+    """Steps of each episode between two updates, T."""
+    epochs: PositiveInt = 2
     """Passes over the collected decisions in one update."""
-    minibatch: int = 256
+    minibatch: PositiveInt = 256
     """Decisions per gradient step."""
-    learning_rate: float = 1.5e-3
-    """Of Adam, at the beginning; it falls linearly to a tenth over the training."""
-    gamma: float = 0.99
-    """Discount (equation 4)."""
-    lambda_: float = 0.95
-    """Of the lambda-return; 1 with no baseline."""
-    clip: float = 0.2
-    """How far probabilities may move in one update, relatively."""
-    entropy: float = 0.003
-    """Weight of the entropy term."""
-    value: float = 0.5
-    """Weight of the baseline's error."""
+    learning_rate: PositiveFloat = 1.5e-3
+    """Initial learning rate of Adam; it falls linearly to a tenth over the training."""
+    gamma: Fraction = 0.99
+    """Discount factor (equation 5)."""
+    lambda_: Fraction = 0.95
+    """Decay of the lambda-return; without a baseline 1 is used."""
+    clip: PositiveFloat = 0.2
+    """Largest relative change of a probability in one update that is still rewarded."""
+    entropy: NonNegativeFloat = 0.003
+    """Weight of the entropy bonus."""
+    value: NonNegativeFloat = 0.5
+    """Weight of the value loss."""
     baseline: bool = True
-    """Whether a learned value is subtracted."""
-    gradient_norm: float = 0.5
-    """Gradients are cut to this length."""
-    operation_price: float = 0.0
-    """What each operation costs, in units of s."""
-    element_price: float = 0.0
-    """What each new element costs, in units of s; one that goes pays as much back."""
+    """Whether a learned value is subtracted from the returns."""
+    gradient_norm: PositiveFloat = 0.5
+    """Gradients are clipped to this norm."""
+    operation_price: NonNegativeFloat = 0.0
+    """Subtracted from the reward of each operation, in units of s."""
+    element_price: NonNegativeFloat = 0.0
+    """Subtracted from the reward for each element added, and added for each removed, in units of
+    s."""
 
 
 @dataclass
-class Collected:
-    """T x B decisions and what became of them, flattened in that order."""
+class RolloutBuffer:
+    """T x B decisions and what followed from them, flattened in that order to N = T B."""
 
     observations: list[Observation]
+    """T observations of B decisions each."""
     actions: np.ndarray
+    """(N,) int64, -1 where no operation was permitted."""
     log_probabilities: np.ndarray
+    """(N,) float32: of the actions, under the policy that took them."""
     advantages: np.ndarray
+    """(N,) float32, see :func:`normalised_advantages`."""
     targets: np.ndarray
-    """What the value should have said: the normalised return."""
+    """(N,) float32: what the value head is trained towards, the normalised lambda-return."""
     valid: np.ndarray
-    """Which decisions had anything to choose."""
+    """(N,) bool: whether any operation was permitted."""
     returns: np.ndarray
-    """Normalised returns of the runs that ended meanwhile."""
+    """Normalised returns of the episodes that ended meanwhile."""
 
 
 def normalised_advantages(
@@ -80,11 +96,27 @@ def normalised_advantages(
     gamma: float,
     lambda_: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Normalised lambda-returns less the values, and those returns themselves, both (T, B).
+    """Generalised advantage estimates of the normalised return, and the targets of the values.
 
-    rewards, ended (T, B); gaps s - s* and values of the normalised return (T+1, B). With values of
-    zero and lambda 1 the first is equation 5. Values are of G / gap; the recursion runs on G
-    itself.
+    The recursion runs on the return G itself, whose value is V_t = values_t (s_t - s*):
+
+        delta_t = r_t + gamma (1 - ended_t) V_{t+1} - V_t
+        A_t     = delta_t + gamma lambda (1 - ended_t) A_{t+1}
+
+    and both results, A_t and the lambda-return A_t + V_t, are divided by s_t - s* at the end. With
+    values of zero and lambda = 1 the advantage is equation 6.
+
+    Args:
+        rewards: (T, B) r_t (equation 4).
+        gaps: (T+1, B) s_t - s*.
+        values: (T+1, B) predicted normalised returns; the last row bootstraps the episodes that
+            the horizon truncates.
+        ended: (T, B) 1 where the episode terminated with this step, else 0.
+        gamma: discount factor.
+        lambda_: decay of the lambda-return.
+
+    Returns:
+        advantages (T, B) and targets (T, B).
     """
     raw = values * gaps
     advantages = np.zeros_like(rewards)
@@ -99,9 +131,9 @@ def normalised_advantages(
 
 
 def collect(
-    batch: Batch, network: PolicyNetwork, settings: Settings, generator: torch.Generator
-) -> Collected:
-    """Play `horizon` steps of every run with the current policy."""
+    batch: Batch, network: PolicyNetwork, settings: PPOSettings, generator: torch.Generator
+) -> RolloutBuffer:
+    """Play `horizon` steps of every episode with the current policy."""
     shape = (settings.horizon, len(batch.active))
     observations = []
     actions = np.zeros(shape, np.int64)
@@ -126,7 +158,7 @@ def collect(
     advantages, targets = normalised_advantages(
         rewards, gaps, values, ended, settings.gamma, settings.lambda_ if settings.baseline else 1.0
     )
-    return Collected(
+    return RolloutBuffer(
         observations,
         actions.ravel(),
         log_probabilities.ravel(),
@@ -137,30 +169,85 @@ def collect(
     )
 
 
+class LossTerms(NamedTuple):
+    """Means over one minibatch, as scalar tensors."""
+
+    policy: Tensor
+    """The negative clipped objective."""
+    value: Tensor
+    """Squared error of the predicted normalised returns."""
+    entropy: Tensor
+    """Of the distribution over operations, in nats."""
+    clipped: Tensor
+    """Share of decisions whose probability has changed by more than the clip."""
+
+
+def loss_terms(
+    logits: Tensor,
+    values: Tensor,
+    actions: Tensor,
+    log_probabilities: Tensor,
+    advantages: Tensor,
+    targets: Tensor,
+    clip: float,
+) -> LossTerms:
+    """The terms of the PPO loss (Schulman et al. 2017, equation 7) for M decisions.
+
+    Args:
+        logits: (M, K A), of forbidden operations very low.
+        values: (M,) predicted normalised returns.
+        actions: (M,) int64, those taken.
+        log_probabilities: (M,) of these actions under the policy that took them.
+        advantages: (M,).
+        targets: (M,) of the values.
+        clip: epsilon, the range in which the probability ratio is left as it is.
+    """
+    logs = torch.log_softmax(logits, dim=1)
+    taken = logs.gather(1, actions.unsqueeze(1)).squeeze(1)
+    ratio = (taken - log_probabilities).exp()
+    clipped = ratio.clamp(1.0 - clip, 1.0 + clip)
+    return LossTerms(
+        policy=-torch.min(ratio * advantages, clipped * advantages).mean(),
+        value=(values - targets).square().mean(),
+        # the lower bound keeps 0 * -inf out where a probability has underflowed
+        entropy=-(logs.exp() * logs.clamp(min=-100)).sum(1).mean(),
+        clipped=((ratio - 1.0).abs() > clip).float().mean(),
+    )
+
+
+def standardised(advantages: np.ndarray, valid: np.ndarray, processes: Processes) -> np.ndarray:
+    """Advantages (N,) less their mean, divided by their standard deviation.
+
+    Both are taken over the valid decisions (N,) of all processes.
+    """
+    mean, deviation = processes.mean_and_deviation(advantages[valid])
+    result: np.ndarray = (advantages - mean) / (deviation + 1e-8)
+    return result
+
+
 def update(
     network: PolicyNetwork,
     optimiser: torch.optim.Optimizer,
-    collected: Collected,
-    settings: Settings,
+    buffer: RolloutBuffer,
+    settings: PPOSettings,
     rng: np.random.Generator,
     processes: Processes | None = None,
 ) -> dict[str, float]:
-    """Some epochs of clipped policy gradient; returns the means of loss terms and entropy.
+    """Train the network on the buffer for some epochs; returns the means of :class:`LossTerms`.
 
-    processes: those that train together; each brings its own decisions, and all make the same
-    steps, with advantages normalised over all and the mean of their gradients.
+    processes: those that train together. Each brings a buffer of its own; all make the same steps,
+    with advantages standardised over all and the mean of their gradients.
     """
     processes = processes or Processes()
-    patches = Patches.join([observation.patches for observation in collected.observations])
+    patches = Patches.join([observation.patches for observation in buffer.observations])
     joined = {
-        name: np.concatenate([getattr(o, name) for o in collected.observations])
+        name: np.concatenate([getattr(o, name) for o in buffer.observations])
         for name in ("chosen", "mask", "changes", "state")
     }
-    usable = np.flatnonzero(collected.valid)
-    mean, deviation = processes.mean_and_deviation(collected.advantages[usable])
-    advantages = (collected.advantages - mean) / (deviation + 1e-8)
+    usable = np.flatnonzero(buffer.valid)
+    advantages = standardised(buffer.advantages, buffer.valid, processes)
     shared = processes.least(len(usable))
-    totals = {"policy": 0.0, "value": 0.0, "entropy": 0.0, "clipped": 0.0}
+    totals = dict.fromkeys(LossTerms._fields, 0.0)
     steps = 0
     for _ in range(settings.epochs):
         order = rng.permutation(usable)[:shared]
@@ -175,27 +262,24 @@ def update(
                 torch.from_numpy(joined["changes"][picked]),
                 torch.from_numpy(joined["state"][picked]),
             )
-            log_probabilities = torch.log_softmax(logits, dim=1)
-            taken = log_probabilities.gather(
-                1, torch.from_numpy(collected.actions[picked]).unsqueeze(1)
-            ).squeeze(1)
-            ratio = (taken - torch.from_numpy(collected.log_probabilities[picked])).exp()
-            advantage = torch.from_numpy(advantages[picked])
-            low, high = 1.0 - settings.clip, 1.0 + settings.clip
-            policy = -torch.min(ratio * advantage, ratio.clamp(low, high) * advantage).mean()
-            entropy = -(log_probabilities.exp() * log_probabilities.clamp(min=-100)).sum(1).mean()
-            error = (values - torch.from_numpy(collected.targets[picked])).square().mean()
-            loss = policy - settings.entropy * entropy
+            terms = loss_terms(
+                logits,
+                values,
+                torch.from_numpy(buffer.actions[picked]),
+                torch.from_numpy(buffer.log_probabilities[picked]),
+                torch.from_numpy(advantages[picked]),
+                torch.from_numpy(buffer.targets[picked]),
+                settings.clip,
+            )
+            loss = terms.policy - settings.entropy * terms.entropy
             if settings.baseline:
-                loss = loss + settings.value * error
+                loss = loss + settings.value * terms.value
             optimiser.zero_grad()
             loss.backward()
             processes.average_gradients(network.parameters())
             torch.nn.utils.clip_grad_norm_(network.parameters(), settings.gradient_norm)
             optimiser.step()
             steps += 1
-            totals["policy"] += policy.item()
-            totals["value"] += error.item()
-            totals["entropy"] += entropy.item()
-            totals["clipped"] += ((ratio - 1.0).abs() > settings.clip).float().mean().item()
+            for name, term in terms._asdict().items():
+                totals[name] += term.item()
     return {name: total / max(steps, 1) for name, total in totals.items()}

@@ -1,4 +1,4 @@
-"""Event files for TensorBoard, where the optional package that writes them is installed."""
+"""Event files for TensorBoard, if the optional package tensorboardX is installed."""
 
 from __future__ import annotations
 
@@ -20,20 +20,22 @@ TAGS = {
     "decisions": "speed/decisions",
     "decisions_per_second": "speed/decisions_per_second",
 }
-"""Where each number of a training appears; others are left out."""
+"""The TensorBoard tag of each number of an update; numbers without a tag are not written."""
 
 
 def available() -> bool:
-    """Whether event files can be written: the package comes with ``meshwright[train]``."""
+    """Whether tensorboardX is installed; ``meshwright[train]`` requires it."""
     return find_spec("tensorboardX") is not None
 
 
 class Events:
-    """Scalars over the updates of one training; does nothing where the package is missing."""
+    """Writes scalars over the updates of a training; does nothing without tensorboardX."""
 
     def __init__(self, folder: Path, done: int) -> None:
-        """Into `folder`. A training that goes on after update `done` hides what an earlier run,
-        stopped later than its last checkpoint, has written beyond it.
+        """Write into `folder`, from update `done` on.
+
+        Events of later updates, left by a process that stopped after its last checkpoint, are
+        hidden.
         """
         self._writer: Any = None
         if available():
@@ -42,7 +44,7 @@ class Events:
             self._writer = SummaryWriter(str(folder), purge_step=done + 1 if done else None)
 
     def write(self, update: int, numbers: Mapping[str, float]) -> None:
-        """Add the numbers of one update, those that are finite and have a tag."""
+        """Write the numbers of one update that have a tag and are not NaN."""
         if self._writer is None:
             return
         for name, tag in TAGS.items():
@@ -51,6 +53,6 @@ class Events:
                 self._writer.add_scalar(tag, value, update)
 
     def close(self) -> None:
-        """Finish the file."""
+        """Close the file."""
         if self._writer is not None:
             self._writer.close()

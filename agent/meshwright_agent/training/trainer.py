@@ -1,6 +1,4 @@
-"""Training a policy from a configuration, with checkpoints that a later run resumes; alone, or as
-one of the processes that ``torchrun`` has started.
-"""
+"""Training a policy from a configuration, in one process or several, with resumable checkpoints."""
 
 from __future__ import annotations
 
@@ -22,7 +20,7 @@ from meshwright_agent.policy.policy_files import Policy, save_policy
 from meshwright_agent.training import checkpoint
 from meshwright_agent.training.configuration import (
     ConfigurationError,
-    Training,
+    TrainingConfiguration,
     configuration_of,
     read_configuration,
     shipped_configuration,
@@ -36,7 +34,7 @@ from meshwright_core.io.atomic_write import replacing
 __all__ = [
     "ConfigurationError",
     "Trainer",
-    "Training",
+    "TrainingConfiguration",
     "read_configuration",
     "shipped_configuration",
     "train",
@@ -46,8 +44,8 @@ CHECKPOINT, EVENTS = "checkpoint.safetensors", "events"
 
 
 @dataclass
-class Progress:
-    """Where a training stands."""
+class TrainingProgress:
+    """How far a training has come; saved in checkpoints and policy headers."""
 
     iteration: int = 0
     seconds: float = 0.0
@@ -55,33 +53,36 @@ class Progress:
     curve: list[dict[str, float]] = field(default_factory=list)
     """Points of the learning curve: iteration, decisions, seconds, mean, std, at_optimum."""
     best_iteration: int = 0
-    """Updates behind the best point of the curve; its weights are the result."""
+    """Number of updates at the best point of the curve; the policy of that point is the result."""
     best_return: float = -1.0
-    """Its mean; -1 before the first point."""
+    """The mean return at that point; -1 before the first point."""
     waited: int = 0
-    """Points of the curve since the best one."""
+    """Points of the curve since the best one, for early stopping."""
 
 
 class Trainer:
-    """One training: network, optimiser, self-play and learning curve."""
+    """A training: network, optimiser, self-play and learning curve."""
 
     def __init__(
-        self, training: Training, folder: Path, processes: Processes | None = None
+        self, training: TrainingConfiguration, folder: Path, processes: Processes | None = None
     ) -> None:
-        """Writes into `folder`; resumes what is there."""
+        """Start a training that writes into `folder`, or resume the checkpoint there.
+
+        Raises ConfigurationError if the checkpoint is damaged or of another configuration.
+        """
         self.training, self.folder = training, folder
         self.processes = processes = processes or Processes()
-        self.progress = Progress()
+        self.progress = TrainingProgress()
         torch.manual_seed(training.seed)
         self.network = PolicyNetwork(training.task, training.architecture).to(processes.device)
         self.optimiser = torch.optim.Adam(
             self.network.parameters(), lr=training.ppo.learning_rate, eps=1e-5
         )
         self.best: dict[str, torch.Tensor] = {}
-        """The weights at the best point of the curve, none before the first."""
+        """The weights at the best point of the curve; empty before the first point."""
         self._resume()
-        processes.start_alike(self.network.state_dict().values())
-        # a resumed run draws afresh: what was played before is not played again
+        processes.copy_from_first(self.network.state_dict().values())
+        # a resumed training must not replay the random numbers of its beginning
         draw = [training.seed, self.progress.iteration, *([processes.rank] * (processes.rank > 0))]
         self.rng = np.random.default_rng(draw)
         self.generator = torch.Generator().manual_seed(
@@ -103,10 +104,10 @@ class Trainer:
             training.evaluation_meshes,
             np.random.default_rng(training.evaluation_seed),
         )
-        self.judges = [mesh for mesh in drawn if mesh.score > mesh.optimum]
+        self.evaluation_meshes = [mesh for mesh in drawn if mesh.score > mesh.optimum]
 
     def policy(self) -> Policy:
-        """The policy as it stands."""
+        """The policy with the current weights."""
         header = {"training": self.training.to_dict(), "progress": asdict(self.progress)}
         return Policy(self.training.task.kind, self.network, header)
 
@@ -120,17 +121,20 @@ class Trainer:
 
     @property
     def ended(self) -> bool:
-        """Whether all updates are made, or the policy has not become better for too long."""
+        """Whether all updates are done, or early stopping applies."""
         patience = self.training.patience
         late = patience > 0 and self.progress.waited >= patience
         return late or self.progress.iteration >= self.training.iterations
 
     def measure(self) -> dict[str, float]:
-        """A point of the learning curve: single rollouts on the same polygons each time. The first
-        process plays them, and all of them note it.
+        """Add a point to the learning curve: single rollouts on the same polygons each time.
+
+        The first process plays them and sends the result to the others.
         """
         if self.processes.first:
-            rolled = roll_out(self.policy(), self.judges, 1, self.training.evaluation_seed)
+            rolled = roll_out(
+                self.policy(), self.evaluation_meshes, 1, self.training.evaluation_seed
+            )
             numbers = {
                 "mean": float(rolled.returns.mean()),
                 "std": float(rolled.returns.std()),
@@ -155,7 +159,7 @@ class Trainer:
         return point
 
     def improve(self) -> dict[str, float]:
-        """One round of self-play and one update."""
+        """Collect experience by self-play and update the network once."""
         began = time.perf_counter()
         settings, progress = self.settings, self.progress
         done = progress.iteration / self.training.iterations
@@ -178,12 +182,8 @@ class Trainer:
             "decisions_per_second": float(decided / seconds),
         }
 
-    # -- checkpoints -----------------------------------------------------------------------------
-
     def save(self) -> None:
-        """Write a checkpoint; the one before stays whole until this one is complete. Only the first
-        process writes.
-        """
+        """Write a checkpoint atomically; only the first process does."""
         if not self.processes.first:
             return
         parts = {
@@ -206,13 +206,13 @@ class Trainer:
         try:
             parts, notes = checkpoint.unpack(content)
             earlier = configuration_of(notes["training"], str(path))
-            self.progress = Progress(**notes["progress"])
+            self.progress = TrainingProgress(**notes["progress"])
         except (KeyError, TypeError, ValueError) as error:
             raise ConfigurationError(f"{path}: {error}") from None
         if not self.training.resumes(earlier):
             raise ConfigurationError(
-                f"{self.folder}: it holds a checkpoint of another configuration; choose another"
-                " folder or remove it"
+                f"{self.folder}: this folder has a checkpoint of another configuration; choose"
+                " another folder or remove the checkpoint"
             )
         self.network.load_state_dict(parts["network"])
         checkpoint.restore_optimiser(self.optimiser, parts.get("optimiser", {}))
@@ -228,16 +228,24 @@ def train(
     report: Callable[[int, int, dict[str, float]], None] | None = None,
     finishing: Callable[[], None] | None = None,
 ) -> dict[str, Any]:
-    """Train until the configured number of updates, for so many minutes, or until the policy has
-    not become better for the configured patience; returns the results.
+    """Train a policy (section 4.2.2) and evaluate it; returns the results as plain values.
 
-    Writes policy.safetensors (the best by evaluation, with how it scores), configuration.json,
-    curve.json, curve.png, events for TensorBoard and, for a later call to resume,
-    checkpoint.safetensors into `folder`. `report(done, total, numbers)` is called after each
-    update, `finishing()` before the result is evaluated. Ctrl-C leaves the last checkpoint.
+    Writes into `folder`: policy.safetensors (the policy of the best evaluation, with its results),
+    configuration.json, curve.json, curve.png, events for TensorBoard, and checkpoint.safetensors,
+    from which a later call with the same folder continues, also after Ctrl-C.
 
-    Where ``torchrun`` has started several processes, each calls this; the first reports, writes and
-    returns the results, the others return {}.
+    With ``torchrun`` each process calls this; the first reports, writes and returns the results,
+    the others return {}.
+
+    Args:
+        configuration: a TOML file, or its values.
+        folder: where to write; it is created if necessary.
+        minutes: stop after the update at which this time has passed.
+        seed: in place of that of the configuration.
+        report: called after each update with (updates done, total, numbers of the update).
+        finishing: called before the final evaluation.
+
+    Raises ConfigurationError for a configuration that cannot be used.
     """
     training = read_configuration(configuration)
     if seed is not None:
@@ -246,7 +254,7 @@ def train(
     try:
         with joined(training.device) as processes:
             trainer = Trainer(training, folder, processes)
-            _loop(trainer, minutes, report)
+            _run_updates(trainer, minutes, report)
     except DeviceError as error:
         raise ConfigurationError(str(error)) from None
     if not trainer.processes.first:
@@ -256,7 +264,7 @@ def train(
     return finish(trainer)
 
 
-def _loop(
+def _run_updates(
     trainer: Trainer,
     minutes: float | None,
     report: Callable[[int, int, dict[str, float]], None] | None,
@@ -284,7 +292,7 @@ def _loop(
 
 
 def finish(trainer: Trainer) -> dict[str, Any]:
-    """Evaluate the best policy and write it with its configuration and learning curve."""
+    """Evaluate the best policy and write it, its configuration and its learning curve."""
     training, folder = trainer.training, trainer.folder
     policy = trainer.best_policy()
     kind, sides = training.task.kind, training.sides

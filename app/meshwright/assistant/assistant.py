@@ -26,7 +26,7 @@ from meshwright_core import MeshError
 from meshwright_core.analysis.submesh import enclose
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Choice, Insight
+    from meshwright_agent.policy.explanation_types import Insight, PolicyAction
 
 APPLY_BUDGET = 0.02
 """Seconds of applying operations after which the event loop runs."""
@@ -369,7 +369,7 @@ class Assistant:
         if run is self._run and self.progress.found(done, best):
             self.changed.emit()
 
-    def answered(self, question: HintRequest, choices: tuple[Choice, ...]) -> None:
+    def answered(self, question: HintRequest, choices: tuple[PolicyAction, ...]) -> None:
         """A request for hints has been answered."""
         if not self.hinting.close(question):
             return

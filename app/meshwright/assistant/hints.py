@@ -12,7 +12,7 @@ from meshwright.document.document import Document
 from meshwright.signals import Signal
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Choice
+    from meshwright_agent.policy.explanation_types import PolicyAction
 
 
 class Hinting:
@@ -25,10 +25,10 @@ class Hinting:
         self.changed = Signal()
         self._document, self._worker = document, worker
         self._question: HintRequest | None = None
-        self._hints: tuple[Choice, ...] = ()
+        self._hints: tuple[PolicyAction, ...] = ()
 
     @property
-    def hints(self) -> tuple[Choice, ...]:
+    def hints(self) -> tuple[PolicyAction, ...]:
         """The policy's best few operations in the present state; empty before the first request."""
         return self._hints
 
@@ -59,7 +59,7 @@ class Hinting:
         self._question = None
         return True
 
-    def show(self, choices: tuple[Choice, ...]) -> None:
+    def show(self, choices: tuple[PolicyAction, ...]) -> None:
         """Set the hints."""
         self._hints = choices
         self.changed.emit()

@@ -30,7 +30,7 @@ from meshwright.assistant.search_runner import Effort, SearchRunner
 from meshwright_core import HalfEdgeMesh
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Choice, Insight
+    from meshwright_agent.policy.explanation_types import Insight, PolicyAction
 
 LEAVE_SECONDS = 10.0
 """Time limit, in seconds, for which the exiting program waits for the thread."""
@@ -45,7 +45,7 @@ MakeRunner = Callable[[HalfEdgeMesh, Any, int], RunnerProtocol]
 MakeSearch = Callable[
     [HalfEdgeMesh, Any, int, Effort, threading.Event, Callable[[int, int], None]], RunnerProtocol
 ]
-Ask = Callable[[HalfEdgeMesh, Any, "np.ndarray | None"], "tuple[Choice, ...]"]
+Ask = Callable[[HalfEdgeMesh, Any, "np.ndarray | None"], "tuple[PolicyAction, ...]"]
 
 _log = logging.getLogger(__name__)
 
@@ -73,7 +73,7 @@ class Listener(Protocol):
         """A search has done ``done`` rollouts, and its lowest score is ``best``."""
         ...
 
-    def answered(self, question: HintRequest, choices: tuple[Choice, ...]) -> None:
+    def answered(self, question: HintRequest, choices: tuple[PolicyAction, ...]) -> None:
         """A request for hints has been answered with the policy's best operations."""
         ...
 
@@ -257,7 +257,9 @@ def _make_runner(mesh: HalfEdgeMesh, policy: Any, seed: int) -> RunnerProtocol:
     return PolicyRunner(mesh, policy, seed)
 
 
-def _ask_policy(mesh: HalfEdgeMesh, policy: Any, near: np.ndarray | None) -> tuple[Choice, ...]:
+def _ask_policy(
+    mesh: HalfEdgeMesh, policy: Any, near: np.ndarray | None
+) -> tuple[PolicyAction, ...]:
     from meshwright_agent.policy.explanation import hints
 
     return hints(mesh, policy, near=near)

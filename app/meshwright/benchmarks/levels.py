@@ -16,7 +16,7 @@ from meshwright.puzzles import level as levels
 from meshwright.puzzles.level import Level
 from meshwright_agent.policy import policy_files
 from meshwright_agent.search import solver
-from meshwright_agent.search.exhaustive import Answer, fewest
+from meshwright_agent.search.exhaustive import FewestResult, fewest
 from meshwright_core import MeshError
 from meshwright_core.geometry import quality
 
@@ -79,7 +79,7 @@ def played(level: Level) -> int:
     return len(quality.inverted(document.mesh))
 
 
-def _shown_to_be_fewest(answer: Answer, level: Level) -> bool:
+def _shown_to_be_fewest(answer: FewestResult, level: Level) -> bool:
     return level.par <= 1 or answer.proved >= level.par - 1
 
 

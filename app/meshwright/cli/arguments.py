@@ -20,7 +20,7 @@ from meshwright.sources.naming import looks_like_path
 if TYPE_CHECKING:
     from meshwright.document.document import Document
     from meshwright_agent.policy.policy_files import Policy
-    from meshwright_agent.training.trainer import Training
+    from meshwright_agent.training.trainer import TrainingConfiguration
     from meshwright_core import HalfEdgeMesh
     from meshwright_core.domains.domain import Domain
 
@@ -114,7 +114,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
     return policy
 
 
-def read_configuration(path: str | None, kind: str) -> Training:
+def read_configuration(path: str | None, kind: str) -> TrainingConfiguration:
     """Return a training configuration, the shipped one if no path is given."""
     from meshwright_agent.training import trainer
 

@@ -34,7 +34,7 @@ from meshwright.sources import resolve
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Choice
+    from meshwright_agent.policy.explanation_types import PolicyAction
     from meshwright_core.domains.domain import Domain
 
 LOWEST, HIGHEST = 160, 4000
@@ -245,7 +245,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         effort = Effort(seconds=positive(seconds, "seconds"))
         self._ask(lambda: self.assistant.search(effort), wait)
 
-    def hint(self, wait: bool = True) -> tuple[Choice, ...]:
+    def hint(self, wait: bool = True) -> tuple[PolicyAction, ...]:
         """The policy's best few operations in the present state.
 
         Where the call does not wait: the hints that are known already.

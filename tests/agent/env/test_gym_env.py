@@ -24,7 +24,7 @@ def test_passes_the_checker(name):
     [
         "import gymnasium; gymnasium.make('meshwright_agent:meshwright/Quads-v0')",
         "import meshwright_agent, gymnasium; gymnasium.make('meshwright/Triangles-v0')",
-        "import gymnasium, meshwright_agent; gymnasium.make('meshwright/Quads-v0')",
+        "import meshwright_agent as a, gymnasium; gymnasium.make(f'meshwright_agent:{a.QUADS}')",
     ],
 )
 def test_is_registered_by_importing_the_package(code):

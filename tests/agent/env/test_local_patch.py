@@ -1,4 +1,4 @@
-"""The local patch gives what a convolution of the whole mesh gives."""
+"""The convolution on a local patch gives the same embeddings as on the whole mesh."""
 
 import numpy as np
 import pytest
@@ -87,7 +87,7 @@ def test_the_patch_of_one_half_edge_does_not_grow_with_the_mesh():
     assert max(sizes) <= 41  # half-edges within four steps, in a mesh without short cycles
 
 
-def test_several_decisions_assemble_as_each_alone():
+def test_assembling_several_decisions_equals_assembling_each():
     rng = np.random.default_rng(3)
     torch.manual_seed(0)
     network = PolicyNetwork(Task("tri", blocks=3), Architecture())
@@ -117,6 +117,6 @@ def test_several_decisions_assemble_as_each_alone():
     torch.testing.assert_close(both, torch.cat([alone[2], alone[0]]), rtol=1e-4, atol=1e-5)
 
 
-def test_a_convolution_of_nothing_has_no_rows():
+def test_a_convolution_of_no_half_edges_has_no_rows():
     none = torch.zeros((0, 5), dtype=torch.long)
     assert Block(4, 3, 7)(torch.zeros((6, 3)), none).shape == (0, 7)

@@ -1,4 +1,4 @@
-"""The potential points to charges, costs no more on large meshes, and leaves nothing behind."""
+"""Potentials point towards irregular vertices, at a bounded cost, and scratch arrays are reset."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def _potentials(mesh, near=-1):
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_it_is_the_jacobi_iteration_of_the_screened_poisson_problem(kind):
+def test_potentials_are_the_jacobi_iteration_of_the_screened_poisson_problem(kind):
     mesh = benchmark_mesh(kind, 12, np.random.default_rng(4))
     values, _ = _potentials(mesh)
     count = mesh.n_vertices
@@ -44,7 +44,7 @@ def test_it_is_the_jacobi_iteration_of_the_screened_poisson_problem(kind):
     np.testing.assert_allclose(values[:count], expected, rtol=1e-4, atol=1e-5)
 
 
-def test_a_regular_mesh_has_none_and_a_pair_has_both_signs():
+def test_potentials_of_a_regular_mesh_and_of_a_pair_of_opposite_sign():
     mesh = grid("quad", 64)
     assert np.all(_potentials(mesh)[0][mesh.vertices()] == 0.0)
     mesh.apply("flip_left", 4 * 27 + 1)
@@ -54,7 +54,7 @@ def test_a_regular_mesh_has_none_and_a_pair_has_both_signs():
     assert values[plus, 1] > 0.0 and values[minus, 1] > 0.0
 
 
-def test_on_a_large_mesh_it_looks_at_a_bounded_neighbourhood():
+def test_on_a_large_mesh_potentials_use_a_bounded_neighbourhood():
     mesh = grid("quad", 3600)
     near = mesh.outgoing(61 * 30 + 30)[0]
     mesh.apply("flip_left", near)

@@ -1,4 +1,4 @@
-"""Masks, one-step changes, runs in batches and alone."""
+"""Action masks, exact changes of s, and episodes in a vector environment and alone."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,6 @@ from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.network import Architecture, PolicyNetwork
 from meshwright_agent.policy.policy_files import Policy, PolicyError
 from meshwright_agent.policy.rollout import Runner
-from meshwright_agent.training.ppo import normalised_advantages
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import JOURNALLING, MeshArrays
 from meshwright_core.domains.meshing import benchmark_mesh
@@ -34,9 +33,9 @@ def test_score_change_is_exact(kind):
             for code in range(task.first_operation, task.first_operation + task.operations):
                 if not permitted(mesh.arrays, code, h, 0, 0, 10**6, True):
                     continue
-                said = score_change(mesh.arrays, code, h)
-                assert mesh.apply(NAMES[code], h).score_change == said
-                seen.add((code, said))
+                expected = score_change(mesh.arrays, code, h)
+                assert mesh.apply(NAMES[code], h).score_change == expected
+                seen.add((code, expected))
                 mesh.undo()
     assert len(seen) > 8
 
@@ -58,7 +57,7 @@ def test_template_sizes(k, levels, size):
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 @pytest.mark.parametrize("selection", ["shortlist", "template"])
-def test_runs_in_a_batch_leave_valid_meshes(kind, selection):
+def test_episodes_in_a_batch_leave_valid_meshes(kind, selection):
     rng = np.random.default_rng(2)
     policy = _policy(kind, selection=selection, extended=True)
     meshes = [m for m in start_meshes(kind, (8, 14), 6, rng) if m.score > m.optimum]
@@ -78,7 +77,7 @@ def test_runs_in_a_batch_leave_valid_meshes(kind, selection):
         assert run.optimum == mesh.optimum and run.score == batch.scores[b]
 
 
-def test_an_endless_batch_begins_again():
+def test_an_endless_batch_starts_new_episodes():
     rng = np.random.default_rng(2)
     policy = _policy("quad")
     batch = Batch(policy.task, start_meshes("quad", (8, 10), 5, rng), 8, rng)
@@ -93,7 +92,7 @@ def test_an_endless_batch_begins_again():
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_a_run_replays_on_the_mesh_it_was_made_for(kind):
+def test_an_episode_replays_on_its_mesh(kind):
     mesh = benchmark_mesh(kind, 14, np.random.default_rng(3))
     replayed = mesh.copy()
     runner = Runner(mesh, _policy(kind, extended=True), seed=4)
@@ -113,35 +112,7 @@ def test_a_run_replays_on_the_mesh_it_was_made_for(kind):
     assert (again.mesh.elements() == runner.mesh.elements()).all()
 
 
-def test_a_run_refuses_the_other_kind():
+def test_a_policy_of_the_other_kind_is_refused():
     mesh = benchmark_mesh("tri", 9, np.random.default_rng(3))
     with pytest.raises(PolicyError, match="quad"):
         Runner(mesh, _policy("quad"), seed=0)
-
-
-def test_advantages_agree_with_the_slow_sum():
-    rng = np.random.default_rng(0)
-    steps, runs, gamma = 9, 4, 0.9
-    rewards = rng.integers(-2, 3, (steps, runs)).astype(np.float32)
-    ended = rng.random((steps, runs)) < 0.2
-    gaps = rng.integers(1, 9, (steps + 1, runs)).astype(np.float32)
-    ended[-1] = True
-    advantages, targets = normalised_advantages(
-        rewards, gaps, np.zeros_like(gaps), ended.astype(np.float32), gamma, 1.0
-    )
-    for b in range(runs):
-        for t in range(steps):
-            total, factor = 0.0, 1.0
-            for later in range(t, steps):
-                total += factor * rewards[later, b]
-                factor *= gamma
-                if ended[later, b]:
-                    break
-            assert advantages[t, b] == pytest.approx(total / gaps[t, b], rel=1e-5)
-            assert targets[t, b] == pytest.approx(total / gaps[t, b], rel=1e-5)
-    # a baseline that knows the return leaves no advantage
-    values = np.concatenate([targets, np.zeros((1, runs), np.float32)])
-    advantages, _ = normalised_advantages(
-        rewards, gaps, values, ended.astype(np.float32), gamma, 0.7
-    )
-    assert np.abs(advantages).max() < 1e-5

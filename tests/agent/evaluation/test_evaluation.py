@@ -1,4 +1,4 @@
-"""What rollouts leave behind, rivals at the same time, and the figures made of them."""
+"""Rollouts, baselines for the same time, and figures of them."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from meshwright_agent.evaluation import figures, paper_results, rollout_strip
 from meshwright_agent.evaluation.baselines import BASELINES, RACERS, attempt, share_within
 from meshwright_agent.evaluation.rollouts import NothingToDo, longer, roll_out, unseen
-from meshwright_agent.evaluation.table_row import Wanted, assess
+from meshwright_agent.evaluation.table_row import RowSettings, assess
 from meshwright_agent.policy.policy_files import load
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -38,20 +38,20 @@ def test_steps_replay_to_the_best_state(policy, meshes, rolled):
             assert replayed.n_elements / mesh.n_elements == rolled.elements[i, k]
 
 
-def test_traces_begin_at_the_start_and_meet_the_best_state(meshes, rolled):
+def test_traces_contain_the_start_and_the_best_state(meshes, rolled):
     for k, trace in enumerate(rolled.traces):
         assert trace.gaps[0].tolist() == [mesh.score - mesh.optimum for mesh in meshes]
         assert trace.gaps.min(axis=0).tolist() == rolled.gaps[:, k].tolist()
         assert len(trace.gaps) == len(trace.codes) + 1 == len(trace.halfedges) + 1
 
 
-def test_longer_runs_share_the_network(policy):
+def test_longer_episodes_share_the_network(policy):
     twice = longer(policy, 2.0)
     assert twice.task.step_limit(40) == 2 * policy.task.step_limit(40)
     assert twice.network.head is policy.network.head
 
 
-def test_polygons_with_nothing_to_do_are_refused(monkeypatch):
+def test_polygons_that_start_at_the_optimum_are_refused(monkeypatch):
     square = HalfEdgeMesh.from_elements([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1, 2, 3]])
     monkeypatch.setattr("meshwright_agent.evaluation.rollouts.start_meshes", lambda *_: [square])
     with pytest.raises(NothingToDo, match="at its optimum"):
@@ -59,7 +59,7 @@ def test_polygons_with_nothing_to_do_are_refused(monkeypatch):
 
 
 @pytest.mark.parametrize("method", sorted({*BASELINES, *RACERS}))
-def test_every_method_ends_between_optimum_and_start(method, policy, meshes):
+def test_every_baseline_ends_between_optimum_and_start(method, policy, meshes):
     mesh = meshes[0]
     before = mesh.score
     found = attempt(method, mesh, policy, 20.0 if method == "policy" else 0.05, seed=1)
@@ -69,13 +69,13 @@ def test_every_method_ends_between_optimum_and_start(method, policy, meshes):
         assert found.score == mesh.optimum
 
 
-def test_a_share_counts_what_was_in_time():
+def test_share_within_counts_only_times_below_the_limit():
     times = np.array([0.1, 0.5, np.inf, 2.0])
     assert [share_within(times, seconds) for seconds in (0.1, 1.0, 5.0)] == [0.25, 0.5, 0.75]
 
 
-def test_an_assessment_and_its_figures(policy, tmp_path):
-    wanted = Wanted(2, 2, seed=4, race=0.05, polish=0.05)
+def test_a_row_and_its_figures(policy, tmp_path):
+    wanted = RowSettings(2, 2, seed=4, race=0.05, polish=0.05)
     found = assess(policy, (8, 9), wanted)
     polished = found.numbers["polished"]
     assert polished["coarse_elements_mean"] <= polished["elements_mean"] + 1e-9
@@ -92,7 +92,7 @@ def test_an_assessment_and_its_figures(policy, tmp_path):
         assert (tmp_path / name).stat().st_size > 10_000
 
 
-def test_the_paper_has_its_rows():
+def test_rows_of_the_paper():
     assert [row.best.mean for row in paper_results.ROWS["tri"]] == [
         0.83,
         0.87,

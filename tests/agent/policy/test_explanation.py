@@ -1,4 +1,4 @@
-"""What is shown of a policy is what it does, and looking changes nothing."""
+"""Insights and hints agree with the decisions of the policy and do not change the episode."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def star(kind):
     return meshing.mesh_domain(gallery.shape("star"), kind)
 
 
-def test_a_run_that_is_looked_at_is_the_same_run(policy):
+def test_looking_does_not_change_an_episode(policy):
     mesh = star(policy.kind)
     seen, blind = Runner(mesh, policy, 5), Runner(mesh, policy, 5)
     for _ in range(40):
@@ -40,7 +40,7 @@ def test_a_run_that_is_looked_at_is_the_same_run(policy):
     assert seen.look() is None or not seen.finished
 
 
-def test_probabilities_are_all_of_them_and_changes_exact(policy):
+def test_probabilities_sum_to_one_and_changes_are_exact(policy):
     runner = Runner(star(policy.kind), policy, 2)
     for _ in range(6):
         insight = runner.look()
@@ -61,7 +61,7 @@ def test_probabilities_are_all_of_them_and_changes_exact(policy):
         runner.step()
 
 
-def test_the_template_is_that_of_the_selection(policy):
+def test_the_template_agrees_with_the_candidate_selection(policy):
     runner = Runner(star(policy.kind), policy, 2)
     insight, arrays, k = runner.look(), runner.mesh.arrays, runner.mesh.k
     source, turn = policy.task.template
@@ -85,7 +85,7 @@ def test_the_field_of_view_grows_with_the_blocks():
         assert (np.diff(field[:, 1]) >= 0).all() and field[:, 1].max() <= blocks
 
 
-def test_hints_are_the_same_each_time_and_can_be_taken(policy):
+def test_hints_are_reproducible_and_can_be_applied(policy):
     mesh = star(policy.kind)
     before = mesh.elements()
     given = hints(mesh, policy)
@@ -97,7 +97,7 @@ def test_hints_are_the_same_each_time_and_can_be_taken(policy):
     assert sum(hint.probability for hint in given) <= 1.0 + 1e-6
 
 
-def test_hints_near_a_place_stay_there():
+def test_hints_near_given_vertices_stay_near_them():
     mesh = meshing.mesh_domain(gallery.random_polygon(60, np.random.default_rng(3)), "quad")
     policy = policy_files.load("quad")
     vertex = int(np.flatnonzero(mesh.irregularity())[-1])
@@ -116,11 +116,11 @@ def test_a_mesh_of_the_other_kind_is_refused(policy):
         hints(other, policy)
 
 
-def test_no_hint_where_nothing_is_irregular():
+def test_no_hint_without_irregular_vertices():
     assert hints(meshing.grid("quad", 16), policy_files.load("quad")) == ()
 
 
-def test_same_results():
+def test_operations_have_the_same_result_at_equivalent_half_edges():
     mesh = meshing.grid("quad", 16)
     for h in range(4 * mesh.n_elements):
         for operation in (Operation.FLIP_LEFT, Operation.COLLAPSE, Operation.SPLIT):

@@ -1,4 +1,4 @@
-"""Saved policies: round trip, what travels with the program, bad files."""
+"""Policy files: round trip, the policies installed with the program, damaged files."""
 
 import json
 
@@ -29,7 +29,7 @@ def test_a_policy_survives_the_round_trip(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_one_policy_of_each_kind_travels_with_the_program(kind):
+def test_policies_of_both_kinds_are_installed(kind):
     assert shipped(kind)[0] == kind
     policy = load(kind)
     assert policy.kind == kind
@@ -52,9 +52,12 @@ def _spoil_header(path, change):
 @pytest.mark.parametrize(
     ("spoil", "word"),
     [
-        (lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]), "part"),
-        (lambda path: path.write_bytes(b""), "part"),
-        (lambda path: path.write_text("a policy, honestly"), "no policy"),
+        (
+            lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]),
+            "incomplete",
+        ),
+        (lambda path: path.write_bytes(b""), "incomplete"),
+        (lambda path: path.write_text("a policy, honestly"), "not a policy"),
         (lambda path: _spoil_header(path, lambda h: h.update(format=99)), "format 99"),
         (lambda path: _spoil_header(path, lambda h: h["task"].update(kind="hex")), "hex"),
         (lambda path: _spoil_header(path, lambda h: h["task"].update(blocks=3)), "fit"),
@@ -71,10 +74,10 @@ def test_a_bad_file_is_refused_in_one_sentence(tmp_path, spoil, word):
     assert "\n" not in str(caught.value)
 
 
-def test_a_policy_with_no_number_is_refused(tmp_path):
+def test_weights_that_are_not_finite_are_refused(tmp_path):
     policy, path = _saved(tmp_path)
     with torch.no_grad():
         policy.network.beta.fill_(float("nan"))
     save_policy(policy, path)
-    with pytest.raises(PolicyError, match="no numbers"):
+    with pytest.raises(PolicyError, match="not finite"):
         load(path)

@@ -1,4 +1,4 @@
-"""An outlook is what the policy's own decision would be among the same half-edges."""
+"""An outlook equals the policy's own decision among the same candidates."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def star(kind):
     return meshing.mesh_domain(gallery.shape("star"), kind)
 
 
-def test_it_is_what_a_run_would_do(policy):
+def test_an_outlook_agrees_with_the_next_decision(policy):
     runner = Runner(star(policy.kind), policy, 3)
     insight = runner.look()
     seen = outlook(runner.mesh, policy, insight.halfedges)
@@ -28,7 +28,7 @@ def test_it_is_what_a_run_would_do(policy):
     assert seen.value == pytest.approx(insight.value, abs=1e-5)
 
 
-def test_probabilities_lie_on_what_is_permitted_and_changes_are_exact(policy):
+def test_only_permitted_operations_have_probability_and_changes_are_exact(policy):
     mesh = star(policy.kind)
     seen = outlook(mesh, policy, candidates(mesh, policy))
     assert seen.probabilities.sum() == pytest.approx(1.0)
@@ -39,7 +39,7 @@ def test_probabilities_lie_on_what_is_permitted_and_changes_are_exact(policy):
         assert seen.changes[i, j] == change
 
 
-def test_candidates_hold_the_half_edge_that_is_asked_for_once(policy):
+def test_candidates_contain_the_given_half_edge_once(policy):
     mesh = star(policy.kind)
     for h in range(0, mesh.k * mesh.n_elements, 5):
         found = candidates(mesh, policy, h)
@@ -47,7 +47,7 @@ def test_candidates_hold_the_half_edge_that_is_asked_for_once(policy):
         assert template_slots(mesh.arrays, policy.task, h)[0] == h
 
 
-def test_looking_changes_nothing_and_needs_no_permission(policy):
+def test_an_outlook_changes_nothing_and_accepts_forbidden_half_edges(policy):
     mesh = star(policy.kind)
     before = mesh.points.copy(), mesh.elements()
     boundary = np.flatnonzero(mesh.arrays.edge[: mesh.k * mesh.n_elements, 1] < 0)[:1]
@@ -56,7 +56,7 @@ def test_looking_changes_nothing_and_needs_no_permission(policy):
     assert np.array_equal(before[0], mesh.points) and np.array_equal(before[1], mesh.elements())
 
 
-def test_wrong_questions_are_refused(policy):
+def test_wrong_arguments_are_refused(policy):
     with pytest.raises(PolicyError, match="this policy is for"):
         outlook(star("tri" if policy.kind == "quad" else "quad"), policy, np.array([0]))
     for h in (-1, 10**6):

@@ -1,4 +1,4 @@
-"""Annealing, greedy descent and random walks: what they return replays and keeps its bounds."""
+"""Annealing, greedy descent and random walks: results can be replayed and respect the bounds."""
 
 import numpy as np
 import pytest
@@ -26,14 +26,14 @@ def test_annealing_lowers_s_and_its_operations_replay(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_seed_and_a_number_of_proposals_fix_the_answer(kind):
+def test_seed_and_number_of_proposals_determine_the_result(kind):
     mesh = start(kind)
     first = anneal(mesh, proposals=30_000, seed=5)
     assert anneal(mesh, proposals=30_000, seed=5) == first
     assert anneal(mesh, proposals=30_000, seed=6) != first
 
 
-def test_triangles_keep_their_floor_and_their_ceiling_all_the_way():
+def test_the_bounds_of_the_number_of_triangles_hold_at_every_step():
     mesh = start("tri", 20)
     size = mesh.n_elements
     operations, _ = anneal(mesh, proposals=50_000, seed=2, ceiling=size + 6, goal=-1)
@@ -52,7 +52,7 @@ def test_without_the_extension_no_boundary_edge_of_triangles_is_collapsed():
         copy.apply(operation, h)
 
 
-def test_a_log_that_grows_too_long_is_lengthened_without_a_loss():
+def test_a_full_log_is_lengthened_without_loss():
     mesh = start("quad", 20)
     annealer = Annealer(mesh, 3, temperatures=(2.0, 2.0), sweep=1e9, goal=-1)
     for _ in range(10):
@@ -62,7 +62,7 @@ def test_a_log_that_grows_too_long_is_lengthened_without_a_loss():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_cancelling_ends_an_annealing_with_its_best(kind):
+def test_a_cancelled_annealing_returns_its_best_state(kind):
     mesh = start(kind, 30)
     calls = []
 
@@ -76,7 +76,7 @@ def test_cancelling_ends_an_annealing_with_its_best(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_baselines_replay_and_are_no_better_than_they_say(kind):
+def test_baselines_replay_to_the_score_they_report(kind):
     mesh = start(kind, 15, seed=4)
     strict = greedy(mesh, seed=1)
     patient = greedy(mesh, seed=1, plateau=30)
@@ -86,6 +86,6 @@ def test_baselines_replay_and_are_no_better_than_they_say(kind):
     assert patient[1] <= strict[1]
 
 
-def test_strict_descent_takes_no_step_on_a_fresh_quad_mesh():
+def test_strict_descent_finds_no_step_on_a_new_quad_mesh():
     mesh = start("quad", 12)
     assert greedy(mesh) == ([], mesh.score)

@@ -1,4 +1,4 @@
-"""Coarsening: fewer quads, s no higher, drawn as well, corners kept."""
+"""Coarsening: fewer quads, s no higher, no more inverted elements, corners kept."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def test_the_floor_is_kept():
     assert 12 <= after.n_elements < 36
 
 
-def test_nothing_for_triangles_and_nothing_when_cancelled():
+def test_no_operations_for_triangles_or_when_cancelled():
     mesh = meshing.benchmark_mesh("tri", 10, np.random.default_rng(0))
     assert coarsen(mesh) == []
     quads = meshing.benchmark_mesh("quad", 10, np.random.default_rng(0))

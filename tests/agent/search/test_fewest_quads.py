@@ -1,4 +1,4 @@
-"""How few quads the star can have at its optimum: all its decompositions into five are listed.
+"""The fewest quads of the star at its optimum: all its decompositions into five are listed.
 
 Euler's formula for a disc of Q quads with b boundary vertices leaves 1 + Q - b / 2 inside. With
 Q = 5 and b = 10, the corners alone, there is one vertex inside; every tip keeps degree 2 only in a
@@ -62,7 +62,7 @@ def test_five_quads_reach_the_optimum_only_where_they_cannot_be_drawn():
     assert min(bad_corners) == 2
 
 
-def test_the_solver_comes_to_a_few_that_can():
+def test_the_solver_finds_some_that_can_be_drawn():
     star = mesh_domain(shape("star"), "quad")
     solution = solve(star, load("quad"), rollouts=4, seed=1)
     assert (solution.score, solution.inverted) == (4, 0)

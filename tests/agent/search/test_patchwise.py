@@ -1,4 +1,4 @@
-"""Patches of a large mesh, worked on as meshes of their own, and what comes back."""
+"""Patches of a large mesh, improved as separate meshes, and their operations in the large mesh."""
 
 import numpy as np
 import pytest
@@ -109,7 +109,7 @@ def gains(mesh, codes):
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_what_was_done_on_patches_is_done_on_the_mesh(kind):
+def test_operations_on_patches_are_applied_to_the_mesh(kind):
     mesh = scrambled(kind, 2)
     before = mesh.copy()
     patches = patches_of(mesh)
@@ -158,11 +158,14 @@ def test_the_queue_keeps_its_order_when_the_mesh_grows():
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_a_scrambled_mesh_is_mended_by_operations_that_replay(kind):
+def test_a_scrambled_mesh_is_improved_by_operations_that_replay(kind):
     mesh = scrambled(kind)
-    told = []
+    reported = []
     run = improve_large(
-        mesh, policy_files.load(kind), max_steps=1500, progress=lambda *said: told.append(said)
+        mesh,
+        policy_files.load(kind),
+        max_steps=1500,
+        progress=lambda *values: reported.append(values),
     )
     run.mesh.validate()
     after = replayed(mesh, run)
@@ -171,17 +174,17 @@ def test_a_scrambled_mesh_is_mended_by_operations_that_replay(kind):
     assert after.score == run.score and run.optimum == mesh.optimum
     assert run.start_score - run.score > 0.6 * (run.start_score - run.optimum)
     assert run.removed > 0.6 and 0 < run.descent < len(run.operations)
-    assert [s for _, s in told] == sorted((s for _, s in told), reverse=True)
-    assert told[-1] == (len(run.operations), run.score)
+    assert [s for _, s in reported] == sorted((s for _, s in reported), reverse=True)
+    assert reported[-1] == (len(run.operations), run.score)
 
 
-def test_the_seed_decides(quads, policy):
+def test_the_seed_determines_the_result(quads, policy):
     runs = [improve_large(quads, policy, max_steps=200, seed=seed) for seed in (1, 1, 2)]
     assert (runs[0].halfedges == runs[1].halfedges).all()
     assert runs[0].halfedges.tolist() != runs[2].halfedges.tolist()
 
 
-def test_a_run_stops_when_it_is_told_to(quads, policy):
+def test_a_run_stops_when_it_is_cancelled_or_out_of_time(quads, policy):
     calls = []
 
     def cancelled():
@@ -195,8 +198,8 @@ def test_a_run_stops_when_it_is_told_to(quads, policy):
     assert improve_large(quads, policy, max_steps=0).decisions == 0
 
 
-def test_the_policy_must_be_for_this_kind(quads):
-    with pytest.raises(PolicyError, match="not quad"):
+def test_a_policy_of_the_other_kind_is_refused(quads):
+    with pytest.raises(PolicyError, match="the mesh is of quads"):
         improve_large(quads, policy_files.load("tri"))
 
 
@@ -206,15 +209,15 @@ def test_a_regular_mesh_is_left_as_it_is(policy):
     assert (len(run.operations), run.removed, run.reason) == (0, 0.0, "at the optimum")
 
 
-def test_the_solver_goes_patch_by_patch_where_much_is_irregular(quads, policy):
+def test_the_solver_improves_very_irregular_meshes_patch_by_patch(quads, policy):
     few = meshing.benchmark_mesh("quad", 50, np.random.default_rng(0))
     assert is_large(quads) and not is_large(few)
-    told = []
-    found = solve(quads, policy, max_steps=400, progress=lambda *said: told.append(said[1]))
+    reported = []
+    found = solve(quads, policy, max_steps=400, progress=lambda *values: reported.append(values[1]))
     copy = quads.copy()
     for operation, h in found.operations:
         copy.apply(operation, h)
     assert found.method == "patches"
     assert (copy.score, copy.n_elements) == (found.score, found.elements)
     assert quads.score - found.score > 0.6 * (quads.score - quads.optimum)
-    assert told == sorted(told, reverse=True)
+    assert reported == sorted(reported, reverse=True)

@@ -1,4 +1,4 @@
-"""A search within a region lowers s there, and leaves everything else as it was."""
+"""A search within a region lowers s there and leaves the rest of the mesh unchanged."""
 
 import threading
 
@@ -39,7 +39,7 @@ def outside_of(mesh, elements):
     return halfedges, mesh.arrays.edge[halfedges, ORIGIN].copy()
 
 
-def test_it_replays_lowers_s_and_leaves_the_rest(case):
+def test_operations_replay_lower_s_and_leave_the_rest_unchanged(case):
     policy, mesh, elements = case
     before, copy = mesh.elements(), mesh.copy()
     found = solve_within(mesh, policy, elements, rollouts=8, seed=1)
@@ -60,7 +60,7 @@ def test_it_replays_lowers_s_and_leaves_the_rest(case):
     copy.validate()
 
 
-def test_it_knows_when_nothing_more_can_be_gained():
+def test_a_search_ends_early_at_the_lower_bound():
     mesh = meshing.grid("quad", 64)
     h = 4 * 27
     mesh.apply("flip_left", h)
@@ -73,7 +73,7 @@ def test_it_knows_when_nothing_more_can_be_gained():
     assert again.score == 0
 
 
-def test_a_region_with_much_to_repair_goes_patch_by_patch(monkeypatch):
+def test_a_very_irregular_region_is_improved_patch_by_patch(monkeypatch):
     mesh = meshing.mesh_domain(gallery.shape("gear"), "tri", max_edge=0.05)
     elements = region(mesh, 12)
     monkeypatch.setattr("meshwright_agent.search.region_search.MANY", 8)
@@ -89,21 +89,21 @@ def test_a_region_with_much_to_repair_goes_patch_by_patch(monkeypatch):
     mesh.validate()
 
 
-def test_it_tells_how_far_it_is_and_stops_when_told(case):
+def test_it_reports_progress_and_stops_when_cancelled(case):
     policy, mesh, elements = case
-    told = []
+    reported = []
     found = solve_within(
-        mesh, policy, elements, rollouts=32, seed=3, progress=lambda *a: told.append(a)
+        mesh, policy, elements, rollouts=32, seed=3, progress=lambda *a: reported.append(a)
     )
-    assert told[-1][0] == found.rollouts <= 32
-    assert found.score <= told[-1][1] <= mesh.score
+    assert reported[-1][0] == found.rollouts <= 32
+    assert found.score <= reported[-1][1] <= mesh.score
     enough = threading.Event()
     enough.set()
     stopped = solve_within(mesh, policy, elements, seconds=60.0, cancelled=enough.is_set)
     assert stopped.operations == [] and stopped.score == mesh.score
 
 
-def test_what_makes_no_sense_is_refused(case):
+def test_wrong_arguments_are_refused(case):
     policy, mesh, elements = case
     with pytest.raises(MeshError, match="No vertex lies inside"):
         solve_within(mesh, policy, elements[:1])

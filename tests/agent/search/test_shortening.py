@@ -1,4 +1,4 @@
-"""Shortening: never longer, ends as well, and replays."""
+"""Shortened operations are never more, lead to the same s, and can be replayed."""
 
 import time
 
@@ -13,7 +13,7 @@ from meshwright_core.domains.meshing import benchmark_mesh
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 @pytest.mark.parametrize("seed", [0, 1, 2])
-def test_what_annealing_found_becomes_much_shorter_and_no_worse(kind, seed):
+def test_operations_of_annealing_become_much_fewer_at_equal_s(kind, seed):
     mesh = benchmark_mesh(kind, 12, np.random.default_rng(seed))
     operations, score = anneal(mesh, proposals=100_000, seed=seed)
     long = replayed(mesh, operations)
@@ -25,13 +25,13 @@ def test_what_annealing_found_becomes_much_shorter_and_no_worse(kind, seed):
     assert after.optimum == mesh.optimum
 
 
-def test_an_operation_and_its_undoing_are_left_out():
+def test_an_operation_and_its_inverse_are_left_out():
     mesh = benchmark_mesh("quad", 8, np.random.default_rng(1))
     h = next(h for h in range(4 * mesh.n_elements) if mesh.check("flip_left", h))
     assert shorten(mesh, [("flip_left", h), ("flip_right", h)]) == []
 
 
-def test_a_split_that_nothing_needs_goes_although_later_ids_depend_on_it():
+def test_an_unneeded_split_is_left_out_although_later_ids_depend_on_it():
     mesh = benchmark_mesh("tri", 10, np.random.default_rng(3))
     noisy = [("split", next(h for h in range(9, 90) if mesh.twin(h) >= 0))]
     copy = replayed(mesh, noisy)
@@ -42,7 +42,7 @@ def test_a_split_that_nothing_needs_goes_although_later_ids_depend_on_it():
     assert replayed(mesh, short).score <= replayed(mesh, whole).score
 
 
-def test_sixty_operations_take_no_time():
+def test_sixty_operations_are_shortened_quickly():
     mesh = benchmark_mesh("tri", 20, np.random.default_rng(0))
     operations, _ = anneal(mesh, proposals=40_000, seed=0)
     shorten(mesh, operations[:60])
@@ -51,7 +51,7 @@ def test_sixty_operations_take_no_time():
     assert time.process_time() - began < 0.3
 
 
-def test_cancelling_leaves_a_valid_answer():
+def test_a_cancelled_shortening_returns_valid_operations():
     mesh = benchmark_mesh("quad", 20, np.random.default_rng(0))
     operations, score = anneal(mesh, proposals=100_000, seed=0)
     assert replayed(mesh, shorten(mesh, operations, cancelled=lambda: True)).score <= score

@@ -1,4 +1,4 @@
-"""The anytime solver: what it returns replays, is the best met, and comes in time."""
+"""The anytime solver: results can be replayed, are the best found, and arrive in time."""
 
 import numpy as np
 import pytest
@@ -29,18 +29,18 @@ def replayed(mesh, solution):
     return copy
 
 
-def test_a_search_replays_to_what_it_says(policy):
+def test_a_solution_replays_to_its_score(policy):
     mesh = start(policy.kind)
-    told = []
-    found = solve(mesh, policy, seconds=2.0, progress=lambda *said: told.append(said))
+    reported = []
+    found = solve(mesh, policy, seconds=2.0, progress=lambda *values: reported.append(values))
     after = replayed(mesh, found)
     assert (after.score, after.n_elements) == (found.score, found.elements)
     assert found.score < mesh.score and found.optimum == mesh.optimum
-    assert found.rollouts == told[-1][0]
-    assert [best for _, best in told] == sorted((best for _, best in told), reverse=True)
+    assert found.rollouts == reported[-1][0]
+    assert [best for _, best in reported] == sorted((best for _, best in reported), reverse=True)
 
 
-def test_best_of_k_makes_no_more_than_k_rollouts(policy):
+def test_best_of_k_plays_at_most_k_rollouts(policy):
     mesh = start(policy.kind, 20)
     found = solve(mesh, policy, rollouts=3, max_steps=5)
     assert found.rollouts == 3
@@ -48,27 +48,27 @@ def test_best_of_k_makes_no_more_than_k_rollouts(policy):
     assert solve(mesh, policy, max_steps=5).rollouts == 1
 
 
-def test_a_search_ends_when_its_time_is_up(policy):
+def test_a_search_ends_at_its_time_limit(policy):
     mesh = start(policy.kind, 40)
     found = solve(mesh, policy, seconds=0.5)
     assert replayed(mesh, found).score == found.score < mesh.score
 
 
-def test_cancelling_comes_back_with_the_best_so_far(policy):
+def test_a_cancelled_search_returns_the_best_so_far(policy):
     mesh = start(policy.kind, 40)
     asked = []
     found = solve(mesh, policy, seconds=600.0, cancelled=lambda: asked.append(0) or len(asked) > 50)
-    assert len(asked) < 500  # it does not go on once it has been told to stop
+    assert len(asked) < 500  # it stops soon after it was cancelled
     assert replayed(mesh, found).score == found.score
 
 
-def test_workers_share_what_they_find(policy):
+def test_workers_share_their_results(policy):
     mesh = start(policy.kind, 20)
     found = solve(mesh, policy, seconds=1.0, workers=2)
     assert replayed(mesh, found).score == found.score < mesh.score
 
 
-def test_a_mesh_at_its_optimum_needs_nothing(policy):
+def test_a_mesh_at_its_optimum_needs_no_operations(policy):
     mesh = start(policy.kind)
     for operation, h in solve(mesh, policy, rollouts=10).operations:
         mesh.apply(operation, h)
@@ -76,7 +76,7 @@ def test_a_mesh_at_its_optimum_needs_nothing(policy):
     assert solve(mesh, policy, seconds=1.0, coarsen=False).operations == []
 
 
-def test_quads_end_with_fewer_elements_only_if_asked():
+def test_quads_are_coarsened_only_on_request():
     policy = policy_files.load("quad")
     mesh = start("quad", 20)
     fine = solve(mesh, policy, rollouts=6, coarsen=False)
@@ -85,7 +85,7 @@ def test_quads_end_with_fewer_elements_only_if_asked():
     assert coarse.elements < fine.elements
 
 
-def test_better_is_lower_s_then_drawable_then_coarser_then_shorter():
+def test_the_order_of_solutions_is_s_flaws_elements_operations():
     def rank(score, inverted, elements, length):
         return Solution([("flip", 0)] * length, score, 0, inverted, elements).rank
 

@@ -1,4 +1,4 @@
-"""Two processes that train together, and one that is killed, started as a user starts them."""
+"""Training in two processes, and resuming after a kill, started from the command line."""
 
 import json
 import os
@@ -45,7 +45,7 @@ horizon = 6
 minibatch = 16
 """
 
-# runs in both processes: a training, and afterwards what each of them knows
+# run by both processes: a training, and afterwards a record of the state of each
 TOGETHER = """
 import json, sys
 from pathlib import Path
@@ -55,14 +55,14 @@ from meshwright_agent.training import trainer
 
 configuration, folder = sys.argv[1], Path(sys.argv[2])
 trainer.evaluate = lambda *_: {"single_mean": 0.0, "seconds": 1.0}
-loop = trainer._loop
+run_updates = trainer._run_updates
 
-def loop_and_tell(trainer, *rest):
-    loop(trainer, *rest)
+def run_and_record(trainer, *rest):
+    run_updates(trainer, *rest)
     known = trainer.processes
     numbers = np.arange(3.0 + known.rank)
     name = folder.parent / f"process-{known.rank}"
-    told = {
+    record = {
         "moments": known.mean_and_deviation(numbers),
         "least": known.least(len(numbers)),
         "from_first": known.from_first(known.rank),
@@ -70,10 +70,10 @@ def loop_and_tell(trainer, *rest):
         "decisions": trainer.progress.decisions,
         "curve": [point["mean"] for point in trainer.progress.curve],
     }
-    name.with_suffix(".json").write_text(json.dumps(told))
+    name.with_suffix(".json").write_text(json.dumps(record))
     save_file(trainer.network.state_dict(), name.with_suffix(".safetensors"))
 
-trainer._loop = loop_and_tell
+trainer._run_updates = run_and_record
 trainer.train(configuration, folder)
 """
 
@@ -82,7 +82,7 @@ def environment() -> dict[str, str]:
     return {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONPATH": str(ROOT)}
 
 
-def test_two_processes_make_the_same_steps_and_the_first_writes(tmp_path):
+def test_two_processes_make_the_same_updates_and_the_first_writes(tmp_path):
     (tmp_path / "tiny.toml").write_text(TINY.format(iterations=2))
     (tmp_path / "together.py").write_text(TOGETHER)
     words = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node=2"]
@@ -94,12 +94,12 @@ def test_two_processes_make_the_same_steps_and_the_first_writes(tmp_path):
         cwd=tmp_path,
     )
     assert done.returncode == 0, done.stderr
-    told = [json.loads((tmp_path / f"process-{i}.json").read_text()) for i in range(2)]
-    assert [one["environments"] for one in told] == [5, 4]
-    assert told[0]["decisions"] == told[1]["decisions"] == 9 * 6 * 2
-    assert told[0]["curve"] == told[1]["curve"]
+    records = [json.loads((tmp_path / f"process-{i}.json").read_text()) for i in range(2)]
+    assert [one["environments"] for one in records] == [5, 4]
+    assert records[0]["decisions"] == records[1]["decisions"] == 9 * 6 * 2
+    assert records[0]["curve"] == records[1]["curve"]
     every = np.array([0, 1, 2, 0, 1, 2, 3])
-    for one in told:
+    for one in records:
         assert one["moments"] == pytest.approx([every.mean(), every.std()])
         assert (one["least"], one["from_first"]) == (3, 0)
     first, second = (load_file(tmp_path / f"process-{i}.safetensors") for i in range(2))
@@ -109,7 +109,7 @@ def test_two_processes_make_the_same_steps_and_the_first_writes(tmp_path):
     assert len(json.loads((tmp_path / "out" / "curve.json").read_text())) == 3
 
 
-def test_a_training_that_was_killed_goes_on_from_its_last_checkpoint(tmp_path, monkeypatch):
+def test_a_killed_training_continues_from_its_last_checkpoint(tmp_path, monkeypatch):
     (tmp_path / "long.toml").write_text(TINY.format(iterations=100_000))
     words = ["train", "--kind", "quad", "--config", "long.toml", "-o", "out"]
     started = subprocess.Popen(
@@ -145,7 +145,7 @@ def _updates(path: Path) -> int:
     return checkpoint.unpack(path.read_bytes())[1]["progress"]["iteration"] if path.exists() else 0
 
 
-def test_alone_everything_is_as_it_was():
+def test_a_single_process_returns_its_input():
     alone = Processes()
     assert (alone.first, alone.share(7), alone.least(5), alone.from_first("x")) == (True, 7, 5, "x")
     values = np.array([1.0, 2.0, 6.0], np.float32)
@@ -159,7 +159,7 @@ def _numbered(rank: int) -> Processes:
     return one
 
 
-def test_a_gpu_that_is_not_there_is_named(monkeypatch):
+def test_a_missing_gpu_is_reported(monkeypatch):
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     with pytest.raises(DeviceError, match="finds no GPU"), joined("cuda"):
         pass
@@ -167,7 +167,7 @@ def test_a_gpu_that_is_not_there_is_named(monkeypatch):
         assert processes.device.type == "cpu"
 
 
-def test_a_network_takes_what_it_looks_at_to_where_it_is(monkeypatch):
+def test_a_network_moves_its_input_to_its_device(monkeypatch):
     # no GPU is needed: tensors on "meta" have shapes and a device, and refuse to meet others
     task = Task("tri", channels=6, blocks=2, candidates=8)
     rng = np.random.default_rng(1)

@@ -1,4 +1,4 @@
-"""A tiny training: learns to save, resumes, and refuses what it cannot read."""
+"""A tiny training: results, checkpoints, early stopping, and wrong configurations."""
 
 import json
 from types import SimpleNamespace
@@ -8,9 +8,10 @@ import pytest
 import torch
 
 from meshwright_agent.evaluation.rollouts import evaluate
-from meshwright_agent.policy.policy_files import load
+from meshwright_agent.policy.policy_files import load, shipped
 from meshwright_agent.search.solver import solve
 from meshwright_agent.training import checkpoint
+from meshwright_agent.training.configuration import configuration_of
 from meshwright_agent.training.tensorboard import Events
 from meshwright_agent.training.trainer import (
     ConfigurationError,
@@ -86,7 +87,7 @@ def test_a_training_ends_early_and_its_best_policy_is_the_result(tmp_path, monke
     assert (again["iteration"], again["best_return"]) == (4, 0.9)
 
 
-def test_events_hold_what_has_a_tag_and_is_a_number(tmp_path):
+def test_events_hold_tagged_numbers_that_are_not_nan(tmp_path):
     events = Events(tmp_path, 0)
     for update in range(1, 6):
         events.write(update, {"entropy": 1.0, "mean": float("nan"), "unknown": 3.0})
@@ -98,29 +99,63 @@ def test_events_hold_what_has_a_tag_and_is_a_number(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["tri", "quad", "tri-paper", "quad-paper"])
-def test_the_configurations_that_travel_can_be_read(name):
+def test_shipped_configurations_can_be_read(name):
     training = read_configuration(shipped_configuration(name))
     assert training.task.kind == name.split("-")[0]
     assert (training.task.selection == "template") == name.endswith("paper")
 
 
 @pytest.mark.parametrize(
-    ("change", "word"),
+    ("change", "sentence"),
     [
-        ({"task": {"kind": "hex"}}, "hex"),
-        ({"task": {"kind": "quad", "selecton": "x"}}, "selecton"),
-        ({"sides": [2, 9]}, "sides"),
-        ({"speed": 3}, "speed"),
-        ({"device": "tpu"}, "tpu"),
-        ({"patience": -1}, "patience"),
+        ({"task": {"kind": "hex"}}, 'task.kind must be "tri" or "quad", not "hex"'),
+        ({"task": {}}, 'the setting "task.kind" is missing'),
+        (
+            {"task": {"kind": "quad", "selecton": "x"}},
+            'there is no setting "task.selecton"; did you mean "task.selection"?',
+        ),
+        ({"colour": 3}, 'there is no setting "colour"'),
+        ({"sides": [2, 9]}, "sides[0] must be a whole number of at least 3, not 2"),
+        ({"sides": [9, 8]}, "sides must hold the smaller number first, not 9, 8"),
+        ({"sides": [8]}, "sides must be a list of 2 values, not [8]"),
+        ({"device": "tpu"}, 'device must be "auto", "cpu" or "cuda", not "tpu"'),
+        ({"patience": -1}, "patience must be a whole number of at least 0, not -1"),
+        ({"pool": 12.5}, "pool must be a whole number, not 12.5"),
+        ({"pool": True}, "pool must be a whole number, not true"),
+        ({"ppo": 3}, "ppo must be a section of settings, not 3"),
+        ({"ppo": {"horizon": "long"}}, 'ppo.horizon must be a whole number, not "long"'),
+        ({"ppo": {"learning_rate": 0}}, "ppo.learning_rate must be a number above 0, not 0"),
+        ({"ppo": {"lambda": 1.5}}, "ppo.lambda must be a number of at most 1, not 1.5"),
+        ({"architecture": {"prior": 1}}, "architecture.prior must be true or false, not 1"),
     ],
 )
-def test_a_wrong_configuration_is_refused(change, word):
-    with pytest.raises(ConfigurationError, match=word):
+def test_a_wrong_configuration_is_refused_by_a_sentence_with_its_key(change, sentence):
+    with pytest.raises(ConfigurationError) as refused:
         read_configuration({**_TINY, **change})
+    assert str(refused.value) == f"the configuration: {sentence}"
 
 
-def test_a_configuration_that_is_no_toml_is_refused(tmp_path):
+def test_a_wrong_configuration_file_is_named(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text('pool = "many"\n[task]\nkind = "quad"')
+    with pytest.raises(ConfigurationError, match=r"mine\.toml: pool must be a whole number"):
+        read_configuration(path)
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_configurations_in_policy_headers_can_be_read(name):
+    header = load(name).header
+    training = configuration_of(header["training"], name)
+    assert training.to_dict() == {**header["training"], "sides": tuple(header["training"]["sides"])}
+
+
+def test_a_checkpoint_names_lambda_by_its_field():
+    saved = json.loads(json.dumps(read_configuration(_TINY).to_dict()))
+    assert saved["ppo"]["lambda_"] == 0.9
+    assert configuration_of(saved, "checkpoint") == read_configuration(_TINY)
+
+
+def test_a_configuration_that_is_not_toml_is_refused(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text("sides = [10,")
     with pytest.raises(ConfigurationError, match=r"mine\.toml"):

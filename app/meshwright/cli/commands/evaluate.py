@@ -13,7 +13,7 @@ from meshwright.console import Report, Update, UserError
 from meshwright.sources.naming import looks_like_path
 
 if TYPE_CHECKING:
-    from meshwright_agent.evaluation.table_row import Assessment
+    from meshwright_agent.evaluation.table_row import RowResult
     from meshwright_agent.policy.policy_files import Policy
 
 SUMMARY = "measure a policy on random polygons: the paper's tables and figures"
@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     from meshwright_agent.evaluation import paper_results, rollouts, table_row
 
     table = [row.sides for row in paper_results.ROWS[arguments.kind]]
-    wanted = table_row.Wanted(
+    wanted = table_row.RowSettings(
         arguments.meshes,
         arguments.rollouts,
         arguments.seed,
@@ -143,7 +143,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         report.result({**given, **rows[0]}, _with_figures(text, given))
 
 
-def draw(policy: Policy, found: Sequence[Assessment], wanted: Any, folder: Path) -> list[Path]:
+def draw(policy: Policy, found: Sequence[RowResult], wanted: Any, folder: Path) -> list[Path]:
     """Draw all figures; returns their paths."""
     from meshwright.experiments import evaluation_table
     from meshwright_agent.evaluation import figures, paper_results, rollout_strip, rollouts

@@ -22,7 +22,7 @@ from meshwright.graphics.theme import Theme
 from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Choice
+    from meshwright_agent.policy.explanation_types import PolicyAction
 
 
 class HintsController(Controller):
@@ -42,7 +42,7 @@ class HintsController(Controller):
         self._document, self._assistant, self._canvas = document, assistant, canvas
         self._panel, self._status, self._notice = panel, status, notice
         self.shown: tuple[Hint, ...] = ()
-        self._choices: tuple[Choice, ...] = ()
+        self._choices: tuple[PolicyAction, ...] = ()
         self._mouse: QPointF | None = None
         overlay = canvas.overlay
         self.layer = HintsLayer(theme, overlay.font())
@@ -133,7 +133,7 @@ class HintsController(Controller):
                 f"Apply a hint by its number ({keys}) or with a click; Esc hides them."
             )
 
-    def _hint(self, mesh: HalfEdgeMesh, choice: Choice) -> Hint | None:
+    def _hint(self, mesh: HalfEdgeMesh, choice: PolicyAction) -> Hint | None:
         try:
             seen = ghost(mesh, choice.operation, choice.halfedge)
         except OperationRefused:

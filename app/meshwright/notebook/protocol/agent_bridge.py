@@ -16,7 +16,7 @@ from meshwright_core import MeshError
 from meshwright_core.core.kinds import KIND_NOUN
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Choice
+    from meshwright_agent.policy.explanation_types import PolicyAction
 
 
 class Helper:
@@ -131,7 +131,7 @@ class Helper:
             "seconds": round(progress.elapsed, 2),
         }
 
-    def _hint(self, choice: Choice) -> dict[str, Any]:
+    def _hint(self, choice: PolicyAction) -> dict[str, Any]:
         return {
             "operation": str(choice.operation),
             "title": title_of(choice.operation, self._document.kind),
