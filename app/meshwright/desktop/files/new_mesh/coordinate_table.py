@@ -10,7 +10,7 @@ from meshwright.graphics.theme import GRID
 from meshwright.sources.polygon_checks import Place
 from meshwright.sources.polygon_sketch import Sketch
 
-WIDTH = 27 * GRID
+WIDTH = 29 * GRID
 NEW = "New"
 NOT_A_NUMBER = "{text!r} is not a number."
 
@@ -35,7 +35,7 @@ class CoordinateTable(QTableWidget):
         header = self.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
-        header.resizeSection(0, 9 * GRID)
+        header.resizeSection(0, 11 * GRID)
         header.setHighlightSections(False)
         left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
         for column, (title, side) in enumerate((("Corner", left), ("x", right), ("y", right))):
