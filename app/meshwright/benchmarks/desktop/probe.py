@@ -49,9 +49,8 @@ def start(began: float, *numbers: int) -> dict[str, Any]:
     _spin(app, lambda: window.canvas.built)
     _frame(app, window)
     result["mesh_drawn_s"] = time.time() - began
-    _spin(
-        app, lambda: window.readiness.editing, KERNELS_S
-    )  # minutes where nothing was compiled yet
+    # minutes where nothing was compiled yet
+    _spin(app, lambda: window.readiness.editing, KERNELS_S)
     result["kernels_ready_s"] = time.time() - began
     result["torch_at_the_end"] = "torch" in sys.modules
     window.close()

@@ -116,9 +116,8 @@ class EditController(Controller):
         return self._readiness.editing
 
     def _take(self, operation: Operation, halfedge: int, revision: int) -> None:
-        if (
-            revision == self._document.revision
-        ):  # the agent may have changed the mesh while the menu was open
+        # the agent may have changed the mesh while the menu was open
+        if revision == self._document.revision:
             self.submit(operation, halfedge)
 
     def submit(self, operation: Operation, halfedge: int) -> None:
