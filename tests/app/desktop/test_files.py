@@ -135,7 +135,7 @@ def test_saving_reports_what_the_format_does_not_store(
 ):
     window = open_window(triangles)
     window.files._save(str(tmp_path / "a.stl"))
-    assert "keep no corners" in window.status.message
+    assert "store no corners" in window.status.message
     window.files._save(str(tmp_path / "a.vtk"))
     assert window.status.message == "Saved a.vtk."
 
@@ -281,7 +281,7 @@ def test_unsaved_work_is_discarded_by_two_clicks_or_kept(qtbot, watched, star, t
     (left,) = recovery.lost(folder)
     left.discard()
     window.actions_by_id["recover"].trigger()
-    assert window.status.message.startswith("There is no lost work")
+    assert window.status.message.startswith("There is no unsaved work")
 
 
 def test_recovering_asks_about_the_current_unsaved_mesh(qtbot, watched, star, tmp_path):

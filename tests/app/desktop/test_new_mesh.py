@@ -152,7 +152,7 @@ def test_too_many_elements_are_refused_in_one_sentence(qtbot, dialog):
     size.slider.setValue(size.slider.maximum())
     size.field.setDecimals(5)
     size.field.setValue(2e-4)
-    wait_for_words(qtbot, dialog, "2,000,000 are the most")
+    wait_for_words(qtbot, dialog, "the limit is 2,000,000")
     assert "This mesh would need about" in dialog.status.text()
     assert not dialog.make.isEnabled() and not dialog.mark.isHidden()
 
@@ -417,7 +417,7 @@ def test_message_frames_round_trip():
     [
         ({"source": {"shape": "sta"}}, "did you mean"),
         ({"source": {"domain": {"outline": [[0, 0], [1, 1]]}}}, "at least 3"),
-        ({"max_edge": 1e-4}, "2,000,000 are the most"),
+        ({"max_edge": 1e-4}, "the limit is 2,000,000"),
         ({"min_angle": 60}, "34"),
     ],
 )

@@ -60,9 +60,8 @@ class AgentPanel(QWidget):
         self._settings = settings
         self._theme = theme
         self._files = settings.texts(FILES)
-        self._drawn: tuple[bool, Theme] | None = (
-            None  # whether playing, and the theme, when the icons were drawn
-        )
+        # whether it was playing, and the theme, when the icons were drawn
+        self._drawn: tuple[bool, Theme] | None = None
         self._make_policy()
         self._make_buttons()
         self._make_progress()
