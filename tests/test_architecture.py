@@ -95,7 +95,7 @@ def imported(tree: ast.Module) -> list[tuple[str, int]]:
 
 
 def room_imports(package: str, files: dict[str, Path]) -> dict[tuple[str, str], list[str]]:
-    """The import lines between the rooms (direct children) of a package, by pair of rooms."""
+    """File and line of the imports between rooms (direct children) of a package, by pair."""
     edges: dict[tuple[str, str], list[str]] = {}
     prefix = f"{package}."
     for module, path in files.items():
@@ -108,8 +108,9 @@ def room_imports(package: str, files: dict[str, Path]) -> dict[tuple[str, str], 
             other = name.removeprefix(prefix).partition(".")[0]
             # names that the package's own __init__ defines belong to no room
             if other != room and f"{prefix}{other}" in files:
-                text = f"{path.relative_to(ROOT)}:{line} imports {name}"
-                edges.setdefault((room, other), []).append(text)
+                text = f"{path.relative_to(ROOT)}:{line}"
+                lines = edges.setdefault((room, other), [])
+                lines += [text] if text not in lines else []
     return edges
 
 
@@ -130,10 +131,12 @@ def test_no_rooms_import_each_other(package: str) -> None:
     edges = room_imports(package, module_files())
     assert edges
     reached = {room: reachable(room, edges) for room in {a for a, _ in edges}}
-    circular = [
-        line for (a, b), lines in edges.items() if a in reached.get(b, set()) for line in lines
-    ]
-    assert not circular, "imports that close a circle of rooms:\n" + "\n".join(sorted(circular))
+    circular = {
+        f"{a} imports {b}: {', '.join(lines)}"
+        for (a, b), lines in edges.items()
+        if a in reached.get(b, set())
+    }
+    assert not circular, "these imports close a circle of rooms:\n" + "\n".join(sorted(circular))
 
 
 def unannotated(path: Path) -> list[str]:

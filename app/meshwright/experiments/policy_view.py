@@ -19,6 +19,7 @@ from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.arguments import whole_number
 from meshwright_core.core.arrays import ORIGIN
+from meshwright_core.errors import sentence
 from meshwright_core.operations.catalogue import CATALOGUE, Operation
 
 if TYPE_CHECKING:
@@ -56,8 +57,7 @@ def policy_view(mesh: Any, policy: str | Policy, halfedge: int | None = None) ->
                 raise MeshError("This mesh is regular: the policy has nothing to look at.")
             seen = outlook(shown, known, among)
     except PolicyError as error:
-        sentence = str(error)
-        raise MeshError(f"{sentence[0].upper()}{sentence[1:]}.") from None
+        raise MeshError(sentence(str(error))) from None
     h = int(among[seen.probabilities.max(axis=1).argmax()]) if halfedge is None else halfedge
     return PolicyView(shown, known, h, seen)
 
@@ -200,8 +200,7 @@ class PolicyView(Picture):
 
     def _near(self, theme: Theme) -> Drawing:
         mesh, k = self.mesh, self.mesh.k
-        rows = k * self.field[:, :1] + np.arange(k)
-        corners = mesh.points[mesh.arrays.edge[rows, ORIGIN]][:, :, :2]
+        corners = mesh.points[mesh.corners(self.field[:, 0])][:, :, :2]
         seen = mesh.points[self.template[:, 0], :2]
         window = np.concatenate([corners.reshape(-1, 2), seen])
         view = Viewport(size=MESH).fitted(window, MARGIN + 16.0)

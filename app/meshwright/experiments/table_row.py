@@ -12,6 +12,7 @@ from meshwright.experiments.rollouts import known_policy
 from meshwright_core import MeshError
 from meshwright_core.arguments import whole_number
 from meshwright_core.core.kinds import KIND_NOUN
+from meshwright_core.errors import sentence
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.policy_files import Policy
@@ -113,8 +114,7 @@ def table_row(
     try:
         starts = unseen(known.kind, (low, high), count, given_seed)
     except NothingToDo as error:
-        sentence = str(error)
-        raise MeshError(f"{sentence[0].upper()}{sentence[1:]}.") from None
+        raise MeshError(sentence(str(error))) from None
     with one_thread():
         rolled = roll_out(known, starts, tries, given_seed)
     reported = paper_results.row(known.kind, (low, high))

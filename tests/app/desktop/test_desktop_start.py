@@ -1,10 +1,15 @@
 """What is imported and compiled before the first paint, measured in a separate process."""
 
+import pytest
+
 from meshwright.benchmarks import desktop
 from meshwright.benchmarks.desktop.display import display
 from meshwright_core.core import compilation
 
+pytestmark = pytest.mark.slow
 
+
+@pytest.mark.needs("window")
 def test_first_paint_needs_neither_torch_nor_kernels():
     compilation.warm()
     with display() as environment:

@@ -216,7 +216,7 @@ def test_dropped_file_is_opened(qtbot, open_window, star, tmp_path):
 
 def left_behind(folder, mesh, name="lost", seeds=(1, 2, 3)) -> Document:
     """Write the state of a process that was killed."""
-    from test_branches import wander
+    from document_edits import wander
 
     document = Document(mesh, name)
     keeper = Autosave(document, folder)

@@ -133,7 +133,7 @@ def test_compare_takes_triangles_documents_and_names() -> None:
         ({"steps": 0}, "steps is a whole number"),
         ({"seed": -1}, "seed is a whole number"),
         ({"mesh": "l-shpe"}, "no shape named"),
-        ({"mesh": None}, "no mesh here"),
+        ({"mesh": None}, "nothing to show"),
         ({"mesh": Document()}, "no mesh here"),
         ({"mesh": 7}, "cannot be made of int"),
     ],

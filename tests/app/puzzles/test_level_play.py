@@ -181,7 +181,7 @@ def test_excluded_operations_are_not_offered(playing):
     document = playing.play._document
     offers = {str(c.operation): c for c in choices(document.mesh, 0, document.bar)}
     assert not offers["chord_collapse"].allowed
-    assert offers["chord_collapse"].verdict.reason.endswith("not played in levels")
+    assert offers["chord_collapse"].verdict.reason.endswith("not allowed in levels")
     playing.play.leave()
     assert document.bar("chord_collapse") == ""
     playing.play.release()

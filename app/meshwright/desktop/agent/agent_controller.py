@@ -24,7 +24,6 @@ from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document, title_of
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import Theme
-from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.core.kinds import ELEMENT_NOUN
 
 if TYPE_CHECKING:
@@ -167,8 +166,7 @@ class AgentController(Controller):
         mesh = self._document.mesh
         if mesh is not None:
             inside = np.setdiff1d(mesh.element_ids(), outside, assume_unique=True)
-            corners = (mesh.k * inside[:, None] + np.arange(mesh.k)).ravel()
-            self._document.selection.set(mesh.arrays.edge[corners, ORIGIN])
+            self._document.selection.set(mesh.corners(inside).ravel())
 
     def _on_looked(self) -> None:
         mesh, insight = self._document.mesh, self._assistant.insight

@@ -14,14 +14,7 @@ from meshwright.desktop.controller import Controller
 from meshwright.desktop.editing.operations_panel import OperationsPanel
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
-from meshwright.document.operation_preview import (
-    GLOBAL,
-    OperationOffer,
-    best,
-    choices,
-    following,
-    ghost,
-)
+from meshwright.document.operation_preview import OperationOffer, best, choices, following, ghost
 from meshwright.graphics.theme import Theme
 from meshwright_core import HalfEdgeMesh, Operation
 
@@ -175,7 +168,7 @@ class HoverController(Controller):
         self._rest.stop()
         if meant is None or not self.ghosts or self._assistant.running:
             self.layer.show(None)
-        elif meant.operation in GLOBAL and mesh.n_elements > LARGE:
+        elif not meant.info.is_local and mesh.n_elements > LARGE:
             self.layer.show(None)
             self._rest.start()
         else:

@@ -24,7 +24,7 @@ from meshwright.document.vertex_drag import Drag, refusal
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
 from meshwright.signals import Signal
-from meshwright_core.core.arrays import FLAGS, LOCKED, ORIGIN
+from meshwright_core.core.arrays import FLAGS, LOCKED
 from meshwright_core.geometry.polygons import points_inside
 
 LOCK_RADIUS = 17.0
@@ -229,9 +229,8 @@ class SelectionController(Controller):
             self.region.show(np.zeros((0, 4, 2)))
             self.layer.show(np.zeros((0, 2)), self._radii)
             return
-        halfedges = mesh.k * selection.elements[:, None] + np.arange(mesh.k)
         points = mesh.points[:, :2]
-        self.region.show(points[mesh.arrays.edge[halfedges, ORIGIN]])
+        self.region.show(points[mesh.corners(selection.elements)])
         self.layer.show(points[selection.vertices], self._radii)
 
     def _radii(self, viewport: Viewport) -> np.ndarray:

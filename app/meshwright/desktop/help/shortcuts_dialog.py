@@ -25,12 +25,12 @@ Block = tuple[str, list[tuple[str, str, str]]]
 
 MOUSE = (
     ("Move", "Point at a half-edge"),
-    ("Click", "Operations of the half-edge"),
+    ("Click", "Menu of operations"),
     ("Right click", "Desired degree, corner, lock"),
     ("Drag", "Move a vertex, or pan"),
     ("Wheel", "Zoom"),
-    ("Shift click", "Add a vertex to the selection"),
-    ("Shift drag", "Select by box; with Alt by lasso"),
+    ("Shift click", "Add to the selection"),
+    ("Shift drag", "Box; with Alt a lasso"),
 )
 
 
@@ -46,7 +46,7 @@ class ShortcutsDialog(QDialog):
         body.setObjectName("SidebarBody")
         columns = QHBoxLayout(body)
         columns.setContentsMargins(4 * GRID, 3 * GRID, 4 * GRID, 2 * GRID)
-        columns.setSpacing(4 * GRID)
+        columns.setSpacing(3 * GRID)
         room = parent.window().size()
         for blocks in spread(key_blocks(groups), 4 if room.width() >= WIDE else 3):
             column = QVBoxLayout()

@@ -13,6 +13,7 @@ from typing import Any
 from meshwright.teaching.exercises.exercise import NoAnswer, WrongAnswer
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.arguments import is_whole_number
+from meshwright_core.errors import capitalised
 
 LONGEST = 80
 """The most characters of an answer that a sentence quotes."""
@@ -23,17 +24,17 @@ def whole_number(given: Any, what: str = "the answer") -> int:
     if isinstance(given, float) and given.is_integer():
         return int(given)
     if not is_whole_number(given):
-        raise WrongAnswer(f"{_begun(what)} is a whole number, not {quoted(given)}.")
+        raise WrongAnswer(f"{capitalised(what)} is a whole number, not {quoted(given)}.")
     return operator.index(given)
 
 
 def whole_numbers(given: Any, count: int | None = None, what: str = "the answer") -> list[int]:
     """A sequence of whole numbers, of length ``count`` if it is given."""
     if isinstance(given, str | bytes | dict) or not isinstance(given, Iterable):
-        raise WrongAnswer(f"{_begun(what)} is a list of whole numbers, not {quoted(given)}.")
+        raise WrongAnswer(f"{capitalised(what)} is a list of whole numbers, not {quoted(given)}.")
     numbers = [whole_number(one, f"each entry of {what}") for one in given]
     if count is not None and len(numbers) != count:
-        raise WrongAnswer(f"{_begun(what)} has {count} numbers, not {len(numbers)}.")
+        raise WrongAnswer(f"{capitalised(what)} has {count} numbers, not {len(numbers)}.")
     return numbers
 
 
@@ -97,10 +98,6 @@ def quoted(given: Any) -> str:
     """The repr of an answer, shortened."""
     text = repr(given)
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}\u2026"
-
-
-def _begun(words: str) -> str:
-    return words[:1].upper() + words[1:]
 
 
 def letters(answer: object, known: str) -> set[str]:
