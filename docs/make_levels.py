@@ -113,7 +113,7 @@ def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Operations]:
 def allowed(mesh: HalfEdgeMesh) -> Iterator[tuple[Operation, int]]:
     """All allowed operations but chord collapses and clean-ups of lines."""
     names = [name for name in CODES[mesh.k] if name not in ("chord_collapse", "cleanup")]
-    halfedges = (mesh.element_ids()[:, None] * mesh.k + np.arange(mesh.k)).ravel().tolist()
+    halfedges = mesh.halfedges_of(mesh.element_ids()).ravel().tolist()
     yield from ((Operation(name), h) for h in halfedges for name in names if mesh.check(name, h))
 
 

@@ -37,7 +37,7 @@ def notebook(page: Page, server: Server) -> None:
         "widget"
     )
     card = Card(page)
-    mesh = card.look("root => root.meshwright.mirror.halfedges")
+    mesh = card.look("root => root.meshwright.replica.halfedges")
     card.hover(_inside(card, mesh))
     page.wait_for_timeout(SETTLE)
 

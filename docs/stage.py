@@ -146,7 +146,7 @@ def shape(name: str, kind: str = "quad") -> HalfEdgeMesh:
 
 def allowed(mesh: HalfEdgeMesh, operation: str) -> list[int]:
     """Half-edges where an operation may be done, those near the middle first."""
-    live = (mesh.k * mesh.element_ids()[:, None] + np.arange(mesh.k)).ravel().tolist()
+    live = mesh.halfedges_of(mesh.element_ids()).ravel().tolist()
     found = [h for h in live if mesh.check(Operation(operation), h)]
     centre = mesh.points[mesh.vertices()].mean(axis=0)
     return sorted(found, key=lambda h: float(np.linalg.norm(mesh.points[mesh.origin(h)] - centre)))

@@ -1,6 +1,5 @@
-"""The wheel carries the three packages and every file that travels with the program."""
+"""The wheel holds the four packages and nothing else, and their names clash with no other's."""
 
-import re
 import subprocess
 import sys
 import zipfile
@@ -8,10 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from meshwright.notebook import bundle
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[1]
-ROOTS = ("meshcore", "agent", "app", "assets")
+PACKAGES = {
+    "meshwright_core": "meshcore",
+    "meshwright_agent": "agent",
+    "meshwright": "app",
+    "meshwright_assets": "assets",
+}
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +34,9 @@ def wheel(tmp_path_factory) -> zipfile.ZipFile:
 
 def source_files() -> set[str]:
     """Everything in the packages that git would keep, by its path in the wheel."""
+    folders = [f"{folder}/{package}" for package, folder in PACKAGES.items()]
     names = subprocess.run(
-        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *ROOTS],
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *folders],
         capture_output=True,
         text=True,
         check=True,
@@ -40,28 +45,20 @@ def source_files() -> set[str]:
     return {name.partition("/")[2] for name in names if name and (ROOT / name).is_file()}
 
 
-def test_wheel_carries_every_file_of_the_packages(wheel):
+def test_wheel_holds_every_file_of_the_four_packages_and_nothing_else(wheel):
     carried = {name for name in wheel.namelist() if ".dist-info/" not in name}
     assert carried == source_files()
+    assert {name.partition("/")[0] for name in carried} == set(PACKAGES)
+    assert {f"{package}/py.typed" for package in PACKAGES} <= carried
 
 
-def test_wheel_carries_a_policy_of_each_kind(wheel):
-    policies = [name for name in wheel.namelist() if name.endswith(".safetensors")]
-    assert any("tri" in name for name in policies)
-    assert any("quad" in name for name in policies)
-
-
-def test_wheel_carries_the_widget_and_the_lessons(wheel):
-    carried = set(wheel.namelist())
-    for name in (*bundle.SCRIPTS, *bundle.STYLES):
-        assert f"meshwright/notebook/front/{name}" in carried
-    lessons = [
-        name for name in carried if re.fullmatch(r"meshwright_assets/lessons/[^/]+\.ipynb", name)
-    ]
-    assert len(lessons) >= 6
-
-
-def test_wheel_carries_command_and_licence(wheel):
+def test_wheel_holds_command_and_licence(wheel):
     (info,) = {name.split("/")[0] for name in wheel.namelist() if ".dist-info/" in name}
     assert "meshwright = meshwright.cli:main" in wheel.read(f"{info}/entry_points.txt").decode()
     assert f"{info}/licenses/LICENSE" in wheel.namelist()
+
+
+def test_files_of_common_names_beside_the_caller_are_not_imported():
+    check = ROOT / ".ci" / "shadowed_names.py"
+    done = subprocess.run([sys.executable, check, sys.executable], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -1,10 +1,11 @@
-"""README says what is so: its pictures are there, its commands are those that are checked."""
+"""README is true: pictures, commands, names and files that it mentions exist."""
 
 import re
 from pathlib import Path
 
 import pytest
 
+import meshwright
 from meshwright.cli.commands import COMMANDS
 from meshwright_core.operations.catalogue import CATALOGUE
 
@@ -39,6 +40,15 @@ def test_commands_that_are_named_exist():
     named = set(re.findall(r"^meshwright ([a-z]+) ", README, re.MULTILINE))
     assert named - {"star", "part"} <= set(COMMANDS)
     assert {"mesh", "improve", "evaluate", "train"} <= named
+
+
+def test_names_of_the_package_that_are_used_exist():
+    assert set(re.findall(r"\bmw\.(\w+)", README)) <= set(meshwright.__all__)
+
+
+def test_folders_and_files_that_are_named_exist():
+    named = re.findall(r"`?\b((?:meshcore|agent|app|assets|tests|docs)/[\w./-]*\w)", README)
+    assert [name for name in named if not (ROOT / name).exists()] == []
 
 
 def test_licences_that_bind_are_named():

@@ -1,4 +1,4 @@
-"""The half-edge mesh and all that changes it. Knows neither torch nor Qt."""
+"""Half-edge meshes of triangles or quads: operations, history, geometry, files."""
 
 from meshwright_core.errors import MeshError, OperationRefused
 from meshwright_core.io.mesh_files import read, write

@@ -1,8 +1,8 @@
-"""The errors that this package raises on purpose; each carries one sentence for a person."""
+"""The exceptions of this package; each message is one sentence for the user."""
 
 
 class MeshError(ValueError):
-    """Bad input, or a mesh that breaks an invariant. The message says what and where."""
+    """Invalid input, or a mesh that breaks an invariant; the message names what and where."""
 
 
 class OperationRefused(MeshError):

@@ -1,4 +1,4 @@
-"""The half-edge mesh as a class: operations, history, and all else that changes it."""
+"""The half-edge mesh: operations, moves and flags of vertices, history."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from meshwright_core.core import circulators, construction, notebook_display
+from meshwright_core.core import construction, notebook_display
 from meshwright_core.core.arrays import (
     DESIRED,
     ELEMENT_SLOTS,
@@ -17,22 +17,20 @@ from meshwright_core.core.arrays import (
     HALF,
     JOURNAL_TOP,
     LOCKED,
-    NEW_COUNT,
     STEP,
     STEP_COLUMNS,
     STEP_END,
-    TOUCHED_COUNT,
     TRACE_IDS,
     VERTEX_SLOTS,
     MeshArrays,
     enlarge,
 )
-from meshwright_core.core.mesh_view import MeshView, Outline
+from meshwright_core.core.mesh_view import BoundaryLoops, MeshView
 from meshwright_core.errors import MeshError, OperationRefused
 from meshwright_core.history import journal
 from meshwright_core.history.packed_steps import Steps, last_done
 from meshwright_core.history.step_archive import Archive, cut_undone
-from meshwright_core.operations import catalogue, refusals
+from meshwright_core.operations import catalogue, global_lines, refusals, vertex_edits
 from meshwright_core.operations.catalogue import Operation
 from meshwright_core.operations.verdicts import YES, Edit, Verdict
 
@@ -40,17 +38,17 @@ _GROUP = -1  # the operation code of a transaction's step
 
 
 class HalfEdgeMesh(MeshView):
-    """A triangle or quad mesh, with exact undo, that lets one operation after another change it.
+    """A triangle or quad mesh that is edited by operations, with exact undo and redo.
 
     Ids of vertices, elements and half-edges are plain ints, stable until :meth:`compact`; -1 is
     none. See :mod:`meshwright_core.core.arrays` for the arrays behind it.
     """
 
-    def __init__(self, arrays: MeshArrays, outline: Outline, degree_cap: int = 0) -> None:
+    def __init__(self, arrays: MeshArrays, outline: BoundaryLoops, degree_cap: int = 0) -> None:
         """For :meth:`from_elements` and :meth:`copy`; wraps arrays that obey the invariants."""
         super().__init__(arrays, outline)
         self.degree_cap = degree_cap
-        """The highest degree that an operation may bring about; 0 for no limit."""
+        """The highest degree that an operation may produce; 0 for no limit."""
         self._codes = catalogue.CODES[self.k]
         self._archive = Archive()
 
@@ -68,7 +66,7 @@ class HalfEdgeMesh(MeshView):
         Vertex i of the input is vertex id i, element j is element id j; points of no element are
         dead ids. geometric: (n,) flags; by default the boundary vertices where the boundary turns
         by more than `corner_angle` degrees. desired_degree: (n,); by default equation 2 of the
-        paper. Raises MeshError, saying where, for anything that is no oriented manifold mesh.
+        paper. Raises MeshError, with the place, unless it is an oriented manifold mesh.
         """
         arrays = construction.build(
             np.asarray(points),
@@ -81,17 +79,20 @@ class HalfEdgeMesh(MeshView):
         mesh.outline = [(loop, mesh.points[loop].copy()) for loop in mesh.boundary_loops()]
         return mesh
 
-    # -- operations ------------------------------------------------------------------------------
-
     def check(self, operation: Operation | str, h: int) -> Verdict:
         """Whether the operation may be applied to half-edge h, and if not, why. No side effect."""
         code = self._codes.get(operation, -1)
         if code < 0:
-            return Verdict.refused(refusals.OTHER_KIND, self, Operation(operation), h)
-        found = catalogue.check_once(*self._arrays, code, h, self.degree_cap)
+            return Verdict.refused(
+                refusals.OTHER_KIND, self, Operation(operation), h, self.degree_cap
+            )
+        found = catalogue.check_once(self._arrays, code, h, self.degree_cap)
         if found == refusals.ALLOWED or found == refusals.NEED_ROOM:
             return YES
-        return Verdict.refused(found, self, Operation(operation), h)
+        return self._refused(found, operation, h)
+
+    def _refused(self, code: int, operation: Operation | str, h: int) -> Verdict:
+        return Verdict.refused(code, self, Operation(operation), h, self.degree_cap)
 
     def allowed(self, h: int) -> dict[Operation, Verdict]:
         """The verdict on each operation of this kind of mesh at half-edge h."""
@@ -100,25 +101,25 @@ class HalfEdgeMesh(MeshView):
     def apply(self, operation: Operation | str, h: int) -> Edit:
         """Apply the operation to half-edge h: one undoable step (part of one in a transaction).
 
-        Raises OperationRefused, and leaves every array as it was, where :meth:`check` says no.
+        Raises OperationRefused, and leaves every array as it was, where :meth:`check` refuses it.
         """
         code = self._codes.get(operation, -1)
         if code < 0:
             raise OperationRefused(self.check(operation, h).reason)
-        done = catalogue.apply_once(*self._arrays, code, h, self.degree_cap)
-        while done[0] == refusals.NEED_ROOM:
+        done = catalogue.apply_once(self._arrays, code, h, self.degree_cap)
+        while done.code == refusals.NEED_ROOM:
             self._enlarge()
-            done = catalogue.apply_once(*self._arrays, code, h, self.degree_cap)
-        if done[0] != refusals.ALLOWED:
+            done = catalogue.apply_once(self._arrays, code, h, self.degree_cap)
+        if done.code != refusals.ALLOWED:
             raise OperationRefused(
                 f"{operation} at half-edge {h} is not allowed: {self.check(operation, h).reason}"
             )
         self._archive.future.clear()
-        if done[3] > 6:
+        touched = done.touched[: done.touched_count]
+        if done.touched_count > catalogue.FEW:
             trace = self._arrays.trace
-            ids = tuple(trace[TRACE_IDS : TRACE_IDS + int(trace[TOUCHED_COUNT])].tolist())
-            return Edit(operation, h, done[1], int(trace[NEW_COUNT]), ids)
-        return Edit(operation, h, done[1], done[2], done[4 : 4 + done[3]])
+            touched = tuple(trace[TRACE_IDS : TRACE_IDS + done.touched_count].tolist())
+        return Edit(operation, h, done.score_change, done.new_count, touched)
 
     def clean_all(self) -> list[Edit]:
         """Delete every global line that may be deleted: one undoable step; [] for triangles."""
@@ -128,12 +129,12 @@ class HalfEdgeMesh(MeshView):
         with self.transaction():
             first, found_since = 0, 0
             while True:
-                h = circulators.cleanable(self._arrays, first, self.degree_cap)
+                h = global_lines.cleanable(self._arrays, first, self.degree_cap)
                 if h < 0 and found_since < len(edits):
                     first, found_since = 0, len(edits)  # a deleted line may have freed another
                     continue
                 if h < 0:
-                    h = circulators.cleanable_ring(self._arrays, self.degree_cap)
+                    h = global_lines.cleanable_ring(self._arrays, self.degree_cap)
                 if h < 0:
                     break
                 first = self.origin(h)
@@ -141,7 +142,7 @@ class HalfEdgeMesh(MeshView):
         return edits
 
     def _enlarge(self) -> None:
-        """Double whatever is too small for what the last check wanted."""
+        """Double the arrays that are too small for what the last check requested in the trace."""
         arrays = self._arrays
         counters = arrays.counters
         wanted = arrays.trace[TRACE_IDS : TRACE_IDS + 3].tolist()
@@ -158,9 +159,7 @@ class HalfEdgeMesh(MeshView):
         )
 
     def reserve(self, vertices: int, elements: int) -> None:
-        """Make room for so many more vertices and elements at once, so that later edits need
-        none.
-        """
+        """Enlarge the arrays once by so many vertices and elements."""
         counters = self._arrays.counters
         self._arrays = enlarge(
             self._arrays,
@@ -171,33 +170,31 @@ class HalfEdgeMesh(MeshView):
         )
 
     def room_for(self, vertices: int, elements: int) -> None:
-        """Make room for so many vertices and elements in all, dead ones counted."""
+        """Enlarge the arrays to at least so many vertices and elements, dead ones included."""
         self._arrays = enlarge(self._arrays, vertices, elements, 0, 0)
 
-    # -- other journalled changes ----------------------------------------------------------------
-
     def move(self, vertices: np.ndarray | Sequence[int], positions: np.ndarray) -> None:
-        """Put live vertices (n,) at positions (n, 3); one undoable step, or part of one."""
+        """Move live vertices (n,) to positions (n, 3): one undoable step, or part of one."""
         ids = np.ascontiguousarray(vertices, dtype=np.int64)
         places = np.ascontiguousarray(positions, dtype=float)
         if places.shape != (len(ids), 3):
             raise MeshError(f"positions must be ({len(ids)}, 3), not {places.shape}")
         if not np.isfinite(places).all():
-            raise MeshError("a vertex cannot move to a place that is no number")
+            raise MeshError("a vertex cannot move to a position that is not finite")
         for vertex in ids.tolist():
             self._require_live(vertex)
         self._make_room(3 * len(ids))
-        circulators.move(self._arrays, ids, places)
+        vertex_edits.move(self._arrays, ids, places)
 
     def set_desired(self, vertex: int, degree: int) -> None:
-        """Set the desired degree of a vertex: one undoable step; s and s* follow."""
+        """Set the desired degree of a vertex: one undoable step; s and s* are updated."""
         self._require_live(vertex)
         if degree < 1:
             raise MeshError(f"the desired degree of vertex {vertex} must be positive, not {degree}")
         self._set_vertex(vertex, DESIRED, int(degree))
 
     def set_geometric(self, vertex: int, flag: bool = True) -> None:
-        """Mark a vertex as part of the geometry, or no longer so: one undoable step."""
+        """Mark a vertex as geometric, or remove the mark: one undoable step."""
         self._set_flag(vertex, GEOMETRIC, flag)
 
     def set_locked(self, vertex: int, flag: bool = True) -> None:
@@ -211,7 +208,7 @@ class HalfEdgeMesh(MeshView):
 
     def _set_vertex(self, vertex: int, column: int, value: int) -> None:
         self._make_room(16)
-        circulators.set_vertex(self._arrays, vertex, column, value)
+        vertex_edits.set_vertex(self._arrays, vertex, column, value)
 
     def _require_live(self, vertex: int) -> None:
         if not (0 <= vertex < self.slots and self._arrays.vertex[vertex, HALF] >= 0):
@@ -221,8 +218,6 @@ class HalfEdgeMesh(MeshView):
         self._archive.future.clear()
         while not journal.has_room(self._arrays, self.k, 0, 0, entries):
             self._enlarge()
-
-    # -- history ---------------------------------------------------------------------------------
 
     @property
     def steps(self) -> int:
@@ -236,19 +231,19 @@ class HalfEdgeMesh(MeshView):
 
     @property
     def can_redo(self) -> bool:
-        """Whether there is an undone step to do again."""
+        """Whether there is an undone step to redo."""
         counters = self._arrays.counters
         return bool(counters[STEP] < counters[STEP_END] or self._archive.future)
 
     def undo(self) -> bool:
-        """Take back the last step, exact to the bit; False if there is none."""
+        """Undo the last step, exact to the bit; False if there is none."""
         self._refuse_in_transaction()
         if self._archive.past and not self._arrays.counters[STEP]:
             self._arrays = self._archive.trimmed(self._archive.fetch_past(self._arrays))
         return bool(journal.undo(self._arrays))
 
     def redo(self) -> bool:
-        """Do the last undone step again, exact to the bit; False if there is none."""
+        """Redo the last undone step, exact to the bit; False if there is none."""
         self._refuse_in_transaction()
         counters = self._arrays.counters
         if self._archive.future and counters[STEP] == counters[STEP_END]:
@@ -260,22 +255,22 @@ class HalfEdgeMesh(MeshView):
             raise MeshError("a transaction is open: undo and redo must wait for its end")
 
     def cut_redo(self) -> tuple[Steps, ...]:
-        """Take the undone steps out of the history, to be kept for :meth:`graft_redo`."""
+        """Remove the undone steps from the history and return them, for :meth:`graft_redo`."""
         self._refuse_in_transaction()
         cut = (*cut_undone(self._arrays), *self._archive.future)
         self._archive.future.clear()
         return cut
 
     def graft_redo(self, undone: Sequence[Steps]) -> None:
-        """Make `undone` what can be done again, in place of what could be.
+        """Replace the steps that can be redone by `undone`.
 
-        They must have been cut from this mesh, or a copy of it, in the very state it is in now.
+        They must have been cut from this mesh, or a copy of it, in exactly its present state.
         """
         self.cut_redo()
         self._archive.future[:] = undone
 
     def last_step(self) -> Steps:
-        """The last done step as :meth:`graft_redo` wants it after an undo; MeshError if none."""
+        """The last done step in the form of :meth:`graft_redo` after an undo; MeshError if none."""
         if not self.steps:
             raise MeshError("there is no step in the history")
         if not self._arrays.counters[STEP]:
@@ -283,28 +278,28 @@ class HalfEdgeMesh(MeshView):
         return last_done(self._arrays)
 
     def packed_steps(self) -> tuple[list[Steps], list[Steps]]:
-        """All steps that can be undone, and all that can be done again; nothing changes."""
+        """All steps that can be undone, and all that can be redone; the mesh is not changed."""
         self._refuse_in_transaction()
         return self._archive.everything(self._arrays)
 
     def adopt_steps(self, done: Sequence[Steps], undone: Sequence[Steps]) -> None:
-        """Have this history in place of its own: steps that were packed in this very state."""
+        """Replace the history by steps that were packed in exactly the present state."""
         self.cut_redo()
         counters = self._arrays.counters
         counters[STEP] = counters[STEP_END] = counters[JOURNAL_TOP] = 0
         self._archive = Archive(done, undone)
 
     def trim(self) -> None:
-        """Pack the steps far from the present, which takes half their room; no step is lost."""
+        """Pack the steps far from the present, which halves their memory; no step is lost."""
         self._refuse_in_transaction()
         self._arrays = self._archive.trimmed(self._arrays)
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
-        """Make everything inside one undoable step; an exception rolls all of it back.
+        """Make all changes inside one undoable step; an exception rolls all of them back.
 
         Transactions within a transaction belong to the outermost one. One that changes nothing
-        leaves no step. One that is rolled back or changes nothing leaves what can be redone.
+        leaves no step. After one that is rolled back or changes nothing, redo works as before.
         """
         if self._arrays.counters[GROUPED]:
             yield
@@ -330,8 +325,6 @@ class HalfEdgeMesh(MeshView):
     def _close_group(self) -> None:
         self._arrays.counters[GROUPED] = 0
         journal.end_step(self._arrays)
-
-    # -- whole mesh ------------------------------------------------------------------------------
 
     def copy(self, history: bool = False) -> HalfEdgeMesh:
         """An independent mesh with the same ids and free slots; by default without a history."""
@@ -382,5 +375,5 @@ class HalfEdgeMesh(MeshView):
     def _repr_mimebundle_(
         self, include: object = None, exclude: object = None
     ) -> notebook_display.Bundle:
-        """A still picture at the end of a notebook's cell, where one can be drawn."""
+        """A still picture at the end of a notebook cell, where one can be drawn."""
         return notebook_display.bundle(self)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 README = Path(__file__).parents[2] / "README.md"
 
 
@@ -38,7 +40,3 @@ def test_readme_example_in_python(folder):
     before, after, optimum, _ = map(int, lines[-1].split())
     assert before > after >= optimum
     assert (folder / "star.vtk").stat().st_size > 0
-
-
-def test_widget_of_a_gallery_shape(folder):
-    run("import meshwright as mw; mw.MeshWidget('star')", folder)

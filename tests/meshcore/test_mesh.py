@@ -71,7 +71,7 @@ def test_the_corner_angle_decides_what_is_geometric():
         ),
     ],
 )
-def test_what_is_no_mesh_is_refused_with_its_place(points, elements, words):
+def test_invalid_input_is_refused_with_its_place(points, elements, words):
     with pytest.raises(MeshError, match=words):
         HalfEdgeMesh.from_elements(points, elements)
 
@@ -151,7 +151,7 @@ def test_setters_and_moves_are_undone_too():
         lambda mesh: mesh.move([4, 400], np.zeros((2, 3))),
     ],
 )
-def test_wrong_settings_leave_no_trace(change):
+def test_refused_settings_change_nothing(change):
     mesh = grid(2)
     before = snapshot(mesh)
     with pytest.raises(MeshError):
@@ -218,7 +218,7 @@ def test_history_costs_less_than_two_kilobytes_an_operation():
     assert (16 * entries + 8 * STEP_COLUMNS * done) / done < 2048
 
 
-def test_a_copy_goes_its_own_way_with_the_same_ids():
+def test_a_copy_is_independent_with_the_same_ids():
     mesh = grid(4)
     mesh.apply("collapse", mesh.halfedge(6, 7))
     copy = mesh.copy()
@@ -231,7 +231,7 @@ def test_a_copy_goes_its_own_way_with_the_same_ids():
     assert faces(mesh) != faces(copy)
 
 
-def test_compact_says_where_everything_went():
+def test_compact_returns_the_maps_of_ids():
     mesh = grid(4)
     mesh.set_locked(18)
     mesh.set_desired(17, 5)
@@ -278,7 +278,7 @@ def _spoil_mark(m):
 @pytest.mark.parametrize(
     "spoil", [_spoil_twin, _spoil_origin, _spoil_half, _spoil_degree, _spoil_score, _spoil_mark]
 )
-def test_the_validator_sees_damage(spoil):
+def test_the_validator_finds_each_broken_invariant(spoil):
     mesh = grid(2)
     mesh.validate()
     spoil(mesh.arrays)
@@ -286,6 +286,6 @@ def test_the_validator_sees_damage(spoil):
         mesh.validate()
 
 
-def test_the_score_is_shown_in_one_line():
+def test_repr_shows_the_score():
     assert repr(grid(2)) == "<HalfEdgeMesh quad: 9 vertices, 4 elements, s = 0, s* = 0>"
     assert "allowed" in repr(grid(2).check("flip_left", 1))

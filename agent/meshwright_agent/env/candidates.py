@@ -23,13 +23,14 @@ from meshwright_core.core.arrays import (
     TWIN,
     following,
     preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.operations.catalogue import (
     GLOBAL_SPLIT,
-    QUAD_COLLAPSE,
     TRI_COLLAPSE,
     check,
+    growth,
     score_change,
 )
 from meshwright_core.operations.global_split import crossings
@@ -88,14 +89,11 @@ def permitted(m, operation, h, cap, floor, ceiling, extended):
     and leave the number of elements between floor and ceiling.
     """
     elements = m.counters[ELEMENTS]
-    if operation == TRI_COLLAPSE:
-        inside = m.edge[h, TWIN] >= 0
-        if not inside and not extended:
-            return False
-        if elements - (2 if inside else 1) < floor:
-            return False
-    elif operation == QUAD_COLLAPSE:
-        if elements - 1 < floor:
+    change = growth(m, operation, h)
+    if operation == TRI_COLLAPSE and not extended and m.edge[h, TWIN] < 0:
+        return False
+    if change < 0:
+        if elements + change < floor:
             return False
     elif elements + 2 > ceiling:
         return False
@@ -176,7 +174,7 @@ def _collect_around(m, v, k, found, count):
         for side in range(first, first + k):
             if m.edge[side, TWIN] >= 0:
                 count = _collect(m, m.edge[side, TWIN] // k, found, count)
-        h = m.edge[preceding(h, k), TWIN]
+        h = turned(m, h, k)
         if h < 0 or h == start:
             break
     return count

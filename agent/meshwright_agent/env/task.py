@@ -22,12 +22,19 @@ from meshwright_agent.env.checked_settings import (
 from meshwright_agent.env.local_patch import LARGEST, POTENTIALS, Patches, describe, list_patch
 from meshwright_agent.env.potential import field, forget, solve_potential
 from meshwright_core.core.arrays import HALF, NEW_COUNT, TOUCHED_COUNT, TRACE_IDS, MeshArrays
-from meshwright_core.core.circulators import cleanable_at
 from meshwright_core.core.compilation import bare_kernel, kernel
-from meshwright_core.operations.catalogue import CLEANUP, FLIP_LEFT, GLOBAL_SPLIT, TRI_FLIP, rewrite
+from meshwright_core.operations.catalogue import (
+    CLEANUP,
+    FLIP_LEFT,
+    GLOBAL_SPLIT,
+    TRI_FLIP,
+    of_kind,
+    rewrite,
+)
+from meshwright_core.operations.global_lines import cleanable_at
 
 FIRST_OPERATION = {"tri": TRI_FLIP, "quad": FLIP_LEFT}
-OPERATION_COUNT = {"tri": 3, "quad": 5}
+OPERATION_COUNT = {kind: sum(info.policy for info in of_kind(kind)) for kind in FIRST_OPERATION}
 MOST_CLEANUPS = 64
 _TOUCHED = 16
 _FOUND = 1024

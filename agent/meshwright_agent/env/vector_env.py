@@ -28,6 +28,7 @@ from meshwright_core.core.arrays import (
     ORIGIN,
     SCORE,
     SIDES,
+    VERTEX_SLOTS,
     MeshArrays,
     allocate,
     enlarge,
@@ -82,8 +83,8 @@ def stack(meshes: list[HalfEdgeMesh], task: Task) -> MeshArrays:
 
 def _trimmed(arrays: MeshArrays) -> MeshArrays:
     """The same mesh in arrays without spare slots and without history."""
-    slots, elements = int(arrays.counters[0]), int(arrays.counters[1])
-    k = int(arrays.counters[10])
+    slots, elements = int(arrays.counters[VERTEX_SLOTS]), int(arrays.counters[ELEMENT_SLOTS])
+    k = int(arrays.counters[SIDES])
     empty = allocate(k, slots, elements, 1, 1)
     for name in ("edge", "vertex", "points", "irregular", "element_mark"):
         getattr(empty, name)[:] = getattr(arrays, name)[: len(getattr(empty, name))]

@@ -11,7 +11,7 @@ from meshwright_agent.policy.explanation import insight
 from meshwright_agent.policy.explanation_types import Insight
 from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy, require_kind
-from meshwright_core.core.arrays import JOURNALLING
+from meshwright_core.core.arrays import ELEMENT_SLOTS, JOURNALLING
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 
@@ -114,7 +114,7 @@ class Runner:
         """Reserve slots for the largest operation, which would be refused without them."""
         arrays = self.mesh.arrays
         if self.mesh.slots + _SPARE > len(arrays.vertex) or (
-            len(self.mesh.arrays.element_mark) < int(arrays.counters[1]) + _SPARE
+            len(self.mesh.arrays.element_mark) < int(arrays.counters[ELEMENT_SLOTS]) + _SPARE
         ):
             size = self.mesh.n_elements
             self.mesh.reserve(2 * _SPARE + size // 4, 2 * _SPARE + size // 4)

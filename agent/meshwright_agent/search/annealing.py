@@ -29,23 +29,18 @@ from meshwright_core.core.arrays import (
     TWIN,
     VERTEX_SLOTS,
     MeshArrays,
-    preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
     CLEANUP,
-    FLIP_LEFT,
-    FLIP_RIGHT,
     GLOBAL_SPLIT,
     NAMES,
-    QUAD_COLLAPSE,
-    QUAD_SPLIT,
-    TRI_COLLAPSE,
-    TRI_FLIP,
-    TRI_SPLIT,
     Operation,
+    growth,
+    needs_twin,
     rewrite,
     score_change,
 )
@@ -109,7 +104,7 @@ def propose(m, k, anywhere, rng):
     v = m.irregular[int(rng.random() * total)]
     h = m.vertex[v, HALF]
     for _ in range(int(rng.random() * m.vertex[v, DEGREE])):
-        onward = m.edge[preceding(h, k), TWIN]
+        onward = turned(m, h, k)
         if onward < 0:
             break
         h = onward
@@ -131,30 +126,6 @@ def draw_operation(weights, rng):
         if r < 0.0:
             return i
     return 0
-
-
-@bare_kernel
-def growth(m, operation, h):
-    """Elements that an operation adds; 0 for global operations, where it depends on their path."""
-    if operation == TRI_SPLIT:
-        return 2 if m.edge[h, TWIN] >= 0 else 1
-    if operation == TRI_COLLAPSE:
-        return -2 if m.edge[h, TWIN] >= 0 else -1
-    if operation == QUAD_SPLIT:
-        return 1
-    return -1 if operation == QUAD_COLLAPSE else 0
-
-
-@bare_kernel
-def needs_twin(operation):
-    """Whether the operation is undefined at a half-edge without twin."""
-    return (
-        operation == TRI_FLIP
-        or operation == FLIP_LEFT
-        or operation == FLIP_RIGHT
-        or operation == QUAD_SPLIT
-        or operation == GLOBAL_SPLIT
-    )
 
 
 @bare_kernel
@@ -211,12 +182,13 @@ def anneal_slice(
         if h < 0:
             continue
         operation = first + draw_operation(weights, rng)
+        if operation > GLOBAL_SPLIT:
+            operation = CHORD_COLLAPSE
         if m.edge[h, TWIN] < 0 and needs_twin(operation):
             continue
         cleanups = 0
-        if operation > GLOBAL_SPLIT:
+        if operation == CHORD_COLLAPSE:
             # it merges pairs of vertices and adds their Delta, so s never rises
-            operation = CHORD_COLLAPSE
             if m.counters[ELEMENTS] <= floor or check_chord_collapse(m, h, cap) != ALLOWED:
                 continue
             rewrite(m, CHORD_COLLAPSE, h)

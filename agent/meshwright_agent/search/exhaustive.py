@@ -36,9 +36,9 @@ from meshwright_core.operations.catalogue import (
     QUAD_COLLAPSE,
     TRI_COLLAPSE,
     TRI_FLIP,
-    TRI_SPLIT,
     Operation,
     check,
+    needs_twin,
     rewrite,
     score_change,
 )
@@ -222,7 +222,7 @@ def _can_be_last(m, code, h, goal, most):
     """False if the goal is out of reach with this as the last operation, allowed or not."""
     if code == CLEANUP:
         return most > 0 and m.counters[SCORE] <= goal
-    if m.edge[h, TWIN] < 0 and code != TRI_SPLIT and code != TRI_COLLAPSE and code != QUAD_COLLAPSE:
+    if m.edge[h, TWIN] < 0 and needs_twin(code):
         return False
     return m.counters[SCORE] + score_change(m, code, h) <= goal
 

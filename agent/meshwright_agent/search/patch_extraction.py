@@ -34,7 +34,7 @@ from meshwright_core.core.arrays import (
     VERTEX_SLOTS,
     VERTICES,
     following,
-    preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.history.journal import undo
@@ -108,7 +108,7 @@ def _take_star(m, a, v, k, number, found, count):
         if more < 0:
             return count, False
         count = more
-        h = m.edge[preceding(h, k), TWIN]
+        h = turned(m, h, k)
         if h < 0 or h == start:
             break
     return count, True
@@ -124,7 +124,7 @@ def _pinched(m, a, v, k):
         t = m.edge[h, TWIN]
         if a.place[h // k] and (t < 0 or a.place[t // k] == 0):
             gaps += 1
-        h = m.edge[preceding(h, k), TWIN]
+        h = turned(m, h, k)
         if h < 0 or h == start:
             break
     return gaps > 1

@@ -41,7 +41,13 @@ from meshwright_agent.search.repair_queue import (
     enlist,
     settle,
 )
-from meshwright_core.core.arrays import JOURNALLING, ORIGIN, STEP_COLUMNS, allocate
+from meshwright_core.core.arrays import (
+    ELEMENT_SLOTS,
+    IRREGULAR,
+    JOURNALLING,
+    STEP_COLUMNS,
+    allocate,
+)
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 
@@ -265,7 +271,7 @@ class _Work:
     def _make_room(self) -> None:
         """Reserve slots for a round of operations, and enlarge the agenda to the same size."""
         mesh = self.mesh
-        slots = max(mesh.slots, int(mesh.arrays.counters[1]))
+        slots = max(mesh.slots, int(mesh.arrays.counters[ELEMENT_SLOTS]))
         if min(len(mesh.arrays.vertex), len(mesh.arrays.element_mark)) < slots + _SPARE // 2:
             mesh.reserve(_SPARE + slots // 8, _SPARE + slots // 8)
         sizes = len(mesh.arrays.vertex), len(mesh.arrays.element_mark)
@@ -277,9 +283,8 @@ class _Work:
 
         The descent does not respect patches and must not be used after this.
         """
-        mesh, k = self.mesh, self.mesh.k
-        inside = (k * elements[:, None] + np.arange(k)).ravel()
-        outside = np.setdiff1d(mesh.vertices(), mesh.arrays.edge[inside, ORIGIN])
+        mesh = self.mesh
+        outside = np.setdiff1d(mesh.vertices(), mesh.corners(elements))
         self.agenda.owner[outside] = -1
 
     def _note(self, operations: np.ndarray, halfedges: np.ndarray) -> None:
@@ -348,7 +353,7 @@ class _Work:
         out = allocate(k, len(elements) * k, len(elements), 1, 1)
         count = cut_out(self.mesh.arrays, self.agenda, k, elements, k == 4, out, self._ids)
         vertices = self._ids[:count].copy()
-        irregular = vertices[out.irregular[: out.counters[9]]]
+        irregular = vertices[out.irregular[: out.counters[IRREGULAR]]]
         return _Patch(elements, vertices, irregular, HalfEdgeMesh(out, []))
 
     def _settle(self, patch: _Patch, elements: np.ndarray, better: bool) -> None:

@@ -31,7 +31,6 @@ from meshwright_core.core.arrays import (
     FLAGS,
     FREE_ELEMENT,
     LOCKED,
-    ORIGIN,
     TWIN,
     MeshArrays,
     allocate,
@@ -63,7 +62,7 @@ class RegionSolution:
 
     operations: Operations
     """Operations and half-edges of the whole mesh, to be applied in this order while the vertices
-    outside the region are held (:func:`meshwright_core.analysis.submesh.holding`)."""
+    outside the region are held (:func:`meshwright_core.analysis.submesh.temporarily_locked`)."""
     score: int
     """s of the whole mesh after the operations."""
     optimum: int
@@ -197,9 +196,7 @@ class _Search:
         self.bounds = int(np.ceil(floor * size)), max(size + 8, int(GROW * size))
 
     def _outside_ends(self) -> np.ndarray:
-        k = self.mesh.k
-        halfedges = (k * self.outside[:, None] + np.arange(k)).ravel()
-        return self.mesh.arrays.edge[halfedges, ORIGIN].copy()
+        return self.mesh.corners(self.outside)
 
     def over(self, share: float = 1.0) -> bool:
         """Whether this share of the time has passed, or the search was cancelled."""
@@ -325,8 +322,7 @@ class _Search:
         whole = self.mesh.copy()
         self.region.put_back(whole, operations)
         here = np.setdiff1d(whole.element_ids(), self.outside, assume_unique=True)
-        corners = (whole.k * here[:, None] + np.arange(whole.k)).ravel()
-        vertices = np.unique(whole.arrays.edge[corners, ORIGIN]).astype(np.int64)
+        vertices = np.unique(whole.corners(here))
         return len(relax(whole, vertices[~whole.locked()[vertices]]))
 
     def result(self) -> RegionSolution:

@@ -20,13 +20,11 @@ from meshwright_core.core.arrays import (
     TOUCHED_COUNT,
     TRACE_IDS,
     TWIN,
-    preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel
 from meshwright_core.operations.catalogue import (
-    QUAD_COLLAPSE,
-    TRI_COLLAPSE,
-    TRI_SPLIT,
+    needs_twin,
     rewrite,
     score_change,
 )
@@ -131,12 +129,12 @@ def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operati
             for g in range(h - h % k, h - h % k + k):
                 for j in range(first, first + count):
                     # the change is cheap to compute, but undefined without a twin
-                    if m.edge[g, TWIN] < 0 and not _on_boundary_edges(j):
+                    if m.edge[g, TWIN] < 0 and needs_twin(j):
                         continue
                     change = score_change(m, j, g)
                     if change < best and permitted(m, j, g, cap, floor, ceiling, extended):
                         best, operation, at = change, j, g
-            h = m.edge[preceding(h, k), TWIN]
+            h = turned(m, h, k)
             if h < 0 or h == start:
                 break
         if at < 0:
@@ -151,15 +149,6 @@ def descend(m, a, k, first, count, cap, floor, ceiling, extended, looks, operati
         if irregular(m, v):
             enqueue(a, v)
     return done
-
-
-@bare_kernel
-def _on_boundary_edges(operation):
-    """Whether the operation is defined at a half-edge without twin.
-
-    These are splits and collapses of triangles, and collapses of quads.
-    """
-    return operation == TRI_SPLIT or operation == TRI_COLLAPSE or operation == QUAD_COLLAPSE
 
 
 @bare_kernel

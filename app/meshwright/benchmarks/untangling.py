@@ -21,7 +21,7 @@ from meshwright_core import HalfEdgeMesh
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality, smoothing, untangling
 from meshwright_core.geometry.sides import Sides
-from meshwright_core.geometry.unfixable import hopeless
+from meshwright_core.geometry.unfixable import unfixable
 
 SUMMARY = "share of randomly edited meshes without inverted elements: as is, averaged, untangled"
 
@@ -99,10 +99,10 @@ def _domain(mesh: HalfEdgeMesh) -> shapely.Geometry:
 def drawable(mesh: HalfEdgeMesh, domain: shapely.Geometry) -> bool:
     """Whether no simple obstacle to a drawing with straight edges is found.
 
-    No hopeless corner; no edge between corners that leaves the domain; no edge inside that joins
+    No unfixable corner; no edge between corners that leaves the domain; no edge inside that joins
     two vertices of one straight side.
     """
-    if len(hopeless(mesh)):
+    if len(unfixable(mesh)):
         return False
     elements = mesh.elements()
     a, b = elements.ravel(), np.roll(elements, -1, axis=1).ravel()

@@ -19,7 +19,7 @@ from meshwright.document.timeline import NO_MESH as NO_MESH
 from meshwright.document.timeline import UndoTimeline
 from meshwright.signals import Signal
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
-from meshwright_core.analysis.submesh import holding
+from meshwright_core.analysis.submesh import temporarily_locked
 from meshwright_core.core.notebook_display import Bundle, bundle
 from meshwright_core.core.score import normalised_return
 from meshwright_core.history.packed_steps import Steps
@@ -349,7 +349,7 @@ class Document:
         mesh = self._need()
 
         def work() -> Edit:
-            with holding(mesh, held) if held is not None else nullcontext():
+            with temporarily_locked(mesh, held) if held is not None else nullcontext():
                 edit = mesh.apply(operation, halfedge)
                 if self.auto_smooth:
                     _relax(mesh, edit.touched, thorough)

@@ -11,12 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh, Operation, Verdict
+from meshwright_core.analysis.dry_run import dry_run
+from meshwright_core.analysis.dry_run import score_change as tried_change
 from meshwright_core.operations.catalogue import CODES, OperationInfo, of_kind, score_change
-from meshwright_core.operations.dry_run import score_change as tried_change
-from meshwright_core.operations.dry_run import trial
 
-GLOBAL = (Operation.GLOBAL_SPLIT, Operation.CLEANUP, Operation.CHORD_COLLAPSE)
-"""Operations that change the mesh from boundary to boundary."""
 BARRED = -1
 """Code of the verdict on an operation that the level being played excludes."""
 
@@ -75,7 +73,7 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
 
     The mesh is not changed. Raises OperationRefused if the operation is not allowed.
     """
-    seen = trial(mesh, operation, halfedge)
+    seen = dry_run(mesh, operation, halfedge)
     shown = (seen.delta != 0) | ~np.isin(seen.vertices, seen.new_vertices)
     return Ghost(
         operation=seen.operation,
@@ -106,7 +104,7 @@ def _choice(
     verdict = Verdict(BARRED, why.rstrip(".")) if why else mesh.check(info.operation, halfedge)
     if not verdict:
         return OperationOffer(info, verdict, None)
-    if info.operation == Operation.CHORD_COLLAPSE:  # there is no formula for a whole strip
+    if not info.score_formula:
         return OperationOffer(info, verdict, tried_change(mesh, info.operation, halfedge))
     code = CODES[mesh.k][info.operation]
     return OperationOffer(info, verdict, int(score_change(mesh.arrays, code, halfedge)))
@@ -120,7 +118,7 @@ def best(offered: tuple[OperationOffer, ...]) -> OperationOffer | None:
     """
 
     def rank(choice: OperationOffer) -> tuple[bool, int]:
-        return choice.operation in GLOBAL, choice.change or 0
+        return not choice.info.is_local, choice.change or 0
 
     return min((choice for choice in offered if choice.allowed), key=rank, default=None)
 

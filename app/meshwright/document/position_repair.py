@@ -32,8 +32,7 @@ def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
     while pending:
         element = next(iter(pending))
         del pending[element]
-        halfedges = mesh.k * element + np.arange(mesh.k)
-        corners = mesh.arrays.edge[halfedges, 0].astype(np.int64)
+        corners = mesh.corners(np.array([element]))[0]
         # what stays inverted now would stay so at a second attempt
         left = relax(mesh, corners.tolist())
         for seen in (*elements_at(mesh, corners).tolist(), *left.tolist()):

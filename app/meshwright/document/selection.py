@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshwright.signals import Signal
-from meshwright_core.core.arrays import HALF, ORIGIN
+from meshwright_core.core.arrays import HALF
 from meshwright_core.geometry.region import elements_at, rings
 
 if TYPE_CHECKING:
     from meshwright.document.document import Document
-    from meshwright_core import HalfEdgeMesh
 
 _NONE = np.zeros(0, np.int64)
 
@@ -61,7 +60,7 @@ class Selection:
         inside[self._vertices] = True
         around = elements_at(mesh, self._vertices)
         outer = around[~np.isin(around, self.elements)]
-        inside[_corners(mesh, outer)] = False
+        inside[mesh.corners(outer)] = False
         return np.flatnonzero(inside)
 
     # Selecting
@@ -117,10 +116,10 @@ class Selection:
         mesh = self._document.mesh
         if mesh is not None and len(self._vertices):
             around = elements_at(mesh, self._vertices)
-            corners = np.unique(_corners(mesh, around))
+            corners = np.unique(mesh.corners(around))
             outside = np.setdiff1d(corners, self._vertices, assume_unique=True)
             if len(outside):
-                near = np.unique(_corners(mesh, elements_at(mesh, outside)))
+                near = np.unique(mesh.corners(elements_at(mesh, outside)))
                 self.set(np.setdiff1d(self._vertices, near, assume_unique=True))
 
     # Inside
@@ -139,7 +138,7 @@ class Selection:
         chosen = np.zeros(mesh.slots, bool)
         chosen[self._vertices] = True
         around = elements_at(mesh, self._vertices)
-        corners = _corners(mesh, around).reshape(-1, mesh.k)
+        corners = mesh.corners(around)
         return around[chosen[corners].all(axis=1)]
 
     def _on_changed(self) -> None:
@@ -149,12 +148,6 @@ class Selection:
             if len(living) != len(self._vertices):
                 self._vertices = living
                 self.changed.emit()
-
-
-def _corners(mesh: HalfEdgeMesh, elements: np.ndarray) -> np.ndarray:
-    """(k m,) the vertices of elements (m,), element by element."""
-    halfedges = (mesh.k * elements[:, None] + np.arange(mesh.k)).ravel()
-    return mesh.arrays.edge[halfedges, ORIGIN].astype(np.int64)
 
 
 def in_box(points: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:

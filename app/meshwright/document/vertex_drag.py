@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.core.arrays import FLAGS, GEOMETRIC, LOCKED, ORIGIN
+from meshwright_core.core.arrays import FLAGS, GEOMETRIC, LOCKED
 from meshwright_core.geometry.outline import place_all
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
 from meshwright_core.geometry.region import elements_at
@@ -53,12 +53,9 @@ class Drag:
 
     def _measure(self, mesh: HalfEdgeMesh) -> None:
         """Collect the surrounding elements in small arrays with local indices."""
-        k = mesh.k
         self._elements = elements_at(mesh, self.vertices)
-        halfedges = k * self._elements[:, None] + np.arange(k)
-        corners = mesh.arrays.edge[halfedges, ORIGIN].astype(np.int64)
-        near, local = np.unique(corners, return_inverse=True)
-        self._corners = local.reshape(-1, k)
+        near, local = np.unique(mesh.corners(self._elements), return_inverse=True)
+        self._corners = local.reshape(-1, mesh.k)
         self._points = mesh.points[near].copy()
         self._rows = np.searchsorted(near, self.vertices)
         moves = np.zeros(len(near), bool)

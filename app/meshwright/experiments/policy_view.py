@@ -200,8 +200,7 @@ class PolicyView(Picture):
 
     def _near(self, theme: Theme) -> Drawing:
         mesh, k = self.mesh, self.mesh.k
-        rows = k * self.field[:, :1] + np.arange(k)
-        corners = mesh.points[mesh.arrays.edge[rows, ORIGIN]][:, :, :2]
+        corners = mesh.points[mesh.corners(self.field[:, 0])][:, :, :2]
         seen = mesh.points[self.template[:, 0], :2]
         window = np.concatenate([corners.reshape(-1, 2), seen])
         view = Viewport(size=MESH).fitted(window, MARGIN + 16.0)

@@ -12,6 +12,7 @@ import numpy as np
 
 from meshwright.assistant.torch_threads import one_thread
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
+from meshwright_core.core.score import normalised_return
 
 if TYPE_CHECKING:
     from meshwright_agent.env.task import Task
@@ -58,8 +59,7 @@ class Rollout:
     @property
     def normalised(self) -> float:
         """Normalised return (start - best) / (start - optimum); 1 is the optimum."""
-        gap = self.start - self.optimum
-        return (self.start - self.best) / gap if gap else 1.0
+        return normalised_return(self.start, self.best, self.optimum)
 
     def operations(self, decisions: int | None = None) -> list[tuple[Operation, int]]:
         """The operations of the first ``decisions`` decisions; None: up to the best state."""
@@ -85,7 +85,7 @@ def known_policy(name: object) -> Policy:
 
 
 def require_kind(policy: Policy, mesh: HalfEdgeMesh) -> None:
-    """Refuse a policy for the other kind of mesh, by MeshError."""
+    """Raise MeshError for a policy that is for the other kind of mesh."""
     from meshwright_agent.policy import policy_files
 
     try:

@@ -162,8 +162,7 @@ def _add_inverted(
     ids = quality.inverted(mesh)[:MOST_INVERTED]
     if len(ids) == 0:
         return
-    rows = mesh.arrays.edge[ids[:, None] * mesh.k + np.arange(mesh.k), ORIGIN]
-    corners = view.to_screen(mesh.points[rows])
+    corners = view.to_screen(mesh.points[mesh.corners(ids)])
     lines = np.concatenate([hatching(one, 6.0 * unit) for one in corners])
     rims = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)
     drawing.add(Segments(lines, colours.warning, 0.9 * unit))

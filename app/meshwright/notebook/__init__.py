@@ -1,4 +1,4 @@
-"""The notebook's view of a document: a widget in the browser, and Python on the other side."""
+"""The notebook widget: an editor for a document in the browser, driven from Python."""
 
 from meshwright.notebook.widget import MeshWidget
 

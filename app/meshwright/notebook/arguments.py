@@ -1,4 +1,4 @@
-"""What a person hands over in Python, read strictly: whatever cannot be ends in one sentence."""
+"""Checks of arguments from users' code; all raise MeshError with one sentence."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def operation_of(mesh: HalfEdgeMesh, operation: Any) -> Operation:
 
 
 def whole(value: Any, noun: str) -> int:
-    """A whole number, numpy's too; MeshError if it is none, or none that a mesh can count to."""
+    """``value`` as int, numpy integers included; MeshError if it is none or out of range."""
     if not is_whole_number(value):
         raise MeshError(f"A {noun} must be a whole number, not {shortened(value)}.")
     number = index(value)
@@ -39,7 +39,7 @@ def whole(value: Any, noun: str) -> int:
 
 
 def vertex_of(mesh: HalfEdgeMesh, value: Any) -> int:
-    """The id of a vertex that is there; else MeshError."""
+    """The id of an existing vertex; else MeshError."""
     vertex = whole(value, "vertex")
     if not (mesh.vertices() == vertex).any():
         raise MeshError(f"There is no vertex {vertex} in this mesh.")
@@ -47,7 +47,7 @@ def vertex_of(mesh: HalfEdgeMesh, value: Any) -> int:
 
 
 def degree_of(value: Any) -> int:
-    """A degree that may be asked for at a vertex; else MeshError."""
+    """A valid desired degree; else MeshError."""
     degree = whole(value, "degree")
     low, high = DEGREES
     if not low <= degree <= high:

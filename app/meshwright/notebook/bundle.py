@@ -1,58 +1,20 @@
-"""The browser side of the widget: joins the files of ``front/`` into one ES module and one style.
+"""The browser side of the widget as texts: one ES module and one style sheet.
 
-The files are plain: top-level functions and classes, no import, no export. They share one scope, so
-a name may be declared once only. Joining them is all there is of a build. The colours are those of
-:mod:`meshwright.graphics.theme`, as CSS variables; the scripts read them from there, too.
+The scripts are the ES modules of ``front/``, joined by :mod:`meshwright.notebook.build_bundle` into
+one committed file. The style sheet is joined here, because the colours come from
+:mod:`meshwright.graphics.theme`: they are CSS variables, which the scripts read as well.
 """
 
-import json
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
-from meshwright.graphics.icon_paths import STROKES
 from meshwright.graphics.theme import FONTS, GRID, THEMES, Theme
 
 FOLDER = Path(__file__).parent / "front"
-SCRIPTS = (
-    "dom.js",
-    "link/host_theme.js",
-    "mesh/mesh_replica.js",
-    "link/kernel_link.js",
-    "link/recording_link.js",
-    "canvas/viewport.js",
-    "mesh/derived.js",
-    "mesh/spatial_grid.js",
-    "mesh/picking.js",
-    "mesh/mesh_state.js",
-    "canvas/colours.js",
-    "canvas/markers.js",
-    "canvas/inverted_elements.js",
-    "canvas/mesh_painter.js",
-    "canvas/ghost.js",
-    "canvas/hint_badges.js",
-    "canvas/overlay.js",
-    "canvas/stage.js",
-    "canvas/zoom_buttons.js",
-    "panels/labels.js",
-    "input/hover.js",
-    "panels/popup.js",
-    "panels/menus.js",
-    "input/pointer.js",
-    "input/keyboard_navigation.js",
-    "input/shortcuts.js",
-    "panels/score_panel.js",
-    "panels/operations_panel.js",
-    "panels/agent_panel.js",
-    "panels/notice.js",
-    "mesh/score_series.js",
-    "panels/score_curve.js",
-    "panels/timeline.js",
-    "panels/level_bar.js",
-    "card.js",
-    "index.js",
-)
-"""The files of the module in the order in which they are joined."""
+BUNDLE = FOLDER / "generated" / "bundle.js"
+GLOBAL = "meshwright"
+"""The variable that the bundle defines: an object with the functions that ``index.js`` exports."""
 STYLES = (
     "styles/card.css",
     "styles/panel.css",
@@ -60,43 +22,35 @@ STYLES = (
     "styles/timeline.css",
     "styles/levels.css",
 )
-"""The files of the style, likewise."""
+"""The files of the style sheet in the order in which they are joined."""
 ROOT = "meshwright"
-"""The class of the card, below which every rule of the style applies."""
-EXPORT = "export default { render };\n"
+"""The class of the widget's element, below which every rule of the style sheet applies."""
 
 
 @cache
 def module() -> str:
-    """The ES module: ``render({model, el})`` shows one view and returns its clean-up."""
-    return script() + EXPORT
+    """The ES module for anywidget: ``render({model, el})`` shows one view and returns a function
+    that removes it.
+    """
+    return f"{script()}export default {{ render: {GLOBAL}.render }};\n"
 
 
 @cache
 def script() -> str:
-    """The module without its last line, for pages that bring their own link."""
-    return constants() + "".join(f"// {name}\n{_read(name)}\n" for name in SCRIPTS if _there(name))
-
-
-def constants() -> str:
-    """What the scripts know from Python: names of the colours, and the icons."""
-    names = [field.name for field in fields(Theme) if field.name != "name"]
-    return (
-        f"const PALETTE_NAMES = {json.dumps(names)};\n"
-        f"const ICON_STROKES = {json.dumps(STROKES, indent=1)};\n"
-    )
+    """The bundle as a classic script, which defines :data:`GLOBAL`."""
+    return BUNDLE.read_text(encoding="utf-8")
 
 
 @cache
 def style() -> str:
-    """The style: variables of both themes, then the rules."""
+    """The style sheet: variables of both themes, then the rules."""
     parts = [variables(theme) for theme in THEMES.values()]
-    parts += [f"/* {name} */\n{_read(name)}\n" for name in STYLES if _there(name)]
+    parts += [f"/* {name} */\n{(FOLDER / name).read_text(encoding='utf-8')}\n" for name in STYLES]
     return "\n".join(parts)
 
 
 def variables(theme: Theme) -> str:
-    """The rule that gives a card of this theme its colours."""
+    """The rule that defines the colours of this theme."""
     lines = [
         f"  {variable(field.name)}: {getattr(theme, field.name)};"
         for field in fields(theme)
@@ -116,11 +70,3 @@ def variable(name: str) -> str:
     ``--mw-accent-soft``.
     """
     return f"--mw-{name.replace('_', '-')}"
-
-
-def _there(name: str) -> bool:
-    return (FOLDER / name).is_file()
-
-
-def _read(name: str) -> str:
-    return (FOLDER / name).read_text(encoding="utf-8")

@@ -1,8 +1,7 @@
-"""Getting the compiled kernels ready behind a widget, once in a program.
+"""Compiles the kernels in the background while a widget is shown, once in a process.
 
-Where that was never done on this machine it takes a minute or two, in which a notebook that
-compiles by itself would say nothing and do nothing. So a process of its own compiles, and what a
-browser asks for meanwhile is put off with a sentence.
+The first compilation on a machine takes a minute or two and would block the notebook. Another
+process compiles instead, and requests that need the kernels are refused with a sentence until then.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ _log = logging.getLogger(__name__)
 
 
 class Stage(StrEnum):
-    """What is being made ready: what a person can do, then what the agent needs."""
+    """What is being compiled: the operations, then what the agent needs."""
 
     EDITING = "meshwright_core.warm_up"
     AGENT = "meshwright_agent.warm_up"
@@ -32,10 +31,10 @@ class Stage(StrEnum):
 
 
 class Preparation:
-    """What is ready in this program, and who is told when more is.
+    """State of the compilation in this process, with callbacks at every change.
 
-    ``warm(stage)`` tells whether a stage was compiled on this machine before, ``load()`` loads what
-    editing needs, ``run(module)`` compiles in another process.
+    ``warm(stage)`` returns whether a stage is in the cache on disk, ``load()`` loads the kernels of
+    the operations, ``command(stage)`` is the command that compiles in another process.
     """
 
     def __init__(
@@ -54,11 +53,11 @@ class Preparation:
 
     @property
     def compiling(self) -> Stage:
-        """What a person has to wait for now; READY also before anything was begun."""
+        """The stage in progress; READY also before :meth:`begin`."""
         return self._stage or Stage.READY
 
     def begin(self, dispatch: Dispatch, told: Callable[[], None]) -> None:
-        """Begin, or join; ``told()`` is dispatched each time :attr:`compiling` has changed."""
+        """Start unless started; ``told()`` is dispatched after each change of :attr:`compiling`."""
         with self._lock:
             if self._stage is Stage.READY:
                 return
@@ -78,7 +77,7 @@ class Preparation:
         thread = threading.current_thread()
 
         def leave() -> None:
-            """A thread in compiled code, and a process, must not outlive the program."""
+            """Stop thread and process with the program."""
             self._leaving = True
             if self._process is not None:
                 self._process.kill()
@@ -93,7 +92,7 @@ class Preparation:
             if not self._leaving and not self._warm(Stage.AGENT):
                 self._reach(Stage.AGENT)
                 self._compile(Stage.AGENT)
-        except Exception as error:  # a thread's boundary: each first use compiles for itself then
+        except Exception as error:  # then the first use of each kernel compiles it
             _log.error("the compiled kernels could not be prepared", exc_info=error)
         finally:
             self._reach(Stage.READY)
@@ -154,4 +153,4 @@ def _command(stage: Stage) -> list[str]:
 
 
 PREPARATION = Preparation()
-"""Of this program."""
+"""The compilation of this process."""

@@ -1,4 +1,4 @@
-"""A session: what all widgets on one document share."""
+"""The state that all widgets on one document share."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from meshwright.assistant.assistant import Assistant
 from meshwright.document.document import NO_MESH, Document
 from meshwright.notebook import kernel_warmup
 from meshwright.notebook.kernel_warmup import DONE, WAITS, Stage
-from meshwright.notebook.protocol.agent_bridge import Helper
-from meshwright.notebook.protocol.broadcaster import Port, Telling
+from meshwright.notebook.protocol.agent_bridge import AgentBridge
+from meshwright.notebook.protocol.broadcaster import Broadcaster, Port
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.protocol.preview_messages import ghost_packet, no_ghost
 from meshwright.notebook.protocol.request_handlers import (
-    DEEDS,
-    Deed,
+    HANDLERS,
+    Handler,
     require_halfedge,
     require_operation,
 )
-from meshwright.notebook.protocol.requests import RefusedError, Request, parse
-from meshwright.notebook.thread_loop import Loop
+from meshwright.notebook.protocol.requests import Hello, Hover, RefusedError, Request, parse
+from meshwright.notebook.thread_loop import ThreadLoop
 from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.errors import sentence
@@ -33,7 +33,7 @@ NEEDS: dict[Stage, tuple[str, ...]] = {
     Stage.EDITING: ("operate", "smooth", "untangle", "clean_all", "agent", "take_hint", "level"),
     Stage.AGENT: ("agent",),
 }
-"""What has to wait while something is compiled for the first time."""
+"""Requests that are refused while a stage is compiled for the first time."""
 
 _log = logging.getLogger(__name__)
 
@@ -41,53 +41,51 @@ _log = logging.getLogger(__name__)
 class Session:
     """A document with its assistant and all widgets that show it.
 
-    It lives as long as one of the widgets. Everything happens in the thread that made it, wherever
-    a message comes from. Events: ``agent_changed()`` what the agent does has changed,
-    ``level_changed(level)`` for who plays levels to emit.
+    It exists as long as one of the widgets. All work is done in the thread that created it, from
+    whichever thread a message comes. Events: ``agent_changed()`` after a change of the agent's
+    state, ``level_changed(level)`` emitted by the level bridge.
     """
 
     _all: ClassVar[WeakValueDictionary[int, Session]] = WeakValueDictionary()
 
     def __init__(self, document: Document) -> None:
-        """For :meth:`of`."""
+        """Use :meth:`of`, which returns the existing session of a document."""
         self.document = document
-        self.loop = Loop(self._on_broken)
+        self.loop = ThreadLoop(self._on_broken)
         self.assistant = Assistant(document, self.loop)
-        self.agent = Helper(document, self.assistant, self.loop)
-        self.telling = Telling(document, self.agent, self.loop)
+        self.agent = AgentBridge(document, self.assistant, self.loop)
+        self.broadcaster = Broadcaster(document, self.agent, self.loop)
         self.agent_changed = Signal()
         self.level_changed = Signal()
-        self.words: dict[str, Deed] = dict(DEEDS)
-        """What is done for each word that a browser may say: others may add theirs, which get the
-        session and the request, may raise MeshError to refuse, and return a sentence or none.
-        """
-        self.greetings: list[Callable[[], Packet]] = []
-        """What else a view is told when it comes."""
-        self.bars: list[Callable[[Request], str]] = []
-        """Asked before anything is done: a sentence refuses it."""
-        self.endings: list[Callable[[], None]] = []
-        """Called once no widget is left."""
+        self.handlers: dict[type[Request], Handler] = dict(HANDLERS)
+        """By type of request; other parts of the notebook may add theirs."""
+        self.welcome_messages: list[Callable[[], Packet]] = []
+        """Further messages that a new view gets."""
+        self.guards: list[Callable[[Request], str]] = []
+        """Called before the handler of a request: a sentence refuses the request."""
+        self.on_end: list[Callable[[], None]] = []
+        """Called once, when no widget is left."""
         self.level: Any = None
-        """The level that is being played; None where none is."""
-        self._hovers: dict[str, tuple[Port, Request]] = {}
+        """The level being played, or None."""
+        self._hovers: dict[str, tuple[Port, Hover]] = {}
         self._calling = self._ended = False
         self.agent.settle()
         document.replaced.connect(self._on_replaced)
-        document.changed.connect(self.telling.follow)
+        document.changed.connect(self.broadcaster.follow)
         document.score_changed.connect(self._on_score_changed)
         self.assistant.changed.connect(self._on_agent_changed)
         self.assistant.hinting.changed.connect(self._on_agent_changed)
-        self.assistant.message.connect(self._on_said)
+        self.assistant.message.connect(self._on_message)
         self.assistant.failed.connect(self._on_failed)
 
     @classmethod
     def of(cls, document: Document) -> Session:
-        """The session of a document; a new one if no widget shows it yet."""
+        """The session of a document; created if no widget shows it yet."""
         for session in list(cls._all.values()):
-            if session.loop.here:  # marimo's readers have a thread each
-                for port in session.telling.lost:
+            if session.loop.here:  # marimo runs each browser session in its own thread
+                for port in session.broadcaster.lost:
                     port.close()
-        found = cls._all.get(id(document))  # it holds the document, so the number is still its own
+        found = cls._all.get(id(document))  # the session holds the document: the id is not reused
         if found is None:
             found = cls._all[id(document)] = cls(document)
         return found
@@ -99,34 +97,34 @@ class Session:
             raise MeshError(NO_MESH)
         return self.document.mesh
 
-    # Who takes part
+    # Widgets
 
     def join(self, port: Port) -> None:
-        """A widget begins to show the document."""
-        self.telling.add(port)
+        """Add a widget that shows the document."""
+        self.broadcaster.add(port)
         finalize(port, self.end_if_alone).atexit = False
 
     def leave(self, port: Port) -> None:
-        """A widget is closed; after the last one the agent's thread ends."""
-        self.telling.remove(port)
-        self._hovers = {view: held for view, held in self._hovers.items() if held[0] is not port}
+        """Remove a widget that was closed; after the last one the agent's thread ends."""
+        self.broadcaster.remove(port)
+        self._hovers = {view: kept for view, kept in self._hovers.items() if kept[0] is not port}
         self.end_if_alone()
 
     def end_if_alone(self) -> None:
-        """End, if no widget shows the document."""
-        if self._ended or not self.telling.alone:
+        """Close the session if no widget shows the document."""
+        if self._ended or not self.broadcaster.alone:
             return
         if self._all.get(id(self.document)) is self:
             del self._all[id(self.document)]
         self._ended = True
-        for end in self.endings:
+        for end in self.on_end:
             end()
         self.assistant.close()
         self.document.replaced.disconnect(self._on_replaced)
-        self.document.changed.disconnect(self.telling.follow)
+        self.document.changed.disconnect(self.broadcaster.follow)
         self.document.score_changed.disconnect(self._on_score_changed)
 
-    # What Python asks for
+    # Calls from Python
 
     def do(self, call: Callable[[], Result]) -> Result:
         """The result of ``call()``, called in the thread that owns the document."""
@@ -134,17 +132,17 @@ class Session:
         return self.loop.do(call)
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Let the agent work until it is at rest; returns whether it is."""
+        """Process calls until the agent is idle; returns False at the timeout (s)."""
         self._require_open()
-        self._require_patience()
+        self._refuse_wait_in_callback()
         return self.loop.pump(lambda: self.agent.idle, timeout)
 
     def finish(self, begin: Callable[[], None]) -> None:
-        """Begin something of the agent's and wait for its end, in whichever thread.
+        """Call ``begin()``, which starts an agent's run, and wait for its end, in any thread.
 
-        Raises MeshError where it broke off. An interrupt ends it, too.
+        Raises MeshError where the run failed. An interrupt cancels the run.
         """
-        self._require_patience()
+        self._refuse_wait_in_callback()
         failures: list[str] = []
         self.do(lambda: self.assistant.failed.connect(failures.append))
         try:
@@ -152,142 +150,140 @@ class Session:
             self.wait()
         except KeyboardInterrupt:
             if self.loop.here:
-                self.assistant.cancel()  # where no loop runs, a queued one would end the next run
+                self.assistant.cancel()  # a queued call could cancel the next run
             else:
                 self.loop(self.assistant.cancel)
             raise
         finally:
             self.assistant.failed.disconnect(failures.append)
-        self.loop.do(self.telling.catch_up)
+        self.loop.do(self.broadcaster.catch_up)
         if failures:
             raise MeshError(failures[-1])
 
     def call_back(self, callback: Callable[..., Any], *arguments: Any) -> None:
-        """Call what a person has connected; what it raises is told and logged, and goes no
-        further.
-        """
+        """Call a user's callback; an exception in it is logged and shown, and not raised."""
         outer, self._calling = self._calling, True
         try:
             callback(*arguments)
-        except Exception as error:  # not ours: the document must go on
-            _log.error("a callback broke off", exc_info=error)
-            self.telling.notice("failed", broken(error))
+        except Exception as error:  # user code: it must not stop the document's event
+            _log.error("a callback failed", exc_info=error)
+            self.broadcaster.notice("failed", broken(error))
         finally:
             self._calling = outer
 
-    def _require_patience(self) -> None:
+    def _refuse_wait_in_callback(self) -> None:
         if self._calling and self.loop.here:
-            raise MeshError("A callback cannot wait for the agent: it would wait for itself.")
+            raise MeshError("A callback cannot wait for the agent: it would block itself.")
 
     def _require_open(self) -> None:
         if self._ended:
             raise MeshError("This widget is closed; make another one on its document.")
 
-    # What browsers say
+    # Requests from browsers
 
     def receive(self, port: Port, content: Any, buffers: Sequence[Any] | None = None) -> None:
-        """A message of a widget's browser, in whichever thread it comes; never raises."""
+        """Handle a message from a widget's browser, in any thread; never raises."""
         try:
             request = parse(content, buffers)
         except RefusedError as error:
-            self.telling.answer(port, error.request, "refused", error.sentence)
+            self.broadcaster.answer(port, error.sender, "refused", error.sentence)
             return
-        if request.do == "hover":
-            self._hovers[request.view] = port, request  # the latest of a view wins
+        if isinstance(request, Hover):
+            self._hovers[request.view] = port, request  # only the latest of a view is answered
         if self.loop.here:
-            self._serve(port, request)
+            self._handle(port, request)
         else:
-            self.loop(lambda: self._serve(port, request))
+            self.loop(lambda: self._handle(port, request))
 
-    def _serve(self, port: Port, request: Request) -> None:
-        self.telling.hold(request)
+    def _handle(self, port: Port, request: Request) -> None:
+        self.broadcaster.hold(request)
         try:
-            self._do(port, request)
+            self._dispatch(port, request)
         except MeshError as error:
-            self.telling.answer(port, request, "refused", sentence(str(error)))
-        except Exception as error:  # the kernel lives on: the person and the log are told
-            _log.error("'%s' broke off", request.do, exc_info=error)
-            self.telling.answer(port, request, "failed", broken(error))
+            self.broadcaster.answer(port, request, "refused", sentence(str(error)))
+        except Exception as error:  # a bug: shown and logged, and the kernel goes on
+            _log.error("request '%s' failed", request.word, exc_info=error)
+            self.broadcaster.answer(port, request, "failed", broken(error))
         finally:
-            self.telling.release()
+            self.broadcaster.release()
 
-    def _do(self, port: Port, request: Request) -> None:
-        if request.do == "hello":
-            self.telling.greet(port, request)
-            for greeting in self.greetings:
-                self.telling.post(port, greeting(), request)
+    def _dispatch(self, port: Port, request: Request) -> None:
+        if isinstance(request, Hello):
+            self.broadcaster.send_state(port, request)
+            for greeting in self.welcome_messages:
+                self.broadcaster.post(port, greeting(), request)
             self._prepare(port, request)
-        elif request.do == "hover":
-            self._point(request)
+        elif isinstance(request, Hover):
+            self._preview(request)
         elif port.read_only:
-            raise MeshError("this view is for looking only")
-        elif request.do not in self.words:
-            raise MeshError(f"there is nothing to '{request.do}' here")
-        elif request.do in NEEDS.get(kernel_warmup.PREPARATION.compiling, ()):
+            raise MeshError("this view is read-only")
+        elif type(request) not in self.handlers:
+            raise MeshError(f"'{request.word}' is not available here")
+        elif request.word in NEEDS.get(kernel_warmup.PREPARATION.compiling, ()):
             raise MeshError(WAITS[kernel_warmup.PREPARATION.compiling])
         else:
-            why = next(filter(None, (bar(request) for bar in self.bars)), "")
+            why = next(filter(None, (guard(request) for guard in self.guards)), "")
             if why:
                 raise MeshError(why)
-            said = self.words[request.do](self, request)
-            if said:
-                self.telling.answer(port, request, "said", said)
+            answer = self.handlers[type(request)](self, request)
+            if answer:
+                self.broadcaster.answer(port, request, "info", answer)
 
-    def _point(self, request: Request) -> None:
-        held = self._hovers.pop(request.view, None)
-        if held is None:
-            return  # a later one was served in its place
-        port, request = held
-        halfedge, operation = request["halfedge"], request["operation"]
+    def _preview(self, request: Hover) -> None:
+        latest = self._hovers.pop(request.view, None)
+        if latest is None:
+            return  # superseded by a later one
+        port, request = latest
+        halfedge, operation = request.halfedge, request.operation
         if halfedge < 0 or kernel_warmup.PREPARATION.compiling is Stage.EDITING:
             self.document.hover = -1
-            self.telling.post(port, no_ghost(), request)
+            self.broadcaster.post(port, no_ghost(), request)
             return
         require_halfedge(self.mesh, halfedge)
         if operation is not None:
             require_operation(self.mesh.kind, operation)
         self.document.hover = halfedge
-        frame, bar = self.telling.mirror.frame, self.document.bar
+        frame, bar = self.broadcaster.mesh_sync.frame, self.document.bar
         packet = ghost_packet(self.mesh, frame, halfedge, operation, bar)
-        self.telling.post(port, packet, request)
+        self.broadcaster.post(port, packet, request)
 
     def _prepare(self, port: Port, request: Request) -> None:
-        """Behind the first view everything is made ready, if it is not."""
+        """With the first view: start compiling the kernels, if they are not compiled."""
         kernel_warmup.PREPARATION.begin(self.loop, self._on_prepared)
         stage = kernel_warmup.PREPARATION.compiling
         if stage is not Stage.READY:
-            self.telling.answer(port, request, "said", WAITS[stage])
+            self.broadcaster.answer(port, request, "info", WAITS[stage])
 
     def _on_prepared(self) -> None:
-        self.telling.notice("said", DONE[kernel_warmup.PREPARATION.compiling])
+        self.broadcaster.notice("info", DONE[kernel_warmup.PREPARATION.compiling])
 
-    # What happens here
+    # Events
 
     def _on_replaced(self) -> None:
-        self.telling.start_over()
+        self.broadcaster.start_over()
         self.agent.settle()
 
     def _on_score_changed(self) -> None:
-        for port in self.telling.ports:
+        for port in self.broadcaster.ports:
             port.show_score()
 
     def _on_agent_changed(self) -> None:
-        self.telling.touch_agent()
+        self.broadcaster.touch_agent()
         self.agent_changed.emit()
 
-    def _on_said(self, words: str) -> None:
-        self.telling.notice("said", sentence(words))
+    def _on_message(self, text: str) -> None:
+        self.broadcaster.notice("info", sentence(text))
 
-    def _on_failed(self, words: str) -> None:
-        self.telling.notice("failed", sentence(words))
+    def _on_failed(self, text: str) -> None:
+        self.broadcaster.notice("failed", sentence(text))
 
     def _on_broken(self, error: Exception) -> None:
-        """A queued call has raised, and is in the log already."""
-        self.telling.notice("failed", broken(error))
+        """A queued call has raised; the traceback is in the log already."""
+        self.broadcaster.notice("failed", broken(error))
 
 
 def broken(error: Exception) -> str:
-    """What a person hears of a mistake of ours, or of a callback."""
-    words = str(error).splitlines()[0][:120] if str(error) else ""
-    told = f"{type(error).__name__}: {words}" if words else type(error).__name__
-    return f"Something went wrong ({told}); the traceback is in the log."
+    """The sentence shown for an unexpected exception in the library or in a callback."""
+    first_line = str(error).splitlines()[0][:120] if str(error) else ""
+    what = f"{type(error).__name__}: {first_line}" if first_line else type(error).__name__
+    return f"Something went wrong ({what}); the traceback is in the log."

@@ -1,9 +1,10 @@
-"""Calls into the thread that owns a document, from whichever thread.
+"""Calls into the thread that owns a document, from any thread.
 
-Notebooks run their cells in a thread with an asyncio loop, which is blocked while a cell runs.
-Every call waits in one queue. The loop empties it when it has its turn; :meth:`Loop.pump` empties
-it meanwhile, and where there is no loop at all. Messages from a browser may arrive in another
-thread (JupyterLab sends them to a subshell), a policy's decisions always do.
+Notebooks run their cells in a thread with an asyncio event loop, which is blocked while a cell
+runs. Calls wait in one queue. The event loop processes it when it runs;
+:meth:`ThreadLoop.pump` processes it in the meantime, and where there is no event loop at all.
+Messages from a browser may arrive in another thread (JupyterLab uses a subshell); the decisions of
+a policy always do.
 """
 
 from __future__ import annotations
@@ -20,18 +21,18 @@ from typing import TypeVar
 Result = TypeVar("Result")
 Call = Callable[[], None]
 
-PATIENCE = 60.0
-"""Seconds that another thread waits for a call of :meth:`Loop.do`."""
-_NAP = 0.05
+TIMEOUT = 60.0
+"""Seconds after which a call of :meth:`ThreadLoop.do` from another thread times out."""
+_POLL = 0.05
 
 _log = logging.getLogger(__name__)
 
 
-class Loop:
-    """The thread that made it owns the document; calling the object queues a call into it."""
+class ThreadLoop:
+    """Queue of calls into the owner's thread, which is the thread that created the object."""
 
     def __init__(self, failed: Callable[[Exception], None] | None = None) -> None:
-        """``failed(error)`` is told, in the owner's thread, what a queued call has raised; the
+        """``failed(error)`` is called in the owner's thread with what a queued call has raised; the
         traceback goes to the log.
         """
         self._owner = threading.current_thread()
@@ -43,19 +44,19 @@ class Loop:
 
     @property
     def here(self) -> bool:
-        """Whether this is the owner's thread; one that has ended leaves its place to this one."""
+        """Whether this is the owner's thread; if that has ended, this thread becomes the owner."""
         if not self._owner.is_alive():
             self._owner = threading.current_thread()
         return threading.current_thread() is self._owner
 
     @property
     def running(self) -> bool:
-        """Whether there is an event loop that will come to the queue by itself."""
+        """Whether an event loop processes the queue."""
         self.find()
         return self._loop is not None
 
     def find(self) -> None:
-        """Look, in the owner's thread, which event loop runs there now."""
+        """Update the event loop, if called in the owner's thread."""
         if self.here:
             before = self._loop
             try:
@@ -63,10 +64,10 @@ class Loop:
             except RuntimeError:
                 self._loop = None
             if self._loop not in (before, None) and self._calls:
-                self._loop.call_soon(self.drain)  # what no loop was there for
+                self._loop.call_soon(self.drain)  # calls that were queued without a loop
 
     def __call__(self, call: Call) -> None:
-        """Have ``call()`` called soon, in order; returns at once, from any thread."""
+        """Queue ``call()``; returns at once, from any thread. Calls run in order."""
         with self._news:
             self._calls.append(call)
             self._news.notify_all()
@@ -74,7 +75,7 @@ class Loop:
         if loop is not None:
             try:
                 loop.call_soon_threadsafe(self._turn)
-            except RuntimeError:  # that loop is closed: the queue waits for the next one
+            except RuntimeError:  # that loop is closed: the calls wait for the next one
                 self._loop = None
 
     def do(self, call: Callable[[], Result]) -> Result:
@@ -87,33 +88,33 @@ class Loop:
             if answer.set_running_or_notify_cancel():
                 try:
                     answer.set_result(call())
-                except BaseException as error:  # goes on in the thread that asked
+                except BaseException as error:  # raised again in the calling thread
                     answer.set_exception(error)
 
         self(work)
         try:
-            return answer.result(PATIENCE)
+            return answer.result(TIMEOUT)
         except TimeoutError:
             if answer.done():
                 raise
             answer.cancel()
             raise TimeoutError(
-                f"The notebook has been busy with another cell for {PATIENCE:.0f} s: nothing done."
+                f"Nothing was done: another cell has kept the notebook busy for {TIMEOUT:.0f} s."
             ) from None
 
     def drain(self) -> None:
-        """Make all calls that are waiting now, in the owner's thread."""
+        """Run all calls that are queued now, in the owner's thread."""
         for _ in range(len(self._calls)):
             self._turn()
 
     def pump(self, until: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Make calls, and wait for more, until ``until()``; returns whether it came to that.
+        """Run queued calls until ``until()`` is true; returns False at the timeout (s).
 
         In another thread it only waits.
         """
         end = None if timeout is None else time.monotonic() + timeout
         while not until():
-            left = _NAP if end is None else min(_NAP, end - time.monotonic())
+            left = _POLL if end is None else min(_POLL, end - time.monotonic())
             if left <= 0:
                 return False
             with self._news:
@@ -124,14 +125,14 @@ class Loop:
         return True
 
     def _turn(self) -> None:
-        """Make the next call, if there is one left: a pump may have been quicker."""
+        """Run the next call, unless a pump has run it already."""
         with self._news:
             if not self._calls:
                 return
             call = self._calls.popleft()
         try:
             call()
-        except Exception as error:  # whoever queued it has gone on: the log and a person are told
-            _log.error("a queued call broke off", exc_info=error)
+        except Exception as error:  # its caller has returned: log it and show it
+            _log.error("a queued call failed", exc_info=error)
             if self._failed is not None:
                 self._failed(error)

@@ -1,11 +1,11 @@
-"""The widget: a document in a notebook's cell."""
+"""The notebook widget."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
 from reprlib import repr as shortened
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import anywidget
 import traitlets
@@ -14,6 +14,7 @@ from meshwright.assistant.assistant import Assistant
 from meshwright.assistant.search_runner import COMPLETE_SECONDS, Effort
 from meshwright.document.document import Document
 from meshwright.document.history import History, HistoryStep
+from meshwright.graphics.export import mimebundle
 from meshwright.notebook import bundle
 from meshwright.notebook.arguments import (
     degree_of,
@@ -23,8 +24,9 @@ from meshwright.notebook.arguments import (
     vertex_of,
     whole,
 )
-from meshwright.notebook.export.export_mixin import Exports
-from meshwright.notebook.protocol.level_bridge import Playing
+from meshwright.notebook.export import html_page, images
+from meshwright.notebook.export.images import SECONDS, SIZE, File
+from meshwright.notebook.protocol.level_bridge import LevelBridge
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.session import Session
 from meshwright.puzzles import level as levels
@@ -37,34 +39,36 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import PolicyAction
     from meshwright_core.domains.domain import Domain
 
+Result = TypeVar("Result")
+
 LOWEST, HIGHEST = 160, 4000
 """Bounds of a widget's height in pixels."""
 
 
-class MeshWidget(Exports, anywidget.AnyWidget):
-    """A mesh in a cell that a person can edit, with the agent beside it.
+class MeshWidget(anywidget.AnyWidget):
+    """An editor for a mesh in a notebook cell, with the agent.
 
-    What is changed in the browser is changed here, and the other way round; several widgets on one
-    document stay in step. Change the mesh through the widget, or its document: what
-    ``widget.mesh.apply`` does is in no history, and no view hears of it.
+    Browser and Python edit the same document; several widgets on one document stay synchronised.
+    Change the mesh through the widget or its document: ``widget.mesh.apply`` records no history
+    and updates no view.
     """
 
-    # anywidget passes on only what the class has; the texts are made for each widget
+    # anywidget sends only traits of the class; their texts are defaults of the instance
     _esm = traitlets.Unicode().tag(sync=True)
     _css = traitlets.Unicode().tag(sync=True)
     height = traitlets.Int(464, min=LOWEST, max=HIGHEST).tag(sync=True)
-    """Pixels of the canvas."""
+    """Height of the canvas in pixels."""
     theme = traitlets.Enum(("auto", "light", "dark"), "auto").tag(sync=True)
-    """The colours: those of the notebook, or always light, or always dark."""
+    """Colours: as the notebook, always light, or always dark."""
     label = traitlets.Unicode("").tag(sync=True)
-    """What the mesh is called, for the browser."""
+    """Name of the mesh, for the browser."""
     score = traitlets.Int(0, read_only=True).tag(sync=True)
-    """s of the mesh now."""
+    """Score s of the present mesh."""
     optimum = traitlets.Int(0, read_only=True).tag(sync=True)
-    """s*, the lowest score that any connectivity can have."""
+    """Optimum s*, the lower bound of the score over all connectivities."""
     seen = traitlets.Int(0).tag(sync=True)
-    """Counts, in marimo, what a browser has brought about: marimo runs the cells that use a widget
-    again when its page changes something, and a message alone does not count as that."""
+    """Counts changes made in the browser. marimo runs the cells that use a widget again when a
+    trait is changed by the page; a message alone does not cause that."""
 
     def __init__(
         self,
@@ -78,22 +82,22 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         name: str = "",
         read_only: bool = False,
     ) -> None:
-        """Show ``source``; a document, or another widget's, is shared with whoever has it.
+        """Show ``source``; a document, also that of another widget, is shared and not copied.
 
         Args:
             source: see :func:`meshwright.sources.resolve.document`; or another widget.
-            kind: what a shape is meshed with, "tri" or "quad"; quads by default.
-            policy: what the agent follows: a shipped policy, or a file; by default the first that
-                is shipped for this kind of mesh.
-            level: the name of a level to be played, in the place of a source.
-            height: of the canvas, in pixels.
-            theme: "auto" as the notebook, "light" or "dark".
-            name: what the mesh is called.
-            read_only: whether the browser may look only; Python may go on changing the mesh.
+            kind: elements to mesh a shape with, "tri" or "quad"; quads by default.
+            policy: policy of the agent: the name of a shipped one, or a file; by default the first
+                that is shipped for this kind of mesh.
+            level: name of a level to play, instead of a source.
+            height: height of the canvas in pixels.
+            theme: "auto" (as the notebook), "light" or "dark".
+            name: name of the mesh.
+            read_only: whether the browser may not edit; Python still may.
 
         Raises:
-            MeshError: one sentence on what is wrong with the source or the policy.
-            traitlets.TraitError: the height or the theme cannot be.
+            MeshError: source, level or policy is not valid.
+            traitlets.TraitError: height or theme is not valid.
         """
         self._connected: list[tuple[Signal, Callable[..., None]]] = []
         self.read_only = bool(read_only)
@@ -107,12 +111,12 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         session = self.session = Session.of(document)
         try:
             if wanted is not None:
-                Playing.of(session).begin(wanted)
+                LevelBridge.of(session).begin(wanted)
             if policy is not None:
                 session.agent.choose(policy_of(policy))
             super().__init__(height=height, theme=theme, label=name or document.name)
         except BaseException:
-            session.end_if_alone()  # nobody shows the document: nothing may stay on it
+            session.end_if_alone()  # no widget shows the document: disconnect from it
             raise
         session.join(self)
         self.show_score()
@@ -125,26 +129,26 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     def _style(self) -> str:
         return bundle.style()
 
-    # What is here
+    # State
 
     @property
     def document(self) -> Document:
-        """What all views share: mesh, history, selection and their events."""
+        """The document, shared by all views: mesh, history, selection and their events."""
         return self.session.document
 
     @property
     def mesh(self) -> HalfEdgeMesh:
-        """The mesh, live; change it by the widget's own methods. MeshError while there is none."""
+        """The live mesh; change it by the widget's methods only. MeshError while there is none."""
         return self.session.mesh
 
     @property
     def history(self) -> History:
-        """One row for every step."""
+        """The history, one row for every step."""
         return self.document.history
 
     @property
     def assistant(self) -> Assistant:
-        """The agent's side, shared by all widgets on the document."""
+        """Runs the agent; shared by all widgets on the document."""
         return self.session.assistant
 
     @property
@@ -154,36 +158,36 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
     @property
     def level(self) -> Level | None:
-        """The level that is being played, None where none is."""
+        """The level being played, or None."""
         return self.session.level
 
     @property
     def stars(self) -> int:
-        """Stars for what is done in the level: 0 before the goal, and where none is played."""
-        return Playing.of(self.session).play.stars if self.session.level is not None else 0
+        """Stars earned in the level: 0 before the goal is reached, and without a level."""
+        return LevelBridge.of(self.session).play.stars if self.session.level is not None else 0
 
-    # Changing the mesh
+    # Editing
 
     def check(self, operation: Operation | str, halfedge: int) -> Verdict:
-        """Whether an operation may be done at a half-edge: true, or false with a ``reason``."""
+        """Whether an operation is allowed at a half-edge: true, or false with a ``reason``."""
         action, at = operation_of(self.mesh, operation), whole(halfedge, "half-edge")
         return self._do(lambda: self.document.check(action, at))
 
     def apply(self, operation: Operation | str, halfedge: int) -> Edit:
-        """Do an operation and smooth around it, as one step; OperationRefused if it is refused."""
+        """Apply an operation and smooth around it, as one step; OperationRefused if refused."""
         action, at = operation_of(self.mesh, operation), whole(halfedge, "half-edge")
         return self._do(lambda: self.document.submit(action, at))
 
     def undo(self) -> HistoryStep | None:
-        """Take back the last step; returns its row, None if there is none."""
+        """Undo the last step; returns its row, or None without one."""
         return self._do(self.document.undo)
 
     def redo(self) -> HistoryStep | None:
-        """Do again what was taken back last; returns its row, None if there is none."""
+        """Redo the step that was undone last; returns its row, or None without one."""
         return self._do(self.document.redo)
 
     def go_to(self, cursor: int) -> None:
-        """Undo or redo until ``cursor`` steps are done; beyond either end it stops there."""
+        """Undo or redo until ``cursor`` steps are applied, clipped to the length of the history."""
         step = whole(cursor, "step")
         self._do(lambda: self.document.go_to(step))
 
@@ -192,23 +196,23 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         self._do(self.document.smooth)
 
     def untangle(self) -> tuple[int, int]:
-        """Mend inverted elements; returns how many there were, and how many stay."""
+        """Repair inverted elements; returns their numbers before and after."""
         return self._do(self.document.untangle)
 
     def clean_all(self) -> int:
-        """Remove every global line of a quad mesh that can be removed; returns their number."""
+        """Remove every removable global line of a quad mesh; returns their number."""
         return self._do(self.document.clean_all)
 
     def set_desired(self, vertex: int, degree: int) -> None:
-        """Ask for another degree at a vertex; s and s* follow."""
+        """Set the desired degree of a vertex; s and s* change with it."""
         self._do(lambda: self.document.set_desired(vertex_of(self.mesh, vertex), degree_of(degree)))
 
     def lock(self, vertex: int, flag: bool = True) -> None:
-        """Lock a vertex, so that it neither moves nor vanishes, or unlock it."""
+        """Lock a vertex, so that it is neither moved nor removed, or unlock it."""
         self._do(lambda: self.document.set_locked(vertex_of(self.mesh, vertex), bool(flag)))
 
     def corner(self, vertex: int, flag: bool = True) -> None:
-        """Make a vertex a corner, which stays where it is, or free it."""
+        """Make a vertex a corner, which keeps its position, or undo that."""
         self._do(lambda: self.document.set_geometric(vertex_of(self.mesh, vertex), bool(flag)))
 
     # The agent
@@ -216,47 +220,47 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     def play(
         self, policy: str | Path | None = None, *, speed: float | None = None, wait: bool = False
     ) -> None:
-        """Let the agent play, visibly, while the notebook goes on.
+        """Start the agent; its steps are shown while the notebook stays usable.
 
         Args:
-            policy: another one from now on.
+            policy: policy to use from now on.
             speed: decisions per second from now on.
-            wait: return only at the end of the run, which then goes as fast as it can.
+            wait: return only at the end of the run, which then runs at full speed.
 
         Raises:
-            MeshError: the policy does not fit, or (where the call waits) the run broke off.
+            MeshError: the policy does not fit, or (where the call waits) the run failed.
         """
         agent = self.session.agent
         rate = positive(speed, "speed") if speed is not None else None
         self._choose(policy)
-        self._ask(lambda: agent.play(rate, hurry=wait), wait)
+        self._start(lambda: agent.play(rate, hurry=wait), wait)
 
     def step(self, policy: str | Path | None = None, wait: bool = True) -> None:
-        """One decision of the agent: an operation, and the clean-ups that follow it."""
+        """One decision of the agent: an operation and the line removals that follow it."""
         self._choose(policy)
-        self._ask(self.assistant.step, wait)
+        self._start(self.assistant.step, wait)
 
     def pause(self) -> None:
-        """Hold a run; :meth:`play` and :meth:`step` go on from there."""
+        """Pause a run; :meth:`play` and :meth:`step` continue it."""
         self._do(self.assistant.pause)
 
     def complete(self, seconds: float = COMPLETE_SECONDS, wait: bool = True) -> None:
-        """Search for the best state within so many seconds, and go there."""
+        """Search for ``seconds``, and go to the best state found."""
         effort = Effort(seconds=positive(seconds, "seconds"))
-        self._ask(lambda: self.assistant.search(effort), wait)
+        self._start(lambda: self.assistant.search(effort), wait)
 
     def hint(self, wait: bool = True) -> tuple[PolicyAction, ...]:
-        """The policy's best few operations in the present state.
+        """The operations with the highest probability under the policy in the present state.
 
-        Where the call does not wait: the hints that are known already.
+        Where the call does not wait: the hints that are known already, possibly none.
         """
-        self._ask(self.assistant.hint, wait)
+        self._start(self.assistant.hint, wait)
         return self.assistant.hinting.hints
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until the agent is at rest; returns False if that took longer than ``timeout`` s.
+        """Wait until the agent is idle; returns False if that took longer than ``timeout`` s.
 
-        The browsers follow meanwhile.
+        The browsers are updated in the meantime.
         """
         return self.session.wait(timeout)
 
@@ -264,7 +268,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         if policy is not None:
             self._do(lambda: self.session.agent.choose(policy_of(policy)))
 
-    def _ask(self, begin: Callable[[], None], wait: bool) -> None:
+    def _start(self, begin: Callable[[], None], wait: bool) -> None:
         if wait:
             self.session.finish(begin)
         else:
@@ -273,14 +277,14 @@ class MeshWidget(Exports, anywidget.AnyWidget):
     # Events
 
     def on(self, event: str, callback: Callable[..., Any]) -> Callable[[], None]:
-        """Call ``callback`` at every later ``event``; returns a function that ends this.
+        """Call ``callback`` at every ``event``; returns a function that disconnects it.
 
         Events are "changed", "history" (no arguments), "score" (s), "hover" (a half-edge or -1),
-        "agent" (what it is doing, a word) and "level" (the level or None). What a callback raises
-        goes to the log and, as a sentence, to the browser.
+        "agent" (its state, a word) and "level" (the level or None). An exception in a callback is
+        logged and shown in the browser.
         """
         if not callable(callback):
-            raise MeshError(f"A callback must be something to call, not {shortened(callback)}.")
+            raise MeshError(f"A callback must be callable, not {shortened(callback)}.")
         session, document = self.session, self.document
         events: dict[str, tuple[Signal, Callable[..., tuple[Any, ...]]]] = {
             "changed": (document.changed, lambda: ()),
@@ -292,10 +296,10 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         }
         if event not in events:
             raise MeshError(f"There is no event {event!r}; there are {', '.join(events)}.")
-        signal, told = events[event]
+        signal, values = events[event]
 
         def slot(*arguments: Any) -> None:
-            session.call_back(callback, *told(*arguments))
+            session.call_back(callback, *values(*arguments))
 
         entry = (signal, signal.connect(slot))
         self._connected.append(entry)
@@ -307,10 +311,52 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
         return disconnect
 
-    # Its place in the notebook
+    # Files. A file is written whole or not at all. All methods raise MeshError, in one sentence,
+    # where there is no mesh or the file cannot be written.
+
+    def to_html(self, path: File = None, *, title: str = "") -> str:
+        """The recording of the history as one HTML page that needs neither Python nor network."""
+        return self._do(lambda: html_page.page(self.document, str(title), path))
+
+    def to_png(self, path: File = None, size: tuple[int, int] = SIZE) -> bytes:
+        """An image of the mesh in its present state, ``size`` in pixels."""
+        return self._do(lambda: images.png(self.document, size, path, self._export_theme))
+
+    def to_svg(self, path: File = None, size: tuple[int, int] = SIZE) -> str:
+        """The same image as SVG."""
+        return self._do(lambda: images.svg(self.document, size, path, self._export_theme))
+
+    def to_gif(
+        self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
+    ) -> bytes:
+        """The history as an animated GIF; each frame lasts ``seconds``."""
+        return self._do(lambda: images.gif(self.document, seconds, size, path, self._export_theme))
+
+    def to_mp4(
+        self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
+    ) -> bytes:
+        """The history as MP4 (H.264); each frame lasts ``seconds``."""
+        return self._do(lambda: images.mp4(self.document, path, seconds, size, self._export_theme))
+
+    @property
+    def _export_theme(self) -> str:
+        """Light unless the widget is always dark: where an image is shown later is unknown."""
+        return "dark" if self.theme == "dark" else "light"
+
+    # The widget in the notebook
+
+    def _repr_mimebundle_(self, **options: Any) -> tuple[dict[str, Any], dict[str, Any]] | None:
+        """The widget, and a static image for viewers of the saved notebook without a kernel."""
+        bundle = super()._repr_mimebundle_(**options)
+        mesh = self.document.mesh
+        if bundle is None or mesh is None or not self.reachable:
+            return bundle
+        data, metadata = bundle
+        image, image_metadata = self._do(lambda: mimebundle.still(mesh))
+        return data | image, metadata | image_metadata
 
     def close(self) -> None:
-        """Take the views away. The agent's thread ends with the document's last widget."""
+        """Remove all views. The agent's thread ends with the document's last widget."""
         session = self.__dict__.get("session")  # an __init__ that has failed leaves none
         if session is not None:
             for signal, slot in self._connected:
@@ -321,7 +367,7 @@ class MeshWidget(Exports, anywidget.AnyWidget):
 
     @property
     def reachable(self) -> bool:
-        """Whether there still is a way to the browser; marimo cuts it when a cell runs again."""
+        """Whether the connection is open; marimo closes it when the cell runs again."""
         return self.comm is not None and not getattr(self.comm, "_closed", False)
 
     def post(self, packet: Packet) -> None:
@@ -335,25 +381,26 @@ class MeshWidget(Exports, anywidget.AnyWidget):
         return f"<{type(self).__name__} of {mesh!r}>" if mesh is not None else object.__repr__(self)
 
     def show_score(self) -> None:
-        """For the session: the score, or the optimum, is another."""
+        """For the session: update score and optimum."""
         self.set_trait("score", self.document.score)
         self.set_trait("optimum", self.document.optimum)
 
     def set_state(self, sync_data: Any) -> None:
-        """What a browser wants the traits to be is nothing to us: it asks by messages."""
+        """Ignore traits set by the browser: it sends requests as messages."""
 
     def _handle_msg(self, message: Any) -> None:
-        """Whatever comes from the browser; never raises."""
+        """Handle any message from the browser; never raises."""
         content = message.get("content") if isinstance(message, dict) else None
         data = content.get("data") if isinstance(content, dict) else None
-        method = data.get("method") if isinstance(data, dict) else None
+        data = data if isinstance(data, dict) else {}
+        method = data.get("method")
         if method == "request_state":
             self.send_state()
         elif method != "update":
-            custom = isinstance(data, dict) and method == "custom"
+            custom = method == "custom"
             buffers = message.get("buffers") if custom else None
             self.session.receive(self, data.get("content") if custom else None, buffers)
 
-    def _do(self, call: Callable[[], Any]) -> Any:
-        """In the thread that owns the document."""
+    def _do(self, call: Callable[[], Result]) -> Result:
+        """The result of ``call()`` in the thread that owns the document."""
         return self.session.do(call)

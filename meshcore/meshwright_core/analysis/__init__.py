@@ -1,1 +1,1 @@
-"""What can be read off a mesh: blocks, removable lines, submeshes, drawability."""
+"""Analyses of a mesh: blocks, removable lines, submeshes, drawability, dry runs."""

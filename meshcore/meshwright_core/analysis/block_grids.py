@@ -1,7 +1,7 @@
 """The block decomposition as a structured multi-block grid: the vertices of each block in rows.
 
 Each block of :mod:`meshwright_core.analysis.blocks` is a regular grid of quads, or a closed band of
-them around a hole. Here it becomes an array of vertex ids: what a structured solver wants.
+them around a hole. Here it becomes an array of vertex ids, the form that structured solvers read.
 """
 
 from __future__ import annotations
@@ -51,7 +51,8 @@ def grids(mesh: HalfEdgeMesh, corners: bool = False) -> list[Grid]:
         corners: as in :func:`meshwright_core.analysis.blocks.separatrices`.
 
     Raises:
-        MeshError: the mesh is of triangles, or a block is no grid, as in a mesh that is corrupt.
+        MeshError: the mesh is of triangles, or a block is not a grid, which means that the mesh is
+        corrupt.
     """
     cut = separatrices(mesh, corners)
     blocks, ids = block_of(mesh, corners), mesh.element_ids()
@@ -60,7 +61,7 @@ def grids(mesh: HalfEdgeMesh, corners: bool = False) -> list[Grid]:
         mine = ids[blocks == block]
         places, period = _walked(mesh, cut, int(mine[0]))
         if len(places) != len(mine):
-            raise MeshError(f"Block {block} does not hang together.")
+            raise MeshError(f"Block {block} is not connected.")
         found.append(_grid(mesh, places, period, block))
     return found
 
@@ -110,7 +111,7 @@ def _grid(
     elements = np.full((rows, columns), -1, np.int64)
     elements[table[:, 2], table[:, 1]] = table[:, 0]
     if period[1] or rows * columns != len(table) or (elements < 0).any():
-        raise MeshError(f"Block {block} is no grid.")
+        raise MeshError(f"Block {block} is not a grid.")
     low = np.zeros((rows, columns), np.int64)
     low[table[:, 2], table[:, 1]] = table[:, 3]
     origin = mesh.arrays.edge[:, ORIGIN].astype(np.int64)

@@ -4,7 +4,7 @@ A separatrix leaves every vertex at which the mesh is no grid (inside: degree no
 boundary: degree above 3) along each of its edges, and goes straight on through inside vertices of
 degree 4 until it meets the boundary or another such vertex. Cut along all of them, the mesh falls
 into blocks, each a regular grid of quads, or a closed band of them around a hole. Coarse meshes at
-the optimum have few: this is the block decomposition that the paper is after.
+the optimum have few blocks: this is the block decomposition that the paper aims at.
 """
 
 from __future__ import annotations

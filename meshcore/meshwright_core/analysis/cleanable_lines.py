@@ -1,7 +1,7 @@
 """All global lines of a quad mesh that may be cleaned up, as chains of vertices, to show them.
 
-A line is found on its own terms: deleting one may free another or take it away, for two lines can
-cross or share an element.
+Each line is checked by itself in the present mesh: deleting one may make another deletable, or no
+longer deletable, since two lines can cross or share an element.
 """
 
 from __future__ import annotations
@@ -20,11 +20,10 @@ from meshwright_core.core.arrays import (
     VERTICES,
     following,
     on_boundary,
-    preceding,
+    turned,
 )
-from meshwright_core.core.circulators import is_ring
 from meshwright_core.core.compilation import kernel
-from meshwright_core.operations.global_lines import check_cleanup
+from meshwright_core.operations.global_lines import check_cleanup, is_ring
 from meshwright_core.operations.refusals import ALLOWED, NEED_ROOM
 
 if TYPE_CHECKING:
@@ -77,7 +76,7 @@ def find_lines(m, cap):
     for v in range(m.counters[VERTEX_SLOTS]):
         if m.vertex[v, HALF] < 0 or m.vertex[v, DEGREE] != 3 or not on_boundary(m, v):
             continue
-        h = m.edge[preceding(m.vertex[v, HALF], 4), TWIN]
+        h = turned(m, m.vertex[v, HALF], 4)
         code = check_cleanup(m, h, cap)
         if code != ALLOWED and code != NEED_ROOM:
             continue

@@ -1,8 +1,8 @@
-"""Obstacles: what in the connectivity of a mesh plainly rules out a faithful drawing.
+"""Obstacles: features of the connectivity that rule out a valid embedding in the domain.
 
-A mesh with an obstacle has an inverted element wherever its vertices go, or too few vertices on a
-side that bends to look like it. One without any can nearly always be drawn, which untangling then
-has to show: this is the quick look that a search takes before it.
+A mesh with an obstacle has an inverted element for all positions of its vertices, or too few
+vertices on a curved side to follow it. A mesh without any nearly always has a valid embedding. The
+count is a cheap necessary test that a search makes before untangling.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ STRAIGHT = 1e-6
 
 
 class Obstacles:
-    """Looks at meshes that have the geometric vertices and the outline of the one it is made for.
+    """Counts obstacles of meshes with the same geometric vertices and outline as a given mesh.
 
     Args:
-        mesh: a mesh of a plane domain, z = 0. Where its outline knows nothing, at a vertex that
-            the user has marked as geometric, say, nothing is an obstacle.
+        mesh: a mesh of a plane domain, z = 0. At geometric vertices that are no points of its
+            outline (marked by the user) nothing counts as an obstacle.
     """
 
     def __init__(self, mesh: HalfEdgeMesh) -> None:
@@ -56,7 +56,7 @@ class Obstacles:
                 self._straight[ids[side[0]]] = (np.abs(bends) < STRAIGHT).all()
                 self._edges[ids[side[0]]] = _edges(bends) if len(bends) else 1
         rings.sort(key=lambda ring: -shapely.Polygon(ring).area)
-        # a hair wider, so that segments along the boundary count as inside
+        # slightly wider, so that segments along the boundary count as inside
         self._domain = shapely.Polygon(rings[0], rings[1:]).buffer(1e-9 * np.ptp(rings[0]))
         shapely.prepare(self._domain)
 
@@ -66,7 +66,8 @@ class Obstacles:
 
         Counted are the elements missing at boundary vertices (two at least where the boundary is
         straight or reflex) and on sides that bend, vertices inside of degree 2, and edges inside
-        that join two vertices of one straight side, or two corners that do not see each other.
+        that join two vertices of one straight side, or two corners whose connecting segment leaves
+        the domain.
         """
         slots = mesh.k * int(mesh.arrays.counters[ELEMENT_SLOTS])
         origin = mesh.arrays.edge[:slots, ORIGIN].astype(np.int64)
@@ -116,13 +117,13 @@ class Obstacles:
 
 
 def _edges(turned: np.ndarray) -> int:
-    """Edges that a side keeps which turns by so much at its points (n,), of the n or so it had."""
+    """The fewest edges of a side that turns by these angles (n,), at most n."""
     wanted = np.ceil(np.abs(turned).sum() / PIECE - STRAIGHT)
     return int(np.clip(wanted, 1, len(turned)))
 
 
 def _resized(row: np.ndarray, length: int) -> np.ndarray:
-    """The first `length` entries of a row (n,), zeros for those that it has not."""
+    """The first `length` entries of a row (n,), filled up with zeros."""
     longer = np.zeros(length, row.dtype)
     longer[: min(length, len(row))] = row[:length]
     return longer

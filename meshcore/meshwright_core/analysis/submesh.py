@@ -1,8 +1,8 @@
-"""An enclosure: a part of a mesh in which things may change while everything outside stays.
+"""An enclosure: a part of a mesh that may change while the elements outside stay as they are.
 
-Its rim, the vertices that it shares with elements outside, stays where it is too: an element
-outside keeps its corners and their places. What may change at the rim is the number of edges that
-reach it from within.
+Its rim, the vertices that it shares with elements outside, does not move either, so that elements
+outside keep their corners and positions. Only the number of edges that reach the rim from inside
+may change.
 """
 
 from __future__ import annotations
@@ -34,11 +34,9 @@ class Enclosure(NamedTuple):
 def enclose(mesh: HalfEdgeMesh, elements: np.ndarray) -> Enclosure:
     """The enclosure of `elements` (n,), ids of live ones.
 
-    Where they meet in a vertex alone only one group there is kept, that of the largest connected
-    part, since no mesh of its own could be made of all. Raises MeshError where nothing is left in
-    which a vertex is free.
+    Where they meet in a single vertex only, one group is kept there, that of the largest connected
+    part, so that the enclosure is a manifold mesh. Raises MeshError if it has no free vertex.
     """
-    k = mesh.k
     inside = np.zeros(int(mesh.arrays.counters[ELEMENT_SLOTS]), bool)
     inside[elements] = True
     while len(pinched := _pinched(mesh, inside)):
@@ -54,7 +52,7 @@ def enclose(mesh: HalfEdgeMesh, elements: np.ndarray) -> Enclosure:
     corner[live] = True
     outer = mesh.element_ids()
     outer = outer[~inside[outer]]
-    corner[_origins(mesh, outer, k)] = False
+    corner[mesh.corners(outer)] = False
     free = np.flatnonzero(corner)
     if not len(free):
         raise MeshError(
@@ -63,15 +61,10 @@ def enclose(mesh: HalfEdgeMesh, elements: np.ndarray) -> Enclosure:
     return Enclosure(kept, free, live[~corner[live]])
 
 
-def _origins(mesh: HalfEdgeMesh, elements: np.ndarray, k: int) -> np.ndarray:
-    halfedges = (k * elements[:, None] + np.arange(k)).ravel()
-    return mesh.arrays.edge[halfedges, ORIGIN].astype(np.int64)
-
-
 def _pinched(mesh: HalfEdgeMesh, inside: np.ndarray) -> np.ndarray:
     """The vertices at which the elements `inside` (slots,) form more than one group."""
     k, edge = mesh.k, mesh.arrays.edge
-    halfedges = (k * np.flatnonzero(inside)[:, None] + np.arange(k)).ravel()
+    halfedges = mesh.halfedges_of(np.flatnonzero(inside)).ravel()
     twins = edge[halfedges, TWIN]
     rim = (twins < 0) | ~inside[np.maximum(twins, 0) // k]
     # each group that is not the whole star of a vertex has one half-edge of the rim that leaves it
@@ -114,11 +107,11 @@ def _groups(mesh: HalfEdgeMesh, inside: np.ndarray, vertex: int) -> list[list[in
 
 
 @contextmanager
-def holding(mesh: HalfEdgeMesh, vertices: np.ndarray) -> Iterator[None]:
-    """Lock `vertices` (n,) for a while: within, operations and smoothing leave them in their place.
+def temporarily_locked(mesh: HalfEdgeMesh, vertices: np.ndarray) -> Iterator[None]:
+    """Lock `vertices` (n,) inside a with block, so that operations and smoothing keep them.
 
-    The journal knows nothing of these locks, so no undo brings them back. None is left behind, also
-    not by an exception, nor is a lock undone that was there before.
+    These locks are not journalled: no undo restores them. All of them are removed at the end, also
+    after an exception; vertices that were locked before stay locked.
     """
     flags = mesh.arrays.vertex[vertices, FLAGS]
     ours = vertices[(flags & LOCKED) == 0]

@@ -1,4 +1,4 @@
-"""The arrays of a half-edge mesh (a DCEL), their invariants, and how to walk on them.
+"""The arrays of a half-edge mesh (a DCEL), their invariants, and how to traverse them.
 
 Layout
 ------
@@ -20,7 +20,7 @@ Invariants of live slots
    (a doublet) exists in quad meshes only.
 6. ``irregular[:counters[IRREGULAR]]`` holds every vertex with degree != desired once, and
    ``vertex[v, PLACE]`` is its place there, -1 for regular vertices.
-7. ``counters`` holds the counts and sums that its index names say.
+7. ``counters`` holds the counts and sums that the names of its indices stand for.
 8. ``vertex[:, MARK]`` and ``element_mark`` are zero between calls (scratch of the checks).
 
 Dead slots are chained: an element through ``edge[k*e, TWIN]`` with all origins -1; a vertex v
@@ -138,6 +138,17 @@ def enlarge(
     )
 
 
+def halfedges_of(elements: np.ndarray, k: int) -> np.ndarray:
+    """(m, k) half-edges of elements (m,) of k sides."""
+    halfedges: np.ndarray = k * elements[:, None] + np.arange(k)
+    return halfedges
+
+
+def corners_of(m: MeshArrays, elements: np.ndarray) -> np.ndarray:
+    """(m, k) int64 vertex ids of elements (m,), counter-clockwise; -1 for dead elements."""
+    return m.edge[halfedges_of(elements, int(m.counters[SIDES])), ORIGIN].astype(np.int64)
+
+
 @bare_kernel
 def following(h, k):
     """The next half-edge of h's element, counter-clockwise."""
@@ -151,40 +162,61 @@ def preceding(h, k):
 
 
 @bare_kernel
+def opposite(h):
+    """The half-edge across h in its quad: the last two bits of h are its place there."""
+    return h ^ 2
+
+
+@bare_kernel
 def on_boundary(m, v):
     """Whether the live vertex v lies on the boundary (invariant 4)."""
     return m.edge[m.vertex[v, HALF], TWIN] < 0
 
 
 @bare_kernel
+def turned(m, h, k):
+    """The next half-edge that leaves the origin of h, counter-clockwise.
+
+    Beyond the last one of a boundary vertex: -1 - g, where g is the boundary half-edge that ends
+    there. So the neighbours of v are met once each by starting at ``vertex[v, HALF]`` and turning
+    ``vertex[v, DEGREE]`` - 1 times, and :func:`neighbour` names each of them.
+    """
+    back = preceding(h, k)
+    t = m.edge[back, TWIN]
+    return t if t >= 0 else -1 - back
+
+
+@bare_kernel
+def neighbour(m, h, k):
+    """The vertex at the far end of h, which may also be what :func:`turned` returns beyond the
+    boundary.
+    """
+    return m.edge[following(h, k) if h >= 0 else -1 - h, ORIGIN]
+
+
+@bare_kernel
 def joined(m, a, b, k):
     """Whether an edge joins the live vertices a and b: one sweep around a, O(degree)."""
-    start = m.vertex[a, HALF]
-    h = start
+    h = m.vertex[a, HALF]
     for _ in range(m.vertex[a, DEGREE]):
-        if m.edge[following(h, k), ORIGIN] == b:
+        if neighbour(m, h, k) == b:
             return True
-        back = preceding(h, k)
-        turned = m.edge[back, TWIN]
-        if turned < 0:
-            return m.edge[back, ORIGIN] == b
-        h = turned
-        if h == start:
-            return False
+        if h < 0:
+            break
+        h = turned(m, h, k)
     return False
 
 
 @bare_kernel
 def find(m, a, b, k):
     """The half-edge from a to b, or -1: one sweep around a, O(degree)."""
-    start = m.vertex[a, HALF]
-    h = start
+    h = m.vertex[a, HALF]
     for _ in range(m.vertex[a, DEGREE]):
-        if m.edge[following(h, k), ORIGIN] == b:
+        if neighbour(m, h, k) == b:
             return h
-        h = m.edge[preceding(h, k), TWIN]
-        if h < 0 or h == start:
-            return -1
+        h = turned(m, h, k)
+        if h < 0:
+            break
     return -1
 
 
@@ -192,16 +224,11 @@ def find(m, a, b, k):
 def common_neighbours(m, a, b, k):
     """The number of vertices joined to both a and b, O(degree of a times degree of b)."""
     count = 0
-    start = m.vertex[a, HALF]
-    h = start
+    h = m.vertex[a, HALF]
     for _ in range(m.vertex[a, DEGREE]):
-        if joined(m, b, m.edge[following(h, k), ORIGIN], k):
+        if joined(m, b, neighbour(m, h, k), k):
             count += 1
-        back = preceding(h, k)
-        turned = m.edge[back, TWIN]
-        if turned < 0:
-            return count + (1 if joined(m, b, m.edge[back, ORIGIN], k) else 0)
-        h = turned
-        if h == start:
+        if h < 0:
             break
+        h = turned(m, h, k)
     return count

@@ -1,4 +1,4 @@
-"""From points and elements to the arrays of a half-edge mesh. Plain numpy: nothing to compile."""
+"""Builds the arrays of a half-edge mesh from points and elements, in plain numpy."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from meshwright_core.errors import MeshError
 
 
 def checked_input(points: np.ndarray, elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points as (n, 3) float64 and elements as (m, k) int64; MeshError where they are no mesh."""
+    """Points as (n, 3) float64 and elements as (m, k) int64; MeshError if they are invalid."""
     points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] not in (2, 3):
         raise MeshError(f"points must be an (n, 2) or (n, 3) array, not of shape {points.shape}")
@@ -68,7 +68,9 @@ def checked_input(points: np.ndarray, elements: np.ndarray) -> tuple[np.ndarray,
     wrong = used & ~np.isfinite(points).all(axis=1)
     if wrong.any():
         vertex = int(np.argmax(wrong))
-        raise MeshError(f"point {vertex} has a coordinate that is no number: {points[vertex]}")
+        raise MeshError(
+            f"point {vertex} has a coordinate that is not a finite number: {points[vertex]}"
+        )
     return points, elements
 
 

@@ -1,4 +1,4 @@
-"""Desired degrees and corners: what a regular vertex is (section 2.1 of the paper, equation 2)."""
+"""Desired degrees of vertices and corners of the boundary (section 2.1 and equation 2)."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def planar_boundary_angles(points: np.ndarray, before: np.ndarray, after: np.nda
 def desired_on_boundary(angles: np.ndarray, k: int) -> np.ndarray:
     """Equation 2 on the boundary: max(round(angle / alpha) + 1, 2), alpha = 60 or 90 degrees.
 
-    A hair is added before rounding, so that an angle of exactly 1.5 alpha always rounds up.
+    A tolerance of 1e-9 is added, so that an angle of exactly 1.5 alpha always rounds up.
     """
     alpha = 60.0 if k == 3 else 90.0
     return np.maximum(np.floor(angles / alpha + 0.5 + 1e-9).astype(np.int64) + 1, 2)

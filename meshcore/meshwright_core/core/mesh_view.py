@@ -1,4 +1,4 @@
-"""What can be read of a half-edge mesh: counts, score, arrays, walks. Nothing here changes it."""
+"""Read-only view of a half-edge mesh: counts, score, arrays, traversal."""
 
 from __future__ import annotations
 
@@ -24,30 +24,30 @@ from meshwright_core.core.arrays import (
     VERTEX_SLOTS,
     VERTICES,
     MeshArrays,
+    corners_of,
+    halfedges_of,
 )
 
-Outline = list[tuple[np.ndarray, np.ndarray]]
+BoundaryLoops = list[tuple[np.ndarray, np.ndarray]]
 
 _KINDS = {3: "tri", 4: "quad"}
 
 
 class MeshView:
-    """The reading half of :class:`meshwright_core.mesh.HalfEdgeMesh`.
+    """The read-only methods of :class:`meshwright_core.mesh.HalfEdgeMesh`.
 
     Ids of vertices, elements and half-edges are plain ints; -1 is none. See
     :mod:`meshwright_core.core.arrays` for the arrays behind it.
     """
 
-    def __init__(self, arrays: MeshArrays, outline: Outline) -> None:
+    def __init__(self, arrays: MeshArrays, outline: BoundaryLoops) -> None:
         """Wraps arrays that obey the invariants."""
         self._arrays = arrays
         self.outline = outline
-        """One (vertex ids (m,), points (m, 3)) per boundary loop, as the mesh was made: the sides
-        on which boundary vertices slide."""
+        """One (vertex ids (m,), points (m, 3)) per boundary loop of the mesh when it was built:
+        boundary vertices slide along these polylines."""
         self.k: int = int(arrays.counters[SIDES])
         """Sides of an element, 3 or 4."""
-
-    # -- counts and score ------------------------------------------------------------------------
 
     @property
     def kind(self) -> str:
@@ -90,8 +90,6 @@ class MeshView:
         """Vertices whose degree is not the desired one."""
         return int(self._arrays.counters[IRREGULAR])
 
-    # -- whole arrays ----------------------------------------------------------------------------
-
     @property
     def arrays(self) -> MeshArrays:
         """The arrays themselves, for compiled code; they are replaced when the mesh outgrows
@@ -106,7 +104,7 @@ class MeshView:
 
     @property
     def points(self) -> np.ndarray:
-        """(slots, 3) float64 coordinates by vertex id, a writable view; ask again after an edit."""
+        """(slots, 3) float64 coordinates by vertex id, writable, valid until the next edit."""
         return self._arrays.points[: self.slots]
 
     def element_ids(self) -> np.ndarray:
@@ -121,6 +119,14 @@ class MeshView:
         if slots != self.n_elements:
             rows = rows[rows[:, 0] >= 0]
         return rows.astype(np.int64)
+
+    def corners(self, elements: np.ndarray) -> np.ndarray:
+        """(m, k) int64 vertex ids of the given live elements (m,), counter-clockwise."""
+        return corners_of(self._arrays, elements)
+
+    def halfedges_of(self, elements: np.ndarray) -> np.ndarray:
+        """(m, k) half-edges of elements (m,), counter-clockwise."""
+        return halfedges_of(elements, self.k)
 
     def vertices(self) -> np.ndarray:
         """(n,) ids of the live vertices, ascending."""
@@ -158,8 +164,6 @@ class MeshView:
         half = self._arrays.vertex[on_it, HALF].astype(np.int64)
         ahead = half + 1 - self.k * ((half + 1) % self.k == 0)
         return construction.trace_loops(on_it, self._arrays.edge[ahead, ORIGIN].astype(np.int64))
-
-    # -- walking ---------------------------------------------------------------------------------
 
     def live(self, h: int) -> bool:
         """Whether h is the id of a half-edge of a live element."""
@@ -209,12 +213,8 @@ class MeshView:
             return -1
         return next((h for h in self.outgoing(a) if self.target(h) == b), -1)
 
-    # -- as a whole ------------------------------------------------------------------------------
-
     def validate(self) -> None:
-        """Check every invariant the slow way; raises MeshError that says what is broken and
-        where.
-        """
+        """Check every invariant exhaustively; MeshError names the broken one and its place."""
         validation.validate(self._arrays)
 
     def __repr__(self) -> str:

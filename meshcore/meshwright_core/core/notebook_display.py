@@ -1,7 +1,7 @@
-"""How a mesh shows itself at the end of a notebook's cell.
+"""The representation of a mesh at the end of a notebook cell.
 
-meshcore draws nothing: who can draw says so by an entry point, which is looked up when the first
-mesh is shown. Without one a mesh is shown as its line of text.
+This package does not draw. Another package registers a drawing function as an entry point, which
+is looked up when the first mesh is shown; without one a mesh is shown as a line of text.
 """
 
 from __future__ import annotations
@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.core.mesh_view import MeshView
 
 GROUP, NAME = "meshwright.display", "figure"
 """Group and name of the entry point. It is a function of a mesh and a name for the caption, which
@@ -22,9 +21,10 @@ may be empty, that returns MIME types with their data, and MIME types with their
 Bundle = tuple[dict[str, Any], dict[str, Any]]
 
 
-def bundle(mesh: HalfEdgeMesh, name: str = "") -> Bundle:
-    """The MIME types a notebook may choose from: the mesh's line of text, and a picture if a
-    drawing function is installed. `name` goes into the caption of the picture.
+def bundle(mesh: MeshView, name: str = "") -> Bundle:
+    """MIME data and metadata of a mesh: its line of text, and a picture if one can be drawn.
+
+    `name` goes into the caption of the picture.
     """
     text = {"text/plain": repr(mesh)}
     draw = drawer()
@@ -35,7 +35,7 @@ def bundle(mesh: HalfEdgeMesh, name: str = "") -> Bundle:
 
 
 @cache
-def drawer() -> Callable[[HalfEdgeMesh, str], Bundle] | None:
-    """The function that is installed for drawing, None if there is none."""
+def drawer() -> Callable[[MeshView, str], Bundle] | None:
+    """The drawing function that is registered, None if there is none."""
     found = [point for point in entry_points(group=GROUP) if point.name == NAME]
     return found[0].load() if found else None

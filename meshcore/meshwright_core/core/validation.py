@@ -1,7 +1,6 @@
-"""The exhaustive validator: every invariant of :mod:`meshwright_core.core.arrays`, checked slowly
-and clearly.
+"""Checks every invariant of :mod:`meshwright_core.core.arrays`, element by element.
 
-It reads the raw arrays and avoids the walks that it is meant to check.
+It reads the raw arrays and avoids the traversal functions that it is meant to check.
 """
 
 from __future__ import annotations
@@ -86,7 +85,7 @@ def _check_twins(m: MeshArrays, elements: dict[int, list[int]]) -> dict[tuple[in
 def _check_vertices(
     m: MeshArrays, elements: dict[int, list[int]], directed: dict[tuple[int, int], int]
 ) -> None:
-    """Invariants 4 and 5: each vertex has one fan of elements, and knows its degree."""
+    """Invariants 4 and 5: each vertex has one fan of elements, and its degree is right."""
     k = int(m.counters[SIDES])
     joined: dict[int, set[int]] = defaultdict(set)
     for a, b in directed:

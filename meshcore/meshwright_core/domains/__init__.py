@@ -1,1 +1,1 @@
-"""Domains to mesh: the gallery, random polygons and parts; and how they are meshed."""
+"""Domains (gallery, random polygons, random parts) and their meshing."""

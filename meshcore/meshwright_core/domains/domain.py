@@ -167,7 +167,7 @@ class Domain:
         return float(np.sqrt((apart**2).sum(-1).max()))
 
     def __repr__(self) -> str:
-        """Say how large the domain is."""
+        """Name and size of the domain."""
         sizes = " and ".join(f"{len(loop)}" for loop in self.loops)
         return f"<Domain {self.name!r}, loops of {sizes} points>"
 
@@ -196,7 +196,7 @@ def _place(point: ArrayLike) -> str:
 
 
 def _ring(ring: ArrayLike, what: str) -> Points:
-    """Return one ring as an (n, 2) array of its own without a closing point; raise if it is bad."""
+    """One ring as a new (n, 2) array without a closing point; MeshError if it is invalid."""
     try:
         if np.iscomplexobj(ring):
             raise TypeError("complex numbers would lose their imaginary part")
@@ -237,7 +237,7 @@ def _refuse_repeats(points: Points, what: str) -> None:
     if near.size:
         i = int(near[0])
         raise MeshError(
-            f"Points {i} and {(i + 1) % len(points)} of {what} are all but the same, "
+            f"Points {i} and {(i + 1) % len(points)} of {what} are nearly the same, "
             f"{_place(points[i])}."
         )
     centred = (points - points.mean(axis=0)) / size
@@ -258,7 +258,7 @@ def _flags(flags: ArrayLike | None, ring: ArrayLike, loop: Points, what: str) ->
 
 
 def _refuse_crossings(loops: list[Points], names: list[str]) -> None:
-    """Raise if two edges of any rings meet anywhere but in the point that neighbours share."""
+    """Raise MeshError if two edges meet anywhere but in the point that neighbours share."""
     starts = np.concatenate(loops)
     ends = np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
     ring = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
@@ -289,7 +289,7 @@ def _refuse_crossings(loops: list[Points], names: list[str]) -> None:
 
 
 def _refuse_strays(loops: list[Points], names: list[str]) -> None:
-    """Raise if a hole lies outside the outline or inside another hole; no two rings meet here."""
+    """Raise MeshError if a hole lies outside the outline or in another hole; no rings meet."""
     polygons = [shapely.Polygon(loop) for loop in loops]
     for i in range(1, len(loops)):
         spot = shapely.Point(loops[i][0])

@@ -16,12 +16,12 @@ import shapely
 import triangle
 from numpy.typing import NDArray
 
-from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.irregularity import QUAD_STRAIGHT, TRIANGLE_STRAIGHT
 from meshwright_core.domains import quadrangulation
 from meshwright_core.domains.domain import Domain, Flags, Points
 from meshwright_core.domains.gallery import random_corners
 from meshwright_core.errors import MeshError
+from meshwright_core.mesh import HalfEdgeMesh
 
 Elements = NDArray[np.int64]
 Arrays = tuple[Points, Elements, Flags]

@@ -58,7 +58,7 @@ def pair(points: Points, triangles: Elements) -> tuple[Elements, Elements]:
 
     As many pairs as possible, and among those matchings one of greatest total quality; a quad's
     quality is 1 less its largest deviation from a right angle, in right angles. Meshes of more
-    than 1500 triangles are paired greedily, best pair first.
+    than 600 triangles are paired greedily, best pair first.
 
     Args:
         points: (n, 2).

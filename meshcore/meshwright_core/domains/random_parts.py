@@ -4,8 +4,8 @@ A part begins as an axis-aligned box. Features change its outline one after anot
 with or a difference from something simple: steps and corner notches (boxes at a corner), bosses and
 slots (boxes on a side, now and then tapered), V-notches, chamfers. Holes are turned rectangles and
 regular polygons. A feature that would make a side too short, two sides nearly meet, a corner too
-sharp or hardly one is drawn again. Lengths are in units of the least side until the part is scaled
-to the size of the gallery's shapes.
+sharp or nearly straight is rejected and drawn again. Lengths are in units of the least side until
+the part is scaled to the size of the gallery's shapes.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def random_part(
     """
     least, most = corners if isinstance(corners, tuple) else (corners, corners)
     if not 4 <= least <= most:
-        raise MeshError(f"A part has a number of corners from 4 on, not {least} to {most}.")
+        raise MeshError(f"A part has at least 4 corners, not {least} to {most}.")
     count = int(rng.integers(least, most + 1))
     wanted = bool(rng.random() < 0.5) if holes is None else holes
     for _ in range(_ATTEMPTS):
@@ -61,7 +61,7 @@ def random_part(
             outline, *inner = [(loop - middle) * size for loop in loops]
             flags = [np.ones(len(loop), bool) for loop in loops]
             return Domain(outline, inner, flags[0], flags[1:], name=f"part-{count}")
-    raise MeshError(f"No part with {count} corners came about in {_ATTEMPTS} attempts.")
+    raise MeshError(f"No part with {count} corners was found in {_ATTEMPTS} attempts.")
 
 
 def parts(count: int, corners: int | tuple[int, int], seed: int) -> list[Domain]:
@@ -99,7 +99,7 @@ def _hole_sizes(count: int, rng: np.random.Generator) -> list[int]:
 
 
 def _loops(count: int, holes: list[int], rng: np.random.Generator) -> list[Points] | None:
-    """An outline and holes, `count` corners in all; None if it came to nothing."""
+    """An outline and holes, `count` corners in all; None if all attempts fail."""
     target = count - sum(holes)
     size = 2.5 + 0.2 * target + 1.2 * len(holes)
     width, height = size * rng.uniform(0.7, 1.5, 2)

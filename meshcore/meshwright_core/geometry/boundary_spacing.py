@@ -1,9 +1,9 @@
-"""Boundary vertices on sides that bend: spread so that the polygon through them follows the side.
+"""Spacing of boundary vertices on curved sides, so that the polygon through them follows the side.
 
-The energy of element shapes does not see the outline between two boundary vertices: left to it,
-they crowd in one place, and a chord cuts off a piece of a disc elsewhere. So on a side that bends
-the vertices are spread evenly, by a measure of one half arc length and one half turning, and held
-there; sides that are straight are left to the energy.
+The energy of element shapes does not depend on the outline between two boundary vertices: by
+itself it crowds them in one place, and elsewhere an edge cuts off a piece of a disc. So on a curved
+side the vertices are spaced evenly, by a measure of one half arc length and one half turning, and
+held there; on straight sides the energy places them.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 LEAST_TURN = np.radians(10.0)
 """A side that turns by less in all counts as straight."""
 PIECE = np.radians(30.0)
-"""What one edge may stand for of the turning of a side that bends; a circle keeps twelve edges, if
-it had so many."""
+"""Turning of a curved side that one edge may replace: a circle keeps twelve edges, if it had so
+many."""
 
 
 def _measure(region: Region, side: int) -> tuple[np.ndarray, np.ndarray] | None:
@@ -82,7 +82,7 @@ def spread(region: Region) -> None:
 
 
 def anchors(mesh: HalfEdgeMesh) -> np.ndarray:
-    """Ids, ascending, of vertices which keep the look of the sides that bend while they stay.
+    """Ids, ascending, of vertices that keep the shape of curved sides while they are not removed.
 
     About one for each :data:`PIECE` of turning, evenly by :func:`_measure`; all vertices of a side
     that has no more. A search that locks them cannot turn a disc into a square.

@@ -26,7 +26,7 @@ MEMORY = 10
 SUFFICIENT, CURVATURE = 1e-4, 0.9
 """Constants of the weak Wolfe conditions."""
 SHARPEST = 1e-9
-"""The smallest regularisation: a barrier for all practical purposes."""
+"""The smallest regularisation, at which the energy acts as a barrier."""
 GAP_WEIGHT = 0.01
 """Weight of the gap barrier: enough to keep the order, too little to shape the mesh."""
 
@@ -157,9 +157,10 @@ def _direction(gradient, steps, changes, rho, count, newest, direction):
 def descend(problem, x, eps, weight, iterations, precision):
     """Minimise over `x` in place by L-BFGS at a fixed `eps`.
 
-    The line search is Lewis and Overton's bisection for the weak Wolfe conditions, which does not
-    mind the kinks of polylines. Ends after `iterations` steps or when one gains less than
-    `precision` of the energy. Returns energy, smallest determinant and evaluations.
+    The line search is Lewis and Overton's bisection for the weak Wolfe conditions, which
+    converges on functions with kinks, as sides that are polylines give. Ends after `iterations`
+    steps or when one gains less than `precision` of the energy. Returns energy, smallest
+    determinant and evaluations.
     """
     n = len(x)
     gradient, trial, slope = np.zeros(n), np.zeros(n), np.zeros(n)
@@ -210,7 +211,7 @@ def descend(problem, x, eps, weight, iterations, precision):
 
 @kernel
 def chi(eps, det):
-    """The positive stand-in for a determinant: tends to max(det, 0) as eps tends to 0."""
+    """The regularised determinant, positive: tends to max(det, 0) as eps tends to 0."""
     root = np.sqrt(eps * eps + det * det)
     return 0.5 * (det + root) if det > 0.0 else 0.5 * eps * eps / (root - det)
 

@@ -1,4 +1,4 @@
-"""Starting positions for untangling a region.
+"""Initial guesses for untangling: starting positions of a region.
 
 Each start changes the positions of a region in place; the energy is minimised from there.
 """
@@ -25,7 +25,7 @@ Start = Callable[[Region], None]
 
 
 def starts(region: Region, rng: np.random.Generator) -> list[Start]:
-    """What to try: the present positions first, unless they are hardly worth keeping."""
+    """The initial guesses in order: the present positions first, unless many are inverted."""
     tangled = region.inverted_rows().mean() > TANGLED
     first: list[Start] = [_embedded, _present] if tangled else [_present, _embedded]
     more = SCATTERED if len(region.elements) <= SMALL else 0

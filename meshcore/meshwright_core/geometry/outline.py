@@ -139,7 +139,7 @@ class _Loop:
 
 
 class Outline:
-    """The shape of a mesh: `mesh.outline` prepared for look-ups, once for each mesh.
+    """The shape of a mesh: look-ups in `mesh.outline`, prepared once for each mesh.
 
     `area` is the vector area (3,) of the outline: along the normal of a plane mesh, to the side
     from which its elements turn counter-clockwise. `extent` is the diagonal of its bounding box.
@@ -213,8 +213,8 @@ class Outline:
         """The loop that a boundary without geometric vertices runs on.
 
         The one that its vertices lie on; if edits have pulled them off them all, the nearest of
-        those that turn the same way, the outer boundary or holes. (Ids prove nothing here: those of
-        vertices that died are used again.)
+        those that turn the same way, the outer boundary or holes. (Ids are no evidence here: those
+        of deleted vertices are used again.)
         """
         sample = points[:: max(1, len(points) // 8)]
         off = [max(nearest_on(loop.polyline, 0, p)[1] for p in sample) for loop in self.loops]

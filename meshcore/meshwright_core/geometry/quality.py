@@ -1,4 +1,4 @@
-"""How good the elements of a mesh are as shapes, and which of them are inverted.
+"""Quality of element shapes: corner angles, scaled Jacobians, inverted elements.
 
 The sign of a corner is relative to a reference normal of its element. In a plane that is the normal
 of the plane, to the side from which the outline turns counter-clockwise. On other surfaces it is
@@ -80,8 +80,8 @@ def _measured(mesh: HalfEdgeMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def inverted(mesh: HalfEdgeMesh, tolerance: float = TOLERANCE) -> np.ndarray:
     """Ids, ascending, of the elements with a corner that is flat or turns the wrong way.
 
-    A triangle is fine if it is positively oriented, a quad only if it is strictly convex; so a flat
-    corner, as doublets have it, counts. `tolerance` is the sine up to which a corner is flat.
+    A triangle is valid if it is positively oriented, a quad only if it is strictly convex; so a
+    flat corner, as doublets have it, counts. `tolerance` is the sine up to which a corner is flat.
     """
     points, elements, reference = _measured(mesh)
     bad = corner_sines(points, elements, reference).min(axis=1) <= tolerance

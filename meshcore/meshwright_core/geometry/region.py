@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from meshwright_core.core.arrays import FLAGS, GEOMETRIC, HALF, LOCKED, ORIGIN, TWIN
+from meshwright_core.core.arrays import FLAGS, GEOMETRIC, HALF, LOCKED, TWIN
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.outline import Outline, Polylines, place_all
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
@@ -28,7 +28,7 @@ ON_SIDE = 1e-13
 
 
 class Seats(NamedTuple):
-    """Where the boundary vertices of a region stand on their sides; -1 rows do not slide."""
+    """Positions of the sliding vertices of a region on their sides, and the bounds of each."""
 
     side: np.ndarray
     """(n,) side of a sliding vertex, -1 for others."""
@@ -44,7 +44,7 @@ class Seats(NamedTuple):
     """(n,) likewise for `after`: the upper bound."""
 
 
-class Run(NamedTuple):
+class SlidingRun(NamedTuple):
     """Sliding vertices that follow one another on a side."""
 
     members: np.ndarray
@@ -71,7 +71,7 @@ class Region:
     element_ids: np.ndarray
     """(m,) ids of the elements."""
     movable: np.ndarray
-    """(n,) bool: neither geometric, locked nor outside of what was asked for."""
+    """(n,) bool: neither geometric nor locked, and among the requested vertices."""
     sides: Polylines
     seats: Seats
     frame: np.ndarray | None
@@ -88,7 +88,7 @@ class Region:
         return self.seats.side >= 0
 
     def settle(self) -> None:
-        """Put the sliding vertices where their arc lengths say; those that are there stay."""
+        """Move the sliding vertices to the points at their arc lengths, unless they are there."""
         rows = np.flatnonzero(self.sliding)
         if not len(rows):
             return
@@ -98,7 +98,7 @@ class Region:
         self.points[rows[away]] = there[away]
 
     def fork(self) -> Region:
-        """The same region on positions of its own."""
+        """The same region with a copy of the positions."""
         seats = self.seats._replace(parameter=self.seats.parameter.copy())
         return replace(self, points=self.points.copy(), seats=seats)
 
@@ -123,7 +123,7 @@ class Region:
             movable[i], seats.side[i] = False, -1
         return replace(self, movable=movable, seats=seats)
 
-    def runs(self) -> list[Run]:
+    def runs(self) -> list[SlidingRun]:
         """The sliding vertices as runs of neighbours, each with the arc lengths that bound it.
 
         Of a closed side all of whose vertices slide one is left out, and bounds the others.
@@ -142,7 +142,7 @@ class Region:
             if before >= 0:
                 low = float(seats.parameter[i])
                 run, shift, high = run[1:], shift[1:], high + low
-            found.append(Run(np.array(run, np.int64), np.array(shift), low, high))
+            found.append(SlidingRun(np.array(run, np.int64), np.array(shift), low, high))
         return found
 
     def _encircles(self, i: int) -> bool:
@@ -182,7 +182,7 @@ def chosen(mesh: HalfEdgeMesh, vertices: Iterable[int] | None) -> Region:
 
 
 def live(mesh: HalfEdgeMesh, vertices: Iterable[int]) -> np.ndarray:
-    """`vertices` as an ascending array (n,); refuses what is no live vertex of `mesh`."""
+    """`vertices` as an ascending array (n,); MeshError unless all are live vertices of `mesh`."""
     ids = np.unique(np.fromiter(vertices, np.int64))
     known = (ids >= 0) & (ids < len(mesh.points))
     known[known] = mesh.arrays.vertex[ids[known], HALF] >= 0
@@ -197,11 +197,10 @@ def whole(mesh: HalfEdgeMesh) -> Region:
 
 
 def around(mesh: HalfEdgeMesh, vertices: np.ndarray) -> Region:
-    """The region in which `vertices` (n,) may move; touches nothing beyond their elements."""
+    """The region in which `vertices` (n,) may move, in time proportional to its size."""
     wanted = np.unique(np.asarray(vertices, np.int64))
-    ids, k = elements_at(mesh, wanted), mesh.k
-    corners = mesh.arrays.edge[(k * ids[:, None] + np.arange(k)).ravel(), ORIGIN]
-    return _region(mesh, corners.reshape(-1, k).astype(np.int64), ids, wanted)
+    ids = elements_at(mesh, wanted)
+    return _region(mesh, mesh.corners(ids), ids, wanted)
 
 
 def elements_at(mesh: HalfEdgeMesh, vertices: np.ndarray) -> np.ndarray:
@@ -221,12 +220,9 @@ def elements_at(mesh: HalfEdgeMesh, vertices: np.ndarray) -> np.ndarray:
 
 def rings(mesh: HalfEdgeMesh, vertices: np.ndarray, count: int) -> np.ndarray:
     """Ids, ascending, of `vertices` and of all within `count` elements of them."""
-    k = mesh.k
     reached = np.unique(np.asarray(vertices, np.int64))
     for _ in range(count):
-        ids = elements_at(mesh, reached)
-        corners = mesh.arrays.edge[(k * ids[:, None] + np.arange(k)).ravel(), ORIGIN]
-        reached = np.unique(corners).astype(np.int64)
+        reached = np.unique(mesh.corners(elements_at(mesh, reached)))
     return reached
 
 

@@ -17,14 +17,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshwright_core.core.arrays import (
+    DEGREE,
     FLAGS,
     GEOMETRIC,
     HALF,
     ORIGIN,
-    TWIN,
     VERTICES,
     following,
-    preceding,
+    neighbour,
+    turned,
 )
 from meshwright_core.core.compilation import kernel
 from meshwright_core.errors import MeshError
@@ -44,11 +45,10 @@ if TYPE_CHECKING:
 def boundary_before(m, v, k):
     """The boundary vertex before the boundary vertex v, O(degree); -1 when there is none."""
     h = m.vertex[v, HALF]
-    for _ in range(m.counters[VERTICES]):
-        back = preceding(h, k)
-        h = m.edge[back, TWIN]
+    for _ in range(m.vertex[v, DEGREE]):
+        h = turned(m, h, k)
         if h < 0:
-            return m.edge[back, ORIGIN]
+            return neighbour(m, h, k)
     return -1
 
 

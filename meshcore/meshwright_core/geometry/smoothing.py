@@ -8,18 +8,17 @@ the elements around no worse, and inverts none.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.core.compilation import kernel
 from meshwright_core.geometry import region as regions
 from meshwright_core.geometry.boundary_spacing import bending, spread
 from meshwright_core.geometry.outline import place_on
 from meshwright_core.geometry.quality import TOLERANCE
 from meshwright_core.geometry.region import Region
-from meshwright_core.geometry.unfixable import mendable
+from meshwright_core.geometry.unfixable import fixable
 from meshwright_core.geometry.untangling import ALL, untangle_region
 
 if TYPE_CHECKING:
@@ -64,21 +63,34 @@ def element_shape(points, elements, e, reference):
     return worst
 
 
+class Stars(NamedTuple):
+    """The elements of a region, and around each vertex."""
+
+    elements: np.ndarray
+    """(m, k) vertices by element."""
+    first: np.ndarray
+    """(n + 1,) where the entries of each vertex start in `incident`."""
+    incident: np.ndarray
+    """(m k,) the elements at each vertex, each with the vertex's corner: k * element + corner."""
+    reference: np.ndarray
+    """(m, 3) normals that the corners of the elements are measured against."""
+
+
 @kernel
-def move_to_means(points, elements, first, incident, order, seats, sides, reference, guarded):
+def move_to_means(points, stars, order, seats, sides, guarded):
     """One sweep over the vertices `order`, in place. Returns how far the farthest one moved,
     relative to the distance of its neighbours.
 
-    `incident[first[v]:first[v + 1]]` are the elements of v, each with v's corner: k * e + corner.
-    Without `guarded` every vertex goes to its mean whatever becomes of the elements.
+    Without `guarded` every vertex moves to its mean even if elements become worse.
     """
+    elements, incident, reference = stars.elements, stars.incident, stars.reference
     k = elements.shape[1]
     farthest = 0.0
     mean, normal, old = np.zeros(3), np.zeros(3), np.zeros(3)
     tangent = np.zeros(3)
     before = np.zeros(64)
     for v in order:
-        begin, end = first[v], first[v + 1]
+        begin, end = stars.first[v], stars.first[v + 1]
         mean[:] = 0.0
         normal[:] = 0.0
         size = 0.0
@@ -157,19 +169,9 @@ def sweep(region: Region, iterations: int, guarded: bool = True) -> None:
     corners = region.elements.ravel()
     incident = np.argsort(corners, kind="stable")
     first = np.searchsorted(corners[incident], np.arange(len(region.vertices) + 1))
-    reference = region.references()
+    stars = Stars(region.elements, first, incident, region.references())
     for _ in range(iterations):
-        moved = move_to_means(
-            region.points,
-            region.elements,
-            first,
-            incident,
-            order,
-            region.seats,
-            region.sides,
-            reference,
-            guarded,
-        )
+        moved = move_to_means(region.points, stars, order, region.seats, region.sides, guarded)
         if moved < 1e-4:
             break
 
@@ -214,8 +216,8 @@ def relax(
         around: ids of the vertices that an edit touched; only vertices within two rings of elements
             around them move, and if these do not suffice to untangle, more and more rings, up to
             some thousand elements. None: the whole mesh.
-        thorough: False: two rings have to do. Takes a few milliseconds at most, and may leave an
-            element inverted that could be mended.
+        thorough: False: two rings only. Takes a few milliseconds at most, and may leave
+            elements inverted that a larger region could untangle.
 
     Returns:
         Ids, ascending, of the elements that stay inverted, of those looked at.
@@ -259,14 +261,14 @@ def _relax_region(region: Region, tries: int = ALL) -> bool:
 def _shape(region: Region, tries: int) -> bool:
     """Smooth and untangle in place; false if some elements stay inverted without need.
 
-    Averaging unfolds most of what an edit has folded, and is what there is for surfaces that are
-    not plane; the energy, which weighs shapes against each other, gives the better positions.
+    Averaging unfolds most of what an edit has folded, and is the only method for surfaces that are
+    not plane; minimising the energy gives better positions.
     """
     region.settle()
     if region.frame is None or region.folded().any():
         sweep(region, SWEEPS)
     untangle_region(region, tries=tries)
-    return not mendable(region).any()
+    return not fixable(region).any()
 
 
 def _write(mesh: HalfEdgeMesh, region: Region) -> None:
@@ -281,7 +283,7 @@ def _relax_whole(mesh: HalfEdgeMesh) -> np.ndarray:
         _relax_region(region)
         _write(mesh, region)
         return region.inverted()
-    # large meshes are tangled in few places: mend these one by one
+    # large meshes are tangled in few places: untangle these one by one
     region.settle()
     sweep(region, SWEEPS)
     pending = dict.fromkeys(region.inverted().tolist())
@@ -290,8 +292,7 @@ def _relax_whole(mesh: HalfEdgeMesh) -> np.ndarray:
         _write(mesh, region)
         while pending:
             element = next(iter(pending))
-            seeds = mesh.arrays.edge[mesh.k * element : mesh.k * (element + 1), ORIGIN]
-            patch = _relax_near(mesh, seeds.astype(np.int64))
+            patch = _relax_near(mesh, mesh.corners(np.array([element]))[0])
             for seen in patch.element_ids.tolist():
                 pending.pop(seen, None)
                 stuck.discard(seen)

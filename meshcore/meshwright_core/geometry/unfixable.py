@@ -1,4 +1,4 @@
-"""Elements that no position can mend: what untangling leaves out of account, and reports.
+"""Unfixable elements: those that stay inverted for all positions of the movable vertices.
 
 A single quad at a reflex corner of the outline, a boundary vertex of one element on a straight
 side, a doublet: there a corner stays flat or folded wherever the movable vertices go.
@@ -18,24 +18,24 @@ if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
 
 PLACES = 20000
-"""Most combinations of places on sides that the search looks at."""
+"""Combinations of points on sides beyond which a corner is not searched."""
 
 
-def hopeless(mesh: HalfEdgeMesh) -> np.ndarray:
-    """Ids, ascending, of the elements of `mesh` that no position can mend, as far as is known."""
+def unfixable(mesh: HalfEdgeMesh) -> np.ndarray:
+    """Ids, ascending, of the elements of `mesh` that are known to be unfixable."""
     region = regions.whole(mesh)
-    return np.sort(region.element_ids[hopeless_corners(region).any(axis=1)])
+    return np.sort(region.element_ids[unfixable_corners(region).any(axis=1)])
 
 
-def mendable(region: Region) -> np.ndarray:
-    """(m,) bool: the inverted elements of the region that are not known to be hopeless."""
+def fixable(region: Region) -> np.ndarray:
+    """(m,) bool: the inverted elements of the region that are not known to be unfixable."""
     bad = region.inverted_rows()
     if bad.any():
-        bad &= ~hopeless_corners(region).any(axis=1)
+        bad &= ~unfixable_corners(region).any(axis=1)
     return bad
 
 
-def hopeless_corners(region: Region) -> np.ndarray:
+def unfixable_corners(region: Region) -> np.ndarray:
     """(m, k) bool: corners that stay folded wherever the movable vertices go.
 
     These are corners of doublets, and corners none of whose three vertices is free. There the

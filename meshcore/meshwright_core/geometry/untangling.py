@@ -20,7 +20,7 @@ from meshwright_core.geometry.foldover_energy import Problem, unfold
 from meshwright_core.geometry.initial_guesses import hold_single_quads, starts
 from meshwright_core.geometry.outline import Polylines
 from meshwright_core.geometry.region import Region
-from meshwright_core.geometry.unfixable import hopeless_corners
+from meshwright_core.geometry.unfixable import unfixable_corners
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -33,7 +33,7 @@ ROUNDS, INNER = 100, 60
 BUDGET = 4_000_000
 """Corners evaluated after which no random start is tried: some tenth of a second."""
 ALL = 100
-"""More starts than there are."""
+"""More than the number of starts: no limit."""
 POLISH = 60
 """Steps for shape once nothing is folded."""
 
@@ -48,8 +48,8 @@ class Untangled:
     """(n, 3) their new positions."""
     inverted: np.ndarray
     """Ids, ascending, of the elements that stay inverted."""
-    hopeless: np.ndarray
-    """Ids, ascending, of the elements that no position can mend, as found beforehand."""
+    unfixable: np.ndarray
+    """Ids, ascending, of the inverted elements that are known to be unfixable."""
     starts: int
     """How many starting positions were tried."""
     evaluations: int
@@ -78,12 +78,12 @@ def untangle(
     starts, evaluations = untangle_region(region, polish, seed)
     moved, positions = region.changed(mesh)
     bad = region.inverted_rows()
-    hopeless = bad & hopeless_corners(region).any(axis=1)
+    unfixable = bad & unfixable_corners(region).any(axis=1)
     return Untangled(
         vertices=moved,
         positions=positions,
         inverted=np.sort(region.element_ids[bad]),
-        hopeless=np.sort(region.element_ids[hopeless]),
+        unfixable=np.sort(region.element_ids[unfixable]),
         starts=starts,
         evaluations=evaluations,
     )
@@ -99,8 +99,8 @@ def untangle_region(
     if region.frame is None or not region.movable.any():
         return 0, 0
     region.settle()
-    lost = hopeless_corners(region)
-    best, present = _State(region, lost), _State(region, lost)
+    lost = unfixable_corners(region)
+    best, present = _BestPositions(region, lost), _BestPositions(region, lost)
     tried = evaluations = 0
     for start in starts(region, np.random.default_rng(seed))[:tries]:
         if tried >= 3 and evaluations * region.elements.size > BUDGET:
@@ -113,7 +113,7 @@ def untangle_region(
         if best.done:
             break
     if not best.done:
-        # give up the corners that stay folded, so that they do not drag others along
+        # leave out the corners that stay folded, so that they do not distort others
         best.restore(region)
         evaluations += _run(region, lost | region.folded(), polish)
         best.keep_better(region)
@@ -121,22 +121,22 @@ def untangle_region(
     return tried, evaluations
 
 
-class _State:
+class _BestPositions:
     """The best positions of a region so far."""
 
-    def __init__(self, region: Region, hopeless: np.ndarray) -> None:
-        self._hopeless = hopeless.any(axis=1)
+    def __init__(self, region: Region, unfixable: np.ndarray) -> None:
+        self._unfixable = unfixable.any(axis=1)
         self._badness = self._measure(region)
         self._save(region)
 
     @property
     def done(self) -> bool:
-        """Whether no element is inverted but the hopeless ones."""
+        """Whether no element is inverted but the unfixable ones."""
         return self._badness[0] == 0
 
     def _measure(self, region: Region) -> tuple[int, int]:
         bad = region.inverted_rows()
-        return int((bad & ~self._hopeless).sum()), int(bad.sum())
+        return int((bad & ~self._unfixable).sum()), int(bad.sum())
 
     def _save(self, region: Region) -> None:
         self._points, self._parameter = region.points.copy(), region.seats.parameter.copy()

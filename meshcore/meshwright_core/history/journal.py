@@ -1,9 +1,9 @@
-"""The journal: every write of an edit as (place, former value), so that undo is exact to the bit.
+"""The undo journal: each write of an edit as (place, former value); undo is exact to the bit.
 
 A step is one row of ``steps``: where its journal entries start and stop, the operation and
 half-edge that made it, and the counters before it. Undoing swaps the entries with the arrays, last
-one first; what is swapped out is what redo swaps in again. One journal serves the window's undo,
-the rollback of a failed transaction and backtracking in a search.
+one first; redo swaps the same values back in. One journal serves the undo of the editor, the
+rollback of a failed transaction, and backtracking in a search.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ def link(m, h, t):
 
 @bare_kernel
 def set_degrees(m, v, degree, desired):
-    """Set degree and desired degree of v; keeps s, the sum of Delta and the irregular list true."""
+    """Set degree and desired degree of v; updates s, the sum of Delta and the irregular list."""
     before = m.vertex[v, DEGREE] - m.vertex[v, DESIRED]
     after = degree - desired
     if m.vertex[v, DEGREE] != degree:
@@ -159,9 +159,7 @@ def add_degree(m, v, change):
 
 @bare_kernel
 def new_vertex(m, degree, desired, x, y, z):
-    """Take a vertex slot: the last one freed, else the next unused one. Its HALF is for the
-    caller.
-    """
+    """Take a vertex slot: the last one freed, else the next unused one. The caller sets HALF."""
     v = m.counters[FREE_VERTEX]
     if v >= 0:
         m.counters[FREE_VERTEX] = -2 - m.vertex[v, HALF]
@@ -203,7 +201,7 @@ def drop_vertex(m, v):
 
 @bare_kernel
 def new_element(m, k):
-    """Take an element slot and return its first half-edge; origins and twins are for the caller."""
+    """Take an element slot; returns its first half-edge. The caller sets origins and twins."""
     e = m.counters[FREE_ELEMENT]
     if e >= 0:
         m.counters[FREE_ELEMENT] = m.edge[e * k, TWIN]
@@ -230,8 +228,8 @@ def drop_element(m, h, k):
 def has_room(m, k, vertices, elements, entries):
     """Whether the arrays can take so many new vertices, elements and journal entries.
 
-    Slots on the free lists are not counted on: it only costs an early enlargement. Where room is
-    missing, the trace says what was wanted.
+    Slots on the free lists are left out of account, which only enlarges early. Where there is not
+    enough room, the three numbers are written to the trace.
     """
     short = m.counters[VERTEX_SLOTS] + vertices > m.vertex.shape[0]
     short = short or m.counters[ELEMENT_SLOTS] + elements > m.element_mark.shape[0]
@@ -247,7 +245,7 @@ def has_room(m, k, vertices, elements, entries):
 
 @bare_kernel
 def begin_step(m, operation, h):
-    """Open a step unless one is open; what could be redone is gone from here on."""
+    """Open a step unless one is open; steps that could be redone are discarded."""
     m.trace[NEW_COUNT] = 0
     m.trace[TOUCHED_COUNT] = 0
     if m.counters[GROUPED] or not m.counters[JOURNALLING]:
@@ -303,7 +301,7 @@ def _swap_counters(m, row):
 
 @bare_kernel
 def undo(m):
-    """Take back the last step; False if there is none."""
+    """Undo the last step; False if there is none."""
     row = m.counters[STEP] - 1
     if row < 0:
         return False
@@ -317,7 +315,7 @@ def undo(m):
 
 @bare_kernel
 def redo(m):
-    """Do the step again that was undone last; False if there is none."""
+    """Redo the step that was undone last; False if there is none."""
     row = m.counters[STEP]
     if row >= m.counters[STEP_END]:
         return False

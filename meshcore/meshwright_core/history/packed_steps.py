@@ -1,6 +1,6 @@
-"""Steps lifted out of a journal: what one undo or redo swaps, in half the room, exact to the bit.
+"""Steps taken out of a journal and packed into half the memory, exact to the bit.
 
-A journal holds 16 bytes for each write. A step at rest needs less: the place of a write and an
+A journal holds 16 bytes for each write. A packed step needs less: the place of a write and an
 integer take 4 bytes each, and a moved vertex is one place with its two coordinates (three off the
 plane z = 0). Done steps hold the values before them, undone steps the values after them, as in
 :mod:`meshwright_core.history.journal`; the order of writes is kept.
@@ -103,7 +103,7 @@ def unpack(steps: Steps, start: int = 0) -> tuple[np.ndarray, np.ndarray]:
     lengths = steps.rows[:, LENGTH].astype(np.int64)
     moves = int(moved.sum())
     if (lengths < 0).any() or lengths.sum() != total:
-        raise MeshError("a step of the history has another length than it says")
+        raise MeshError("a step of the history has another length than it states")
     if len(steps.coordinates) != moves or len(steps.whole) != len(places) - moves:
         raise MeshError("the history lacks some of its values")
     entries = np.zeros((total, 2), np.int64)

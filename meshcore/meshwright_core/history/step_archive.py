@@ -1,4 +1,4 @@
-"""The far ends of a history: a journal holds the steps near the present, the others rest packed.
+"""Packed steps of a long history: the journal holds only those near the present state.
 
 One archive belongs to one mesh. Its `past` are done steps before the journal's first, its `future`
 undone steps after the journal's last; both are lists of
@@ -52,23 +52,21 @@ class Archive:
         """Another archive of the same steps."""
         return Archive(self.past, self.future)
 
-    # -- between archive and journal -------------------------------------------------------------
-
     def fetch_past(self, m: MeshArrays) -> MeshArrays:
-        """Put the last steps of the past before the journal's first; there must be some."""
+        """Move the last steps of the past to the front of the journal; there must be some."""
         piece = self.past.pop()
         rows, entries = held(m)
         return _with(m, *_joined(piece, rows, entries), int(m.counters[STEP]) + len(piece))
 
     def fetch_future(self, m: MeshArrays) -> MeshArrays:
-        """Put the first steps of the future after the journal's last; there must be some."""
+        """Move the first steps of the future to the end of the journal; there must be some."""
         rows, entries = held(m)
         more_rows, more_entries = unpack(self.future.pop(0), len(entries))
         rows, entries = np.concatenate([rows, more_rows]), np.concatenate([entries, more_entries])
         return _with(m, rows, entries, int(m.counters[STEP]))
 
     def trimmed(self, m: MeshArrays) -> MeshArrays:
-        """Pack what the journal holds too far from the present; the arrays with what is left."""
+        """Pack the journal's steps that are far from the present; returns the shorter arrays."""
         step, end = int(m.counters[STEP]), int(m.counters[STEP_END])
         top = int(m.steps[step - 1, STEP_STOP]) if step else 0
         all_entries = int(m.steps[end - 1, STEP_STOP]) if end else 0

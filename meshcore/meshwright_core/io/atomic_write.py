@@ -1,4 +1,4 @@
-"""Files that are replaced whole or not at all."""
+"""Atomic writing: a file is replaced completely or not at all."""
 
 from __future__ import annotations
 

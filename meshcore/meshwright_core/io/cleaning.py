@@ -1,4 +1,4 @@
-"""From the raw content of a mesh file to points and elements that make a half-edge mesh."""
+"""Converts the raw content of a mesh file to points and elements of a manifold mesh."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _count(cells: Cells, kind: str) -> str:
 
 
 def refuse_strays(points: NDArray[np.float64], elements: Elements) -> None:
-    """Raise if an element has a point that the file does not hold, or one at no finite place."""
+    """MeshError if an element has a point that is not in the file, or is not finite."""
     count = len(points)
     stray = ((elements < 0) | (elements >= count)).any(axis=1)
     if stray.any():
@@ -95,7 +95,7 @@ def merged(content: Content, elements: Elements) -> tuple[Content, Elements]:
 
 
 def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:
-    """Turn elements round so that neighbours agree, and planar meshes run counter-clockwise.
+    """Reverse elements so that neighbours agree, and plane meshes run counter-clockwise.
 
     In each connected part neighbours are made to agree first, across edges of two elements. A
     part that lies in a plane z = const is then turned so that its signed area is positive; any

@@ -1,4 +1,4 @@
-"""What every reader of a file does: refuses what is no file, and says which file was wrong."""
+"""Checks and error messages shared by all file readers; messages begin with the path."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from meshwright_core.io.atomic_write import reason
 
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Turn what goes wrong with a file into a MeshError: one sentence that begins with its path."""
+    """Turn exceptions about a file into a MeshError: one sentence that begins with its path."""
     try:
         yield
     except MeshError as error:

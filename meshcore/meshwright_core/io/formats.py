@@ -1,4 +1,4 @@
-"""The mesh file formats by ending: who reads them, who writes them, what they can hold.
+"""Mesh file formats by ending: reader, writer, and which elements and data they hold.
 
 meshio and trimesh are imported on first use. Their readers print, call ``sys.exit``, raise
 anything, and some never end on a file that is cut off; all that is contained here and comes out
@@ -76,7 +76,7 @@ def of(path: str | os.PathLike[str]) -> Format:
 
 
 class _Bounded(io.BufferedReader):
-    """A binary file that raises when it is read at its end over and over."""
+    """A binary file that raises EOFError when it is read at its end repeatedly."""
 
     _ends = 0
 
@@ -103,7 +103,7 @@ class _BoundedText(io.TextIOWrapper):
 
 @contextlib.contextmanager
 def contained() -> Any:
-    """Keep what foreign code prints; turn its ``sys.exit`` and its exceptions into MeshError.
+    """Capture the output of foreign code; turn its ``sys.exit`` and exceptions into MeshError.
 
     The system's errors and our own pass unchanged.
     """

@@ -1,4 +1,4 @@
-"""Mesh files: read and write, the format chosen by the ending."""
+"""Reads and writes mesh files; the ending of the name selects the format."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def _head(path: Path) -> bytes:
 
 def _mesh(content: Content, form: formats.Format, head: bytes, corner_angle: float) -> HalfEdgeMesh:
     elements = cleaning.single_kind(content)
-    promise = text_formats.promised(head)
+    promise = text_formats.announced_counts(head)
     if promise and promise != (len(content.points), len(elements)):
         raise MeshError(
             f"it is cut off: {promise[0]} points and {promise[1]} elements are announced, "

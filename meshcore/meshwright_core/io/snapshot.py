@@ -1,4 +1,4 @@
-"""A mesh with its history as named arrays, for files: all that is needed to go on, to the bit.
+"""A mesh and its history as named arrays for files, exact to the bit.
 
 =================  =====================================================================
 ``sizes``          (4,) sides of an element; room for vertices and elements; degree cap
@@ -12,7 +12,7 @@
 ``undone.*``       steps that can be done again
 =================  =====================================================================
 
-Arrays from a file may hold anything: :func:`restored` checks every number before it is used.
+Arrays from a file may hold anything: :func:`from_arrays` checks every number before it is used.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ MOST = 1 << 28
 _PARTS = ("rows", "places", "whole", "coordinates")
 
 
-def taken(mesh: HalfEdgeMesh) -> Arrays:
+def to_arrays(mesh: HalfEdgeMesh) -> Arrays:
     """The arrays of a mesh and its history; those of the mesh itself are not copied."""
     m = mesh.arrays
     halfedges = int(m.counters[ELEMENT_SLOTS]) * mesh.k
@@ -57,15 +57,15 @@ def taken(mesh: HalfEdgeMesh) -> Arrays:
     }
 
 
-def restored(arrays: Mapping[str, np.ndarray]) -> HalfEdgeMesh:
-    """The mesh that `taken` took, its history with it.
+def from_arrays(arrays: Mapping[str, np.ndarray]) -> HalfEdgeMesh:
+    """The mesh and history stored by :func:`to_arrays`.
 
-    Raises MeshError, in words without the file's name, for arrays that are no such mesh.
+    Raises MeshError, without the file's name, if the arrays are invalid.
     """
     sizes = _array(arrays, "sizes", np.int64, (4,))
     k, vertices, elements, cap = sizes.tolist()
     if k not in (3, 4) or not (0 < vertices <= MOST and 0 < elements <= MOST):
-        raise MeshError("its sizes are no sizes of a mesh")
+        raise MeshError("its sizes are not those of a mesh")
     if elements > 64 * (vertices + 64):
         raise MeshError("it wants room for more elements than its vertices can have")
     if cap < 0:
@@ -103,7 +103,7 @@ def steps_arrays(pieces: Sequence[Steps], name: str) -> Arrays:
 def restored_steps(
     arrays: Mapping[str, np.ndarray], name: str, mesh: HalfEdgeMesh
 ) -> tuple[Steps, ...]:
-    """What :func:`steps_arrays` was given, if it fits the mesh; else MeshError."""
+    """The steps stored by :func:`steps_arrays`; MeshError if they do not fit the mesh."""
     rows = _array(arrays, f"{name}.rows", np.int32, (-1, COLUMNS))
     places = _array(arrays, f"{name}.places", np.int32, (-1,))
     whole = _array(arrays, f"{name}.whole", np.int32, (-1,))

@@ -1,7 +1,7 @@
-"""Arrays that come from a file: every invariant checked before anything walks on them.
+"""Validates arrays that were read from a file before they are used as a mesh.
 
-:mod:`meshwright_core.core.validation` does the same vertex by vertex, for tests; this goes by whole
-arrays, and copes with numbers that point anywhere.
+:mod:`meshwright_core.core.validation` checks a mesh vertex by vertex, for tests; here whole arrays
+are checked, and no index is used before it is known to be in range.
 """
 
 from __future__ import annotations
@@ -88,24 +88,22 @@ def _check_vertices(
     _require((stored < limit).all(), "a vertex names a half-edge that does not exist")
     _require(
         (m.edge[stored[live], ORIGIN] == np.flatnonzero(live)).all(),
-        "a vertex does not know its half-edge",
+        "a vertex has a wrong half-edge",
     )
     starts = np.flatnonzero(twin < 0)
     on_boundary = np.zeros(slots, bool)
     on_boundary[elements.ravel()[starts]] = True
     expected = ids[half // k] * k + half % k
-    _require(
-        (stored == expected)[on_boundary].all(), "a boundary vertex does not know its half-edge"
-    )
+    _require((stored == expected)[on_boundary].all(), "a boundary vertex has a wrong half-edge")
     degree = np.bincount(elements.ravel(), minlength=slots) + on_boundary
-    _require((m.vertex[:slots, DEGREE] == degree).all(), "a vertex has another degree than it says")
+    _require((m.vertex[:slots, DEGREE] == degree).all(), "a vertex has a wrong degree")
     least = 3 if k == 3 else 2
     _require((degree[live & ~on_boundary] >= least).all(), "a vertex has too few edges")
     desired = m.vertex[:slots, DESIRED]
     _require((desired[live] >= 1).all(), "a desired degree is not positive")
     _require((desired[~live] == 0).all(), "a dead vertex has a desired degree")
     flags = m.vertex[:slots, FLAGS]
-    _require(((flags & ~(GEOMETRIC | LOCKED)) == 0).all(), "a vertex has a mark that means nothing")
+    _require(((flags & ~(GEOMETRIC | LOCKED)) == 0).all(), "a vertex has unknown flags")
 
 
 def _check_scores(m: MeshArrays, elements: np.ndarray, twin: np.ndarray) -> None:

@@ -1,4 +1,4 @@
-"""Plain mesh formats, read and written by ourselves: exact coordinates, and quads where they fit.
+"""Text formats of meshes with readers and writers of our own: exact coordinates, and quads.
 
 Each writer returns the text of the whole file. Where the format has comments the first lines
 count points and elements, so that a file that was cut off is noticed on reading.
@@ -31,7 +31,7 @@ _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _NAMES = {3: "triangle", 4: "quad"}
 
 
-def promised(head: bytes) -> tuple[int, int] | None:
+def announced_counts(head: bytes) -> tuple[int, int] | None:
     """Return the numbers of points and elements that the first bytes of a file of ours state."""
     found = _COUNTS.search(head[:_COUNTED])
     return (int(found[1]), int(found[2])) if found else None

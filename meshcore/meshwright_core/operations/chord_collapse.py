@@ -21,8 +21,11 @@ from meshwright_core.core.arrays import (
     TWIN,
     following,
     joined,
+    neighbour,
     on_boundary,
+    opposite,
     preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel
 from meshwright_core.core.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
@@ -49,11 +52,6 @@ from meshwright_core.operations.vertex_merge import check_loser, hand_over, surv
 
 
 @bare_kernel
-def _opposite_edge(h):
-    return h - h % 4 + (h + 2) % 4
-
-
-@bare_kernel
 def chord_start(m, h):
     """The half-edge through which the strip of h's quad and edge begins; h itself for a ring."""
     entry = h
@@ -61,7 +59,7 @@ def chord_start(m, h):
         t = m.edge[entry, TWIN]
         if t < 0:
             return entry
-        entry = _opposite_edge(t)
+        entry = opposite(t)
         if entry == h:
             return h
     return h
@@ -72,7 +70,7 @@ def _chord_length(m, start):
     """Quads of the strip that begins at `start`, at most twice the number of elements."""
     entry = start
     for count in range(1, 2 * m.counters[ELEMENTS] + 1):
-        entry = m.edge[_opposite_edge(entry), TWIN]
+        entry = m.edge[opposite(entry), TWIN]
         if entry < 0 or entry == start:
             return count
     return 0
@@ -85,7 +83,7 @@ def _rung(m, start, i, entry, ring, length):
     """
     if i < length:
         return m.edge[entry, ORIGIN], m.edge[following(entry, 4), ORIGIN]
-    o = _opposite_edge(entry)
+    o = opposite(entry)
     return m.edge[following(o, 4), ORIGIN], m.edge[o, ORIGIN]
 
 
@@ -97,7 +95,7 @@ def _mark_strip(m, start, length, ring):
     for i in range(length if ring else length + 1):
         if i < length:
             if i > 0:
-                entry = m.edge[_opposite_edge(entry), TWIN]
+                entry = m.edge[opposite(entry), TWIN]
             if m.element_mark[entry // 4]:
                 once = False
             m.element_mark[entry // 4] = 1
@@ -114,7 +112,7 @@ def _unmark_strip(m, start, length):
     entry = start
     for i in range(length):
         if i > 0:
-            entry = m.edge[_opposite_edge(entry), TWIN]
+            entry = m.edge[opposite(entry), TWIN]
         m.element_mark[entry // 4] = 0
         for corner in range(4):
             m.vertex[m.edge[entry - entry % 4 + corner, ORIGIN], MARK] = 0
@@ -126,18 +124,17 @@ def _across_rung(m, u):
     wanted = -m.vertex[u, MARK]
     h = m.vertex[u, HALF]
     for _ in range(m.vertex[u, DEGREE]):
-        w = m.edge[following(h, 4), ORIGIN]
+        w = neighbour(m, h, 4)
         if m.vertex[w, MARK] == wanted:
             return w
-        back = preceding(h, 4)
-        h = m.edge[back, TWIN]
         if h < 0:
-            return m.edge[back, ORIGIN]
+            break
+        h = turned(m, h, 4)
     return -1
 
 
 @bare_kernel
-def _harmless(m, v, u, partner, i, sign, rungs, ring):
+def _joined_once(m, v, u, partner, i, sign, rungs, ring):
     """Whether u, a neighbour of v, would be joined only once to what v and its partner become."""
     mark = m.vertex[u, MARK]
     if u == partner:
@@ -155,16 +152,12 @@ def _harmless(m, v, u, partner, i, sign, rungs, ring):
 def _rails_apart(m, v, partner, i, sign, rungs, ring):
     """Whether no neighbour of v would be joined twice to the vertex that v and partner become."""
     h = m.vertex[v, HALF]
-    start = h
     for _ in range(m.vertex[v, DEGREE]):
-        if not _harmless(m, v, m.edge[following(h, 4), ORIGIN], partner, i, sign, rungs, ring):
+        if not _joined_once(m, v, neighbour(m, h, 4), partner, i, sign, rungs, ring):
             return False
-        back = preceding(h, 4)
-        h = m.edge[back, TWIN]
         if h < 0:
-            return _harmless(m, v, m.edge[back, ORIGIN], partner, i, sign, rungs, ring)
-        if h == start:
-            return True
+            break
+        h = turned(m, h, 4)
     return True
 
 
@@ -174,7 +167,7 @@ def _check_rungs(m, start, length, ring, cap):
     rungs = length if ring else length + 1
     for i in range(rungs):
         if 0 < i < length:
-            entry = m.edge[_opposite_edge(entry), TWIN]
+            entry = m.edge[opposite(entry), TWIN]
         x, y = _rung(m, start, i, entry, ring, length)
         at_end = not ring and (i == 0 or i == length)
         loser = x + y - survivor(m, x, y, 4)
@@ -220,15 +213,15 @@ def check_chord_collapse(m, h, cap):
     entry = start
     for i in range(length + 1):
         if 0 < i < length:
-            entry = m.edge[_opposite_edge(entry), TWIN]
+            entry = m.edge[opposite(entry), TWIN]
         x, y = _rung(m, start, i, entry, ring, length)
         entries += 64 + 2 * (m.vertex[x, DEGREE] + m.vertex[y, DEGREE])
     return ALLOWED if has_room(m, 4, 0, 0, entries) else NEED_ROOM
 
 
 @bare_kernel
-def settle(m, v, h):
-    """Make HALF of v the half-edge that invariant 4 wants; h is any half-edge that leaves v."""
+def _set_outgoing(m, v, h):
+    """Set HALF of v as invariant 4 requires; h is any half-edge that leaves v."""
     half = h
     for _ in range(m.vertex[v, DEGREE]):
         t = m.edge[half, TWIN]
@@ -255,7 +248,7 @@ def chord_collapse(m, h):
     entry = start
     for i in range(rungs):
         if 0 < i < length:
-            entry = m.edge[_opposite_edge(entry), TWIN]
+            entry = m.edge[opposite(entry), TWIN]
         x, y = _rung(m, start, i, entry, ring, length)
         winner = survivor(m, x, y, 4)
         hand_over(m, x + y - winner, winner, 4)
@@ -266,16 +259,16 @@ def chord_collapse(m, h):
 
     entry = start
     for _ in range(length):
-        onward = m.edge[_opposite_edge(entry), TWIN]
+        onward = m.edge[opposite(entry), TWIN]
         n, p = following(entry, 4), preceding(entry, 4)
         right, left = m.edge[n, TWIN], m.edge[p, TWIN]
         near, far = m.edge[entry, ORIGIN], m.edge[p, ORIGIN]
         link(m, right, left)
         drop_element(m, entry, 4)
-        # left runs from near to far, right from far to near; each vertex is settled for good when
-        # the second of its two quads has gone
-        settle(m, near, left if left >= 0 else following(right, 4))
-        settle(m, far, right if right >= 0 else following(left, 4))
+        # left runs from near to far, right from far to near; HALF of each vertex is final when the
+        # second of its two quads has been dropped
+        _set_outgoing(m, near, left if left >= 0 else following(right, 4))
+        _set_outgoing(m, far, right if right >= 0 else following(left, 4))
         touch(m, near)
         touch(m, far)
         entry = onward

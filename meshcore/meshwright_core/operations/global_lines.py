@@ -13,10 +13,13 @@ ring, which the paper leaves open. Deleting it merges the elements on its two si
 
 from __future__ import annotations
 
+import numpy as np
+
 from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     DEGREE,
     DESIRED,
+    ELEMENT_SLOTS,
     ELEMENTS,
     FLAGS,
     GEOMETRIC,
@@ -25,11 +28,15 @@ from meshwright_core.core.arrays import (
     MARK,
     ORIGIN,
     TWIN,
+    VERTEX_SLOTS,
     following,
+    neighbour,
     on_boundary,
+    opposite,
     preceding,
+    turned,
 )
-from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.irregularity import QUAD_INSIDE, QUAD_STRAIGHT
 from meshwright_core.history.journal import (
     drop_element,
@@ -107,10 +114,10 @@ def _across(m, h, at_end):
     t = m.edge[h, TWIN]
     if at_end:
         return (
-            m.edge[h - h % 4 + (h + 2) % 4, ORIGIN],
+            m.edge[opposite(h), ORIGIN],
             m.edge[preceding(t, 4), ORIGIN],
         )
-    return m.edge[preceding(h, 4), ORIGIN], m.edge[t - t % 4 + (t + 2) % 4, ORIGIN]
+    return m.edge[preceding(h, 4), ORIGIN], m.edge[opposite(t), ORIGIN]
 
 
 @bare_kernel
@@ -118,46 +125,36 @@ def _doubled_edge(m, v, p, q):
     """Whether joining p and q over the line vertex v would make a second edge between them."""
     if p == q:
         return True
-    start = m.vertex[p, HALF]
-    h = start
+    h = m.vertex[p, HALF]
     for _ in range(m.vertex[p, DEGREE]):
-        w = m.edge[following(h, 4), ORIGIN]
+        w = neighbour(m, h, 4)
         if w == q:
             return True
-        if w != v and m.vertex[w, MARK] and _opposite(m, w, p) == q:
+        if w != v and m.vertex[w, MARK] and _straight_across(m, w, p) == q:
             return True
-        back = preceding(h, 4)
-        turned = m.edge[back, TWIN]
-        if turned < 0:
-            w = m.edge[back, ORIGIN]
-            return w == q or (w != v and m.vertex[w, MARK] and _opposite(m, w, p) == q)
-        h = turned
-        if h == start:
-            return False
+        if h < 0:
+            break
+        h = turned(m, h, 4)
     return False
 
 
 @bare_kernel
-def _opposite(m, w, p):
+def _straight_across(m, w, p):
     """The vertex straight across the line vertex w, seen from its neighbour p; -1 if there is none.
 
     On the boundary (degree 3) the two boundary neighbours are across from each other.
     """
-    start = m.vertex[w, HALF]
+    h = m.vertex[w, HALF]
     if on_boundary(m, w):
-        first = m.edge[following(start, 4), ORIGIN]
-        second = m.edge[preceding(start, 4), TWIN]
-        last = m.edge[preceding(second, 4), ORIGIN]
+        first = neighbour(m, h, 4)
+        last = neighbour(m, turned(m, turned(m, h, 4), 4), 4)
         if p == first:
             return last
         return first if p == last else -1
-    h = start
     for _ in range(4):
-        if m.edge[following(h, 4), ORIGIN] == p:
-            turned = m.edge[preceding(h, 4), TWIN]
-            turned = m.edge[preceding(turned, 4), TWIN]
-            return m.edge[following(turned, 4), ORIGIN]
-        h = m.edge[preceding(h, 4), TWIN]
+        if neighbour(m, h, 4) == p:
+            return neighbour(m, turned(m, turned(m, h, 4), 4), 4)
+        h = turned(m, h, 4)
     return -1
 
 
@@ -250,6 +247,12 @@ def cleanup(m, h):
 
 
 @bare_kernel
+def score_change_cleanup(m, h):
+    """The change of s by :func:`cleanup`, 0: the line is regular, no other degree changes."""
+    return 0
+
+
+@bare_kernel
 def _merge_across(m, h):
     """Merge the quads left and right of the line's edge v-w into the left one; v dies. Returns w.
 
@@ -281,3 +284,68 @@ def _merge_across(m, h):
     touch(m, r)
     touch(m, u)
     return w
+
+
+@bare_kernel
+def cleanable_at(m, v, cap):
+    """A half-edge that leaves v on a line that may be cleaned up, or -1."""
+    h = m.vertex[v, HALF]
+    for _ in range(m.vertex[v, DEGREE]):
+        code = check_cleanup(m, h, cap)
+        if code == ALLOWED or code == NEED_ROOM:
+            return h
+        h = turned(m, h, 4)
+        if h < 0:
+            break
+    return -1
+
+
+@bare_kernel
+def cleanable(m, first, cap):
+    """A half-edge on an open global line that may be cleaned up, or -1.
+
+    Lines are looked for at boundary vertices with ids from `first` on: one sweep.
+    """
+    for v in range(first, m.counters[VERTEX_SLOTS]):
+        if m.vertex[v, HALF] < 0 or m.vertex[v, DEGREE] != 3 or not on_boundary(m, v):
+            continue
+        h = turned(m, m.vertex[v, HALF], 4)
+        code = check_cleanup(m, h, cap)
+        if code == ALLOWED or code == NEED_ROOM:
+            return h
+    return -1
+
+
+@bare_kernel
+def is_ring(m, start, seen, cap):
+    """Whether `start` lies on a closed line that may be cleaned up.
+
+    Marks the half-edges that it walks over in `seen` (uint8), and passes over marked ones.
+    """
+    h = start
+    while m.edge[h, ORIGIN] >= 0 and not seen[h]:
+        t = m.edge[h, TWIN]
+        seen[h] = 1
+        if t < 0:
+            return False
+        seen[t] = 1
+        v = m.edge[t, ORIGIN]
+        if m.vertex[v, DEGREE] != 4 or on_boundary(m, v):
+            return False
+        h = following(m.edge[following(h, 4), TWIN], 4)
+        if h == start:
+            code = check_cleanup(m, h, cap)
+            return code == ALLOWED or code == NEED_ROOM
+    return False
+
+
+@kernel
+def cleanable_ring(m, cap):
+    """A half-edge on a closed line that may be cleaned up, or -1. Every edge is walked over
+    once.
+    """
+    seen = np.zeros(m.counters[ELEMENT_SLOTS] * 4, np.uint8)
+    for start in range(len(seen)):
+        if is_ring(m, start, seen, cap):
+            return start
+    return -1

@@ -18,6 +18,7 @@ from meshwright_core.core.arrays import (
     ORIGIN,
     TWIN,
     following,
+    opposite,
     preceding,
 )
 from meshwright_core.core.compilation import bare_kernel
@@ -42,6 +43,7 @@ from meshwright_core.operations.refusals import (
     NEVER_ENDS,
     SPLITS_AGAIN,
 )
+from meshwright_core.operations.score_terms import degree_term
 
 
 @bare_kernel
@@ -57,7 +59,7 @@ def crossings(m, entry, h, limit):
         count += 1
         if count > limit:
             return -2
-        entry = m.edge[entry - entry % 4 + (entry + 2) % 4, TWIN]
+        entry = m.edge[opposite(entry), TWIN]
     return count
 
 
@@ -96,7 +98,7 @@ def _cut(m, entry, v, before, after):
     |   |   |
     x --v-- y    `entry` runs from x to y
     """
-    n, o, p = following(entry, 4), entry - entry % 4 + (entry + 2) % 4, preceding(entry, 4)
+    n, o, p = following(entry, 4), opposite(entry), preceding(entry, 4)
     y, z, w = m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
     yz, zw = m.edge[n, TWIN], m.edge[o, TWIN]
 
@@ -187,3 +189,10 @@ def global_split(m, h):
     touch(m, b)
     touch(m, c)
     touch(m, g)
+
+
+@bare_kernel
+def score_change_global_split(m, h):
+    """The change of s by :func:`global_split`: a gains an edge, b loses one."""
+    a, b = m.edge[h, ORIGIN], m.edge[following(h, 4), ORIGIN]
+    return degree_term(m, a, 1) + degree_term(m, b, -1)

@@ -22,6 +22,7 @@ from meshwright_core.core.arrays import (
     following,
     joined,
     on_boundary,
+    opposite,
     preceding,
 )
 from meshwright_core.core.compilation import bare_kernel
@@ -53,6 +54,7 @@ from meshwright_core.operations.refusals import (
     NEED_ROOM,
     NO_ELEMENT_LEFT,
 )
+from meshwright_core.operations.score_terms import degree_term, merge_term
 from meshwright_core.operations.vertex_merge import check_loser, hand_over, survivor
 
 
@@ -77,7 +79,7 @@ def check_flip_left(m, h, cap):
     t = m.edge[h, TWIN]
     if t < 0:
         return BOUNDARY_EDGE
-    f, c = m.edge[t - t % 4 + (t + 2) % 4, ORIGIN], m.edge[h - h % 4 + (h + 2) % 4, ORIGIN]
+    f, c = m.edge[opposite(t), ORIGIN], m.edge[opposite(h), ORIGIN]
     return _check_turn(m, h, f, c, cap)
 
 
@@ -163,6 +165,13 @@ def flip_left(m, h):
 
 
 @bare_kernel
+def score_change_flip_left(m, h):
+    """The change of s by :func:`flip_left`: the edge a-b goes, f-c comes."""
+    f, c = m.edge[opposite(m.edge[h, TWIN]), ORIGIN], m.edge[opposite(h), ORIGIN]
+    return _score_change_turn(m, h, f, c)
+
+
+@bare_kernel
 def flip_right(m, h):
     r"""Turn the edge a-b clockwise into d-g; V, E, F stay; h runs from d to g, all ids live.
 
@@ -210,6 +219,21 @@ def flip_right(m, h):
 
 
 @bare_kernel
+def score_change_flip_right(m, h):
+    """The change of s by :func:`flip_right`: the edge a-b goes, d-g comes."""
+    d, g = m.edge[preceding(h, 4), ORIGIN], m.edge[preceding(m.edge[h, TWIN], 4), ORIGIN]
+    return _score_change_turn(m, h, d, g)
+
+
+@bare_kernel
+def _score_change_turn(m, h, x, y):
+    a, b = m.edge[h, ORIGIN], m.edge[following(h, 4), ORIGIN]
+    return (
+        degree_term(m, a, -1) + degree_term(m, b, -1) + degree_term(m, x, 1) + degree_term(m, y, 1)
+    )
+
+
+@bare_kernel
 def _turned(m, a, b, c, d, f, g):
     add_degree(m, a, -1)
     add_degree(m, b, -1)
@@ -230,7 +254,7 @@ def check_split(m, h, cap):
     if m.vertex[m.edge[h, ORIGIN], DEGREE] <= 2:
         return DEGREE_TOO_LOW
     if cap > 0:
-        d, f = m.edge[preceding(h, 4), ORIGIN], m.edge[t - t % 4 + (t + 2) % 4, ORIGIN]
+        d, f = m.edge[preceding(h, 4), ORIGIN], m.edge[opposite(t), ORIGIN]
         if m.vertex[d, DEGREE] >= cap or m.vertex[f, DEGREE] >= cap:
             return DEGREE_CAP
     return ALLOWED if has_room(m, 4, 1, 1, 80) else NEED_ROOM
@@ -280,6 +304,14 @@ def split(m, h):
     touch(m, b)
     touch(m, d)
     touch(m, f)
+
+
+@bare_kernel
+def score_change_split(m, h):
+    """The change of s by :func:`split`: v has Delta -1, a loses an edge, d and f gain one."""
+    a, d = m.edge[h, ORIGIN], m.edge[preceding(h, 4), ORIGIN]
+    f = m.edge[opposite(m.edge[h, TWIN]), ORIGIN]
+    return 1 + degree_term(m, a, -1) + degree_term(m, d, 1) + degree_term(m, f, 1)
 
 
 @bare_kernel
@@ -357,3 +389,11 @@ def collapse(m, h):
     touch(m, winner)
     touch(m, b)
     touch(m, d)
+
+
+@bare_kernel
+def score_change_collapse(m, h):
+    """The change of s by :func:`collapse`: a and c become one vertex, b and d lose an edge."""
+    a, b = m.edge[h, ORIGIN], m.edge[following(h, 4), ORIGIN]
+    c, d = m.edge[opposite(h), ORIGIN], m.edge[preceding(h, 4), ORIGIN]
+    return merge_term(m, a, c, 2, 4) + degree_term(m, b, -1) + degree_term(m, d, -1)

@@ -1,4 +1,4 @@
-"""Why an operation is refused: codes for compiled kernels, and the sentences behind them."""
+"""Reasons for refusing an operation: codes for compiled kernels, and their sentences."""
 
 ALLOWED = 0
 DEAD_HALFEDGE = 1
@@ -25,7 +25,7 @@ CHORD_CROSSES_ITSELF = 21
 CHORD_PINCHES = 22
 OTHER_KIND = 23
 
-# not a refusal: the caller enlarges the arrays and asks again
+# not a refusal: the caller enlarges the arrays and checks again
 NEED_ROOM = 99
 
 SENTENCES = {

@@ -2,8 +2,8 @@ r"""Local edits of triangle meshes: flip, split, collapse (section 2.2 of the pa
 
 Each edit is a pair: ``check_*`` has no side effect and returns a code of
 :mod:`meshwright_core.operations.refusals`;
-the rewrite trusts that check said ALLOWED. Letters: h runs from a to b in the triangle (a, b, c),
-its twin t from b to a in the triangle (b, a, d).
+the rewrite requires that the check returned ALLOWED. Letters: h runs from a to b in the triangle
+(a, b, c), its twin t from b to a in the triangle (b, a, d).
 
             c
           /   \
@@ -56,6 +56,7 @@ from meshwright_core.operations.refusals import (
     NEED_ROOM,
     NO_ELEMENT_LEFT,
 )
+from meshwright_core.operations.score_terms import degree_term, merge_term
 from meshwright_core.operations.vertex_merge import check_loser, hand_over, survivor
 
 
@@ -123,6 +124,17 @@ def flip(m, h):
     touch(m, b)
     touch(m, c)
     touch(m, d)
+
+
+@bare_kernel
+def score_change_flip(m, h):
+    """The change of s by :func:`flip`: the ends lose an edge, the apexes gain one."""
+    t = m.edge[h, TWIN]
+    a, b = m.edge[h, ORIGIN], m.edge[t, ORIGIN]
+    c, d = m.edge[preceding(h, 3), ORIGIN], m.edge[preceding(t, 3), ORIGIN]
+    return (
+        degree_term(m, a, -1) + degree_term(m, b, -1) + degree_term(m, c, 1) + degree_term(m, d, 1)
+    )
 
 
 @bare_kernel
@@ -194,6 +206,16 @@ def split(m, h):
     touch(m, b)
     touch(m, c)
     touch(m, d)
+
+
+@bare_kernel
+def score_change_split(m, h):
+    """The change of s by :func:`split`: v has Delta -2 inside, -1 on the boundary."""
+    t = m.edge[h, TWIN]
+    change = degree_term(m, m.edge[preceding(h, 3), ORIGIN], 1)
+    if t < 0:
+        return 1 + change
+    return 2 + change + degree_term(m, m.edge[preceding(t, 3), ORIGIN], 1)
 
 
 @bare_kernel
@@ -293,3 +315,15 @@ def collapse(m, h):
     touch(m, c)
     if t >= 0:
         touch(m, d)
+
+
+@bare_kernel
+def score_change_collapse(m, h):
+    """The change of s by :func:`collapse`: a and b become one vertex, each apex loses an edge."""
+    t = m.edge[h, TWIN]
+    a, b = m.edge[h, ORIGIN], m.edge[following(h, 3), ORIGIN]
+    change = degree_term(m, m.edge[preceding(h, 3), ORIGIN], -1)
+    if t < 0:
+        return merge_term(m, a, b, 3, 3) + change
+    d = m.edge[preceding(t, 3), ORIGIN]
+    return merge_term(m, a, b, 4, 3) + change + degree_term(m, d, -1)

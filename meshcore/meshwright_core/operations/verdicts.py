@@ -1,14 +1,10 @@
-"""What `check` and `apply` answer: a verdict in words, and the trace of an edit."""
+"""Results of `check` and `apply`: a verdict with its reason, and the record of an edit."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from meshwright_core.core.mesh_view import MeshView
 from meshwright_core.operations import refusals
 from meshwright_core.operations.catalogue import Operation
-
-if TYPE_CHECKING:
-    from meshwright_core.mesh import HalfEdgeMesh
 
 
 class Verdict:
@@ -24,9 +20,11 @@ class Verdict:
         self.reason = reason
 
     @classmethod
-    def refused(cls, code: int, mesh: HalfEdgeMesh, operation: Operation, h: int) -> Verdict:
-        """A refusal with its sentence; asks `mesh` for the names of the vertices."""
-        return cls(code, _sentence(code, mesh, operation, h))
+    def refused(
+        cls, code: int, mesh: MeshView, operation: Operation, h: int, degree_cap: int
+    ) -> Verdict:
+        """A refusal with its reason in words, which names the end vertices of half-edge h."""
+        return cls(code, _sentence(code, mesh, operation, h, degree_cap))
 
     def __bool__(self) -> bool:
         """Whether the operation is allowed."""
@@ -41,13 +39,13 @@ YES = Verdict(refusals.ALLOWED, "")
 """The verdict on everything that is allowed."""
 
 
-def _sentence(code: int, mesh: HalfEdgeMesh, operation: Operation, h: int) -> str:
+def _sentence(code: int, mesh: MeshView, operation: Operation, h: int, degree_cap: int) -> str:
     live = mesh.live(h)
     return refusals.SENTENCES[code].format(
         h=h,
         a=mesh.origin(h) if live else -1,
         b=mesh.target(h) if live else -1,
-        cap=mesh.degree_cap,
+        cap=degree_cap,
         operation=str(operation),
         kind=mesh.kind,
     )

@@ -1,4 +1,4 @@
-"""Which of two merging vertices survives, and what the other one must not be."""
+"""Merging two vertices: which one survives, and when the other one may be deleted."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from meshwright_core.core.arrays import (
     HALF,
     LOCKED,
     ORIGIN,
-    TWIN,
     on_boundary,
-    preceding,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel
 from meshwright_core.core.irregularity import usual_desired
@@ -39,9 +38,9 @@ def survivor(m, a, b, k):
 
 @bare_kernel
 def check_loser(m, loser, desired):
-    """Whether `loser` may vanish: not geometric, not locked, and its desired degree is `desired`.
+    """Whether `loser` may be deleted: not geometric, not locked, of the desired degree `desired`.
 
-    The last keeps the sum of Delta, and with it the optimum, as it was.
+    The last condition keeps the sum of Delta, and so the optimum s*, unchanged.
     """
     if m.vertex[loser, FLAGS] & GEOMETRIC:
         return TWO_GEOMETRIC
@@ -55,10 +54,9 @@ def check_loser(m, loser, desired):
 @bare_kernel
 def hand_over(m, loser, winner, k):
     """Give every half-edge that leaves `loser` the origin `winner`."""
-    start = m.vertex[loser, HALF]
-    h = start
+    h = m.vertex[loser, HALF]
     for _ in range(m.vertex[loser, DEGREE]):
         put_edge(m, h, ORIGIN, winner)
-        h = m.edge[preceding(h, k), TWIN]
-        if h < 0 or h == start:
+        h = turned(m, h, k)
+        if h < 0:
             return

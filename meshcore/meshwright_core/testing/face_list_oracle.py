@@ -1,7 +1,7 @@
-"""A naive twin of the engine: a mesh as a plain list of faces, for tests and the fuzz benchmark.
+"""A naive reference implementation: a mesh as a list of faces, for tests and the fuzz benchmark.
 
-Every operation is done the obvious way on tuples of vertex ids, and what comes out is judged as a
-whole. It shares no code with the engine, and knows no half-edge: a half-edge is a pair (a, b).
+Every operation rewrites tuples of vertex ids directly, and the whole result is checked afterwards.
+It shares no code with the half-edge mesh; a half-edge is a pair of vertices (a, b).
 """
 
 from __future__ import annotations
@@ -64,8 +64,7 @@ class FaceList:
     def after(self, operation: str, a: int, b: int, fresh: list[int]) -> FaceList:
         """The mesh after `operation` on the half-edge a-b; Refused where it is not allowed.
 
-        fresh: ids for new vertices in the order in which they come to be; made up where it is
-        short.
+        fresh: ids for new vertices in the order of their creation; further ones are generated.
         """
         result = FaceList([*self.faces], self.desired, self.geometric, self.locked)
         getattr(_Rewrite(result, fresh), operation)(a, b)
@@ -119,13 +118,13 @@ def _orbit(link: dict[int, int]) -> set[int]:
 
 
 def _turned(face: Face) -> Face:
-    """The face begun at its least vertex."""
+    """The face rotated to begin with its smallest vertex id."""
     i = face.index(min(face))
     return face[i:] + face[:i]
 
 
 class _Rewrite:
-    """The operations, each as design and paper tell them, on a FaceList that may be spoilt."""
+    """The operations as the paper defines them, on a FaceList that may become invalid."""
 
     def __init__(self, mesh: FaceList, fresh: list[int]) -> None:
         self.mesh = mesh
@@ -140,7 +139,7 @@ class _Rewrite:
         return v
 
     def _left(self, a: int, b: int) -> Face:
-        """The face left of a-b, turned to begin with a, b."""
+        """The face left of a-b, rotated to begin with a, b."""
         face = self.mesh.directed()[a, b]
         i = face.index(a)
         return face[i:] + face[:i]
@@ -254,7 +253,7 @@ class _Rewrite:
         mesh, degrees, boundary = self.mesh, self.mesh.degrees(), self.mesh.boundary()
 
         def onward(u: int, v: int) -> int | None:
-            """The vertex straight on from u over v, None where the line ends well."""
+            """The vertex straight on from u over v, None where the line ends at the boundary."""
             if v in mesh.geometric or v in mesh.locked:
                 raise Refused("the line meets a vertex that must stay")
             if mesh.desired[v] != (3 if v in boundary else 4):

@@ -22,7 +22,7 @@ _STUCK = 100  # refusals in a row after which a mesh counts as used up, a single
 
 
 def face_list(mesh: HalfEdgeMesh) -> FaceList:
-    """The mesh as the oracle sees it."""
+    """The mesh as a :class:`FaceList`."""
     live = mesh.vertices().tolist()
     desired, geometric, locked = mesh.desired(), mesh.geometric(), mesh.locked()
     return FaceList(
@@ -96,9 +96,9 @@ def fuzz(
 ) -> dict[str, float | int | str]:
     """Apply so many random operations of `kind`; MeshError at the first disagreement.
 
-    Each attempt asks the engine and the oracle for their verdicts, which must be the same; each
+    Each attempt compares the verdicts of the mesh and the face list, which must be the same; each
     applied operation must give the same faces, the same sum of Delta and Euler characteristic. The
-    exhaustive validator runs on every `validate_every`-th; at the end of each run of some 150
+    validator runs on every `validate_every`-th; at the end of each run of some 150
     operations all of them are undone to the first bit, redone to the last, and the run's end state
     is compared.
     """
@@ -135,7 +135,7 @@ def fuzz(
             if progress is not None and applied % 1000 == 0:
                 progress(applied)
         mesh.validate()
-        undone += _there_and_back(mesh, first, seed, attempts)
+        undone += _undo_and_redo_all(mesh, first, seed, attempts)
     return {
         "kind": kind,
         "operations": applied,
@@ -149,7 +149,7 @@ def fuzz(
 def _attempt(
     mesh: HalfEdgeMesh, oracle: FaceList, operation: str, h: int, seed: int, attempt: int
 ) -> tuple[FaceList, bool]:
-    """One operation on both; the oracle's mesh after it and whether it was allowed."""
+    """One operation on both; the face list after it and whether it was allowed."""
     a, b = mesh.origin(h), mesh.target(h)
     where = f"seed {seed}, attempt {attempt}: {operation} on {a}-{b}"
     verdict = mesh.check(operation, h)
@@ -178,10 +178,10 @@ def _attempt(
     return after, True
 
 
-def _there_and_back(
+def _undo_and_redo_all(
     mesh: HalfEdgeMesh, first: tuple[np.ndarray, ...], seed: int, attempt: int
 ) -> int:
-    """Undo everything, compare with the first bit, redo everything, compare with the last."""
+    """Undo everything, compare with the first state, redo everything, compare with the last."""
     last, top = snapshot(mesh), int(mesh.arrays.counters[JOURNAL_TOP])
     count = mesh.steps
     while mesh.undo():

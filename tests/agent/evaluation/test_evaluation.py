@@ -59,6 +59,7 @@ def test_polygons_that_start_at_the_optimum_are_refused(monkeypatch):
 
 
 @pytest.mark.parametrize("method", sorted({*BASELINES, *RACERS}))
+@pytest.mark.slow
 def test_every_baseline_ends_between_optimum_and_start(method, policy, meshes):
     mesh = meshes[0]
     before = mesh.score
@@ -74,6 +75,7 @@ def test_share_within_counts_only_times_below_the_limit():
     assert [share_within(times, seconds) for seconds in (0.1, 1.0, 5.0)] == [0.25, 0.5, 0.75]
 
 
+@pytest.mark.slow
 def test_a_row_and_its_figures(policy, tmp_path):
     wanted = RowSettings(2, 2, seed=4, race=0.05, polish=0.05)
     found = assess(policy, (8, 9), wanted)

@@ -8,6 +8,8 @@ from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.coarsening import coarsen, undrawable
 from meshwright_core.domains import gallery, meshing
 
+pytestmark = pytest.mark.slow
+
 
 def optimal(name):
     mesh = meshing.mesh_domain(gallery.shape(name), "quad")

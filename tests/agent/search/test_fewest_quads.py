@@ -10,10 +10,14 @@ would be fewer than none.
 from functools import cache
 from itertools import combinations_with_replacement
 
+import pytest
+
 from meshwright_agent.policy.policy_files import load
 from meshwright_agent.search.solver import solve
 from meshwright_core.domains.gallery import shape
 from meshwright_core.domains.meshing import mesh_domain
+
+pytestmark = pytest.mark.slow
 
 DESIRED = {"reflex": 4, "tip": 2, "flat": 3}
 

@@ -16,6 +16,8 @@ from meshwright_core.core.arrays import JOURNALLING, STEP_COLUMNS, allocate
 from meshwright_core.domains import meshing, quadrangulation
 from meshwright_core.operations.catalogue import CODES, NAMES, score_change
 
+pytestmark = pytest.mark.slow
+
 
 def scrambled(kind, levels=3, seed=0):
     rng = np.random.default_rng(seed)

@@ -9,11 +9,13 @@ from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import PolicyError
 from meshwright_agent.search.region_search import KEEP, solve_within
 from meshwright_core import MeshError
-from meshwright_core.analysis.submesh import enclose, holding
+from meshwright_core.analysis.submesh import enclose, temporarily_locked
 from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry.region import rings
 from meshwright_core.geometry.smoothing import relax
+
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(params=["quad", "tri"])
@@ -35,7 +37,7 @@ def region(mesh, reach):
 def outside_of(mesh, elements):
     """Ends and twins of the half-edges outside, but for twins that lie in the region."""
     kept = np.setdiff1d(mesh.element_ids(), elements)
-    halfedges = (mesh.k * kept[:, None] + np.arange(mesh.k)).ravel()
+    halfedges = mesh.halfedges_of(kept).ravel()
     return halfedges, mesh.arrays.edge[halfedges, ORIGIN].copy()
 
 
@@ -48,7 +50,7 @@ def test_operations_replay_lower_s_and_leave_the_rest_unchanged(case):
     halfedges, ends = outside_of(copy, elements)
     inside = enclose(copy, elements)
     places = copy.points[inside.held].copy()
-    with holding(copy, inside.held):
+    with temporarily_locked(copy, inside.held):
         for operation, h in found.operations:
             copy.apply(operation, h)
     assert copy.score == found.score
@@ -81,7 +83,7 @@ def test_a_very_irregular_region_is_improved_patch_by_patch(monkeypatch):
     found = solve_within(mesh, policy_files.load("tri"), elements, rollouts=2, seed=2)
     assert found.score < mesh.score
     inside = enclose(mesh, elements)
-    with holding(mesh, inside.held):
+    with temporarily_locked(mesh, inside.held):
         for operation, h in found.operations:
             mesh.apply(operation, h)
     assert mesh.score == found.score

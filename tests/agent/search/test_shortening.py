@@ -13,6 +13,7 @@ from meshwright_core.domains.meshing import benchmark_mesh
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 @pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.slow
 def test_operations_of_annealing_become_much_fewer_at_equal_s(kind, seed):
     mesh = benchmark_mesh(kind, 12, np.random.default_rng(seed))
     operations, score = anneal(mesh, proposals=100_000, seed=seed)
@@ -42,6 +43,7 @@ def test_an_unneeded_split_is_left_out_although_later_ids_depend_on_it():
     assert replayed(mesh, short).score <= replayed(mesh, whole).score
 
 
+@pytest.mark.slow
 def test_sixty_operations_are_shortened_quickly():
     mesh = benchmark_mesh("tri", 20, np.random.default_rng(0))
     operations, _ = anneal(mesh, proposals=40_000, seed=0)

@@ -29,6 +29,7 @@ def replayed(mesh, solution):
     return copy
 
 
+@pytest.mark.slow
 def test_a_solution_replays_to_its_score(policy):
     mesh = start(policy.kind)
     reported = []
@@ -62,6 +63,7 @@ def test_a_cancelled_search_returns_the_best_so_far(policy):
     assert replayed(mesh, found).score == found.score
 
 
+@pytest.mark.slow
 def test_workers_share_their_results(policy):
     mesh = start(policy.kind, 20)
     found = solve(mesh, policy, seconds=1.0, workers=2)
@@ -76,6 +78,7 @@ def test_a_mesh_at_its_optimum_needs_no_operations(policy):
     assert solve(mesh, policy, seconds=1.0, coarsen=False).operations == []
 
 
+@pytest.mark.slow
 def test_quads_are_coarsened_only_on_request():
     policy = policy_files.load("quad")
     mesh = start("quad", 20)

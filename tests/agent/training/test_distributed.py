@@ -82,6 +82,7 @@ def environment() -> dict[str, str]:
     return {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONPATH": str(ROOT)}
 
 
+@pytest.mark.slow
 def test_two_processes_make_the_same_updates_and_the_first_writes(tmp_path):
     (tmp_path / "tiny.toml").write_text(TINY.format(iterations=2))
     (tmp_path / "together.py").write_text(TOGETHER)
@@ -109,6 +110,7 @@ def test_two_processes_make_the_same_updates_and_the_first_writes(tmp_path):
     assert len(json.loads((tmp_path / "out" / "curve.json").read_text())) == 3
 
 
+@pytest.mark.slow
 def test_a_killed_training_continues_from_its_last_checkpoint(tmp_path, monkeypatch):
     (tmp_path / "long.toml").write_text(TINY.format(iterations=100_000))
     words = ["train", "--kind", "quad", "--config", "long.toml", "-o", "out"]

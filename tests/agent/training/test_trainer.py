@@ -34,6 +34,7 @@ _TINY = {
 }
 
 
+@pytest.mark.slow
 def test_a_training_can_be_stopped_and_resumed(tmp_path, monkeypatch):
     monkeypatch.setattr(
         "meshwright_agent.training.trainer.evaluate",
@@ -63,6 +64,7 @@ def test_a_training_can_be_stopped_and_resumed(tmp_path, monkeypatch):
         train({**_TINY, "pool": 13}, tmp_path)
 
 
+@pytest.mark.slow
 def test_a_training_ends_early_and_its_best_policy_is_the_result(tmp_path, monkeypatch):
     means = iter([0.5, 0.8, 0.7, 0.8, 0.9])
 
@@ -87,6 +89,7 @@ def test_a_training_ends_early_and_its_best_policy_is_the_result(tmp_path, monke
     assert (again["iteration"], again["best_return"]) == (4, 0.9)
 
 
+@pytest.mark.slow
 def test_events_hold_tagged_numbers_that_are_not_nan(tmp_path):
     events = Events(tmp_path, 0)
     for update in range(1, 6):
@@ -162,6 +165,7 @@ def test_a_configuration_that_is_not_toml_is_refused(tmp_path):
         read_configuration(path)
 
 
+@pytest.mark.slow
 def test_the_shipped_quad_policy_reaches_the_optimum():
     mesh = benchmark_mesh("quad", 12, np.random.default_rng(31))
     before = mesh.elements()
@@ -181,6 +185,7 @@ def test_a_search_can_be_cancelled():
     assert solution.score == mesh.score
 
 
+@pytest.mark.slow
 def test_evaluation_is_repeatable_and_beats_doing_nothing():
     rows = [evaluate("tri", (8, 10), 4, 2, seed=3) for _ in range(2)]
     for row in rows:

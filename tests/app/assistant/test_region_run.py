@@ -13,6 +13,8 @@ from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry.region import rings
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(params=["quad", "tri"])
 def document(request):
@@ -47,7 +49,7 @@ def test_a_region_is_finished_and_the_rest_stays_to_the_bit(document, assistant,
     elements = around_the_middle(mesh, 3)
     inside = enclose(mesh, elements)
     outer = np.setdiff1d(mesh.element_ids(), elements)
-    halfedges = (mesh.k * outer[:, None] + np.arange(mesh.k)).ravel()
+    halfedges = mesh.halfedges_of(outer).ravel()
     ends = mesh.arrays.edge[halfedges, ORIGIN].copy()
     places = mesh.points[inside.held].copy()
     start, points, flags = document.score, mesh.points.copy(), mesh.arrays.vertex.copy()

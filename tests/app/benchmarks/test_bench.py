@@ -19,6 +19,7 @@ def test_unknown_suite_is_refused(capsys):
 
 
 @pytest.mark.parametrize("name", ["core", "fuzz", "large", "levels"])
+@pytest.mark.slow
 def test_suite_runs(name, capsys):
     assert cli.main(["bench", "--suite", name, "--quick", "--json"]) == 0
     said = capsys.readouterr()
@@ -29,6 +30,7 @@ def test_suite_runs(name, capsys):
     assert values["machine"]["cores"]
 
 
+@pytest.mark.slow
 def test_fuzz_finds_no_violation(capsys):
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--json", "--seed", "3"]) == 0
     results = json.loads(capsys.readouterr().out)["results"]

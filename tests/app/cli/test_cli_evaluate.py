@@ -17,15 +17,16 @@ from meshwright_agent.policy import policy_files
 @pytest.fixture
 def small_table(monkeypatch):
     rows = (
-        paper_results.Row((6, 7), paper_results.Measured(0.98, 0.03)),
-        paper_results.Row((8, 8), *_TWO),
+        paper_results.PaperRow((6, 7), paper_results.ReturnStatistics(0.98, 0.03)),
+        paper_results.PaperRow((8, 8), *_TWO),
     )
     monkeypatch.setitem(paper_results.ROWS, "quad", rows)
 
 
-_TWO = (paper_results.Measured(0.992, 0.02), paper_results.Measured(0.95, 0.05))
+_TWO = (paper_results.ReturnStatistics(0.992, 0.02), paper_results.ReturnStatistics(0.95, 0.05))
 
 
+@pytest.mark.slow
 def test_a_table_with_everything(small_table, tmp_path, capfd):
     words = ["evaluate", "--kind", "quad", "--table", "--meshes", "2", "--rollouts", "2"]
     more = ["--baselines", "--race", "0.05", "--shorten", "0.05", "--figure", str(tmp_path / "f")]

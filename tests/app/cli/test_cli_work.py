@@ -90,6 +90,7 @@ def test_same_seed_same_mesh(run, tmp_path):
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.slow
 def test_improve_keeps_corners_and_the_optimum(run, kind, tmp_path):
     made = run("mesh", "star", "-o", "in.vtk", "--kind", kind)
     words = ("improve", "in.vtk", "-o", "out.vtk", "--rollouts", "3", "--png", "out.png")
@@ -122,6 +123,7 @@ def test_improve_announces_the_compilation(run, capfd, monkeypatch):
     assert "Preparing the agent" in capfd.readouterr().err
 
 
+@pytest.mark.slow
 def test_improve_in_place_with_a_budget_and_the_same_seed(run, tmp_path):
     run("mesh", "l-shape", "-o", "a.obj", "--kind", "quad")
     original = (tmp_path / "a.obj").read_bytes()
@@ -146,6 +148,7 @@ def test_improve_with_a_time_limit_as_text(run, capfd):
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.slow
 def test_evaluate_reports_a_row(run, kind):
     row = run("evaluate", "--kind", kind, "--sides", "5-6", "--meshes", "2", "--rollouts", "2")
     keys = ("single_mean", "single_std", "best_mean", "best_std", "at_optimum")
@@ -167,6 +170,7 @@ def test_demo_without_a_display_writes_a_picture_and_says_so(tmp_path, capfd):
         assert len(picture.convert("RGB").getcolors(1 << 24)) > 20
 
 
+@pytest.mark.slow
 def test_demo_with_a_display_that_does_not_answer(run, monkeypatch):
     monkeypatch.setenv("DISPLAY", ":931")
     said = run("demo", "--shape", "l-shape", "--kind", "tri")
@@ -188,6 +192,7 @@ def test_window_without_a_display_is_refused(words, capfd):
     assert "there is no display here" in said
 
 
+@pytest.mark.slow
 def test_ctrl_c_leaves_the_old_file(run, tmp_path):
     run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad", "--max-edge", "0.04")
     (tmp_path / "b.vtk").write_text("old")

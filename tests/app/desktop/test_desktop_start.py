@@ -1,10 +1,15 @@
 """What the window needs before it is there, measured in a process of its own."""
 
+import pytest
+
 from meshwright.benchmarks import desktop
 from meshwright.benchmarks.desktop.display import display
 from meshwright_core.core import compilation
 
+pytestmark = pytest.mark.slow
 
+
+@pytest.mark.needs("window")
 def test_the_window_is_there_before_torch_and_kernels():
     compilation.warm()
     with display() as environment:

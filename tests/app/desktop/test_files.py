@@ -214,7 +214,7 @@ def test_a_file_is_dropped(qtbot, open_window, star, tmp_path):
 
 def left_behind(folder, mesh, name="lost", seeds=(1, 2, 3)) -> Document:
     """What a process that died leaves."""
-    from test_branches import wander
+    from document_edits import wander
 
     document = Document(mesh, name)
     keeper = Autosave(document, folder)

@@ -12,7 +12,11 @@ from meshwright.document.document import Document
 from meshwright.document.history import YOU
 from meshwright.document.storage import recovery
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
+pytestmark = [
+    pytest.mark.skipif(sys.platform == "win32", reason="no such signal"),
+    pytest.mark.needs("window"),
+    pytest.mark.slow,
+]
 
 CHILD = """
 import sys, time

@@ -1,7 +1,6 @@
 """The program as a person starts it, driven from outside by events of the X server (xdotool)."""
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -14,9 +13,7 @@ from meshwright.document.storage import autosave_log, recovery
 
 PATIENCE = 90.0
 
-pytestmark = pytest.mark.skipif(
-    shutil.which("xdotool") is None, reason="xdotool, which sends the events, is not installed"
-)
+pytestmark = [pytest.mark.needs("window", "xdotool"), pytest.mark.slow]
 
 
 class Program:

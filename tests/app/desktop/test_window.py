@@ -321,7 +321,7 @@ def test_qt_calls_do_not_eat_references_of_none(qtbot):
     """A release of PySide6 lost one reference of None per call and died after some thousands."""
     code = (
         "from PySide6.QtWidgets import QApplication, QWidget\n"
-        "app = QApplication([]); w = QWidget()\n"
+        "app = QApplication(['', '-platform', 'offscreen']); w = QWidget()\n"
         "[w.update() for _ in range(100000)]\n"
     )
     assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0

@@ -215,6 +215,7 @@ def test_the_bar_keeps_its_height(qtbot, window, theme):
     assert len(heights) == 1
 
 
+@pytest.mark.needs("window")
 @pytest.mark.usefixtures("_own_settings")
 def test_the_window_opens_on_a_level(qtbot):
     from meshwright.desktop.main_window.startup import open_window as open_on

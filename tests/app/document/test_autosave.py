@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 import pytest
-from test_branches import bits, serials, wander
+from document_edits import bits, serials, wander
 
 from meshwright.document.document import Document
 from meshwright.document.storage import autosave, autosave_log, recovery
@@ -268,7 +268,7 @@ from meshwright.document.storage.autosave import Autosave
 from meshwright.document.document import Document
 from meshwright_core.domains import gallery, meshing
 sys.path.insert(0, {tests!r})
-from test_branches import wander
+from document_edits import wander
 
 document = Document(meshing.mesh_domain(gallery.shape("star"), {kind!r}), "star")
 keeper = Autosave(document, Path({folder!r}))
@@ -280,6 +280,7 @@ for seed in range(1_000_000):
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.3])
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
+@pytest.mark.slow
 def test_kill_9_loses_at_most_the_last_operation(tmp_path, seconds):
     code = CHILD.format(tests=os.path.dirname(__file__), folder=str(tmp_path), kind="quad")
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)

@@ -2,35 +2,12 @@
 
 import numpy as np
 import pytest
+from document_edits import bits, serials, wander
 
 from meshwright.document import branches
 from meshwright.document.branches import every
 from meshwright.document.document import Document
 from meshwright_core import MeshError, OperationRefused
-from meshwright_core.operations.catalogue import of_kind
-
-
-def wander(document: Document, steps: int, seed: int) -> None:
-    """So many random operations."""
-    mesh = document.mesh
-    rng = np.random.default_rng(seed)
-    infos = of_kind(mesh.kind)
-    until = document.history.cursor + steps
-    while document.history.cursor < until:
-        h = int(rng.choice(mesh.element_ids())) * mesh.k + int(rng.integers(mesh.k))
-        operation = infos[rng.integers(len(infos))].operation
-        if document.check(operation, h):
-            document.submit(operation, h)
-
-
-def bits(document: Document) -> tuple[bytes, bytes, list[int]]:
-    """The mesh and what its history says."""
-    mesh = document.mesh
-    return mesh.elements().tobytes(), mesh.points.tobytes(), [r.serial for r in document.history]
-
-
-def serials(rows) -> list[int]:
-    return [row.serial for row in rows]
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])

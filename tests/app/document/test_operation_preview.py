@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from meshwright.document.operation_preview import GLOBAL, best, choices, following, ghost
+from meshwright.document.operation_preview import best, choices, following, ghost
 from meshwright_core import OperationRefused
 
 
@@ -25,7 +25,7 @@ def test_the_numbers_are_those_of_the_operations(kind, star, triangles):
                     mesh.undo()
                     assert choice.change == seen.change == edit.score_change
             open_to = [c for c in offered if c.allowed]
-            local = [c for c in open_to if c.operation not in GLOBAL] or open_to
+            local = [c for c in open_to if c.info.is_local] or open_to
             chosen = best(offered)
             assert chosen is None or chosen.change == min(c.change for c in local)
 

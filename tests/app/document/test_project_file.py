@@ -6,7 +6,7 @@ import zipfile
 
 import numpy as np
 import pytest
-from test_branches import bits, serials, wander
+from document_edits import bits, serials, wander
 
 from meshwright.cli import arguments
 from meshwright.console import UserError

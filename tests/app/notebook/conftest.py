@@ -1,9 +1,9 @@
-"""One browser and one server for each module of tests that need them; both end with the module."""
+"""Fixtures: one browser and one server per test module that needs them."""
 
 from collections.abc import Iterator
 
 import pytest
-from browser import Lab, Watched
+from browser import Lab, WatchedPage
 
 from meshwright.benchmarks.notebook import chromium, servers
 from meshwright.console import UserError
@@ -11,7 +11,7 @@ from meshwright.console import UserError
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator:
-    """A real Chromium. Module-scoped: while Playwright runs, its event loop is everybody's."""
+    """A Chromium. Module-scoped: while Playwright runs, its event loop is that of all tests."""
     try:
         with chromium.browser() as started:
             yield started
@@ -23,12 +23,12 @@ def browser() -> Iterator:
 def _lab(browser, warm) -> Iterator[Lab]:
     with servers.jupyterlab() as server:
         page = browser.new_page(viewport={"width": 1280, "height": 1000})
-        yield Lab(Watched(page), server)
+        yield Lab(WatchedPage(page), server)
 
 
 @pytest.fixture
 def lab(_lab: Lab) -> Iterator[Lab]:
-    """A notebook open in JupyterLab; the test must leave no complaint in the browser's console."""
+    """A notebook open in JupyterLab; the test must cause no console error."""
     _lab.watched.complaints.clear()
     yield _lab
     assert not _lab.watched.complaints
@@ -36,7 +36,7 @@ def lab(_lab: Lab) -> Iterator[Lab]:
 
 @pytest.fixture(scope="session")
 def warm(prepared_agent) -> None:
-    """Kernels lie compiled on the disk, so that no server's process has to begin with that."""
+    """Fills the kernel cache on disk, so that no server process has to compile."""
     from meshwright_core.core import compilation
 
     compilation.warm()

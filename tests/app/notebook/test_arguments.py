@@ -1,4 +1,4 @@
-"""The widget in Python, wrongly used: one sentence, nothing done, nothing left behind."""
+"""Invalid arguments to the widget: one sentence, no change, no connection left."""
 
 import gc
 
@@ -25,7 +25,7 @@ WRONG = [
     (lambda w: w.play(speed=float("nan")), "speed must be a number above 0"),
     (lambda w: w.play(3), "A policy must be a name or a file"),
     (lambda w: w.complete("long"), "seconds must be a number above 0, not 'long'"),
-    (lambda w: w.on("score", None), "something to call, not None"),
+    (lambda w: w.on("score", None), "callable, not None"),
 ]
 
 
@@ -37,7 +37,7 @@ def widget(star):
 
 
 @pytest.mark.parametrize(("call", "words"), WRONG)
-def test_wrong_use_is_one_sentence_and_nothing_done(widget, call, words):
+def test_invalid_arguments_raise_one_sentence_and_change_nothing(widget, call, words):
     before, speed = widget.mesh.arrays.points.tobytes(), widget.assistant.speed
     with pytest.raises(MeshError) as caught:
         call(widget)
@@ -59,7 +59,7 @@ def test_wrong_use_is_one_sentence_and_nothing_done(widget, call, words):
         (None, {"level": "two-turns", "kind": "tri"}, "leave source and kind out"),
     ],
 )
-def test_what_cannot_be_made(source, options, words, recwarn):
+def test_invalid_constructor_arguments(source, options, words, recwarn):
     with pytest.raises(MeshError) as caught:
         MeshWidget(source, **options)
     assert words in str(caught.value) and "\n" not in str(caught.value)
@@ -69,17 +69,17 @@ def test_what_cannot_be_made(source, options, words, recwarn):
 
 
 @pytest.mark.parametrize("options", [{"policy": "nobody"}, {"height": 3}, {"name": 5}])
-def test_a_widget_that_cannot_be_made_leaves_nothing_on_the_document(star, options):
+def test_a_failed_constructor_leaves_no_connection_to_the_document(star, options):
     document = Document(star)
     with pytest.raises(Exception, match=r"nobody|height|label"):
         MeshWidget(document, **options)
     assert id(document) not in Session._all
     widget = MeshWidget(document)
-    assert widget.session.telling.ports == [widget]
+    assert widget.session.broadcaster.ports == [widget]
     widget.close()
 
 
-def test_policies_as_files(widget, tmp_path):
+def test_policy_files(widget, tmp_path):
     from importlib.resources import files
 
     whole = (files("meshwright_assets") / "policies" / "quad.safetensors").read_bytes()
@@ -93,7 +93,7 @@ def test_policies_as_files(widget, tmp_path):
     other.close()
 
 
-def test_after_an_interrupt_the_next_run_is_whole(widget, monkeypatch, greedy):
+def test_the_run_after_an_interrupt_is_complete(widget, monkeypatch, greedy):
     """Without an event loop, as in a plain Python shell."""
     from porting import script_agent
 

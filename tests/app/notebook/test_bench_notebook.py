@@ -1,4 +1,4 @@
-"""The suite that measures the widget in a browser, and what it says where something is missing."""
+"""The benchmark suite of the widget, and its errors where a program is missing."""
 
 import json
 import socket
@@ -13,6 +13,7 @@ from meshwright.benchmarks.notebook import chromium, servers
 from meshwright.console import UserError
 
 
+@pytest.mark.needs("chromium")
 def test_suite_measures_clicks_panning_and_bytes(warm, capsys):
     assert cli.main(["bench", "--suite", "notebook", "--quick", "--json"]) == 0
     results = json.loads(capsys.readouterr().out)["results"]
@@ -32,7 +33,7 @@ def test_suite_measures_clicks_panning_and_bytes(warm, capsys):
     ("missing", "told"),
     [("jupyterlab", "JupyterLab is not installed: pip install jupyterlab"), ("playwright", "Play")],
 )
-def test_suite_says_what_to_install(missing, told, monkeypatch, capsys):
+def test_suite_names_what_to_install(missing, told, monkeypatch, capsys):
     find = servers.find_spec
     monkeypatch.setattr(servers, "find_spec", lambda name: None if name == missing else find(name))
     assert cli.main(["bench", "--suite", "notebook", "--quick"]) == 2
@@ -46,7 +47,7 @@ def test_missing_chromium_is_named(monkeypatch, tmp_path):
         chromium.executable()
 
 
-def test_server_that_does_not_come_up_says_why(tmp_path):
+def test_server_that_does_not_start_reports_the_reason(tmp_path):
     words = "import sys; sys.exit('the port is taken')"
     command = [servers.sys.executable, "-c", words]
     with (
@@ -56,7 +57,7 @@ def test_server_that_does_not_come_up_says_why(tmp_path):
         pytest.fail("it did")
 
 
-def test_server_ends_with_the_process_that_wanted_it(tmp_path):
+def test_server_ends_with_its_parent_process(tmp_path):
     path = tmp_path / "book.py"
     path.write_text("import marimo\napp = marimo.App()\n")
     code = (

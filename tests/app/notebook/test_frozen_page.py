@@ -1,14 +1,14 @@
-"""The frozen page: a film of the history in one file, without a kernel and without a network."""
+"""The exported HTML page in a browser, without kernel and network."""
 
 import pytest
-from browser import Watched
+from browser import WatchedPage
 
 from meshwright.benchmarks.notebook.widget_driver import Card, differing
 from meshwright.notebook import MeshWidget
 
 
 def turn(widget: MeshWidget, times: int) -> None:
-    """Apply some operations, each somewhere else."""
+    """Apply some operations at different half-edges."""
     for _ in range(times):
         mesh = widget.mesh
         spots = [mesh.k * int(e) + side for e in mesh.element_ids() for side in range(mesh.k)]
@@ -25,7 +25,7 @@ def widget() -> MeshWidget:
     return made
 
 
-def test_page_scrubs_both_ways_without_a_kernel(browser, widget, tmp_path):
+def test_page_scrubs_in_both_directions_without_a_kernel(browser, widget, tmp_path):
     path = tmp_path / "film.html"
     page_text = widget.to_html(path, title="A star")
     assert path.read_text(encoding="utf-8") == page_text
@@ -34,7 +34,7 @@ def test_page_scrubs_both_ways_without_a_kernel(browser, widget, tmp_path):
         asked: list[str] = []
         page = context.new_page()
         page.on("request", lambda request: asked.append(request.url))
-        watched = Watched(page)
+        watched = WatchedPage(page)
         page.goto(path.as_uri())
         card = Card(page)
         assert card.head["cursor"] == 4 and card.head["length"] == 5
@@ -80,7 +80,7 @@ def test_page_of_a_mesh_without_a_history(browser, tmp_path):
     MeshWidget("l-shape").to_html(path)
     page = browser.new_page(viewport={"width": 420, "height": 900}, color_scheme="dark")
     try:
-        watched = Watched(page)
+        watched = WatchedPage(page)
         page.goto(path.as_uri())
         card = Card(page)
         assert card.head["length"] == 0

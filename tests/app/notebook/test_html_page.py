@@ -1,4 +1,4 @@
-"""The frozen page as text; what a browser makes of it is in test_frozen_page.py."""
+"""The exported HTML page as text; test_frozen_page.py opens it in a browser."""
 
 import json
 import re
@@ -15,7 +15,7 @@ from meshwright.graphics.export.film import Film
 from meshwright.notebook import MeshWidget, bundle
 from meshwright.notebook.export.html_page import page
 from meshwright.notebook.export.recording import record
-from meshwright.notebook.protocol.mesh_sync import Frame, Slots
+from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, SlotArrays
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery, meshing
 
@@ -25,7 +25,7 @@ TYPES = ("<f4", "i1", "u1", "<i4", "<i4")
 
 @pytest.fixture
 def walked(star, greedy) -> Document:
-    """The star after some bad steps of a person's and some good ones of an agent; two undone."""
+    """The star after some bad steps by the user and some good ones by an agent; two undone."""
     document = Document(star, "star")
     runner = greedy(star, bad_steps=3, longest=9)
     while not runner.finished:
@@ -37,7 +37,7 @@ def walked(star, greedy) -> Document:
 
 
 class Parts(HTMLParser):
-    """What a browser would see of a page."""
+    """Elements, attributes and texts of a page."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -75,7 +75,7 @@ def replayed(film: dict):
     yield now
     for step in film["steps"]:
         content = step["content"]
-        if content["say"] == "state":
+        if content["type"] == "state":
             now = arrays(step, TYPES)
             yield now
             continue
@@ -94,35 +94,39 @@ def replayed(film: dict):
 
 def test_a_recording_holds_every_state_exactly(walked):
     mesh, cursor, revision = walked.mesh, walked.history.cursor, walked.revision
-    film, told = Film(walked), record(walked)
+    film, recorded = Film(walked), record(walked)
     assert (walked.mesh, walked.history.cursor, walked.revision) == (mesh, cursor, revision)
-    assert told["start"] == cursor
-    json.dumps(told, allow_nan=False)
+    assert recorded["start"] == cursor
+    json.dumps(recorded, allow_nan=False)
     film.go_to(0)
-    frame, head, revision = Frame.of(film.mesh), {}, told["state"]["content"]["revision"]
-    messages = [told["state"], *told["steps"]]
-    for state, (now, message) in enumerate(zip(replayed(told), messages, strict=True)):
+    frame, head, revision = (
+        CoordinateFrame.of(film.mesh),
+        {},
+        recorded["state"]["content"]["revision"],
+    )
+    messages = [recorded["state"], *recorded["steps"]]
+    for state, (now, message) in enumerate(zip(replayed(recorded), messages, strict=True)):
         film.go_to(state)
-        wanted = Slots.of(film.mesh, frame, len(now[1]), len(now[3]))
+        wanted = SlotArrays.of(film.mesh, frame, len(now[1]), len(now[3]))
         for found, true in zip(now, (wanted.places.ravel(), *_others(wanted)), strict=True):
             np.testing.assert_array_equal(found, true)
         content = message["content"]
-        if content["say"] == "patch":
+        if content["type"] == "patch":
             assert content["from"] == revision
         revision = content.get("to", content.get("revision"))
         head |= content["head"]
         assert (head["score"], head["optimum"]) == (film.scores[state], film.optima[state])
         assert (head["cursor"], head["length"]) == (state, len(film.rows))
         assert head["elements"] == film.mesh.n_elements
-    assert told["track"]["scores"] == film.scores.tolist()
-    assert told["track"]["by"][1:] == [row.by for row in film.rows]
+    assert recorded["track"]["scores"] == film.scores.tolist()
+    assert recorded["track"]["by"][1:] == [row.by for row in film.rows]
 
 
-def _others(slots: Slots) -> tuple[np.ndarray, ...]:
+def _others(slots: SlotArrays) -> tuple[np.ndarray, ...]:
     return slots.delta, slots.flags, slots.origin, slots.twin
 
 
-def test_a_page_is_one_file_that_asks_for_nothing(walked, tmp_path):
+def test_a_page_is_self_contained(walked, tmp_path):
     path = tmp_path / "film.html"
     text = page(walked, "A star", path)
     assert path.read_text(encoding="utf-8") == text
@@ -133,10 +137,10 @@ def test_a_page_is_one_file_that_asks_for_nothing(walked, tmp_path):
     assert not re.search(r"url\(|@import|\bfetch\(|XMLHttpRequest|WebSocket|\bimport\(", text)
     assert len(parts.all("script")) == 2
     assert json.loads(parts.texts["recording"]) == record(walked)
-    assert "It can be watched, not changed." in parts.texts["p"]
+    assert "It cannot be edited." in parts.texts["p"]
 
 
-def test_a_page_lets_no_script_run_but_its_own(walked):
+def test_a_page_allows_its_own_script_only(walked):
     text = page(walked)
     policy = next(a["content"] for a in Parts(text).all("meta") if "http-equiv" in a)
     script = re.search(r"<script>(.*?)</script>", text, re.DOTALL).group(1)
@@ -144,12 +148,12 @@ def test_a_page_lets_no_script_run_but_its_own(walked):
     assert f"script-src 'sha256-{hashed}';" in policy and policy.startswith("default-src 'none'")
 
 
-def test_nothing_in_the_front_ends_its_own_element():
+def test_script_and_style_cannot_close_their_elements():
     assert "</script" not in bundle.script().lower() and "<!--" not in bundle.script()
     assert "</style" not in bundle.style().lower()
 
 
-def test_names_are_words_and_never_markup(star):
+def test_names_are_escaped(star):
     document = Document(star, HOSTILE)
     h = next(h for h in range(40) if star.live(h) and star.check("flip_left", h))
     document.submit("flip_left", h, HOSTILE)
@@ -157,12 +161,12 @@ def test_names_are_words_and_never_markup(star):
         parts = Parts(page(document, title))
         assert len(parts.all("script")) == 2 and parts.all("img") == []
         assert parts.texts["title"] == parts.texts["h1"] == " ".join(HOSTILE.split())
-        told = json.loads(parts.texts["recording"])
-        assert told["state"]["content"]["head"]["name"] == HOSTILE
-        assert told["track"]["by"] == ["", HOSTILE]
+        recorded = json.loads(parts.texts["recording"])
+        assert recorded["state"]["content"]["head"]["name"] == HOSTILE
+        assert recorded["track"]["by"] == ["", HOSTILE]
 
 
-def test_a_title_is_one_line_and_not_without_end(star):
+def test_a_title_is_one_line_of_limited_length(star):
     assert Parts(page(Document(star), "a\n  b")).texts["title"] == "a b"
     assert len(Parts(page(Document(star), "a" * 500)).texts["title"]) == 200
     assert Parts(page(Document(star))).texts["title"] == "24 quads"
@@ -197,7 +201,7 @@ def test_a_page_that_cannot_be_written(walked, tmp_path, monkeypatch, place):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_page_of_nothing():
+def test_a_page_without_a_mesh_is_refused():
     with pytest.raises(MeshError, match=re.escape(NO_MESH)):
         page(Document())
 

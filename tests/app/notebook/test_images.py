@@ -1,4 +1,4 @@
-"""Still pictures and films for notebooks, as bytes and as files."""
+"""Images and animations for notebooks, as bytes and as files."""
 
 import io
 import re
@@ -47,7 +47,7 @@ def image_of(html: str) -> dict[str, str]:
 # The picture of a mesh
 
 
-def test_a_small_mesh_is_vectors_with_words(star):
+def test_a_small_mesh_is_svg_with_a_caption(star):
     data, metadata = mimebundle.mimebundle(star)
     image = image_of(data["text/html"])
     assert image["alt"] == f"24 quads, s {star.score}, optimum 4"
@@ -60,7 +60,7 @@ def test_a_small_mesh_is_vectors_with_words(star):
     assert metadata == {}
 
 
-def test_a_large_mesh_is_pixels_for_sharp_screens():
+def test_a_large_mesh_is_png_at_double_resolution():
     mesh = meshing.mesh_domain(gallery.shape("l-shape"), "quad", 0.08)
     assert 800 < mesh.n_elements < 1200
     html = mimebundle.mimebundle(mesh)[0]["text/html"]
@@ -70,7 +70,7 @@ def test_a_large_mesh_is_pixels_for_sharp_screens():
     assert len(html) < 120_000
 
 
-def test_a_name_is_words_and_never_markup(star):
+def test_a_name_is_escaped(star):
     name = '</figure><img src=x onerror="alert(1)">\''
     document = Document(star, name)
     data, _ = document._repr_mimebundle_()
@@ -118,7 +118,7 @@ def test_films_as_bytes_and_as_files(document, tmp_path):
     assert document.history.cursor == 1
 
 
-def test_a_widget_gives_away_the_same(document, tmp_path):
+def test_a_widget_exports_the_same(document, tmp_path):
     widget = MeshWidget(document, theme="dark")
     assert widget.to_png(size=SMALL) == images.png(document, SMALL, theme="dark")
     assert widget.to_svg(size=SMALL) == images.svg(document, SMALL, theme="dark")
@@ -135,7 +135,7 @@ def test_a_widget_gives_away_the_same(document, tmp_path):
         (lambda d, at: images.png(d, (True, 100)), "A size is two whole numbers"),
         (lambda d, at: images.png(d, "large"), "A size is two whole numbers"),
         (lambda d, at: images.svg(d, (100, 100_000)), "A size is two whole numbers"),
-        (lambda d, at: images.gif(d, 0), "A frame stays between 0 and 60 seconds, not 0"),
+        (lambda d, at: images.gif(d, 0), "A frame lasts between 0 and 60 seconds, not 0"),
         (lambda d, at: images.gif(d, float("nan")), "not nan"),
         (lambda d, at: images.gif(d, "fast"), "not 'fast'"),
         (lambda d, at: images.png(d, theme="pink"), "There is no theme 'pink'"),
@@ -145,14 +145,14 @@ def test_a_widget_gives_away_the_same(document, tmp_path):
         (lambda d, at: images.png(Document()), re.escape(NO_MESH)),
     ],
 )
-def test_what_cannot_be_is_said_in_one_sentence(document, tmp_path, call, words):
+def test_invalid_exports_raise_one_sentence(document, tmp_path, call, words):
     with pytest.raises(MeshError, match=words) as caught:
         call(document, tmp_path)
     assert str(caught.value).endswith(".") and "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_old_file_stays_where_the_new_one_fails(document, tmp_path, monkeypatch):
+def test_an_existing_file_is_kept_if_writing_fails(document, tmp_path, monkeypatch):
     path = tmp_path / "star.png"
     path.write_bytes(b"old")
 
@@ -163,5 +163,5 @@ def test_an_old_file_stays_where_the_new_one_fails(document, tmp_path, monkeypat
     with pytest.raises(MeshError, match=r"star.png: cannot be written \(no space left on device\)"):
         images.png(document, SMALL, path)
     assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 1
-    with pytest.raises(MeshError, match=r"^The picture cannot be made \(no space left on device\)"):
+    with pytest.raises(MeshError, match=r"^The image cannot be made \(no space left on device\)"):
         images.png(document, SMALL)

@@ -1,4 +1,4 @@
-"""The widget in JupyterLab, in a real Chromium: real mouse and keys, real pixels, a real kernel."""
+"""The widget in JupyterLab: Chromium, mouse and keyboard, pixels, a real kernel."""
 
 import pytest
 from browser import Lab
@@ -30,17 +30,17 @@ def test_widget_shows_the_mesh(lab, star, tmp_path):
     assert "12" in star.root.inner_text() and "4" in star.root.inner_text()
 
 
-def test_hover_shows_the_ghost_and_says_what_is_allowed(lab, star, tmp_path):
+def test_hover_previews_an_operation_and_lists_what_is_allowed(lab, star, tmp_path):
     star.aside()
     empty = star.layer("upper")
     spot = lab.spot(TURNED)
     star.hover(spot)
-    star.until("root => root.meshwright.pointing.ghost && root.dataset.meant")
+    star.until("root => root.meshwright.hoverState.ghost && root.dataset.meant")
     shown = star.layer("upper")
     star.page.screenshot(path=tmp_path / "hover.png")
     assert differing(empty, shown) > 50
-    offers = star.look("root => Object.fromEntries(root.meshwright.pointing.offers)")
-    assert len(offers) == len(star.look("root => root.meshwright.mirror.catalogue"))
+    offers = star.look("root => Object.fromEntries(root.meshwright.hoverState.offers)")
+    assert len(offers) == len(star.look("root => root.meshwright.replica.catalogue"))
     for name, row in offers.items():
         assert row["allowed"] == lab.ask(f"bool(widget.check('{name}', {spot}))")
         assert row["allowed"] or row["reason"]
@@ -50,7 +50,7 @@ def test_hover_shows_the_ghost_and_says_what_is_allowed(lab, star, tmp_path):
     assert lab.ask("widget.history.cursor") == 0
 
 
-def test_click_changes_the_mesh_in_the_kernel_and_undo_brings_it_back(lab, star, tmp_path):
+def test_click_changes_the_mesh_in_the_kernel_and_undo_restores_it(lab, star, tmp_path):
     star.aside()
     before, picture = lab.elements(), star.layer("lower")
     spot = lab.spot(TURNED)
@@ -77,7 +77,7 @@ def test_click_changes_the_mesh_in_the_kernel_and_undo_brings_it_back(lab, star,
     assert differing(changed, star.layer("lower")) == 0
 
 
-def test_menu_at_a_half_edge_does_what_is_chosen(lab, star, tmp_path):
+def test_menu_of_a_half_edge_applies_the_chosen_operation(lab, star, tmp_path):
     spot = lab.spot("split")
     star.click(spot)
     star.choice("split").hover()
@@ -90,7 +90,7 @@ def test_menu_at_a_half_edge_does_what_is_chosen(lab, star, tmp_path):
     assert star.root.locator(".mw-popup").count() == 0
 
 
-def test_two_widgets_on_one_document_stay_in_step(lab, tmp_path):
+def test_two_widgets_on_one_document_stay_synchronised(lab, tmp_path):
     lab.show(
         SETUP + "widget = MeshWidget('star', height=240)\nwidget",
         "other = MeshWidget(widget)\nother",
@@ -111,7 +111,7 @@ def test_two_widgets_on_one_document_stay_in_step(lab, tmp_path):
     first.await_head(cursor=0)
 
 
-def test_what_python_does_is_painted(lab, star):
+def test_edits_from_python_are_painted(lab, star):
     star.aside()
     before = star.picture()
     lab.ask("None", f"widget.apply('{TURNED}', {lab.spot(TURNED)})")
@@ -124,9 +124,9 @@ def test_what_python_does_is_painted(lab, star):
 def test_agent_plays_until_it_is_paused(lab, tmp_path):
     star = lab.card(SETUP + "widget = MeshWidget('star', kind='tri')\nwidget")
     star.agent("Play").click()
-    star.until("root => root.meshwright.mirror.head.cursor >= 2")
+    star.until("root => root.meshwright.replica.head.cursor >= 2")
     star.agent("Pause").click()
-    star.agent("Go on").wait_for()
+    star.agent("Resume").wait_for()
     at = lab.ask("widget.history.cursor")
     star.await_head(cursor=at)
     star.page.screenshot(path=tmp_path / "paused.png")
@@ -138,7 +138,7 @@ def test_agent_plays_until_it_is_paused(lab, tmp_path):
     assert lab.ask("widget.history.cursor") == at + 1
 
 
-def test_everything_goes_by_keys_alone(lab, star, tmp_path):
+def test_everything_works_by_keyboard(lab, star, tmp_path):
     before = lab.elements()
     star.aside()
     star.root.locator("[tabindex='0']").first.focus()
@@ -157,7 +157,7 @@ def test_everything_goes_by_keys_alone(lab, star, tmp_path):
             star.until("(root, h) => Number(root.dataset.halfedge) === h", at)
     star.until("(root, h) => root.innerText.includes(`Half-edge ${h}`)", at)
     key = star.look(
-        "(root, name) => root.meshwright.mirror.catalogue.find(row => row.operation === name).key",
+        "(root, name) => root.meshwright.replica.catalogue.find(row => row.operation === name).key",
         TURNED,
     )
     star.page.screenshot(path=tmp_path / "keys.png")
@@ -171,7 +171,7 @@ def test_everything_goes_by_keys_alone(lab, star, tmp_path):
     star.await_head(cursor=1)
 
 
-def test_level_is_won_by_a_click_and_the_next_one_opens(lab, tmp_path):
+def test_level_is_solved_by_a_click_and_the_next_one_opens(lab, tmp_path):
     card = lab.card(SETUP + "widget = MeshWidget(level='quarter-turn')\nwidget")
     strip = card.root.locator(".mw-levels")
     strip.wait_for()
@@ -214,7 +214,7 @@ def test_malformed_messages_are_refused_with_a_reason(lab, star):
     star.look(
         "root => { const link = root.meshwright.link; root.refused = [];"
         " const plain = link.onmessage; link.onmessage = (content, buffers) => {"
-        " if (content.say === 'notice') root.refused.push(content); plain(content, buffers); }; }"
+        " if (content.type === 'notice') root.refused.push(content); plain(content, buffers); }; }"
     )
     view = star.look("root => root.meshwright.link.view")
     for number, wrong in enumerate(WRONG):
@@ -234,7 +234,7 @@ def test_malformed_messages_are_refused_with_a_reason(lab, star):
     lab.ask("None", "widget.mesh.validate()")
 
 
-def test_page_loaded_again_shows_the_mesh_as_it_is_now(lab, star, tmp_path):
+def test_reloaded_page_shows_the_present_mesh(lab, star, tmp_path):
     star.arm(TURNED)
     star.click(lab.spot(TURNED))
     star.await_head(cursor=1)
@@ -275,10 +275,10 @@ def test_light_and_dark_follow_the_notebook(lab, star, tmp_path):
     assert differing(light, star.picture()) < 50
 
 
-def test_card_says_so_when_its_kernel_was_restarted(lab, star):
+def test_card_reports_a_restarted_kernel(lab, star):
     lab.page.evaluate(RESTART)
     lab.wait()
-    spot = star.look("root => root.meshwright.mirror.catalogue.length")  # any half-edge will do
+    spot = star.look("root => root.meshwright.replica.catalogue.length")  # any half-edge will do
     star.page.mouse.move(*star.place(spot), steps=2)
     notice = star.root.locator(".mw-notice")
     notice.get_by_text("run this cell again").wait_for(timeout=MOMENT)

@@ -1,4 +1,4 @@
-"""A widget in a real kernel: cells that block the loop, cells that end, subshells, and errors."""
+"""The widget in a real kernel: blocking cells, background runs, subshells, exceptions."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from typing import Any
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 BEGIN = """
 import sys
 sys.path.insert(0, {folder!r})
 import meshwright.assistant.worker, meshwright.notebook.kernel_warmup as preparing
 from meshwright.notebook import MeshWidget
-from meshwright.document.operation_preview import GLOBAL, choices
+from meshwright.document.operation_preview import choices
 
 class Runner:
     "Takes the best local operation anywhere, six times."
@@ -30,7 +32,7 @@ class Runner:
         mesh = self.mesh
         halves = [4 * e + i for e in mesh.element_ids().tolist() for i in range(4)]
         offers = [(h, c) for h in halves for c in choices(mesh, h) if c.allowed]
-        offers = [(h, c) for h, c in offers if c.operation not in GLOBAL]
+        offers = [(h, c) for h, c in offers if c.info.is_local]
         h, c = min(offers, key=lambda offer: offer[1].change)
         mesh.apply(c.operation, h)
         self.left -= 1
@@ -44,7 +46,7 @@ w = MeshWidget("star")
 
 
 class Kernel:
-    """A kernel, and a browser in the place of a notebook."""
+    """A kernel, with a stand-in for the browser."""
 
     def __init__(self, client: Any) -> None:
         self._client = client
@@ -66,11 +68,11 @@ class Kernel:
         return self.printed.strip()
 
     def begin(self, code: str) -> None:
-        """Begin a cell."""
+        """Start a cell."""
         self._client.execute(code)
 
     def say(self, do: str, **fields: Any) -> int:
-        """Send what the browser says, as JupyterLab does: to the subshell, if there is one."""
+        """Send a request as JupyterLab does: to the subshell, if there is one."""
         self._id += 1
         content = {"do": do, "id": self._id, "view": "v", **fields}
         message = self._client.session.msg(
@@ -83,7 +85,7 @@ class Kernel:
         return self._id
 
     def until(self, wanted: Callable[[dict[str, Any]], Any], seconds: float = 30.0) -> None:
-        """Listen until a message is what is wanted."""
+        """Read messages until one is as wanted."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:
@@ -96,7 +98,7 @@ class Kernel:
         pytest.fail(f"the kernel did not say it; last: {self.heard[-3:]} {self.printed}")
 
     def answer(self, number: int) -> dict[str, Any]:
-        """Listen until a message of this number is answered."""
+        """Read messages until the request of this number is answered."""
         self.until(lambda m: self.heard and self.heard[-1].get("reply") == number)
         return self.heard[-1]
 
@@ -132,7 +134,7 @@ def kernel() -> Iterator[Kernel]:
             )
         )
         state = started.answer(started.say("hello"))
-        assert state["say"] in ("state", "agent")
+        assert state["type"] in ("state", "agent")
         yield started
     finally:
         client.stop_channels()
@@ -143,26 +145,26 @@ def position(kernel: Kernel) -> int:
     return int(kernel.run("print(w.history.cursor)"))
 
 
-def test_a_run_goes_on_after_its_cell_has_ended(kernel):
+def test_a_run_continues_after_its_cell_has_ended(kernel):
     kernel.heard.clear()
     assert kernel.run("w.play(speed=30); print(w.history.cursor)") == "0"
     kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("state") == "idle")
-    patches = [heard for heard in kernel.heard if heard["say"] == "patch"]
+    patches = [heard for heard in kernel.heard if heard["type"] == "patch"]
     assert len(patches) > 1  # it was seen on its way
     assert position(kernel) == patches[-1]["head"]["cursor"]
     score = kernel.run("print(w.score)")
     assert score == str(patches[-1]["head"]["score"])
 
 
-def test_waiting_inside_a_cell_lets_the_run_come_to_its_end(kernel):
+def test_waiting_in_a_cell_completes_the_run(kernel):
     kernel.run("w.go_to(0)")
     kernel.heard.clear()
     assert int(kernel.run("w.play(wait=True); print(w.history.cursor)")) > 1
-    assert any(heard["say"] == "patch" for heard in kernel.heard)
+    assert any(heard["type"] == "patch" for heard in kernel.heard)
     kernel.run("w.go_to(0); w.step(); assert w.history.cursor >= 1")
 
 
-def test_a_cell_that_works_on_is_seen_while_it_works(kernel):
+def test_edits_of_a_running_cell_are_shown_while_it_runs(kernel):
     kernel.run("w.go_to(1)")
     kernel.begin("import time\nw.undo(); time.sleep(1.5); w.redo()")
     begun = time.monotonic()
@@ -171,7 +173,7 @@ def test_a_cell_that_works_on_is_seen_while_it_works(kernel):
     kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("head", {}).get("cursor") == 1)
 
 
-def test_clicks_come_through_a_subshell_in_the_cells_thread(kernel):
+def test_clicks_through_a_subshell_run_in_the_thread_of_the_cells(kernel):
     kernel.run("w.go_to(1)")
     kernel._client.control_channel.send(kernel._client.session.msg("create_subshell_request"))
     kernel.subshell = kernel._client.get_control_msg(timeout=10)["content"]["subshell_id"]
@@ -194,7 +196,7 @@ def test_clicks_come_through_a_subshell_in_the_cells_thread(kernel):
         kernel.run("off()")
 
 
-def test_mistakes_of_callbacks_are_seen_in_the_notebook_and_in_the_browser(kernel):
+def test_exceptions_in_callbacks_are_shown_in_notebook_and_browser(kernel):
     kernel.run("w.go_to(1); off = w.on('changed', lambda: 1 / 0)")
     kernel.heard.clear()
     kernel.answer(kernel.say("undo"))
@@ -203,7 +205,7 @@ def test_mistakes_of_callbacks_are_seen_in_the_notebook_and_in_the_browser(kerne
     kernel.run("off()")
 
 
-def test_nonsense_is_refused_and_the_kernel_lives(kernel):
+def test_malformed_messages_do_not_stop_the_kernel(kernel):
     before = kernel.run("print(hash(w.mesh.arrays.points.tobytes()))")
     for content in ({"do": "operate"}, {"do": "undo", "more": 1}, {"do": 5}, {"halfedge": [[[]]]}):
         number = kernel.say(content.pop("do", "hover"), **content)

@@ -15,6 +15,8 @@ from meshwright.teaching import lessons
 from meshwright.teaching.exercises.result import BLANK, MIME, RIGHT, WRONG
 from meshwright.teaching.lessons import Lesson
 
+pytestmark = pytest.mark.slow
+
 WIDGET = "application/vnd.jupyter.widget-view+json"
 ALLOWED_LINKS = {
     "https://arxiv.org/abs/1707.06347",

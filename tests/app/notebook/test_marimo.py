@@ -1,9 +1,9 @@
-"""The widget in marimo, in a real Chromium: another host, another way to the kernel."""
+"""The widget in marimo and Chromium."""
 
 from collections.abc import Iterator
 
 import pytest
-from browser import Marimo, Watched
+from browser import Marimo, WatchedPage
 
 from meshwright.benchmarks.notebook import servers
 from meshwright.benchmarks.notebook.widget_driver import differing
@@ -16,18 +16,18 @@ def _marimo(browser, warm, tmp_path_factory) -> Iterator[Marimo]:
     path = Marimo.write(tmp_path_factory.mktemp("marimo"), "star", TURNED)
     with servers.marimo(path) as server:
         page = browser.new_page(viewport={"width": 1280, "height": 1100}, color_scheme="light")
-        yield Marimo(Watched(page), server)
+        yield Marimo(WatchedPage(page), server)
 
 
 @pytest.fixture
 def marimo(_marimo: Marimo) -> Iterator[Marimo]:
-    """The star in marimo's editor; the test must leave no complaint in the browser's console."""
+    """The star in marimo's editor; the test must cause no console error."""
     _marimo.watched.complaints.clear()
     yield _marimo
     assert not _marimo.watched.complaints
 
 
-def test_click_changes_the_kernel_and_undo_brings_it_back(marimo, tmp_path):
+def test_click_changes_the_mesh_in_the_kernel_and_undo_restores_it(marimo, tmp_path):
     card = marimo.card
     card.aside()
     before, picture = marimo.kernel(), card.layer("lower")
@@ -56,9 +56,9 @@ def test_click_changes_the_kernel_and_undo_brings_it_back(marimo, tmp_path):
 def test_agent_plays_until_it_is_paused_and_cells_follow(marimo, tmp_path):
     card = marimo.card
     card.agent("Play").click()
-    card.until("root => root.meshwright.mirror.head.cursor >= 2")
+    card.until("root => root.meshwright.replica.head.cursor >= 2")
     card.agent("Pause").click()
-    card.agent("Go on").wait_for()
+    card.agent("Resume").wait_for()
     at = marimo.kernel()
     card.await_head(cursor=at["cursor"])
     marimo.page.wait_for_timeout(500)
@@ -67,7 +67,7 @@ def test_agent_plays_until_it_is_paused_and_cells_follow(marimo, tmp_path):
     card.page.screenshot(path=tmp_path / "paused.png")
 
 
-def test_page_loaded_again_shows_the_mesh_as_it_is_now(marimo):
+def test_reloaded_page_shows_the_present_mesh(marimo):
     head = marimo.card.head
     marimo.open()
     marimo.card.await_head(cursor=head["cursor"], score=head["score"])
@@ -88,20 +88,20 @@ def test_dark_follows_the_notebook(marimo, tmp_path):
 
 
 def test_touch_on_a_narrow_screen(browser, warm, tmp_path):
-    """``marimo run``: the notebook as an application, on a telephone."""
+    """``marimo run``: the notebook as an application, on a small touch screen."""
     path = Marimo.write(tmp_path, "star", TURNED)
     with servers.marimo(path, run=True) as server:
         context = browser.new_context(
             viewport={"width": 420, "height": 1400}, has_touch=True, device_scale_factor=2
         )
         try:
-            watched = Watched(context.new_page())
+            watched = WatchedPage(context.new_page())
             marimo = Marimo(watched, server)
             card, before = marimo.card, marimo.kernel()
             spot = before["allowed"][0]
             marimo.page.touchscreen.tap(*card.place(spot))
             card.until("(root, h) => Number(root.dataset.halfedge) === h", spot)
-            card.until("root => Boolean(root.meshwright.pointing.offers)")
+            card.until("root => Boolean(root.meshwright.hoverState.offers)")
             marimo.page.screenshot(path=tmp_path / "touch.png")
             card.choice(TURNED).tap()
             card.await_head(cursor=1)

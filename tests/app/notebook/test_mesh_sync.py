@@ -1,4 +1,4 @@
-"""The mirror: whatever happens to a mesh, a browser that follows its messages has the same mesh."""
+"""State and patch messages: a replica that applies them equals the mesh."""
 
 import numpy as np
 import pytest
@@ -7,15 +7,15 @@ from hypothesis import strategies as st
 from porting import Replica, allowed
 
 from meshwright.document.document import Document
-from meshwright.notebook.protocol.document_status import Head
+from meshwright.notebook.protocol.document_status import DocumentStatus
 from meshwright.notebook.protocol.mesh_sync import (
     ALIVE,
     BOUNDARY,
     CORNER,
     FIXED,
-    Frame,
-    Mirror,
-    Slots,
+    CoordinateFrame,
+    MeshSync,
+    SlotArrays,
 )
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.domains import gallery, meshing
@@ -23,16 +23,16 @@ from meshwright_core.geometry.quality import inverted
 from meshwright_core.operations.catalogue import of_kind
 
 
-def follow(mesh: HalfEdgeMesh) -> tuple[Mirror, Replica]:
-    mirror, replica = Mirror(), Replica()
-    mirror.reset(mesh)
-    replica.take(mirror.state())
-    return mirror, replica
+def follow(mesh: HalfEdgeMesh) -> tuple[MeshSync, Replica]:
+    sync, replica = MeshSync(), Replica()
+    sync.reset(mesh)
+    replica.take(sync.state())
+    return sync, replica
 
 
-def test_a_state_is_the_mesh(strip):
-    mirror, replica = follow(strip)
-    assert mirror.state().content["frame"] == {"cx": 1.0, "cy": 0.5, "scale": 1.0}
+def test_a_state_holds_the_mesh(strip):
+    sync, replica = follow(strip)
+    assert sync.state().content["frame"] == {"cx": 1.0, "cy": 0.5, "scale": 1.0}
     assert replica.slots.places.tolist() == [
         [-1, -0.5],
         [0, -0.5],
@@ -45,64 +45,64 @@ def test_a_state_is_the_mesh(strip):
     assert replica.slots.twin.tolist() == [-1, 7, -1, -1, -1, -1, -1, 1]
     corner, side = ALIVE | BOUNDARY | CORNER, ALIVE | BOUNDARY
     assert replica.slots.flags.tolist() == [corner, side, corner, corner, side, corner]
-    assert replica.shows(strip, mirror.frame)
+    assert replica.shows(strip, sync.frame)
 
 
-def test_a_patch_is_what_differs(star):
-    mirror, replica = follow(star)
+def test_a_patch_holds_the_differences(star):
+    sync, replica = follow(star)
     star.set_locked(3)
-    packet = mirror.patch(star)
+    packet = sync.patch(star)
     assert [len(b) for b in packet.buffers] == [4, 8, 1, 1, 0, 0, 0]
     replica.take(packet)
     assert replica.slots.flags[3] & FIXED
-    nothing = mirror.patch(star)
+    nothing = sync.patch(star)
     assert nothing.size == 0 and nothing.content["to"] == packet.content["to"] + 1
 
 
-def test_slots_that_an_undo_takes_back_stay_as_dead_ones(strip):
-    mirror, replica = follow(strip)
+def test_slots_freed_by_undo_stay_as_dead_slots(strip):
+    sync, replica = follow(strip)
     strip.apply("global_split", allowed(strip, ("global_split",))[1])
-    replica.take(mirror.patch(strip))
+    replica.take(sync.patch(strip))
     grown = len(replica.slots.flags)
-    assert grown > 6 and replica.shows(strip, mirror.frame)
+    assert grown > 6 and replica.shows(strip, sync.frame)
     strip.undo()
-    replica.take(mirror.patch(strip))
+    replica.take(sync.patch(strip))
     assert len(replica.slots.flags) == grown
     assert replica.slots.flags[6:].tolist() == [0] * (grown - 6)
     assert set(replica.slots.origin[8:].tolist()) == {-1}
-    assert replica.shows(strip, mirror.frame)
+    assert replica.shows(strip, sync.frame)
 
 
-def test_a_patch_larger_than_the_whole_is_the_whole(star):
-    mirror, replica = follow(star)
+def test_a_patch_larger_than_the_state_is_the_state(star):
+    sync, replica = follow(star)
     live = star.vertices()
     star.move(live, star.points[live] + 0.1)
-    assert mirror.patch(star).content["say"] == "patch"  # all vertices, but no half-edge
+    assert sync.patch(star).content["type"] == "patch"  # all vertices, but no half-edge
     other = meshing.mesh_domain(gallery.shape("l-shape"), "quad")
-    packet = mirror.patch(other)
-    assert packet.content["say"] == "state"
+    packet = sync.patch(other)
+    assert packet.content["type"] == "state"
     replica.take(packet)
-    assert replica.shows(other, mirror.frame)
+    assert replica.shows(other, sync.frame)
 
 
-def test_no_mesh_is_a_state_too(star):
-    mirror = Mirror()
-    mirror.reset(None)
-    assert mirror.state().content["vertices"] == 0 and mirror.patch(None).size == 0
-    mirror.reset(star)
-    assert mirror.state().content["vertices"] == star.slots
+def test_the_state_of_no_mesh_is_empty(star):
+    sync = MeshSync()
+    sync.reset(None)
+    assert sync.state().content["vertices"] == 0 and sync.patch(None).size == 0
+    sync.reset(star)
+    assert sync.state().content["vertices"] == star.slots
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
-def test_a_replica_follows_whatever_happens(kind, data):
+def test_a_replica_follows_random_edits(kind, data):
     mesh = meshing.mesh_domain(gallery.shape("l-shape"), kind)
     document = Document(mesh)
-    mirror, replica = follow(mesh)
-    head = Head(document)
-    head.reset()
-    replica.scores = head.whole()["track"]["scores"]
+    sync, replica = follow(mesh)
+    status = DocumentStatus(document)
+    status.reset()
+    replica.scores = status.full()["track"]["scores"]
     names = [info.operation for info in of_kind(kind)]
     for _ in range(data.draw(st.integers(1, 12))):
         act = data.draw(st.sampled_from(["operate", "operate", "operate", "go", "lock", "smooth"]))
@@ -119,11 +119,11 @@ def test_a_replica_follows_whatever_happens(kind, data):
             document.smooth()
         if data.draw(st.booleans()):
             continue  # several changes may travel in one patch
-        replica.take(mirror.patch(mesh))
-        head.folded.follow(mesh, mirror.moved, mirror.turned)
-        told = head.news()
+        replica.take(sync.patch(mesh))
+        status.inverted.follow(mesh, sync.moved, sync.turned)
+        told = status.update()
         replica.scores[told["track"]["from"] :] = told["track"]["scores"]
-        assert replica.shows(mesh, mirror.frame)
+        assert replica.shows(mesh, sync.frame)
         assert told["inverted"] == len(inverted(mesh))
         scores = [document.history.first[0], *(row.after for row in document.history)]
         assert replica.scores[: told["length"] + 1] == scores
@@ -135,20 +135,20 @@ def test_bytes_of_a_local_operation_do_not_grow_with_the_mesh():
     for edge in (0.2, 0.065):
         mesh = meshing.mesh_domain(gallery.shape("square"), "quad", max_edge=edge)
         document = Document(mesh)
-        mirror, _ = follow(mesh)
+        sync, _ = follow(mesh)
         largest = 0
         for element in mesh.element_ids()[:: max(1, mesh.n_elements // 12)].tolist():
             if mesh.live(4 * element) and mesh.check("flip_left", 4 * element):
                 document.submit("flip_left", 4 * element)
-                largest = max(largest, mirror.patch(mesh).size)
+                largest = max(largest, sync.patch(mesh).size)
         sizes.append((mesh.n_elements, largest))
     (small, few), (large, many) = sizes
     assert large > 5 * small and 0 < many < 4 * few
 
 
-def test_a_frame_holds_the_mesh_wherever_it_lies(star):
+def test_coordinates_are_normalised_at_any_position_and_scale(star):
     star.move(star.vertices(), star.points[star.vertices()] * 1e6 + (3e8, -2e8, 0))
-    frame = Frame.of(star)
-    places = Slots.of(star, frame).places
+    frame = CoordinateFrame.of(star)
+    places = SlotArrays.of(star, frame).places
     assert np.abs(places).max() == pytest.approx(1.0)
     assert np.abs(frame.normalised(star.points) - places).max() < 1e-6

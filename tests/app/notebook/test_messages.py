@@ -1,7 +1,9 @@
-"""What a browser may say: everything else is refused in one sentence, with the mesh untouched."""
+"""Malformed requests are refused in one sentence, and leave the mesh unchanged."""
 
+import json
 import math
 
+import msgspec
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -46,17 +48,22 @@ def test_every_word_has_an_example_here():
 
 
 @pytest.mark.parametrize("word", GOOD)
-def test_a_message_that_is_right_is_taken(word):
+def test_well_formed_messages_are_parsed(word):
     request = parse({"do": word, "id": 7, "view": "a", **GOOD[word]}, [])
-    assert (request.do, request.id, request.view) == (word, 7, "a")
-    assert set(request.fields) == set(GOOD[word])
+    assert (request.word, request.id, request.view) == (word, 7, "a")
+    assert json.loads(msgspec.json.encode(request)) == {
+        "do": word,
+        "id": 7,
+        "view": "a",
+        **GOOD[word],
+    }
 
 
 @pytest.mark.parametrize("word", GOOD)
-def test_fields_too_many_and_too_few_are_refused(word):
+def test_unknown_and_missing_fields_are_refused(word):
     content = {"do": word, "id": 7, "view": "a", **GOOD[word]}
     error = refused({**content, "more": 1})
-    assert "'more'" in error.sentence and error.request.id == 7 and error.request.view == "a"
+    assert "'more'" in error.sentence and error.sender.id == 7 and error.sender.view == "a"
     for name in GOOD[word]:
         assert f"'{name}'" in refused({k: v for k, v in content.items() if k != name}).sentence
 
@@ -125,7 +132,7 @@ def test_wrong_types_are_refused(word, value):
     ],
     ids=lambda content: str(content)[:40],
 )
-def test_what_is_no_message_is_refused(content):
+def test_malformed_envelopes_are_refused(content):
     refused(content)
 
 
@@ -168,10 +175,10 @@ def port(star):
     max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(data=st.data())
-def test_nonsense_leaves_the_mesh_as_it_is(port, data):
-    """Words with fields of any kind: either the message was right, or nothing has changed."""
+def test_refused_messages_leave_the_mesh_unchanged(port, data):
+    """Random fields: either the message is well formed, or nothing changes."""
     word = data.draw(st.sampled_from([w for w in WORDS if w not in ("agent", "level")]))
-    names = [name.removesuffix("?") for name in WORDS[word]]
+    names = [name for name in WORDS[word].__struct_fields__ if name not in ("id", "view")]
     fields = {name: data.draw(NEARLY, label=name) for name in names}
     if data.draw(st.integers(0, 9)) == 0:
         fields[data.draw(st.text(max_size=5))] = data.draw(JSON)
@@ -187,11 +194,11 @@ def test_nonsense_leaves_the_mesh_as_it_is(port, data):
     if "refused" in tones:
         assert arrays(port.session.mesh) == before and document.history.given == steps
     else:
-        assert port.replica.shows(port.session.mesh, port.session.telling.mirror.frame)
+        assert port.replica.shows(port.session.mesh, port.session.broadcaster.mesh_sync.frame)
 
 
 def arrays(mesh) -> list[bytes]:
-    """All that a mesh is, to the bit."""
+    """The arrays of a mesh as bytes."""
     held = mesh.arrays
     return [
         held.edge.tobytes(),
@@ -205,14 +212,14 @@ def arrays(mesh) -> list[bytes]:
     max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(content=JSON, buffers=st.none() | st.lists(st.binary(), max_size=2))
-def test_any_value_at_all_is_survived(port, content, buffers):
+def test_any_value_is_answered_with_a_notice(port, content, buffers):
     before = arrays(port.session.mesh)
     port.session.receive(port, content, buffers)
     assert arrays(port.session.mesh) == before
-    assert port.packets[-1].content["say"] == "notice"
+    assert port.packets[-1].content["type"] == "notice"
 
 
-def test_ids_that_are_dead_or_do_not_fit_are_refused(port):
+def test_dead_and_unknown_ids_are_refused(port):
     port.ask("hello")
     mesh = port.session.mesh
     operation, halfedge = allowed(mesh, ("collapse",))

@@ -1,4 +1,4 @@
-"""Kernels are made ready behind the first view; what needs them is put off with a sentence."""
+"""Background compilation with the first view; requests that need kernels are refused until then."""
 
 import sys
 import threading
@@ -21,7 +21,7 @@ def port(star, monkeypatch, greedy):
 
 
 class Gates:
-    """A preparation whose processes end when they are told to."""
+    """A preparation with processes that the test ends."""
 
     def __init__(self, tmp_path, cold: tuple[Stage, ...], code: int = 0) -> None:
         self.cold, self.loaded = list(cold), 0
@@ -48,7 +48,7 @@ def until(port, condition) -> None:
     assert port.session.loop.pump(condition, 20)
 
 
-def test_all_is_ready_at_once_where_it_was_compiled_before(port, tmp_path, monkeypatch):
+def test_ready_at_once_with_a_warm_cache(port, tmp_path, monkeypatch):
     gates = Gates(tmp_path, ())
     monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", gates.preparation)
     port.ask("hello")
@@ -61,11 +61,11 @@ def test_all_is_ready_at_once_where_it_was_compiled_before(port, tmp_path, monke
 
 
 @pytest.mark.parametrize("code", [0, 1])
-def test_what_needs_it_waits_for_the_compiler(port, tmp_path, monkeypatch, code):
+def test_requests_that_need_kernels_are_refused_until_compiled(port, tmp_path, monkeypatch, code):
     gates = Gates(tmp_path, (Stage.EDITING, Stage.AGENT), code)
     monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", gates.preparation)
     state, *_, notice = port.ask("hello")
-    assert state["say"] == "state" and notice["tone"] == "said"
+    assert state["type"] == "state" and notice["tone"] == "info"
     assert notice["sentence"].startswith("Preparing the operations")
     [ghost] = port.ask("hover", halfedge=4, operation=None)
     assert ghost["halfedge"] == -1
@@ -86,7 +86,7 @@ def test_what_needs_it_waits_for_the_compiler(port, tmp_path, monkeypatch, code)
     assert gates.loaded == 1
 
 
-def test_a_preparation_that_cannot_be_is_logged_and_stops_nobody(port, monkeypatch, caplog):
+def test_a_failed_compilation_is_logged_and_blocks_nothing(port, monkeypatch, caplog):
     def broken() -> None:
         raise RuntimeError("no compiler")
 
@@ -98,7 +98,7 @@ def test_a_preparation_that_cannot_be_is_logged_and_stops_nobody(port, monkeypat
     assert port.session.document.history.cursor == 1
 
 
-def test_two_sessions_are_told_and_one_thread_works(port, triangles, tmp_path, monkeypatch):
+def test_two_sessions_are_notified_by_one_thread(port, triangles, tmp_path, monkeypatch):
     gates = Gates(tmp_path, (Stage.EDITING,))
     monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", gates.preparation)
     other = Port(Session.of(Document(triangles)))

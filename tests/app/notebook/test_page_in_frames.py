@@ -1,27 +1,27 @@
-"""The frozen page where it is least at home: in a frame without rights, with a hostile name."""
+"""The exported HTML page in a sandboxed frame, with markup in its names."""
 
 import json
 from html import escape
 
 import pytest
-from browser import Watched
+from browser import WatchedPage
 
 from meshwright.document.document import Document
 from meshwright.notebook.export.html_page import page as frozen
 
 HOSTILE = '</script><img src=x onerror="window.broken = 1"><script>window.broken = 1</script>'
 MESH = """root => {
-    const { mirror } = root.meshwright;
-    const { vertices: v, halfedges: h } = mirror;
-    return JSON.stringify([mirror.head.cursor, [...mirror.places.slice(0, 2 * v)],
-        [...mirror.delta.slice(0, v)], [...mirror.flags.slice(0, v)],
-        [...mirror.origin.slice(0, h)], [...mirror.twin.slice(0, h)]]);
+    const { replica } = root.meshwright;
+    const { vertices: v, halfedges: h } = replica;
+    return JSON.stringify([replica.head.cursor, [...replica.places.slice(0, 2 * v)],
+        [...replica.delta.slice(0, v)], [...replica.flags.slice(0, v)],
+        [...replica.origin.slice(0, h)], [...replica.twin.slice(0, h)]]);
 }"""
 
 
 @pytest.fixture
 def document(star, greedy) -> Document:
-    """A few steps of a person and an agent whose names are markup, and one that changes all."""
+    """A few steps by the user and by an agent, with markup as names, and a global smoothing."""
     document = Document(star, HOSTILE)
     runner = greedy(star, bad_steps=3, longest=6)
     while not runner.finished:
@@ -31,7 +31,7 @@ def document(star, greedy) -> Document:
     return document
 
 
-def test_a_sandboxed_frame_plays_the_film_and_runs_nothing_else(browser, document, tmp_path):
+def test_a_sandboxed_frame_shows_the_recording_and_runs_nothing_else(browser, document, tmp_path):
     path = tmp_path / "frame.html"
     text = escape(frozen(document))
     path.write_text(
@@ -40,7 +40,7 @@ def test_a_sandboxed_frame_plays_the_film_and_runs_nothing_else(browser, documen
     )
     page = browser.new_page(viewport={"width": 760, "height": 740})
     try:
-        watched = Watched(page)
+        watched = WatchedPage(page)
         page.goto(path.as_uri())
         frame = page.frame_locator("iframe")
         root, slider = frame.locator(".meshwright"), frame.get_by_role("slider", name="History")
@@ -68,16 +68,16 @@ def test_a_sandboxed_frame_plays_the_film_and_runs_nothing_else(browser, documen
         page.close()
 
 
-def test_the_film_plays_and_stops_at_its_end(browser, document, tmp_path):
+def test_playback_stops_at_the_end(browser, document, tmp_path):
     path = tmp_path / "film.html"
     frozen(document, "Film", path)
     page = browser.new_page(viewport={"width": 420, "height": 800}, color_scheme="dark")
     try:
-        watched = Watched(page)
+        watched = WatchedPage(page)
         page.goto(path.as_uri())
         slider = page.get_by_role("slider", name="History")
-        page.get_by_label("Speed of the film").select_option("25")
-        page.get_by_role("button", name="Play what was recorded").click()
+        page.get_by_label("Playback speed").select_option("25")
+        page.get_by_role("button", name="Play the history").click()
         pause = page.get_by_role("button", name="Pause")
         pause.wait_for()
         last = str(len(document.history))

@@ -1,4 +1,4 @@
-"""What all widgets on one document share: requests, patches, the agent, and their end."""
+"""Sessions: requests, patches, the agent, and the end of a session."""
 
 import gc
 import threading
@@ -11,7 +11,7 @@ from porting import Port, allowed, script_agent
 from meshwright.assistant.assistant import State
 from meshwright.document.document import Document
 from meshwright.notebook import thread_loop as loops
-from meshwright.notebook.protocol import broadcaster
+from meshwright.notebook.protocol import broadcaster, requests
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.notebook.session import Session
 from meshwright_core import MeshError
@@ -36,7 +36,7 @@ def port(session):
 
 
 def frame(port):
-    return port.session.telling.mirror.frame
+    return port.session.broadcaster.mesh_sync.frame
 
 
 def workers() -> int:
@@ -53,7 +53,7 @@ def until(condition, seconds=10.0) -> None:
 def test_hello_is_answered_with_state_and_agent(session):
     port = Port(session)
     state, agent = port.ask("hello")
-    assert (state["say"], state["reply"], state["to"]) == ("state", 1, "v")
+    assert (state["type"], state["reply"], state["to"]) == ("state", 1, "v")
     assert state["read_only"] is False and state["k"] == 4
     assert [entry["key"] for entry in state["catalogue"]] == list("FRSCGXV")
     head = state["head"]
@@ -67,19 +67,19 @@ def test_hello_is_answered_with_state_and_agent(session):
     port.close()
 
 
-def test_nothing_is_sent_before_a_view_is_there(session):
+def test_nothing_is_sent_before_the_first_view(session):
     port = Port(session)
     session.document.submit(*allowed(session.mesh))
     assert port.packets == []
     port.close()
 
 
-def test_operate_undo_redo_and_a_jump(port):
+def test_operate_undo_redo_and_go_to(port):
     mesh = port.session.mesh
     first = port.replica.slots.buffers
     operation, halfedge = allowed(mesh)
     [patch] = port.operate(operation, halfedge)
-    assert (patch["say"], patch["reply"], patch["asked"]) == ("patch", 2, "v")
+    assert (patch["type"], patch["reply"], patch["asked"]) == ("patch", 2, "v")
     assert patch["head"]["row"]["operation"] == operation and patch["head"]["cursor"] == 1
     assert patch["head"]["track"]["titles"][-1] == "Flip left"
     assert port.replica.shows(mesh, frame(port))
@@ -97,12 +97,12 @@ def test_operate_undo_redo_and_a_jump(port):
     assert port.sentence == "There is nothing to undo."
 
 
-def test_a_click_that_comes_too_late_is_refused(port):
+def test_a_click_on_a_changed_half_edge_is_refused(port):
     mesh = port.session.mesh
     operation, halfedge = allowed(mesh)
     ends = [mesh.target(halfedge), mesh.origin(halfedge)]
     port.ask("operate", operation=operation, halfedge=halfedge, ends=ends)
-    assert port.of("notice")[-1]["tone"] == "refused" and "meanwhile" in port.sentence
+    assert port.of("notice")[-1]["tone"] == "refused" and "in the meantime" in port.sentence
     assert len(port.session.document.history) == 0
 
 
@@ -119,7 +119,7 @@ def test_hover_shows_the_best_or_the_armed_operation(port):
     port.session.document.hover_changed.connect(seen.append)
     operation, halfedge = allowed(mesh)
     [ghost] = port.ask("hover", halfedge=halfedge, operation=operation)
-    assert (ghost["say"], ghost["halfedge"], ghost["operation"]) == ("ghost", halfedge, operation)
+    assert (ghost["type"], ghost["halfedge"], ghost["operation"]) == ("ghost", halfedge, operation)
     assert ghost["reply"] == 2 and ghost["to"] == "v"
     offer = next(entry for entry in ghost["offers"] if entry["operation"] == operation)
     assert offer["allowed"] and offer["change"] == ghost["change"] and offer["reason"] == ""
@@ -138,8 +138,8 @@ def test_hover_shows_the_best_or_the_armed_operation(port):
     assert seen == [halfedge, -1]
 
 
-def test_of_hovers_that_pile_up_only_the_last_of_a_view_is_answered(port, monkeypatch):
-    monkeypatch.setattr(loops.Loop, "here", property(lambda self: False))
+def test_only_the_last_of_queued_hovers_of_a_view_is_answered(port, monkeypatch):
+    monkeypatch.setattr(loops.ThreadLoop, "here", property(lambda self: False))
     port.packets.clear()
     for halfedge in (4, 5, 6):
         port.ask("hover", halfedge=halfedge, operation=None)
@@ -148,7 +148,7 @@ def test_of_hovers_that_pile_up_only_the_last_of_a_view_is_answered(port, monkey
     assert [ghost["halfedge"] for ghost in port.of("ghost")] == [6]
 
 
-def test_messages_from_another_thread_are_served_in_the_owners(port):
+def test_messages_from_another_thread_are_handled_in_the_owners(port):
     operation, halfedge = allowed(port.session.mesh)
     seen = []
     port.session.document.changed.connect(lambda: seen.append(threading.get_ident()))
@@ -189,7 +189,7 @@ def test_the_whole_mesh(port):
     assert port.replica.shows(port.session.mesh, frame(port))
 
 
-def test_two_ports_stay_in_step_and_ghosts_go_to_one(port, star):
+def test_two_ports_stay_synchronised_and_previews_go_to_one(port, star):
     other = Port(port.session, "w")
     other.ask("hello")
     port.operate(*allowed(star))
@@ -207,7 +207,7 @@ def test_two_ports_stay_in_step_and_ghosts_go_to_one(port, star):
     assert len(other.packets) == before
 
 
-def test_a_view_that_comes_late_begins_where_the_others_are(port, star):
+def test_a_late_view_starts_in_the_present_state(port, star):
     port.operate(*allowed(star))
     late = Port(port.session, "late")
     state = late.ask("hello")[0]
@@ -218,12 +218,12 @@ def test_a_view_that_comes_late_begins_where_the_others_are(port, star):
     late.close()
 
 
-def test_who_may_only_look(session, star):
+def test_a_read_only_view_is_refused_edits(session, star):
     port = Port(session, read_only=True)
     assert port.ask("hello")[0]["read_only"] is True
-    assert port.ask("hover", halfedge=4, operation=None)[0]["say"] == "ghost"
+    assert port.ask("hover", halfedge=4, operation=None)[0]["type"] == "ghost"
     port.operate(*allowed(star))
-    assert port.sentence == "This view is for looking only."
+    assert port.sentence == "This view is read-only."
     session.document.submit(*allowed(star))
     assert port.replica.shows(star, frame(port))
     port.close()
@@ -233,7 +233,7 @@ def test_another_mesh_is_a_new_state_for_all(port, triangles):
     port.packets.clear()
     port.session.document.replace(triangles, "other")
     [state], agent = port.of("state"), port.of("agent")[-1]
-    assert (state["say"], state["k"], "reply" in state) == ("state", 3, False)
+    assert (state["type"], state["k"], "reply" in state) == ("state", 3, False)
     assert agent["policy"] in [entry["name"] for entry in agent["policies"]]
     assert agent["policy"] != "quad"
     assert port.replica.shows(triangles, frame(port)) and not port.of("patch")
@@ -244,7 +244,7 @@ def test_another_mesh_is_a_new_state_for_all(port, triangles):
     assert "There is no mesh yet" in port.sentence
 
 
-def test_much_at_once_travels_together_and_the_end_arrives(port, star, monkeypatch):
+def test_frequent_changes_are_merged_and_the_last_one_arrives(port, star, monkeypatch):
     monkeypatch.setattr(type(port.session.loop), "running", property(lambda self: True))
     monkeypatch.setattr(broadcaster, "PACE", 1e9)
     operation, halfedge = allowed(star)
@@ -293,7 +293,7 @@ def test_the_agent_steps_plays_pauses_and_hints(port, star):
     assert port.sentence.startswith("Already at the optimum")
 
 
-def test_an_edit_that_ends_a_held_run_is_seen_at_once(port, star):
+def test_an_edit_that_ends_a_paused_run_is_sent_at_once(port, star):
     port.ask("agent", action="step")
     port.session.wait(10)
     assert port.session.assistant.state is State.PAUSED
@@ -319,7 +319,7 @@ def test_policies_that_do_not_fit_are_refused(session, port, tmp_path):
     assert "not one of those on offer" in port.sentence
 
 
-def test_a_run_that_breaks_off_is_told_and_raised(port, monkeypatch):
+def test_a_failed_run_is_shown_and_raised(port, monkeypatch):
     def broken(mesh, policy, seed):
         raise ValueError("The policy is broken.")
 
@@ -331,11 +331,11 @@ def test_a_run_that_breaks_off_is_told_and_raised(port, monkeypatch):
         port.session.finish(port.session.assistant.step)
 
 
-def test_a_mistake_of_ours_is_told_logged_and_survived(port, monkeypatch, caplog):
+def test_an_unexpected_exception_is_shown_and_logged(port, monkeypatch, caplog):
     def broken(session, request):
         raise KeyError("oops")
 
-    port.session.words["smooth"] = broken
+    port.session.handlers[requests.Smooth] = broken
     port.ask("smooth")
     assert port.of("notice")[-1]["tone"] == "failed" and "KeyError" in port.sentence
     assert "Traceback" in caplog.text
@@ -343,7 +343,7 @@ def test_a_mistake_of_ours_is_told_logged_and_survived(port, monkeypatch, caplog
     assert port.replica.shows(port.session.mesh, frame(port))
 
 
-def test_a_way_that_is_broken_does_not_stop_the_others(port, caplog):
+def test_a_broken_connection_does_not_stop_the_others(port, caplog):
     class Broken(Port):
         def post(self, packet: Packet) -> None:
             raise OSError("gone")
@@ -355,28 +355,28 @@ def test_a_way_that_is_broken_does_not_stop_the_others(port, caplog):
     broken.close()
 
 
-def test_words_and_greetings_of_others(port):
+def test_added_handlers_and_welcome_messages(port):
     session = port.session
 
     def level(session, request):
-        if request["action"] == "open":
-            raise MeshError("there is no such level")
-        return f"{request['action']} {request.fields.get('name', '')}".strip() + "!"
+        if request.action == "open":
+            raise MeshError(f"there is no level {request.name}")
+        return f"{request.action}!"
 
-    session.words["level"] = level
-    session.greetings.append(lambda: Packet({"say": "level", "level": None, "all": []}))
+    session.handlers[requests.ChangeLevel] = level
+    session.welcome_messages.append(lambda: Packet({"type": "level", "level": None, "all": []}))
     port.ask("level", action="again")
     assert port.sentence == "again!"
     port.ask("level", action="open", name="x")
-    assert port.sentence == "There is no such level."
-    assert port.ask("hello")[-1]["say"] == "level"
+    assert port.sentence == "There is no level x."
+    assert port.ask("hello")[-1]["type"] == "level"
 
 
-def test_what_others_bar_is_refused_and_the_end_is_told_once(star):
+def test_guards_refuse_requests_and_the_end_is_signalled_once(star):
     session, ended = Session.of(Document(star)), []
     port = Port(session)
-    session.bars.append(lambda request: "not in a level" if request.do == "clean_all" else "")
-    session.endings.append(lambda: ended.append(1))
+    session.guards.append(lambda request: "not in a level" * isinstance(request, requests.CleanAll))
+    session.on_end.append(lambda: ended.append(1))
     port.ask("clean_all")
     assert port.sentence == "Not in a level." and not session.document.history
     port.operate(*allowed(star))
@@ -386,7 +386,7 @@ def test_what_others_bar_is_refused_and_the_end_is_told_once(star):
     assert ended == [1]
 
 
-def test_one_session_for_a_document_as_long_as_a_widget_shows_it(star):
+def test_one_session_per_document_while_a_widget_shows_it(star):
     document = Document(star)
     session = Session.of(document)
     one, other = Port(session), Port(session)
@@ -412,7 +412,7 @@ def test_the_agents_thread_ends_with_the_last_widget(star):
     until(lambda: workers() == before)
 
 
-def test_nothing_is_kept_of_widgets_that_are_collected(star):
+def test_collected_widgets_leave_no_references(star):
     before = workers()
     document = Document(star)
     session = Session.of(document)
@@ -429,7 +429,7 @@ def test_nothing_is_kept_of_widgets_that_are_collected(star):
     assert [ref() for ref in gone] == [None] * 3
 
 
-def test_a_widget_that_lost_its_browser_goes_when_another_is_made(star, triangles):
+def test_a_widget_without_connection_is_closed_when_another_is_created(star, triangles):
     before = workers()
     session = Session.of(Document(star))
     port = Port(session)

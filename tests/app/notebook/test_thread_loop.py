@@ -1,4 +1,4 @@
-"""Calls into the document's thread: in order, once, from anywhere, with a loop or without."""
+"""Calls into the document's thread: order, exceptions, with and without an event loop."""
 
 import asyncio
 import threading
@@ -7,7 +7,7 @@ import time
 import pytest
 
 from meshwright.notebook import thread_loop as loops
-from meshwright.notebook.thread_loop import Loop
+from meshwright.notebook.thread_loop import ThreadLoop
 
 
 def in_thread(work) -> None:
@@ -18,7 +18,7 @@ def in_thread(work) -> None:
 
 
 def test_without_an_event_loop_the_queue_waits_for_a_pump():
-    loop, seen = Loop(), []
+    loop, seen = ThreadLoop(), []
     assert loop.here and not loop.running
     in_thread(lambda: [loop(lambda i=i: seen.append(i)) for i in range(100)])
     assert seen == []
@@ -26,11 +26,11 @@ def test_without_an_event_loop_the_queue_waits_for_a_pump():
     assert seen == list(range(100))
 
 
-def test_an_event_loop_comes_to_the_queue_by_itself_and_a_pump_may_be_quicker():
+def test_an_event_loop_runs_the_queue_unless_a_pump_is_earlier():
     seen = []
 
     async def cell() -> None:
-        loop = Loop()
+        loop = ThreadLoop()
         assert loop.running
         in_thread(lambda: [loop(lambda i=i: seen.append(i)) for i in range(10)])
         assert loop.pump(lambda: len(seen) >= 5)  # the event loop is blocked meanwhile
@@ -41,11 +41,11 @@ def test_an_event_loop_comes_to_the_queue_by_itself_and_a_pump_may_be_quicker():
     asyncio.run(cell())
 
 
-def test_the_queue_outlives_an_event_loop():
+def test_queued_calls_survive_the_end_of_an_event_loop():
     seen, kept = [], []
 
     async def cell() -> None:
-        kept.append(Loop())
+        kept.append(ThreadLoop())
 
     async def later() -> None:
         assert kept[0].running
@@ -58,17 +58,17 @@ def test_the_queue_outlives_an_event_loop():
     assert seen == [1]
 
 
-def test_an_owner_that_has_ended_leaves_its_place():
+def test_another_thread_replaces_an_owner_that_has_ended():
     made, seen = [], []
-    in_thread(lambda: made.append(Loop()))
+    in_thread(lambda: made.append(ThreadLoop()))
     made[0](lambda: seen.append(1))
     assert made[0].here
     made[0].drain()
     assert seen == [1]
 
 
-def test_another_thread_gets_the_answer_or_the_error():
-    loop, got = Loop(), []
+def test_another_thread_gets_the_result_or_the_exception():
+    loop, got = ThreadLoop(), []
 
     def ask() -> None:
         got.append(loop.do(threading.get_ident))
@@ -83,9 +83,9 @@ def test_another_thread_gets_the_answer_or_the_error():
     assert got == [threading.get_ident(), "end"]
 
 
-def test_another_thread_does_not_wait_for_ever(monkeypatch):
-    monkeypatch.setattr(loops, "PATIENCE", 0.05)
-    loop, done = Loop(), []
+def test_calls_from_another_thread_time_out(monkeypatch):
+    monkeypatch.setattr(loops, "TIMEOUT", 0.05)
+    loop, done = ThreadLoop(), []
 
     def ask() -> None:
         with pytest.raises(TimeoutError, match="busy"):
@@ -96,8 +96,8 @@ def test_another_thread_does_not_wait_for_ever(monkeypatch):
     assert done == []  # what was given up is not done later
 
 
-def test_a_pump_gives_up_in_time_and_elsewhere_it_only_waits():
-    loop, seen, waited = Loop(), [], []
+def test_a_pump_times_out_and_only_waits_in_other_threads():
+    loop, seen, waited = ThreadLoop(), [], []
     begun = time.monotonic()
     assert not loop.pump(lambda: False, timeout=0.1)
     assert 0.09 < time.monotonic() - begun < 2
@@ -111,9 +111,9 @@ def test_a_pump_gives_up_in_time_and_elsewhere_it_only_waits():
     assert waited == [False, True] and seen == [threading.get_ident()]
 
 
-def test_a_call_that_raises_is_told_and_logged_and_the_next_one_comes(caplog):
+def test_an_exception_in_a_call_is_reported_and_the_next_call_runs(caplog):
     errors, seen = [], []
-    loop = Loop(errors.append)
+    loop = ThreadLoop(errors.append)
     loop(lambda: 1 / 0)
     loop(lambda: seen.append(1))
     loop.drain()

@@ -1,4 +1,4 @@
-"""People, Python and the agent at one mesh, in any order: no view is ever left behind."""
+"""Random edits by users, Python and the agent on one mesh: all views stay synchronised."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from meshwright_core.operations.catalogue import of_kind
 
 
 class Monkey:
-    """Does whatever can be done, at two widgets and from Python."""
+    """Random requests from two widgets and random calls from Python."""
 
     def __init__(self, meshes: list[HalfEdgeMesh], seed: int) -> None:
         self.random = random.Random(seed)
@@ -41,12 +41,12 @@ class Monkey:
         self.check()
 
     def check(self) -> None:
-        """All views show the mesh, and nothing has gone wrong."""
-        self.session.telling.flush()
+        """All views equal the mesh, and no exception was reported."""
+        self.session.broadcaster.flush()
         mesh, history = self.session.mesh, self.document.history
         scores = [history.first[0], *(row.after for row in history)]
         for port in self.ports:
-            assert port.replica.shows(mesh, self.session.telling.mirror.frame)
+            assert port.replica.shows(mesh, self.session.broadcaster.mesh_sync.frame)
             assert port.replica.scores[: len(scores)] == scores
             assert "failed" not in {notice["tone"] for notice in port.of("notice")}
             port.packets.clear()
@@ -93,7 +93,7 @@ class Monkey:
         return word, others[word]
 
     def call(self) -> None:
-        """What a cell may do."""
+        """Calls that a cell may make."""
         session, document = self.session, self.document
         calls: list[Callable[[], object]] = [
             document.undo,
@@ -114,7 +114,7 @@ class Monkey:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_no_view_is_left_behind(star, triangles, strip, monkeypatch, greedy, seed):
+def test_all_views_stay_synchronised(star, triangles, strip, monkeypatch, greedy, seed):
     script_agent(monkeypatch, greedy)
 
     async def cell() -> None:

@@ -1,4 +1,4 @@
-"""The widget from Python: what it shows, what it does, what it tells, and its end."""
+"""The widget's Python interface: sources, edits, events, agent, close."""
 
 import gc
 import subprocess
@@ -24,7 +24,7 @@ def scripted(monkeypatch, greedy):
 
 
 class Shown(MeshWidget):
-    """A widget whose browser is a replica."""
+    """A widget with a replica as its browser."""
 
     def post(self, packet: Packet) -> None:
         if "packets" not in self.__dict__:
@@ -40,12 +40,12 @@ class Shown(MeshWidget):
 
     @property
     def sentence(self) -> str:
-        notices = [p.content for p in self.packets if p.content["say"] == "notice"]
+        notices = [p.content for p in self.packets if p.content["type"] == "notice"]
         return str(notices[-1]["sentence"])
 
     @property
     def in_step(self) -> bool:
-        return self.replica.shows(self.mesh, self.session.telling.mirror.frame)
+        return self.replica.shows(self.mesh, self.session.broadcaster.mesh_sync.frame)
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def widget(show, star) -> Shown:
     return show(star, name="star")
 
 
-def test_what_can_be_shown(show, star, tmp_path):
+def test_valid_sources(show, star, tmp_path):
     from meshwright_core.domains import gallery
     from meshwright_core.io import mesh_files
 
@@ -99,7 +99,7 @@ def test_what_can_be_shown(show, star, tmp_path):
         ("star", {"policy": "nobody"}, "There is no policy 'nobody'"),
     ],
 )
-def test_what_cannot_be_shown_is_one_sentence(source, options, words):
+def test_invalid_sources_raise_one_sentence(source, options, words):
     with pytest.raises(MeshError) as caught:
         MeshWidget(source, **options)
     assert words in str(caught.value) and "\n" not in str(caught.value)
@@ -116,7 +116,7 @@ def test_height_and_theme_have_bounds(star, options):
         MeshWidget(star, **options)
 
 
-def test_a_widget_in_words(widget):
+def test_repr(widget):
     assert repr(widget) == f"<Shown of {widget.mesh!r}>" and "s = 12, s* = 4" in repr(widget)
 
 
@@ -157,7 +157,7 @@ def test_a_browser_sets_no_trait(widget):
     ],
     ids=str,
 )
-def test_messages_of_no_shape_are_survived(widget, message):
+def test_malformed_comm_messages_are_ignored_or_refused(widget, message):
     before = widget.mesh.arrays.points.tobytes()
     widget._handle_msg(message)
     assert widget.mesh.arrays.points.tobytes() == before
@@ -165,7 +165,7 @@ def test_messages_of_no_shape_are_survived(widget, message):
     assert widget.in_step
 
 
-def test_everything_python_does_is_shown(widget, star):
+def test_every_edit_from_python_is_sent(widget, star):
     operation, halfedge = allowed(star)
     assert widget.check(operation, halfedge)
     widget.apply(operation, halfedge)
@@ -191,7 +191,7 @@ def test_everything_python_does_is_shown(widget, star):
     assert widget.in_step
 
 
-def test_two_widgets_on_one_document_stay_in_step(show, widget):
+def test_two_widgets_on_one_document_stay_synchronised(show, widget):
     other = show(widget)
     assert other.document is widget.document and other.assistant is widget.assistant
     other.say("operate", **asked(widget.mesh))
@@ -230,7 +230,7 @@ def test_events(widget):
         widget.on("click", print)
 
 
-def test_a_callback_that_raises_is_told_and_logged_and_no_more(widget, caplog):
+def test_an_exception_in_a_callback_is_shown_and_logged_only(widget, caplog):
     seen = []
     widget.on("changed", lambda: 1 / 0)
     widget.on("changed", lambda: seen.append(1))
@@ -254,7 +254,7 @@ def test_a_callback_may_edit_but_not_wait(widget):
     widget.on("history", undo)
     widget.apply(*allowed(widget.mesh))
     assert widget.history.cursor == 0 and widget.in_step
-    assert ["wait for itself" in words for words in raised] == [True, True]
+    assert ["block itself" in words for words in raised] == [True, True]
     assert not widget.assistant.running
 
 
@@ -280,7 +280,7 @@ def test_the_agent_with_and_without_waiting(widget):
     assert widget.hint() == ()
 
 
-def test_pausing_and_a_wait_that_is_too_short(widget):
+def test_pause_and_a_wait_that_times_out(widget):
     widget.play(speed=0.5)
     assert not widget.wait(0.1)
     widget.pause()
@@ -300,7 +300,7 @@ def test_an_interrupt_ends_the_run(widget, monkeypatch):
     assert not widget.assistant.running
 
 
-def test_other_threads_are_served_by_the_owner(widget):
+def test_calls_from_other_threads_run_in_the_owners_thread(widget):
     got = []
 
     def work() -> None:
@@ -315,7 +315,7 @@ def test_other_threads_are_served_by_the_owner(widget):
     assert got[-1] == "end" and widget.history.cursor >= 2 and widget.in_step
 
 
-def test_a_closed_widget_says_so(star):
+def test_a_closed_widget_refuses_calls(star):
     widget = MeshWidget(star)
     widget.close()
     widget.close()
@@ -327,7 +327,7 @@ def test_a_closed_widget_says_so(star):
     again.close()
 
 
-def test_nothing_is_kept_of_a_closed_widget(star):
+def test_a_closed_widget_leaves_no_references(star):
     widget = MeshWidget(star)
     widget.on("changed", print)
     document = widget.document
@@ -339,7 +339,7 @@ def test_nothing_is_kept_of_a_closed_widget(star):
     document.submit(*allowed(star))
 
 
-def test_a_widget_is_quick_to_import_and_brings_neither_qt_nor_torch():
+def test_importing_the_widget_imports_neither_qt_nor_torch():
     code = (
         "import sys, meshwright.notebook; print([m for m in ('torch', 'qtpy', 'PySide6', 'pyvista',"
         " 'matplotlib', 'PIL', 'meshwright_agent', 'scipy.sparse') if m in sys.modules])"
@@ -348,7 +348,7 @@ def test_a_widget_is_quick_to_import_and_brings_neither_qt_nor_torch():
     assert done.stdout.strip() == "[]", done.stderr
 
 
-def test_the_program_ends_with_a_run_under_way():
+def test_the_process_exits_during_a_run():
     code = (
         "from meshwright.notebook import MeshWidget\n"
         "import meshwright.assistant.worker, time, threading\n"

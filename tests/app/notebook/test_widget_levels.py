@@ -1,4 +1,4 @@
-"""Levels in a notebook: what browsers hear of the play, and what they may ask of it."""
+"""Levels in a notebook: messages and requests."""
 
 import json
 
@@ -6,7 +6,7 @@ import pytest
 from porting import Port, script_agent
 
 from meshwright.notebook import MeshWidget
-from meshwright.notebook.protocol.level_bridge import Playing
+from meshwright.notebook.protocol.level_bridge import LevelBridge
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright_core import MeshError
@@ -34,7 +34,7 @@ def port(widget):
 
 
 def told(port):
-    """The last that was said of the level."""
+    """The content of the last level message."""
     return port.of("level")[-1]["level"]
 
 
@@ -43,7 +43,7 @@ def solve(port):
         port.operate(operation.value, port.session.mesh.halfedge(a, b))
 
 
-def test_a_view_is_told_of_the_level_when_it_comes(port):
+def test_a_new_view_gets_the_level(port):
     message = port.of("level")[-1]
     assert [one["name"] for one in message["all"]] == list(levels.names())
     level = message["level"]
@@ -54,14 +54,14 @@ def test_a_view_is_told_of_the_level_when_it_comes(port):
     json.dumps(message)
 
 
-def test_without_a_level_nothing_is_told(monkeypatch, greedy, strip):
+def test_without_a_level_no_level_message_is_sent(monkeypatch, greedy, strip):
     script_agent(monkeypatch, greedy)
     widget = MeshWidget(strip)
     port = Port(widget.session)
     port.ask("hello")
     assert port.of("level") == []
     port.ask("level", action="open", name="two-turns")
-    assert "There is nothing to 'level' here" in port.sentence
+    assert "'level' is not available here" in port.sentence
     assert (widget.level, widget.stars) == (None, 0)
     port.close()
     widget.close()
@@ -92,7 +92,7 @@ def test_again_next_and_open(port):
     assert told(port)["name"] == levels.after("two-turns")
     port.ask("level", action="open", name="star")
     assert told(port)["goal"] == 4
-    assert port.replica.shows(port.session.mesh, port.session.telling.mirror.frame)
+    assert port.replica.shows(port.session.mesh, port.session.broadcaster.mesh_sync.frame)
     port.ask("level", action="next")
     assert "last level" in port.sentence
     assert told(port)["name"] == "star"
@@ -102,14 +102,14 @@ def test_again_next_and_open(port):
     ("fields", "why"),
     [
         ({"action": "open", "name": "no-such"}, "no level named"),
-        ({"action": "open", "name": 7}, "must be a string"),
-        ({"action": "open", "name": "x" * 500}, "at most"),
-        ({"action": "win"}, "must be one of"),
-        ({}, "needs the field"),
-        ({"action": "again", "stars": 3}, "no field"),
+        ({"action": "open", "name": 7}, "expected 'str'"),
+        ({"action": "open", "name": "x" * 500}, "length <= 200"),
+        ({"action": "win"}, "invalid enum value"),
+        ({}, "missing required field"),
+        ({"action": "again", "stars": 3}, "unknown field"),
     ],
 )
-def test_nonsense_is_refused(port, fields, why):
+def test_malformed_level_requests_are_refused(port, fields, why):
     before = port.session.document.revision
     port.ask("level", **fields)
     assert why in port.sentence
@@ -117,7 +117,7 @@ def test_nonsense_is_refused(port, fields, why):
     assert port.session.level.name == "two-turns"
 
 
-def test_what_is_not_played_in_a_level_is_refused(port):
+def test_requests_outside_the_rules_of_a_level_are_refused(port):
     port.ask("level", action="open", name="three-blocks")
     for word, fields in (
         ("clean_all", {}),
@@ -141,15 +141,15 @@ def test_a_hint_costs_a_star(widget, port):
     assert told(port)["stars"] == 2
 
 
-def test_the_agents_steps_win_nothing(widget, port):
+def test_the_agents_steps_earn_no_stars(widget, port):
     widget.complete()
     level = told(port)
     assert (level["helped"], level["stars"]) == (True, 0)
     assert "win no stars" in level["remark"]
 
 
-def test_the_agent_answers_on_a_mesh_of_its_own(widget, port):
-    play = Playing.of(widget.session).play
+def test_the_agent_solves_a_copy_of_the_mesh(widget, port):
+    play = LevelBridge.of(widget.session).play
     port.ask("level", action="solve")
     assert told(port)["rival"]["standing"] == "asked"
     assert widget.session.loop.pump(lambda: play.rival.standing is not OpponentState.ASKED, 20)
@@ -164,18 +164,18 @@ def test_the_agent_answers_on_a_mesh_of_its_own(widget, port):
     assert "Redo" in port.sentence
 
 
-def test_a_way_is_shown_where_the_agent_cannot_play(widget, port):
+def test_a_solution_is_shown_where_the_agent_cannot_play(widget, port):
     port.ask("level", action="open", name="three-blocks")
     assert told(port)["answered"]
     port.ask("level", action="solve")
     assert len(widget.history) == 4
 
 
-def test_who_may_look_only_cannot_play(widget):
+def test_a_read_only_view_cannot_change_levels(widget):
     port = Port(widget.session, read_only=True)
     port.ask("hello")
     port.ask("level", action="next")
-    assert "looking only" in port.sentence
+    assert "read-only" in port.sentence
     assert widget.level.name == "two-turns"
     port.close()
 
@@ -190,7 +190,7 @@ def test_two_widgets_play_the_same_level(widget, port):
     other.close()
 
 
-def test_a_message_is_small_and_is_sent_only_when_it_is_news(port):
+def test_level_messages_are_small_and_sent_on_change_only(port):
     port.operate("flip_left", next(
         h for h in range(48) if port.session.document.check("flip_left", h)
     ))  # fmt: skip
@@ -201,17 +201,17 @@ def test_a_message_is_small_and_is_sent_only_when_it_is_news(port):
     assert len(port.of("level")) == count
 
 
-def test_a_widget_wants_a_mesh_or_a_level(strip):
+def test_source_and_level_exclude_each_other(strip):
     with pytest.raises(MeshError, match="A level brings its own mesh"):
         MeshWidget(strip, level="star")
     with pytest.raises(MeshError, match="no level named"):
         MeshWidget(level="stra")
 
 
-def test_nothing_is_left_of_a_widget_that_is_closed(monkeypatch, greedy):
+def test_a_closed_widget_with_a_level_leaves_no_references(monkeypatch, greedy):
     script_agent(monkeypatch, greedy)
     widget = MeshWidget(level="two-turns")
-    document, play = widget.document, Playing.of(widget.session).play
+    document, play = widget.document, LevelBridge.of(widget.session).play
     play.ask_agent()
     widget.close()
     assert play.rival is None

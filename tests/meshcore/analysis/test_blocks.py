@@ -73,7 +73,7 @@ def test_corners_of_degree_three_cut_only_when_asked():
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_blocks_agree_with_the_slow_way(seed):
+def test_blocks_agree_with_a_naive_computation(seed):
     rng = np.random.default_rng(seed)
     mesh = meshing.benchmark_mesh("quad", 12, rng)
     operations = ("flip_left", "flip_right", "collapse", "global_split", "cleanup")

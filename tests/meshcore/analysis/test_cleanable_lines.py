@@ -43,7 +43,7 @@ def test_the_vertices_follow_one_another_along_edges():
 
 
 @pytest.mark.parametrize("locked", [0, 6])
-def test_no_line_where_something_holds_it(locked):
+def test_lines_with_a_locked_vertex_are_left_out(locked):
     mesh = grid(2)
     mesh.set_locked(4, locked == 0)
     assert len(cleanable_lines(mesh)) == (0 if locked == 0 else 2)

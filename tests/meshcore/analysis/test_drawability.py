@@ -19,11 +19,11 @@ def _count(mesh):
 
 @pytest.mark.parametrize("name", ["star", "l-shape", "square-with-hole", "annulus", "arch", "gear"])
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_fresh_meshes_have_none(name, kind):
+def test_fresh_meshes_have_no_obstacles(name, kind):
     assert _count(meshing.mesh_domain(gallery.shape(name), kind)) == 0
 
 
-def test_grids_and_rings_have_none():
+def test_grids_and_rings_have_no_obstacles():
     assert _count(grid(3, 2)) == 0
     assert _count(ring(8, 2)) == 0
 
@@ -51,7 +51,7 @@ def test_grids_and_rings_have_none():
         pytest.param(DART, [[0, 1, 2], [0, 2, 3]], 0, id="a reflex corner of two triangles"),
     ],
 )
-def test_each_kind(points, elements, count):
+def test_each_kind_of_obstacle(points, elements, count):
     assert _count(HalfEdgeMesh.from_elements(points, elements)) == count
 
 
@@ -77,7 +77,7 @@ def test_sides_that_bend_keep_their_edges():
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_what_has_an_obstacle_stays_inverted(kind):
+def test_meshes_with_obstacles_stay_inverted(kind):
     rng = np.random.default_rng(3)
     mesh = meshing.benchmark_mesh(kind, 8, rng)
     obstacles = Obstacles(mesh)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
-from meshwright_core.analysis.submesh import enclose, holding
+from meshwright_core.analysis.submesh import enclose, temporarily_locked
 from meshwright_core.domains import meshing
 from meshwright_core.geometry.smoothing import relax
 
@@ -55,12 +55,12 @@ def test_a_region_without_a_free_vertex_is_refused(grid, elements):
         enclose(grid, np.array(elements, np.int64))
 
 
-def test_what_is_held_stays_and_no_lock_is_left(grid):
+def test_locked_vertices_stay_and_no_lock_is_left(grid):
     inside = enclose(grid, np.array([5, 6, 9, 10]))
     kept = int(inside.held[0])
     grid.set_locked(kept)
     places = grid.points.copy()
-    with holding(grid, inside.held):
+    with temporarily_locked(grid, inside.held):
         edit = grid.apply(Operation.SPLIT, grid.outgoing(int(inside.free[0]))[0])
         relax(grid, around=edit.touched)
     assert np.array_equal(grid.points[inside.held], places[inside.held])
@@ -71,11 +71,11 @@ def test_what_is_held_stays_and_no_lock_is_left(grid):
     grid.validate()
 
 
-def test_locks_go_when_something_breaks(grid):
+def test_locks_are_removed_after_an_exception(grid):
     held = enclose(grid, np.array([5, 6, 9, 10])).held
 
     def broken():
-        with holding(grid, held):
+        with temporarily_locked(grid, held):
             assert grid.locked().sum() == len(held)
             grid.reserve(1000, 1000)  # other arrays
             raise ZeroDivisionError

@@ -26,13 +26,13 @@ def squares(mesh, name):
     return {"image/svg+xml": f"<svg>{mesh.n_elements}</svg>"}, {"image/svg+xml": {"alt": "grid"}}
 
 
-def test_without_a_drawer_the_line_of_text_remains(monkeypatch):
+def test_without_a_drawing_function_the_line_of_text_is_shown(monkeypatch):
     installed(monkeypatch)
     mesh = grid(2)
     assert mesh._repr_mimebundle_() == ({"text/plain": repr(mesh)}, {})
 
 
-def test_the_drawer_is_found_by_its_name_and_asked_when_a_mesh_is_shown(monkeypatch):
+def test_the_drawing_function_is_found_by_its_name_when_a_mesh_is_shown(monkeypatch):
     group, here = notebook_display.GROUP, f"{__name__}:squares"
     installed(
         monkeypatch,
@@ -45,7 +45,7 @@ def test_the_drawer_is_found_by_its_name_and_asked_when_a_mesh_is_shown(monkeypa
     assert metadata == {"image/svg+xml": {"alt": "grid"}}
 
 
-def test_a_drawer_that_is_broken_says_so(monkeypatch):
+def test_errors_of_the_drawing_function_are_raised(monkeypatch):
     installed(
         monkeypatch,
         EntryPoint(notebook_display.NAME, "no_such_module:draw", notebook_display.GROUP),

@@ -21,7 +21,7 @@ RANGES = [(8, 24), (25, 50)]
 
 
 @pytest.mark.parametrize("corners", RANGES)
-def test_parts_have_the_corners_and_holes_asked_for(corners):
+def test_parts_have_the_requested_corners_and_holes(corners):
     made = parts(12, corners, seed=5)
     for i, domain in enumerate(made):
         count = sum(len(loop) for loop in domain.loops)

@@ -71,7 +71,7 @@ def test_a_hole_pulled_off_its_circle_goes_back_to_it():
 
 
 @pytest.mark.parametrize("name", ["star", "l-shape", "plate-with-holes", "gear"])
-def test_only_sides_that_bend_are_spread(name):
+def test_only_curved_sides_are_spread(name):
     mesh = mesh_domain(gallery.shape(name), "quad")
     whole = region.whole(mesh)
     bent = whole.vertices[bending(whole)]
@@ -83,7 +83,7 @@ def test_only_sides_that_bend_are_spread(name):
 @pytest.mark.parametrize(
     ("name", "count"), [("disc", 12), ("annulus", 24), ("half-disc", 5), ("star", 0)]
 )
-def test_anchors_keep_the_look_of_sides_that_bend(name, count):
+def test_anchors_keep_the_shape_of_curved_sides(name, count):
     mesh = mesh_domain(gallery.shape(name), "quad")
     chosen = anchors(mesh)
     assert len(chosen) == count

@@ -22,7 +22,7 @@ def test_square_is_perfect():
     ("corner", "bad"),
     [([0.9, 0.9], False), ([0.5, 0.5], True), ([0.2, 0.2], True), ([0.5 + 1e-6, 0.5], False)],
 )
-def test_a_quad_is_fine_only_if_strictly_convex(corner, bad):
+def test_a_quad_is_valid_only_if_strictly_convex(corner, bad):
     mesh = quad([0, 0], [1, 0], corner, [0, 1])
     assert quality.inverted(mesh).tolist() == ([0] if bad else [])
     reflex = corner == [0.2, 0.2]

@@ -123,7 +123,7 @@ def test_relax_goes_further_where_two_rings_do_not_suffice():
     assert mesh.steps == steps + 1
 
 
-def test_relax_of_a_large_mesh_mends_it_in_one_step(monkeypatch):
+def test_relax_of_a_large_mesh_untangles_it_in_one_step(monkeypatch):
     monkeypatch.setattr(smoothing, "WHOLE", 100)
     mesh = jittered("quad", 900, 0.0)
     inside = np.flatnonzero(~mesh.boundary())[::60]
@@ -166,7 +166,7 @@ def test_a_surface_is_smoothed_in_its_tangent_planes():
     assert len(smoothing.relax(mesh, [50])) == 0
 
 
-def test_a_closed_surface_does_no_harm():
+def test_a_closed_surface_is_smoothed_without_errors():
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
     faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     mesh = HalfEdgeMesh.from_elements(corners, faces)
@@ -174,7 +174,7 @@ def test_a_closed_surface_does_no_harm():
     assert len(quality.inverted(mesh)) == 0
 
 
-def test_nothing_to_do_leaves_no_step():
+def test_relax_without_changes_adds_no_step():
     mesh = meshing.grid("quad", 4)
     steps = mesh.steps
     assert len(smoothing.relax(mesh, [])) == 0

@@ -9,7 +9,7 @@ from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import foldover_energy, quality, untangling
 from meshwright_core.geometry import region as regions
 from meshwright_core.geometry.sides import Sides
-from meshwright_core.geometry.unfixable import hopeless, hopeless_corners
+from meshwright_core.geometry.unfixable import unfixable, unfixable_corners
 
 
 def mended(mesh, vertices=None):
@@ -59,7 +59,7 @@ def test_gradient_against_finite_differences(kind, name, eps):
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 @pytest.mark.parametrize("start", ["point", "outside", "random", "sides"])
 @pytest.mark.parametrize("name", ["star", "l-shape", "gear", "plate-with-holes", "disc"])
-def test_terrible_starts(kind, start, name):
+def test_untangling_from_bad_starting_positions(kind, start, name):
     mesh = meshing.mesh_domain(gallery.shape(name), kind)
     inside = np.flatnonzero(~mesh.boundary())
     rng = np.random.default_rng(5)
@@ -95,14 +95,14 @@ def test_untangling_moves_only_what_it_may():
     assert len(found.inverted) == 0
 
 
-def test_a_single_quad_at_a_reflex_corner_is_hopeless():
+def test_a_single_quad_at_a_reflex_corner_is_unfixable():
     points = np.array([[0, 0], [2, 0], [0.5, 0.5], [0, 2]])
     mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 2, 3]])
     found = untangling.untangle(mesh)
-    assert found.inverted.tolist() == found.hopeless.tolist() == [0]
+    assert found.inverted.tolist() == found.unfixable.tolist() == [0]
 
 
-def test_a_flat_boundary_vertex_is_hopeless_and_the_rest_is_mended():
+def test_a_flat_boundary_vertex_is_unfixable_and_the_rest_is_untangled():
     mesh = meshing.grid("quad", 64)
     slides = np.flatnonzero((mesh.points[:, 1] == 0) & ~mesh.geometric())
     vertex = int(slides[len(slides) // 2])
@@ -120,16 +120,16 @@ def test_a_flat_boundary_vertex_is_hopeless_and_the_rest_is_mended():
     mesh.points[inside, :2] = np.random.default_rng(0).random((inside.sum(), 2))
     found = mended(mesh)
     flat = mesh.element_of(mesh.outgoing(vertex)[0])
-    assert found.inverted.tolist() == found.hopeless.tolist() == [flat]
-    assert hopeless(mesh).tolist() == [flat]
+    assert found.inverted.tolist() == found.unfixable.tolist() == [flat]
+    assert unfixable(mesh).tolist() == [flat]
 
 
-def test_a_doublet_is_hopeless():
+def test_a_doublet_is_unfixable():
     points = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1.5, 0.5]])
     mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 2, 4], [0, 4, 2, 3]])
     found = untangling.untangle(mesh)
     assert set(found.inverted) <= {0, 1}
-    assert found.hopeless.tolist() == found.inverted.tolist()
+    assert found.unfixable.tolist() == found.inverted.tolist()
 
 
 @pytest.mark.parametrize("pieces", [9, 32, 100])
@@ -148,11 +148,11 @@ def test_boundary_vertices_of_one_quad_find_the_bends_of_a_circle(pieces, turn):
     assert len(mended(mesh).inverted) == 0
 
 
-def test_a_circle_seen_from_outside_is_hopeless_for_a_single_quad():
+def test_a_circle_seen_from_outside_is_unfixable_for_a_single_quad():
     mesh = meshing.mesh_domain(gallery.shape("annulus"), "tri")
     inner = min(mesh.boundary_loops(), key=len)
     region = regions.whole(mesh)
-    assert not hopeless_corners(region).any()
+    assert not unfixable_corners(region).any()
     h = next(
         h
         for a, b in zip(inner, np.roll(inner, -1), strict=True)
@@ -160,7 +160,7 @@ def test_a_circle_seen_from_outside_is_hopeless_for_a_single_quad():
         if mesh.check("flip", h)
     )
     mesh.apply("flip", h)
-    assert len(hopeless(mesh)) == len(untangling.untangle(mesh).inverted)
+    assert len(unfixable(mesh)) == len(untangling.untangle(mesh).inverted)
 
 
 def test_locked_vertices_stay():
@@ -184,7 +184,7 @@ def test_a_tilted_plane_is_untangled_in_its_plane():
     assert np.abs(((mesh.points - 3.0) @ turn)[:, 2]).max() < 1e-9
 
 
-def test_a_surface_is_left_alone():
+def test_a_curved_surface_is_not_changed():
     mesh = meshing.grid("quad", 16)
     mesh.points[:, 2] = mesh.points[:, 0] ** 2
     found = untangling.untangle(mesh)

@@ -2,47 +2,13 @@
 
 import numpy as np
 import pytest
+from mesh_edits import state, wander
 
-from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
+from meshwright_core import MeshError, OperationRefused
+from meshwright_core.core.arrays import STEP
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.history import step_archive
 from meshwright_core.history.packed_steps import pack, unpack
-from meshwright_core.operations.catalogue import of_kind
-
-
-def state(mesh: HalfEdgeMesh) -> list[bytes]:
-    """Every bit that an undo must bring back."""
-    arrays = mesh.arrays
-    ends = (mesh.k * int(arrays.counters[1]), mesh.slots)
-    return [
-        arrays.edge[: ends[0]].tobytes(),
-        arrays.vertex[: ends[1]].tobytes(),
-        mesh.points.tobytes(),
-        arrays.irregular[: mesh.irregular_count].tobytes(),
-        arrays.counters[:10].tobytes(),
-    ]
-
-
-def wander(mesh: HalfEdgeMesh, steps: int, seed: int = 0) -> list[list[bytes]]:
-    """So many random steps, moves among them; the state after each."""
-    rng = np.random.default_rng(seed)
-    infos = of_kind(mesh.kind)
-    states = []
-    while len(states) < steps:
-        h = int(rng.choice(mesh.element_ids())) * mesh.k + int(rng.integers(mesh.k))
-        operation = infos[rng.integers(len(infos))].operation
-        if rng.random() < 0.2:
-            some = rng.choice(mesh.vertices(), 3, replace=False)
-            mesh.move(some, mesh.points[some] + [1e-3, 1e-3, 0])
-        elif mesh.check(operation, h):
-            with mesh.transaction():
-                mesh.apply(operation, h)
-                some = mesh.vertices()[:2]
-                mesh.move(some, mesh.points[some] * 1.001)
-        else:
-            continue
-        states.append(state(mesh))
-    return states
 
 
 @pytest.fixture
@@ -60,7 +26,7 @@ def test_packed_steps_are_undone_and_redone_to_the_bit(kind):
         states += wander(mesh, 15, part)
         mesh.trim()
     assert mesh.steps == 120
-    assert mesh.arrays.counters[13] < 40  # the others are packed
+    assert mesh.arrays.counters[STEP] < 40  # the others are packed
     for back in range(119, -1, -1):
         assert mesh.undo()
         assert state(mesh) == states[back]
@@ -75,7 +41,7 @@ def test_packed_steps_are_undone_and_redone_to_the_bit(kind):
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_what_was_undone_is_cut_out_and_grafted_on_again(kind):
+def test_undone_steps_are_cut_and_grafted(kind):
     mesh = meshing.mesh_domain(gallery.shape("star"), kind)
     wander(mesh, 10)
     fork, end = state(mesh), wander(mesh, 20, 1)[-1]
@@ -102,7 +68,7 @@ def test_what_was_undone_is_cut_out_and_grafted_on_again(kind):
     mesh.validate()
 
 
-def test_the_last_step_can_be_done_again_on_another_copy():
+def test_the_last_step_is_redone_on_a_copy():
     mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
     other = mesh.copy()
     other.reserve(50, 50)
@@ -117,7 +83,7 @@ def test_the_last_step_can_be_done_again_on_another_copy():
         other.redo()
 
 
-def test_a_refused_or_idle_edit_leaves_what_can_be_redone():
+def test_a_refused_edit_or_empty_transaction_keeps_the_redo_steps():
     mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
     end = wander(mesh, 6)[-1]
     for _ in range(4):
@@ -140,7 +106,7 @@ def test_a_refused_or_idle_edit_leaves_what_can_be_redone():
     assert state(mesh) == end
 
 
-def test_an_edit_drops_what_was_grafted():
+def test_an_edit_discards_grafted_steps():
     mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
     wander(mesh, 4)
     for _ in range(4):
@@ -151,7 +117,7 @@ def test_an_edit_drops_what_was_grafted():
     assert not mesh.can_redo
 
 
-def test_a_copy_may_have_the_history():
+def test_a_copy_with_history():
     mesh = meshing.mesh_domain(gallery.shape("star"), "tri")
     first, last = state(mesh), wander(mesh, 30)[-1]
     copy = mesh.copy(history=True)
@@ -162,7 +128,7 @@ def test_a_copy_may_have_the_history():
     assert mesh.copy().steps == 0
 
 
-def test_packing_keeps_what_is_off_the_plane_and_refuses_what_does_not_fit():
+def test_packing_keeps_z_coordinates_and_refuses_inconsistent_arrays():
     mesh = meshing.mesh_domain(gallery.shape("star"), "tri")
     mesh.move([3, 5], np.array([(0.5, 0.25, -0.0), (0.5, 0.5, 2.0)]))
     steps = mesh.last_step()

@@ -155,7 +155,7 @@ def signed_areas(mesh):
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 @pytest.mark.parametrize("share", [0.3, 1.0])
-def test_orientation_is_mended(kind, share, tmp_path):
+def test_orientation_is_made_consistent(kind, share, tmp_path):
     points, elements, _ = meshing.grid_arrays(kind, 50)
     turned = np.random.default_rng(3).random(len(elements)) < share
     faces = [e[::-1] if t else e for e, t in zip(elements.tolist(), turned, strict=True)]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_undo_redo import state, wander
+from mesh_edits import state, wander
 
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.domains import gallery, meshing
@@ -35,8 +35,8 @@ def copied(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return {name: array.copy() for name, array in arrays.items()}
 
 
-def test_everything_is_there_again(mesh):
-    other = snapshot.restored(copied(snapshot.taken(mesh)))
+def test_round_trip_of_mesh_and_history(mesh):
+    other = snapshot.from_arrays(copied(snapshot.to_arrays(mesh)))
     assert state(other) == state(mesh)
     assert (other.steps, other.can_redo, other.degree_cap) == (mesh.steps, True, 9)
     for (ids, points), (ids_too, points_too) in zip(mesh.outline, other.outline, strict=True):
@@ -53,20 +53,20 @@ def test_everything_is_there_again(mesh):
     assert wander(mesh, 5, 3) == wander(other, 5, 3)
 
 
-def test_every_array_is_missed(mesh):
-    whole = snapshot.taken(mesh)
+def test_a_missing_or_misshapen_array_is_refused(mesh):
+    whole = snapshot.to_arrays(mesh)
     for name in whole:
         with pytest.raises(MeshError, match="lacks"):
-            snapshot.restored({key: array for key, array in whole.items() if key != name})
+            snapshot.from_arrays({key: array for key, array in whole.items() if key != name})
         for wrong in (whole[name].astype(np.float32), whole[name][None], whole[name][:-1]):
             if len(whole[name]):
                 with pytest.raises(MeshError):
-                    snapshot.restored({**whole, name: wrong})
+                    snapshot.from_arrays({**whole, name: wrong})
 
 
-def test_numbers_that_lie_are_refused_or_do_no_harm(mesh):
+def test_changed_numbers_are_refused_or_give_a_valid_mesh(mesh):
     """One number of one array at a time is turned into something else."""
-    whole = snapshot.taken(mesh)
+    whole = snapshot.to_arrays(mesh)
     rng = np.random.default_rng(2)
     refused = 0
     for trial in range(400):
@@ -78,7 +78,7 @@ def test_numbers_that_lie_are_refused_or_do_no_harm(mesh):
         at = int(rng.integers(len(flat)))
         flat[at] = rng.choice([-(1 << 31), -7, -1, 0, 1, 5, 1000, (1 << 31) - 1, flat[at] + 1])
         try:
-            got = snapshot.restored(arrays)
+            got = snapshot.from_arrays(arrays)
         except MeshError as error:
             refused += 1
             assert "\n" not in str(error)
@@ -107,17 +107,17 @@ def test_numbers_that_lie_are_refused_or_do_no_harm(mesh):
         ("sizes", lambda a: a.__setitem__(2, 1 << 27), "room"),
     ],
 )
-def test_words_for_what_is_wrong(mesh, name, change, words):
-    arrays = copied(snapshot.taken(mesh))
+def test_messages_name_what_is_wrong(mesh, name, change, words):
+    arrays = copied(snapshot.to_arrays(mesh))
     change(arrays[name])
     with pytest.raises(MeshError, match=words):
-        snapshot.restored(arrays)
+        snapshot.from_arrays(arrays)
 
 
 def test_a_write_to_the_scratch_of_the_checks_is_refused(mesh):
-    arrays = copied(snapshot.taken(mesh))
+    arrays = copied(snapshot.to_arrays(mesh))
     places = arrays["done.places"]
     vertex_write = int(np.flatnonzero(places % WRITE_KINDS == 1)[0])
     places[vertex_write] = 5 * WRITE_KINDS + 1
     with pytest.raises(MeshError, match="beyond the mesh"):
-        snapshot.restored(arrays)
+        snapshot.from_arrays(arrays)

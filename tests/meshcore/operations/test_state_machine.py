@@ -1,6 +1,7 @@
 """A hypothesis state machine: random operations on random meshes against the naive face list."""
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
@@ -8,6 +9,8 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 from meshwright_core import HalfEdgeMesh, OperationRefused
 from meshwright_core.testing.face_list_oracle import Refused
 from meshwright_core.testing.fuzzing import agree, face_list, snapshot, start_mesh
+
+pytestmark = pytest.mark.slow
 
 
 class _Machine(RuleBasedStateMachine):

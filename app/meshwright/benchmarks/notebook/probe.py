@@ -21,7 +21,7 @@ NOTING = """(() => {
         const text = typeof data === 'string';
         const bytes = text ? new TextEncoder().encode(data) : new Uint8Array(data);
         const start = reader.decode(bytes);
-        const word = start.match(way === 'up' ? /"do": ?"(\\w+)"/ : /"say": ?"(\\w+)"/);
+        const word = start.match(way === 'up' ? /"do": ?"(\\w+)"/ : /"type": ?"(\\w+)"/);
         if (word) {
             noted.traffic.push({ at: performance.now(), way, word: word[1], bytes: bytes.length });
         }

@@ -52,15 +52,15 @@ class Card:
     @property
     def head(self) -> dict[str, Any]:
         """The head that Python sent last: score, cursor and so on."""
-        found: dict[str, Any] = self.look("root => root.meshwright.mirror.head")
+        found: dict[str, Any] = self.look("root => root.meshwright.replica.head")
         return found
 
     def await_head(self, **wanted: Any) -> None:
         """Wait until the head has these values and the mesh of that revision is painted."""
         self.until(
-            "(root, wanted) => { const { mirror } = root.meshwright; return"
-            " Object.entries(wanted).every(([name, value]) => mirror.head[name] === value)"
-            " && Number(root.dataset.revision) === mirror.revision; }",
+            "(root, wanted) => { const { replica } = root.meshwright; return"
+            " Object.entries(wanted).every(([name, value]) => replica.head[name] === value)"
+            " && Number(root.dataset.revision) === replica.revision; }",
             wanted,
         )
 
@@ -116,7 +116,7 @@ class Card:
     def title(self, operation: str) -> str:
         """The title of the operation."""
         found: str = self.look(
-            "(root, name) => root.meshwright.mirror.catalogue"
+            "(root, name) => root.meshwright.replica.catalogue"
             ".find(row => row.operation === name).title",
             operation,
         )

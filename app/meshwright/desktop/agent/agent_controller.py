@@ -17,7 +17,6 @@ from meshwright.desktop.canvas.layers.hints import percent
 from meshwright.desktop.canvas.layers.policy_view import FieldLayer, sight
 from meshwright.document.document import title_of
 from meshwright.graphics.markers import label
-from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.core.kinds import ELEMENT_NOUN
 
 if TYPE_CHECKING:
@@ -155,8 +154,7 @@ class AgentControl:
         mesh = self._window.document.mesh
         if mesh is not None:
             inside = np.setdiff1d(mesh.element_ids(), outside, assume_unique=True)
-            corners = (mesh.k * inside[:, None] + np.arange(mesh.k)).ravel()
-            self._window.document.selection.set(mesh.arrays.edge[corners, ORIGIN])
+            self._window.document.selection.set(mesh.corners(inside).ravel())
 
     def _on_looked(self) -> None:
         mesh, insight = self._window.document.mesh, self._window.assistant.insight

@@ -8,14 +8,7 @@ import numpy as np
 from qtpy.QtCore import QTimer
 
 from meshwright.desktop.canvas.layers.ghost import GhostLayer
-from meshwright.document.operation_preview import (
-    GLOBAL,
-    OperationOffer,
-    best,
-    choices,
-    following,
-    ghost,
-)
+from meshwright.document.operation_preview import OperationOffer, best, choices, following, ghost
 from meshwright_core import HalfEdgeMesh, Operation
 
 if TYPE_CHECKING:
@@ -152,7 +145,7 @@ class Pointing:
         self._rest.stop()
         if meant is None or not self.ghosts or self._window.assistant.running:
             self.layer.show(None)
-        elif meant.operation in GLOBAL and mesh.n_elements > LARGE:
+        elif not meant.info.is_local and mesh.n_elements > LARGE:
             self.layer.show(None)
             self._rest.start()
         else:

@@ -49,7 +49,7 @@ class Inverted:
         if mesh is None or not len(self._elements):
             self.layer.show(np.zeros((0, 3, 2)))
             return
-        halfedges = mesh.k * self._elements[:, None] + np.arange(mesh.k)
+        halfedges = mesh.halfedges_of(self._elements)
         halfedges = halfedges[halfedges[:, -1] < len(mesh.arrays.edge)]
         corners = mesh.arrays.edge[halfedges, ORIGIN]
         self.layer.show(mesh.points[corners[corners[:, 0] >= 0], :2])

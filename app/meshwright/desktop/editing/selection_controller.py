@@ -15,7 +15,7 @@ from meshwright.desktop.canvas.mouse import Click
 from meshwright.desktop.editing.edit_controller import plural
 from meshwright.desktop.editing.vertex_menu import selection_menu, vertex_menu
 from meshwright.document.vertex_drag import Drag, refusal
-from meshwright_core.core.arrays import FLAGS, LOCKED, ORIGIN
+from meshwright_core.core.arrays import FLAGS, LOCKED
 from meshwright_core.geometry.polygons import points_inside
 
 if TYPE_CHECKING:
@@ -215,9 +215,8 @@ class Selecting:
             self.region.show(np.zeros((0, 4, 2)))
             self.layer.show(np.zeros((0, 2)), self._radii)
             return
-        halfedges = mesh.k * selection.elements[:, None] + np.arange(mesh.k)
         points = mesh.points[:, :2]
-        self.region.show(points[mesh.arrays.edge[halfedges, ORIGIN]])
+        self.region.show(points[mesh.corners(selection.elements)])
         self.layer.show(points[selection.vertices], self._radii)
 
     def _radii(self, viewport: Viewport) -> np.ndarray:

@@ -70,7 +70,7 @@ class _Header(Struct):
 
 def packed(state: DocumentState) -> tuple[dict[str, Any], Arrays]:
     """The header and the arrays; those of the mesh itself are not copied."""
-    arrays = snapshot.taken(state.mesh)
+    arrays = snapshot.to_arrays(state.mesh)
     history = state.history
     header = _Header(
         version=VERSION,
@@ -98,7 +98,7 @@ def unpacked(header: Any, arrays: Mapping[str, Any]) -> DocumentState:
     if converted(header, _Version).version > VERSION:
         raise MeshError("it was made by a later version of Meshwright")
     record = converted(header, _Header)
-    mesh = snapshot.restored(arrays)
+    mesh = snapshot.from_arrays(arrays)
     steps = tuple(sum(map(len, side)) for side in mesh.packed_steps())
     if (record.cursor, len(record.rows) - record.cursor) != steps:
         raise MeshError("its history has other rows than steps")

@@ -1,7 +1,7 @@
-"""The frozen page: one HTML file that goes through the film of a history, without any Python.
+"""Exports the recording of a history as one HTML page that needs no Python.
 
-Everything is in the file: it asks nothing of a network, works from a disk and in a frame. A policy
-in the page itself says so to the browser, and that no script may run but ours.
+The file is self-contained: it loads nothing from a network, works from a disk and in a sandboxed
+frame. Its Content Security Policy allows its own script only.
 """
 
 from __future__ import annotations
@@ -22,29 +22,25 @@ from meshwright_core.io import atomic_write
 
 LONGEST = 200
 """Characters of a title."""
-HEAD_AND_FOOT = 296
-"""Pixels of the page above and below the canvas."""
-LOWEST, HIGHEST = 240, 640
-"""Bounds of the canvas in pixels."""
 
 
 def page(document: Document, title: str = "", path: str | os.PathLike[str] | None = None) -> str:
-    """The page of ``document`` as text, which with ``path`` is written there, too.
+    """The page of ``document`` as text; also written to ``path``.
 
-    Without a title it is that of the document's name. It begins in the state in which the document
-    is now. Raises MeshError, in one sentence, where there is no mesh or nothing can be written at
-    ``path``; an old file stays as it was then.
+    The default title is the document's name. The page starts in the present state. Raises
+    MeshError where there is no mesh or ``path`` cannot be written; an existing file is unchanged
+    then.
     """
-    film = record(document)
-    heading = _heading(title or document.name or elements(document.mesh))
-    text = _html(heading, _note(film), film)
+    recording, mesh = record(document), document.mesh
+    heading = _heading(title or document.name or (elements(mesh) if mesh is not None else ""))
+    text = _html(heading, _note(recording), recording)
     if path is not None:
         with atomic_write.replacing(path) as temporary:
             temporary.write_text(text, encoding="utf-8", newline="\n")
     return text
 
 
-def _html(heading: str, note: str, film: dict[str, Any]) -> str:
+def _html(heading: str, note: str, recording: dict[str, Any]) -> str:
     script = _script()
     return f"""<!doctype html>
 <html lang="en">
@@ -63,10 +59,10 @@ def _html(heading: str, note: str, film: dict[str, Any]) -> str:
 <h1>{escape(heading)}</h1>
 <p>{escape(note)}</p>
 <div id="film"></div>
-<noscript><p>The film is shown by a script, and scripts are switched off here.</p></noscript>
+<noscript><p>This recording needs JavaScript, which is disabled here.</p></noscript>
 <p class="end">Made with Meshwright</p>
 </main>
-<script type="application/json" id="recording">{_embedded(film)}</script>
+<script type="application/json" id="recording">{_embedded(recording)}</script>
 <script>{script}</script>
 </body>
 </html>
@@ -74,44 +70,36 @@ def _html(heading: str, note: str, film: dict[str, Any]) -> str:
 
 
 def _heading(title: str) -> str:
-    """One line, not too long."""
+    """``title`` as one line of at most :data:`LONGEST` characters."""
     line = " ".join(title.split())
     return line if len(line) <= LONGEST else line[: LONGEST - 1] + "\u2026"
 
 
-def _note(film: dict[str, Any]) -> str:
-    """What is seen here, in words."""
-    scores, optima = film["track"]["scores"], film["track"]["optima"]
+def _note(recording: dict[str, Any]) -> str:
+    """One sentence on what the recording shows."""
+    scores, optima = recording["track"]["scores"], recording["track"]["optima"]
     count = len(scores) - 1
     if count == 0:
         way = f"no steps, s {scores[0]:,}"
     else:
         steps = f"{count:,} step{'' if count == 1 else 's'}"
         way = f"{steps}, from s {scores[0]:,} to {scores[-1]:,}"
-    return f"A frozen film: {way}, optimum {optima[-1]:,}. It can be watched, not changed."
+    return f"Recording of an edit: {way}, optimum {optima[-1]:,}. It cannot be edited."
 
 
-def _embedded(film: dict[str, Any]) -> str:
-    """JSON that cannot end the element it stands in, whatever names are in it."""
-    text = json.dumps(film, separators=(",", ":"), allow_nan=False)
+def _embedded(recording: dict[str, Any]) -> str:
+    """JSON that cannot close the script element around it, whatever names it contains."""
+    text = json.dumps(recording, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _script() -> str:
-    """The front, and what puts the film into the page."""
-    return f"""(() => {{
-"use strict";
-{bundle.script()}
-const recording = JSON.parse(document.getElementById("recording").textContent);
-const place = document.getElementById("film");
-const room = Math.min(innerHeight - {HEAD_AND_FOOT}, place.clientWidth, {HIGHEST});
-mount(place, new FilmLink(recording), {{ height: Math.max(room, {LOWEST}), theme: "auto" }});
-}})();
-"""
+    """The bundle, and the call that shows the embedded recording."""
+    return f"{bundle.script()}{bundle.GLOBAL}.showRecording();\n"
 
 
 def _policy(script: str) -> str:
-    """What the browser may do for this page: run this one script and nothing else."""
+    """The Content Security Policy: this one script, styles, and nothing from a network."""
     hashed = b64encode(sha256(script.encode()).digest()).decode("ascii")
     return (
         f"default-src 'none'; script-src 'sha256-{hashed}'; style-src 'unsafe-inline'; "
@@ -120,7 +108,7 @@ def _policy(script: str) -> str:
 
 
 def _page_style() -> str:
-    """What stands around the card, light and dark as the system is."""
+    """Style of the page around the widget, light or dark as the system."""
     return f"""{_colours(LIGHT)}
 @media (prefers-color-scheme: dark) {{ {_colours(DARK)} }}
 html {{ background: var(--page); color: var(--ink); }}

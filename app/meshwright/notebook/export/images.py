@@ -1,10 +1,11 @@
-"""Pictures and films of a document as bytes, and as files where a path is given."""
+"""Images and animations of a document as bytes, and as files where a path is given."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from meshwright.document.document import Document
 from meshwright.graphics.export.export_job import ExportOptions, save_export
@@ -15,12 +16,13 @@ from meshwright_core.arguments import is_whole_number
 from meshwright_core.io import atomic_write
 
 SIZE = (960, 720)
-"""Pixels of a picture that is not told otherwise."""
+"""Default size in pixels."""
 SMALLEST, LARGEST = 32, 8192
-"""Bounds of a side in pixels."""
+"""Bounds of width and height in pixels."""
 SECONDS = 0.25
-"""How long a frame of a film stays that is not told otherwise."""
+"""Default duration of a frame in seconds."""
 LONGEST = 60.0
+"""Longest duration of a frame in seconds."""
 
 File = str | os.PathLike[str] | None
 
@@ -28,10 +30,10 @@ File = str | os.PathLike[str] | None
 def png(
     document: Document, size: tuple[int, int] = SIZE, path: File = None, theme: str = "light"
 ) -> bytes:
-    """A picture of the present state as PNG, ``size`` in pixels; also written at ``path``.
+    """An image of the present state as PNG, ``size`` in pixels; also written to ``path``.
 
-    This and all others raise MeshError, in one sentence, where there is no mesh, a number cannot
-    be, or nothing can be written at ``path``; an old file stays as it was then.
+    This and all others raise MeshError where there is no mesh, a number is out of range, or
+    ``path`` cannot be written; an existing file is unchanged then.
     """
     return _made(document, ".png", size, path, theme)
 
@@ -39,7 +41,7 @@ def png(
 def svg(
     document: Document, size: tuple[int, int] = SIZE, path: File = None, theme: str = "light"
 ) -> str:
-    """A picture of the present state as SVG; also written at ``path``."""
+    """An image of the present state as SVG; also written to ``path``."""
     return _made(document, ".svg", size, path, theme).decode("utf-8")
 
 
@@ -50,9 +52,9 @@ def gif(
     path: File = None,
     theme: str = "light",
 ) -> bytes:
-    """The film of the history as GIF, each frame ``seconds`` long; also written at ``path``.
+    """The history as GIF, each frame ``seconds`` long; also written to ``path``.
 
-    A long history is shown in a few hundred frames, each of them some steps.
+    A long history is shown in a few hundred frames of several steps each.
     """
     return _made(document, ".gif", size, path, theme, seconds)
 
@@ -64,7 +66,7 @@ def mp4(
     size: tuple[int, int] = SIZE,
     theme: str = "light",
 ) -> bytes:
-    """The film of the history as MP4 (H.264); otherwise as :func:`gif`."""
+    """The history as MP4 (H.264); otherwise as :func:`gif`."""
     return _made(document, ".mp4", size, path, theme, seconds)
 
 
@@ -76,8 +78,8 @@ def _made(
     theme: str,
     seconds: float = SECONDS,
 ) -> bytes:
-    """The bytes of a picture or a film; without a path they go through a folder of their own."""
-    order = ExportOptions(
+    """The bytes of an image or animation; without ``path`` through a temporary folder."""
+    options = ExportOptions(
         ending, _checked_size(size), _checked_theme(theme), seconds=_checked_seconds(seconds)
     )
     if path is not None:
@@ -85,18 +87,18 @@ def _made(
     film = Film(document)
     if path is not None:
         with atomic_write.replacing(path) as temporary:
-            save_export(film, order, temporary)
+            save_export(film, options, temporary)
             return temporary.read_bytes()
     try:
         with TemporaryDirectory(prefix="meshwright-") as folder:
             made = Path(folder) / f"picture{ending}"
-            save_export(film, order, made)
+            save_export(film, options, made)
             return made.read_bytes()
     except OSError as error:
-        raise MeshError(f"The picture cannot be made ({atomic_write.reason(error)}).") from error
+        raise MeshError(f"The image cannot be made ({atomic_write.reason(error)}).") from error
 
 
-def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
+def _checked_size(size: Any) -> tuple[int, int]:
     sides = tuple(size) if isinstance(size, tuple | list) else ()
     fit = len(sides) == 2 and all(
         is_whole_number(side) and SMALLEST <= side <= LARGEST for side in sides
@@ -105,7 +107,7 @@ def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
         raise MeshError(
             f"A size is two whole numbers of pixels from {SMALLEST} to {LARGEST:,}, not {size!r}."
         )
-    return sides
+    return int(sides[0]), int(sides[1])
 
 
 def _checked_theme(theme: str) -> str:
@@ -117,7 +119,7 @@ def _checked_theme(theme: str) -> str:
 def _checked_seconds(seconds: float) -> float:
     number = isinstance(seconds, int | float) and not isinstance(seconds, bool)
     if not number or not 0.0 < seconds <= LONGEST:
-        raise MeshError(f"A frame stays between 0 and {LONGEST:g} seconds, not {seconds!r}.")
+        raise MeshError(f"A frame lasts between 0 and {LONGEST:g} seconds, not {seconds!r}.")
     return float(seconds)
 
 

@@ -1,4 +1,22 @@
-// The card: one view of a document. It joins the parts, hears the link and speaks to it.
+// The card: one view of a document. It owns the parts, and exchanges messages with the link.
+
+import { Colours } from "./canvas/colours.js";
+import { Stage } from "./canvas/stage.js";
+import { node } from "./dom.js";
+import { HoverState } from "./input/hover.js";
+import { KeyboardNavigation } from "./input/keyboard_navigation.js";
+import { Pointer } from "./input/pointer.js";
+import { Shortcuts } from "./input/shortcuts.js";
+import { hostTheme, watchHost } from "./link/host_theme.js";
+import { AgentPanel } from "./panels/agent_panel.js";
+import { canvasLabel, described, meshName, placed } from "./panels/labels.js";
+import { LevelBar } from "./panels/level_bar.js";
+import { Menus } from "./panels/menus.js";
+import { Notice } from "./panels/notice.js";
+import { OperationsPanel } from "./panels/operations_panel.js";
+import { ScorePanel } from "./panels/score_panel.js";
+import { Timeline } from "./panels/timeline.js";
+import { ZoomButtons } from "./panels/zoom_buttons.js";
 
 const WHEEL_HINT = /Mac|iPhone|iPad/.test(navigator.platform)
   ? "Hold \u2318 and scroll to zoom, or click the mesh first."
@@ -10,7 +28,7 @@ const ANSWERED = ["hello", "operate", "undo", "redo", "smooth", "untangle", "cle
 class Card {
   constructor(link, options) {
     this.link = link;
-    this.palette = new Palette();
+    this.colours = new Colours();
     this.wanted = options.theme || "auto";
     this._followers = [];
     this._pending = [];
@@ -25,7 +43,7 @@ class Card {
     this.root.addEventListener("focusout", this._onLost);
     link.onmessage = (content, buffers) => this.receive(content, buffers);
     this.retheme();
-    this.ask("hello");
+    this.request("hello");
   }
 
   _make(height) {
@@ -37,15 +55,15 @@ class Card {
     place.style.height = `${height}px`;
     const under = node("div", "mw-timeline");
     const above = node("div", "mw-levels");
-    this.pointing = new Pointing(this);
+    this.hoverState = new HoverState(this);
     this.menus = new Menus(this);
-    this.stage = new Stage(place, this.palette, () => this._onPainted());
-    this.tools = new StageTools(this, place);
+    this.stage = new Stage(place, this.colours, () => this._onPainted());
+    this.zoomButtons = new ZoomButtons(this, place);
     this.notice = new Notice(place);
     this.score = new ScorePanel(this);
     this.operations = new OperationsPanel(this);
     this.agent = new AgentPanel(this);
-    this.walking = new Walking(this);
+    this.navigation = new KeyboardNavigation(this);
     this.panel = node("div", "mw-panel", {}, this.score.root, this.operations.root, this.agent.root);
     this.root.append(
       above,
@@ -54,21 +72,21 @@ class Card {
         node("div", "mw-side", {}, node("div", "mw-side-scroll", {}, this.panel))),
     );
     this.pointer = new Pointer(this, this.stage.surface);
-    this._keys = new Keys(this);
+    this._shortcuts = new Shortcuts(this);
     this.stage.surface.addEventListener("keydown", (event) => {
-      if (!this._keys.press(event)) return;
+      if (!this._shortcuts.press(event)) return;
       event.preventDefault();
       event.stopPropagation();
     });
     this.timeline = new Timeline(under, this);
-    this.levels = new Levels(above, this);
+    this.levelBar = new LevelBar(above, this);
   }
 
   release() {
     this._unwatch();
     this._arrival.disconnect();
     this.menus.close(false);
-    for (const part of [this.pointer, this.notice, this.stage, this.timeline, this.levels]) {
+    for (const part of [this.pointer, this.notice, this.stage, this.timeline, this.levelBar]) {
       if (part && part.release) part.release();
     }
     this.link.onmessage = () => {};
@@ -77,14 +95,14 @@ class Card {
     delete this.root.meshwright;
   }
 
-  // What there is
+  // State
 
-  get mirror() {
-    return this.stage.work.mirror;
+  get replica() {
+    return this.stage.meshState.replica;
   }
 
-  get facts() {
-    return this.stage.work.facts;
+  get derived() {
+    return this.stage.meshState.derived;
   }
 
   get view() {
@@ -92,7 +110,7 @@ class Card {
   }
 
   get readOnly() {
-    return this.link.readOnly || this.mirror.readOnly;
+    return this.link.readOnly || this.replica.readOnly;
   }
 
   get agentBusy() {
@@ -106,19 +124,19 @@ class Card {
 
   /** A colour of the theme: "accent", "accent_soft" or "accent-soft". */
   colour(name) {
-    return this.palette[name.replace(/-/g, "_")];
+    return this.colours[name.replace(/-/g, "_")];
   }
 
-  /** Call back after every change of theme. */
+  /** Call `callback` after every change of theme. */
   follow(callback) {
     this._followers.push(callback);
   }
 
-  /** For tests and scripts: where on the page {x, y} a pointer is on a half-edge, just inside its
-   * element; null if there is none. It may lie outside of the window or of the canvas.
+  /** For tests and scripts: the point {x, y} of the page at a half-edge, just inside its element;
+   * null if there is none. It may lie outside of the window or of the canvas.
    */
   screenOf(halfedge) {
-    if (!this.mirror.live(halfedge)) return null;
+    if (!this.replica.live(halfedge)) return null;
     const [x, y] = this.stage.middle(halfedge);
     const box = this.stage.surface.getBoundingClientRect();
     return { x: box.left + x, y: box.top + y };
@@ -126,13 +144,13 @@ class Card {
 
   // Messages
 
-  /** Ask Python for something that it answers, or not. */
-  ask(word, fields = {}) {
+  /** Send a request to Python. */
+  request(word, fields = {}) {
     if (this.readOnly && !["hello", "go_to", "level"].includes(word)) return;
     const id = this.link.send(word, fields);
     if (ANSWERED.includes(word)) {
       this._pending.push(id);
-      if (this._pending.length === 1) this.notice.wait(true, this.mirror.revision < 0);
+      if (this._pending.length === 1) this.notice.wait(true, this.replica.revision < 0);
     }
   }
 
@@ -142,12 +160,12 @@ class Card {
     const receivers = {
       state: () => this._onState(content, buffers),
       patch: () => this._onPatch(content, buffers),
-      ghost: () => this.pointing.receive(content, buffers),
+      ghost: () => this.hoverState.receive(content, buffers),
       agent: () => this._onAgent(content),
       notice: () => this._onNotice(content),
-      level: () => this.levels.update(content),
+      level: () => this.levelBar.update(content),
     };
-    if (receivers[content.say]) receivers[content.say]();
+    if (receivers[content.type]) receivers[content.type]();
   }
 
   _answer(id) {
@@ -165,21 +183,21 @@ class Card {
   _onPatch(content, buffers) {
     if (this.stage.patch(content, buffers)) this._onChanged();
     else if (!this._helloed) {
-      this._helloed = true; // something was missed: begin again, once
-      this.ask("hello");
+      this._helloed = true; // a patch was missed: get the whole state, once
+      this.request("hello");
     }
   }
 
   _onChanged() {
-    const { head } = this.mirror;
+    const { head } = this.replica;
     this.score.update(head);
     this.timeline.update(head);
     this.root.setAttribute("aria-label", meshName(head));
     this.stage.surface.setAttribute("aria-label", canvasLabel(head));
-    if (this.pointer.place && !this.pointing.pinned && !this.menus.open) {
-      this.pointing.halfedge = this.pointer.halfedge();
+    if (this.pointer.place && !this.hoverState.pinned && !this.menus.open) {
+      this.hoverState.halfedge = this.pointer.halfedge();
     }
-    this.pointing.renew();
+    this.hoverState.renew();
     this.menus.refresh();
   }
 
@@ -187,35 +205,35 @@ class Card {
     const busy = this.agentBusy;
     this.agent.update(content);
     this.root.dataset.agent = content.state;
-    if (busy !== this.agentBusy) this.pointing.renew();
+    if (busy !== this.agentBusy) this.hoverState.renew();
   }
 
   _onNotice({ tone, sentence, reply }) {
-    const stale = this.pointing.refused(reply);
-    if (!stale || tone === "failed") this.say(tone, sentence);
+    const stale = this.hoverState.refused(reply);
+    if (!stale || tone === "failed") this.notify(tone, sentence);
   }
 
-  /** Tell a person a sentence; tone "refused", "said", "failed" or "hint". */
-  say(tone, sentence) {
+  /** Show a sentence; tone "refused", "info", "failed" or "hint". */
+  notify(tone, sentence) {
     this.notice.show(tone, sentence);
   }
 
-  /** Do an operation at a half-edge, if it is still the one that was meant. */
+  /** Apply an operation at a half-edge, unless that was removed in the meantime. */
   operate(operation, halfedge) {
-    const { mirror } = this;
-    if (!mirror.live(halfedge)) return;
-    const ends = [mirror.origin[halfedge], mirror.target(halfedge)];
-    this.ask("operate", { operation, halfedge, ends });
+    const { replica } = this;
+    if (!replica.live(halfedge)) return;
+    const ends = [replica.origin[halfedge], replica.target(halfedge)];
+    this.request("operate", { operation, halfedge, ends });
     const id = this._pending[this._pending.length - 1];
-    this.pointing.anticipate(() => this._pending.includes(id));
+    this.hoverState.anticipate(() => this._pending.includes(id));
   }
 
   operateByKey(operation) {
-    if (this.pointing.halfedge < 0) this.say("refused", "Point at a half-edge first, then press the key.");
-    else this.operate(operation, this.pointing.halfedge);
+    if (this.hoverState.halfedge < 0) this.notify("refused", "Point at a half-edge first, then press the key.");
+    else this.operate(operation, this.hoverState.halfedge);
   }
 
-  // Pointing
+  // Pointer
 
   pick(at, reach) {
     return this.stage.pick(at, reach);
@@ -224,110 +242,110 @@ class Card {
   hover(halfedge, at) {
     const badge = this.stage.overlay.badges.at(...at);
     this.stage.surface.style.cursor = badge >= 0 ? "pointer" : "";
-    if (badge >= 0) this.meanHint(badge);
+    if (badge >= 0) this.showHint(badge);
     else if (!this.menus.open) {
-      this.pointing.preview(null);
-      this.pointing.point(halfedge);
+      this.hoverState.preview(null);
+      this.hoverState.point(halfedge);
     }
   }
 
   /** The mouse has left the canvas. */
-  left() {
-    if (!this.menus.open && !this.pointing.pinned) this.pointing.point(-1);
+  leave() {
+    if (!this.menus.open && !this.hoverState.pinned) this.hoverState.point(-1);
   }
 
-  /** Point at a half-edge by other means than the mouse. */
+  /** Point at a half-edge by keyboard, menu or hint. */
   pin(halfedge) {
-    this.pointing.point(halfedge, true);
-    this.pointing.pinned = halfedge >= 0;
+    this.hoverState.point(halfedge, true);
+    this.hoverState.pinned = halfedge >= 0;
   }
 
   click(halfedge, at, touch) {
-    this.tools.close();
+    this.zoomButtons.close();
     const badge = this.stage.overlay.badges.at(...at);
     if (badge >= 0) {
       this.agent.take(badge);
       return;
     }
-    this.pointing.preview(null);
-    this.pointing.point(halfedge);
+    this.hoverState.preview(null);
+    this.hoverState.point(halfedge);
     if (halfedge < 0 || this.readOnly) return;
-    if (this.pointing.armed) this.operate(this.pointing.armed, halfedge);
+    if (this.hoverState.armed) this.operate(this.hoverState.armed, halfedge);
     else this.menus.openOperations(halfedge, at, touch);
   }
 
   doubleClick(halfedge) {
-    if (halfedge >= 0 && this.pointing.armed) return;
+    if (halfedge >= 0 && this.hoverState.armed) return;
     this.menus.close();
     this.stage.fit();
   }
 
   cycle(step) {
-    this.pointing.cycle(step);
+    this.hoverState.cycle(step);
     this.announceSoon();
   }
 
-  /** Something about what is pointed at is another: show it, and ask for what is not known. */
+  /** Show the changed hover state, and request what is missing. */
   pointed() {
-    const { pointing, mirror, stage } = this;
-    const info = mirror.catalogue.find((one) => one.operation === pointing.meant);
+    const { hoverState, replica, stage } = this;
+    const info = replica.catalogue.find((one) => one.operation === hoverState.previewed);
     Object.assign(stage.shown, {
-      halfedge: pointing.halfedge, ghost: pointing.ghost,
-      title: info && !this.menus.open ? info.title : "", // an open menu says it already
+      halfedge: hoverState.halfedge, ghost: hoverState.ghost,
+      title: info && !this.menus.open ? info.title : "", // an open menu shows it already
     });
-    this.root.dataset.halfedge = pointing.halfedge;
-    this.root.dataset.meant = pointing.meant || "";
+    this.root.dataset.halfedge = hoverState.halfedge;
+    this.root.dataset.meant = hoverState.previewed || "";
     this.operations.update();
     this.menus.refresh();
-    const h = pointing.halfedge;
-    this.notice.where(h < 0 ? "" : placed(mirror, pointing));
+    const h = hoverState.halfedge;
+    this.notice.where(h < 0 ? "" : placed(replica, hoverState));
     stage.repaint();
-    pointing.ask();
+    hoverState.request();
   }
 
   // Hints
 
   showHints(hints) {
-    Object.assign(this.stage.shown, { hints, meant: 0 });
+    Object.assign(this.stage.shown, { hints, selected: 0 });
     this.stage.repaint();
   }
 
-  /** Bring a hint to the front, with its ghost. */
-  meanHint(index) {
+  /** Bring a hint to the front, with its preview. */
+  showHint(index) {
     const hint = this.agent.hints[index];
-    this.stage.shown.meant = index;
+    this.stage.shown.selected = index;
     this.pin(hint.halfedge);
-    this.pointing.preview(hint.operation);
+    this.hoverState.preview(hint.operation);
     this.stage.repaint();
   }
 
-  // Words
+  // Sentences
 
-  tellWheel() {
-    this.say("hint", WHEEL_HINT);
+  showWheelHint() {
+    this.notify("hint", WHEEL_HINT);
   }
 
-  /** One finger has scrolled the page: nobody wants to read that every time. */
-  tellTouch() {
+  /** After scrolling with one finger; shown a few times only. */
+  showTouchHint() {
     this._touchHints += 1;
-    if (this._touchHints <= MOST_TOUCH_HINTS) this.say("hint", TOUCH_HINT);
+    if (this._touchHints <= MOST_TOUCH_HINTS) this.notify("hint", TOUCH_HINT);
   }
 
-  /** Say what is pointed at, once the keys rest. */
+  /** Announce the half-edge to screen readers, after the last of several keys. */
   announceSoon(before = "") {
-    this.notice.speak(() => before + described(this));
+    this.notice.announce(() => before + described(this));
   }
 
   toggleHelp() {
-    this.tools.toggle();
+    this.zoomButtons.toggle();
   }
 
-  /** Put down what is in hand, one thing at a time. */
+  /** Close or cancel one thing: menu, help, armed operation, agent, half-edge. */
   escape() {
     if (this.menus.close()) return;
-    if (this.tools.close()) this.focusCanvas();
-    else if (this.pointing.armed) this.pointing.arm(this.pointing.armed);
-    else if (!this.agent.escape() && this.pointing.pinned) this.pointing.point(-1);
+    if (this.zoomButtons.close()) this.focusCanvas();
+    else if (this.hoverState.armed) this.hoverState.arm(this.hoverState.armed);
+    else if (!this.agent.escape() && this.hoverState.pinned) this.hoverState.point(-1);
   }
 
   focusCanvas() {
@@ -336,10 +354,10 @@ class Card {
 
   _focusMoved(event) {
     const inside = event.relatedTarget && this.root.contains(event.relatedTarget);
-    if (!inside && this.pointing.pinned && !this.menus.open) this.pointing.point(-1);
+    if (!inside && this.hoverState.pinned && !this.menus.open) this.hoverState.point(-1);
   }
 
-  // Looks
+  // Colours
 
   retheme() {
     const theme = this.wanted === "auto" ? hostTheme() : this.wanted;
@@ -347,20 +365,20 @@ class Card {
     this._arrive();
   }
 
-  /** Some hosts put the card on the page only after it was made: then the colours are known. */
+  /** Some hosts insert the card later; the colours can be read from then on. */
   _arrive() {
-    if (this.root.isConnected && this.palette.theme !== this.root.dataset.theme) this.recolour();
+    if (this.root.isConnected && this.colours.theme !== this.root.dataset.theme) this.recolour();
   }
 
-  /** Read the colours again; they are known once the card is on the page. */
+  /** Read the colours again; the card must be in the page. */
   recolour() {
-    this.palette.read(this.root);
+    this.colours.read(this.root);
     this.stage.recolour();
     this.operations.update();
     for (const callback of this._followers) callback();
   }
 
-  /** Take over what a model says. */
+  /** Set height and theme. */
   configure({ height, theme }) {
     this.stage.element.style.height = `${height}px`;
     this.wanted = theme;
@@ -369,7 +387,15 @@ class Card {
 
   _onPainted() {
     this._paints += 1;
-    this.root.dataset.revision = this.mirror.revision;
+    this.root.dataset.revision = this.replica.revision;
     this.root.dataset.painted = this._paints;
   }
+}
+
+/** Show a view of `link` in `element`; returns the Card. options: {height, theme}. */
+export function mount(element, link, options = {}) {
+  const card = new Card(link, options);
+  element.append(card.root);
+  card.retheme();
+  return card;
 }

@@ -1,7 +1,9 @@
-// Making elements of the page in few words.
+// Creates DOM elements.
+
+import { ICON_STROKES } from "./generated/constants.js";
 
 /** An element with a class, attributes (true: present, false or null: not) and children. */
-function node(tag, name = "", attributes = {}, ...children) {
+export function node(tag, name = "", attributes = {}, ...children) {
   const made = document.createElement(tag);
   if (name) made.className = name;
   for (const [key, value] of Object.entries(attributes)) {
@@ -12,13 +14,13 @@ function node(tag, name = "", attributes = {}, ...children) {
   return made;
 }
 
-/** One of the icons of app/strokes.py, in the colour of the text around it. */
-function icon(name, size = 18) {
+/** An icon of meshwright.graphics.icon_paths, in the colour of the surrounding text. */
+export function icon(name, size = 18) {
   return drawn(ICON_STROKES[name], { class: "mw-icon", width: size, height: size });
 }
 
-/** A picture of one path in a square of 20, or of another `viewBox`. */
-function drawn(path, attributes = {}) {
+/** An SVG of one path in a square of 20, or in another `viewBox`. */
+export function drawn(path, attributes = {}) {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");
   const line = document.createElementNS(space, "path");
@@ -30,8 +32,8 @@ function drawn(path, attributes = {}) {
   return svg;
 }
 
-/** A button with an icon, words or both; `label` is for those who cannot see it, and its tooltip. */
-function button(name, label, { sign = null, text = "", act = null } = {}) {
+/** A button with an icon, text or both; `label` is its accessible name and tooltip. */
+export function button(name, label, { sign = null, text = "", act = null } = {}) {
   const made = node("button", name, { type: "button", "aria-label": label, title: label });
   if (sign) made.append(icon(sign));
   if (text) made.append(node("span", "", {}, text));
@@ -39,18 +41,13 @@ function button(name, label, { sign = null, text = "", act = null } = {}) {
   return made;
 }
 
-/** Put text where it differs, so that nothing is laid out again for nothing. */
-function tell(element, text) {
+/** Set the text if it differs, which avoids a layout. */
+export function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** "1 quad", "1,200 quads". */
-function counted(count, one, many = `${one}s`) {
-  return `${count.toLocaleString("en")} ${count === 1 ? one : many}`;
-}
-
-/** `text` with a capital and a full stop. */
-function asSentence(text) {
+/** `text` with a capital first letter and a full stop. */
+export function asSentence(text) {
   const begun = text.charAt(0).toUpperCase() + text.slice(1);
   return /[.!?\u2026]$/.test(begun) ? begun : `${begun}.`;
 }

@@ -1,1 +1,1 @@
-"""Messages between the widget in Python and its page."""
+"""Messages between the widget in Python and in the browser."""

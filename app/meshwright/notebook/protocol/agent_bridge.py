@@ -1,4 +1,4 @@
-"""The agent beside a notebook's reader: which policies there are, and what browsers hear of it."""
+"""Connects the assistant with the browsers: policies on offer, commands, state messages."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from meshwright.assistant.policy_catalogue import kind_of, label, shipped
 from meshwright.assistant.search_runner import Effort
 from meshwright.document.document import NO_MESH, Document, title_of
 from meshwright.notebook.protocol.mesh_sync import Packet
-from meshwright.notebook.thread_loop import Loop
+from meshwright.notebook.thread_loop import ThreadLoop
 from meshwright.sources.naming import looks_like_path
 from meshwright_core import MeshError
 from meshwright_core.core.kinds import KIND_NOUN
@@ -19,19 +19,19 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import PolicyAction
 
 
-class Helper:
-    """One assistant and the policies that it may follow on one document."""
+class AgentBridge:
+    """The assistant of one document, and the policies that it may use."""
 
-    def __init__(self, document: Document, assistant: Assistant, loop: Loop) -> None:
+    def __init__(self, document: Document, assistant: Assistant, loop: ThreadLoop) -> None:
         self._document, self.assistant, self._loop = document, assistant, loop
         self._shipped: dict[str, list[str]] = {}
-        self._files: dict[str, str] = {}  # policies that were given, and their kinds
+        self._files: dict[str, str] = {}  # paths of policies chosen by the user, and their kinds
 
     # Policies
 
     @property
     def policies(self) -> list[str]:
-        """Those on offer for the mesh that is here: shipped ones, and files that were given."""
+        """Names on offer for the present mesh: shipped policies, and files chosen before."""
         kind = self._document.kind
         if not kind:
             return []
@@ -40,7 +40,7 @@ class Helper:
         return self._shipped[kind] + [name for name, its in self._files.items() if its == kind]
 
     def choose(self, name: str) -> None:
-        """Follow another policy; MeshError with one sentence where that cannot be."""
+        """Use another policy; MeshError where it does not exist or does not fit the mesh."""
         if name in self.policies:
             self.assistant.policy = name
             return
@@ -67,21 +67,21 @@ class Helper:
         self._files[name] = kind
 
     def settle(self) -> None:
-        """Follow the first policy on offer where none that fits this mesh is chosen."""
+        """Choose the first policy on offer where the present one does not fit the mesh."""
         on_offer = self.policies
         if self.assistant.policy not in on_offer:
             self.assistant.policy = on_offer[0] if on_offer else ""
 
-    # What it is asked to do
+    # Commands
 
     @property
     def idle(self) -> bool:
-        """Whether nothing runs, is being loaded or is asked."""
+        """Whether nothing is running, loading or computing hints."""
         assistant = self.assistant
         return not (assistant.running or assistant.loading or assistant.hinting.asking)
 
     def act(self, action: str) -> None:
-        """One of the words of a message ``agent``."""
+        """Carry out the ``action`` of a request ``agent``."""
         assistant = self.assistant
         if action == "complete":
             assistant.search(Effort())
@@ -89,27 +89,27 @@ class Helper:
             getattr(assistant, action)()
 
     def play(self, speed: float | None = None, hurry: bool = False) -> None:
-        """Play, at another speed from now on if one is given; in a hurry without a limit."""
+        """Play at ``speed`` decisions per second, by default the last one; ``hurry``: no limit."""
         if speed is not None:
             self.assistant.speed = speed
         self.assistant.play(hurry)
 
     def take(self, index: int) -> None:
-        """Do what a hint says; MeshError where there is no such hint."""
+        """Apply a hint; MeshError where there is no such hint."""
         hints = self.assistant.hinting.hints
         if index >= len(hints):
-            raise MeshError("That hint is of a state that has gone.")
+            raise MeshError("That hint is out of date: the mesh has changed.")
         self._document.submit(hints[index].operation, hints[index].halfedge)
 
-    # What is told of it
+    # Messages
 
     def packet(self) -> Packet:
-        """The agent's state for the browser."""
+        """The message with the agent's state."""
         assistant = self.assistant
         hints = assistant.hinting.hints
         return Packet(
             {
-                "say": "agent",
+                "type": "agent",
                 "state": str(assistant.state),
                 "loading": assistant.loading,
                 "asking": assistant.hinting.asking,

@@ -1,4 +1,4 @@
-"""What browsers are told of a document: the same to all views of all widgets on it."""
+"""Sends changes of a document to all views of all widgets that show it."""
 
 from __future__ import annotations
 
@@ -8,31 +8,31 @@ from typing import Any, Protocol
 from weakref import ReferenceType, ref
 
 from meshwright.document.document import Document
-from meshwright.notebook.protocol.agent_bridge import Helper
-from meshwright.notebook.protocol.document_status import Head
-from meshwright.notebook.protocol.mesh_sync import Mirror, Packet
-from meshwright.notebook.protocol.requests import Request
-from meshwright.notebook.thread_loop import Loop
+from meshwright.notebook.protocol.agent_bridge import AgentBridge
+from meshwright.notebook.protocol.document_status import DocumentStatus
+from meshwright.notebook.protocol.mesh_sync import MeshSync, Packet
+from meshwright.notebook.protocol.requests import Envelope, Request
+from meshwright.notebook.thread_loop import ThreadLoop
 from meshwright_core.operations.catalogue import of_kind
 
 PACE = 0.02
-"""Seconds between two patches, on average, while a cell works; what comes sooner travels with the
-next one.
+"""Average seconds between two patches while a cell runs; changes in between are merged into the
+next patch.
 """
 BURST = 16
-"""Changes that are sent at once all the same: a cell may sleep after the last of a few."""
+"""Changes that are sent at once nevertheless: a cell may sleep after the last of a few."""
 
 _log = logging.getLogger(__name__)
 
 
 class Port(Protocol):
-    """A widget, as its session sees it."""
+    """What a session needs of a widget."""
 
     read_only: bool
 
     @property
     def reachable(self) -> bool:
-        """Whether there still is a way to the browser."""
+        """Whether the connection to the browser is open."""
         ...
 
     def post(self, packet: Packet) -> None:
@@ -40,41 +40,41 @@ class Port(Protocol):
         ...
 
     def show_score(self) -> None:
-        """The score, or the optimum, is another."""
+        """Update score and optimum after a change."""
         ...
 
     def close(self) -> None:
-        """There is no way to the browser any more, and will be none."""
+        """Release the widget: its connection was closed."""
         ...
 
 
-class Telling:
-    """Keeps what the browsers know up with the document.
+class Broadcaster:
+    """Keeps the browsers' copies of the document up to date.
 
-    Nothing is compared or sent before the first view has come.
+    Nothing is compared or sent before the first view has connected.
     """
 
-    def __init__(self, document: Document, agent: Helper, loop: Loop) -> None:
-        self.mirror, self.head = Mirror(), Head(document)
+    def __init__(self, document: Document, agent: AgentBridge, loop: ThreadLoop) -> None:
+        self.mesh_sync, self.status = MeshSync(), DocumentStatus(document)
         self._document, self._agent, self._loop = document, agent, loop
         self._ports: list[ReferenceType[Port]] = []
-        self._followed = False
-        self._fresh = self._dirty = self._agent_dirty = self._due = False
-        self._asked: list[Request] = []
+        self._connected = False
+        self._mesh_replaced = self._changed = self._agent_changed = self._scheduled = False
+        self._held: list[Request] = []
         self._credit, self._credited = float(BURST), time.monotonic()
-        self._told, self._shown = document.revision, document.mesh
+        self._sent_revision, self._sent_mesh = document.revision, document.mesh
 
-    # To whom
+    # Widgets
 
     @property
     def ports(self) -> list[Port]:
-        """The widgets that still have a way to the browser."""
+        """The widgets with an open connection."""
         found = [port for port in (known() for known in self._ports) if port is not None]
         return [port for port in found if port.reachable]
 
     @property
     def lost(self) -> list[Port]:
-        """The widgets whose way to the browser was cut."""
+        """The widgets whose connection was closed."""
         found = [port for port in (known() for known in self._ports) if port is not None]
         return [port for port in found if not port.reachable]
 
@@ -84,47 +84,47 @@ class Telling:
         return not any(known() is not None for known in self._ports)
 
     def add(self, port: Port) -> None:
-        """Tell this widget, too."""
+        """Send to this widget from now on."""
         self._ports.append(ref(port))
 
     def remove(self, port: Port) -> None:
-        """Do not tell this widget any more; those that are collected go with it."""
+        """Stop sending to this widget, and forget those that were garbage-collected."""
         self._ports = [known for known in self._ports if known() not in (port, None)]
 
-    # What has changed
+    # Changes
 
     def follow(self) -> None:
-        """The document says that it has changed; of a mesh that is new all has been told."""
-        if self._told != self._document.revision:
+        """After a change of the document; a new mesh has been sent as a whole already."""
+        if self._sent_revision != self._document.revision:
             self.touch()
 
     def touch(self) -> None:
-        """The mesh has changed, or what goes with it."""
-        self._dirty = True
-        self._soon()
+        """Mark mesh and status as changed."""
+        self._changed = True
+        self._schedule()
 
     def touch_agent(self) -> None:
-        """The agent has changed."""
-        self._agent_dirty = True
-        self._soon()
+        """Mark the agent's state as changed."""
+        self._agent_changed = True
+        self._schedule()
 
     def start_over(self) -> None:
-        """Another mesh is here; what else differs comes right after."""
-        self._fresh = self._agent_dirty = True
+        """The document has another mesh: the next message is a whole state."""
+        self._mesh_replaced = self._agent_changed = True
 
     def hold(self, request: Request) -> None:
-        """Send nothing before :meth:`release`: what a request brings about is one message."""
-        self._asked.append(request)
+        """Send nothing before :meth:`release`: the changes of one request are one message."""
+        self._held.append(request)
 
     def release(self) -> None:
-        """The last request held is done: send what it has brought about."""
-        request = self._asked.pop()
-        if not self._asked:
+        """End of the last held request: send its changes."""
+        request = self._held.pop()
+        if not self._held:
             self.flush(request)
 
-    def _soon(self) -> None:
-        """Send at once, or a moment later if much happens."""
-        if not self._followed or self._asked:
+    def _schedule(self) -> None:
+        """Send at once, or a moment later where changes are frequent."""
+        if not self._connected or self._held:
             return
         now = time.monotonic()
         self._credit = min(BURST, self._credit + (now - self._credited) / PACE)
@@ -132,46 +132,47 @@ class Telling:
         if not self._loop.running or self._credit >= 1:
             self._credit -= 1
             self.flush()
-        elif not self._due:
-            self._due = True
+        elif not self._scheduled:
+            self._scheduled = True
             self._loop(self.catch_up)
 
     def catch_up(self) -> None:
-        """Send what has changed; whoever works now may have a few changes sent at once again."""
+        """Send what has changed, and allow a burst of changes again."""
         self.flush()
         self._credit = float(BURST)
 
     def flush(self, request: Request | None = None) -> None:
-        """Send what has changed since the last time. Never raises."""
-        self._due = False
-        if not self._followed:
+        """Send what has changed since the last message. Never raises."""
+        self._scheduled = False
+        if not self._connected:
             return
         try:
-            self._send_news(request)
-        except Exception as error:  # whoever changed the mesh is not to blame
-            _log.error("browsers could not be told of a change", exc_info=error)
+            self._send_changes(request)
+        except Exception as error:  # must not reach the code that changed the mesh
+            _log.error("a change could not be sent to the browsers", exc_info=error)
 
-    def _send_news(self, request: Request | None) -> None:
-        agent, self._agent_dirty = self._agent_dirty, False
-        dirty, self._dirty = self._dirty or self._told != self._document.revision, False
-        self._told = self._document.revision
-        if self._fresh or self._shown is not self._document.mesh:
-            self._take_all()
+    def _send_changes(self, request: Request | None) -> None:
+        agent, self._agent_changed = self._agent_changed, False
+        newer = self._sent_revision != self._document.revision
+        dirty, self._changed = self._changed or newer, False
+        self._sent_revision = self._document.revision
+        if self._mesh_replaced or self._sent_mesh is not self._document.mesh:
+            self._restart()
             self._send_states(request)
         elif dirty:
             self._send_patch(request)
         if agent:
-            self.tell(self._agent.packet())
+            self.send_to_all(self._agent.packet())
 
     def _send_patch(self, request: Request | None) -> None:
         mesh = self._document.mesh
-        packet = self.mirror.patch(mesh)
+        packet = self.mesh_sync.patch(mesh)
         if mesh is not None:
-            self.head.folded.follow(mesh, self.mirror.moved, self.mirror.turned)
-        if packet.content["say"] == "state":
+            self.status.inverted.follow(mesh, self.mesh_sync.moved, self.mesh_sync.turned)
+        if packet.content["type"] == "state":
             self._send_states(request)
             return
-        packet.content["head"] = self.head.news()
+        packet.content["head"] = self.status.update()
         for port in self.ports:
             self.post(port, packet, request, to_all=True)
 
@@ -179,63 +180,62 @@ class Telling:
         for port in self.ports:
             self.post(port, self._state(port), request, to_all=True)
 
-    def _take_all(self) -> None:
-        self._fresh = self._dirty = False
-        self._told, self._shown = self._document.revision, self._document.mesh
-        self.mirror.reset(self._shown)
-        self.head.reset()
+    def _restart(self) -> None:
+        self._mesh_replaced = self._changed = False
+        self._sent_revision, self._sent_mesh = self._document.revision, self._document.mesh
+        self.mesh_sync.reset(self._sent_mesh)
+        self.status.reset()
 
     # Messages
 
-    def greet(self, port: Port, request: Request) -> None:
-        """A view has come. The others catch up first, so that all know the same."""
-        if self._followed:
+    def send_state(self, port: Port, request: Request) -> None:
+        """Send the whole state to a new view; the others are brought up to date first."""
+        if self._connected:
             self.flush()
         else:
-            self._take_all()
-            self._followed = True
+            self._restart()
+            self._connected = True
         self.post(port, self._state(port), request)
         self.post(port, self._agent.packet(), request)
 
-    def tell(self, packet: Packet) -> None:
+    def send_to_all(self, packet: Packet) -> None:
         """Send a message to all views of all widgets."""
         for port in self.ports:
             self.post(port, packet)
 
-    def notice(self, tone: str, words: str) -> None:
-        """Tell all views a sentence; ``tone`` is "refused", "said" or "failed"."""
-        self.tell(_notice(tone, words))
+    def notice(self, tone: str, sentence: str) -> None:
+        """Show a sentence in all views; ``tone`` is "refused", "info" or "failed"."""
+        self.send_to_all(_notice(tone, sentence))
 
-    def answer(self, port: Port, request: Request | None, tone: str, words: str) -> None:
-        """Tell the view that asked a sentence."""
-        self.post(port, _notice(tone, words), request)
+    def answer(self, port: Port, request: Envelope | None, tone: str, sentence: str) -> None:
+        """Show a sentence in the view that sent ``request``."""
+        self.post(port, _notice(tone, sentence), request)
 
     def post(
-        self, port: Port, packet: Packet, request: Request | None = None, to_all: bool = False
+        self, port: Port, packet: Packet, request: Envelope | None = None, to_all: bool = False
     ) -> None:
-        """Send a message, addressed to the view that asked unless all are meant. Never raises."""
+        """Send a message, to the view that sent ``request`` or to all. Never raises."""
         content = dict(packet.content)
         if request is not None:
             content["reply"] = request.id
-            if request.view:
-                content["asked" if to_all else "to"] = request.view
+            content["asked" if to_all else "to"] = request.view
         try:
             port.post(Packet(content, packet.buffers))
-        except Exception as error:  # one broken way must not keep the others waiting
+        except Exception as error:  # one broken connection must not stop the others
             _log.error("a message to the browser was lost", exc_info=error)
 
     def _state(self, port: Port) -> Packet:
-        packet = self.mirror.state()
+        packet = self.mesh_sync.state()
         packet.content |= {
-            "head": self.head.whole(),
+            "head": self.status.full(),
             "catalogue": _catalogue(self._document.kind),
             "read_only": port.read_only,
         }
         return packet
 
 
-def _notice(tone: str, words: str) -> Packet:
-    return Packet({"say": "notice", "tone": tone, "sentence": words})
+def _notice(tone: str, sentence: str) -> Packet:
+    return Packet({"type": "notice", "tone": tone, "sentence": sentence})
 
 
 def _catalogue(kind: str) -> list[dict[str, Any]]:

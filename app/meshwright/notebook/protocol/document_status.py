@@ -1,4 +1,4 @@
-"""What a browser is told beside the mesh: scores, counts, where the history is, and its curve."""
+"""The document's numbers for the browser: scores, counts, position in the history, its curve."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from meshwright_core.geometry.outline import Outline
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, inverted
 
 BLOCKS_UP_TO = 20_000
-"""Elements of a quad mesh above which its blocks are not counted after every step."""
+"""Number of elements above which the blocks of a quad mesh are not counted after every step."""
 
 
-class Folded:
-    """How many elements are inverted, followed at the cost of what has changed."""
+class InvertedElements:
+    """Counts the inverted elements incrementally, at the cost of the elements that changed."""
 
     def __init__(self) -> None:
         self._normal: np.ndarray | None = None
-        self._folded = np.zeros(0, dtype=bool)
+        self._inverted = np.zeros(0, dtype=bool)
 
     def __len__(self) -> int:
-        return int(self._folded.sum())
+        return int(self._inverted.sum())
 
     def reset(self, mesh: HalfEdgeMesh) -> None:
-        """Look at all elements."""
+        """Test all elements."""
         self._normal = Outline.of(mesh).normal(mesh.points[mesh.vertices()])
-        self._folded = np.zeros(_element_slots(mesh), dtype=bool)
-        self._folded[inverted(mesh)] = True
+        self._inverted = np.zeros(_element_slots(mesh), dtype=bool)
+        self._inverted[inverted(mesh)] = True
 
     def follow(self, mesh: HalfEdgeMesh, vertices: np.ndarray, halfedges: np.ndarray) -> None:
-        """Look again where ``vertices`` have moved and ``halfedges`` run elsewhere."""
+        """Test the elements at moved ``vertices`` and changed ``halfedges`` (ids) again."""
         slots = _element_slots(mesh)
         if self._normal is None or 4 * len(vertices) > mesh.n_vertices:
             self.reset(mesh)
@@ -42,43 +42,43 @@ class Folded:
         corners = mesh.arrays.edge[: slots * mesh.k, ORIGIN].reshape(slots, mesh.k)
         moved = np.zeros(len(mesh.arrays.vertex), dtype=bool)
         moved[vertices[vertices < len(moved)]] = True
-        look = moved[corners].any(axis=1)  # a dead element's -1 is harmless: it is sorted out below
+        look = moved[corners].any(axis=1)  # -1 of a dead element is filtered out below
         touched = halfedges // mesh.k
         look[touched[touched < slots]] = True
-        folded = np.zeros(slots, dtype=bool)
-        kept = min(slots, len(self._folded))
-        folded[:kept] = self._folded[:kept]
-        folded[look] = False
+        found = np.zeros(slots, dtype=bool)
+        kept = min(slots, len(self._inverted))
+        found[:kept] = self._inverted[:kept]
+        found[look] = False
         elements = np.flatnonzero(look & (corners[:, 0] >= 0))
         reference = np.broadcast_to(self._normal, (len(elements), 3))
         sines = corner_sines(mesh.points, corners[elements].astype(np.int64), reference)
-        folded[elements] = sines.min(axis=1, initial=np.inf) <= TOLERANCE
-        self._folded = folded
+        found[elements] = sines.min(axis=1, initial=np.inf) <= TOLERANCE
+        self._inverted = found
 
 
-class Head:
-    """The numbers of one document, as they go with every state and patch."""
+class DocumentStatus:
+    """The numbers of one document that are sent with every state and patch, as ``head``."""
 
     def __init__(self, document: Document) -> None:
         self._document = document
-        self._track = ScoreSeries()
-        self.folded = Folded()
+        self._series = ScoreSeries()
+        self.inverted = InvertedElements()
 
     def reset(self) -> None:
-        """Another mesh is here."""
+        """The document has another mesh."""
         if self._document.mesh is not None:
-            self.folded.reset(self._document.mesh)
+            self.inverted.reset(self._document.mesh)
 
-    def whole(self) -> dict[str, Any]:
-        """For who knows nothing yet."""
-        self._track.follow(self._document.history)
-        return self._told(0)
+    def full(self) -> dict[str, Any]:
+        """All numbers, with the scores of all states."""
+        self._series.follow(self._document.history)
+        return self._values(0)
 
-    def news(self) -> dict[str, Any]:
-        """For who knows what was told last."""
-        return self._told(self._track.follow(self._document.history))
+    def update(self) -> dict[str, Any]:
+        """All numbers, with the scores of the states since the last call."""
+        return self._values(self._series.follow(self._document.history))
 
-    def _told(self, first: int) -> dict[str, Any]:
+    def _values(self, first: int) -> dict[str, Any]:
         document, mesh = self._document, self._document.mesh
         history = document.history
         return {
@@ -90,7 +90,7 @@ class Head:
             "elements": mesh.n_elements if mesh is not None else 0,
             "vertices": mesh.n_vertices if mesh is not None else 0,
             "irregular": mesh.irregular_count if mesh is not None else 0,
-            "inverted": len(self.folded),
+            "inverted": len(self.inverted),
             "cursor": history.cursor,
             "length": len(history),
             "can_undo": document.can_undo,
@@ -103,8 +103,8 @@ class Head:
             "row": self._row(),
             "track": {
                 "from": first,
-                "scores": self._track.scores[first:].tolist(),
-                "optima": self._track.optima[first:].tolist(),
+                "scores": self._series.scores[first:].tolist(),
+                "optima": self._series.optima[first:].tolist(),
                 "titles": [
                     history[state - 1].title if state else "Start"
                     for state in range(first, len(history) + 1)
@@ -137,6 +137,7 @@ def _element_slots(mesh: HalfEdgeMesh) -> int:
 def _blocks(mesh: HalfEdgeMesh | None) -> int | None:
     if mesh is None or mesh.k != 4 or mesh.n_elements > BLOCKS_UP_TO:
         return None
-    from meshwright_core.analysis.blocks import block_count  # imported late, for it pulls in scipy
+    # imported late: it imports scipy.sparse
+    from meshwright_core.analysis.blocks import block_count
 
     return block_count(mesh)

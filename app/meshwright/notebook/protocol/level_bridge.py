@@ -1,11 +1,14 @@
-"""Levels in a notebook: what browsers are told of the play, and what they may ask of it."""
+"""Levels in a notebook: connects the play of a level with the browsers."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from msgspec import UNSET
+
 from meshwright.assistant.assistant import Assistant
 from meshwright.document.document import Document
+from meshwright.notebook.protocol import requests
 from meshwright.notebook.protocol.mesh_sync import Packet
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.agent_opponent import OpponentState
@@ -14,38 +17,42 @@ from meshwright.puzzles.play import LevelPlay
 from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from meshwright.notebook.protocol.requests import Request
     from meshwright.notebook.session import Session
 
-BARRED = {"clean_all": "clean_all", "desired": "desired", "lock": "locked", "corner": "geometric"}
-"""Words of a browser, and the steps that they bring about."""
+ACTIONS: dict[type[requests.Request], str] = {
+    requests.CleanAll: "clean_all",
+    requests.Desired: "desired",
+    requests.Lock: "locked",
+    requests.Corner: "geometric",
+}
+"""Requests that a level may refuse, and the actions of the history that they cause."""
 
 
-class Playing:
-    """Levels on the document of ``session``; the first one is begun by :meth:`begin`."""
+class LevelBridge:
+    """Handles requests about levels and sends their state; :meth:`begin` starts a level."""
 
     def __init__(self, session: Session) -> None:
-        """For :meth:`of`."""
+        """Use :meth:`of`, which returns the existing bridge of a session."""
         self._session = session
-        self._told: dict[str, Any] = {}
+        self._sent: dict[str, Any] = {}
         self._stars: tuple[int, ...] = ()
         self._known: tuple[Level | None, bool] = (None, False)
         self.play = LevelPlay(session.document, session.assistant.hinting, self._rival)
         self.play.changed.connect(self._on_changed)
-        session.words["level"] = self._do
-        session.greetings.append(lambda: Packet(self._content(everything=True)))
-        session.bars.append(self._bar)
-        session.endings.append(self._end)
+        session.handlers[requests.ChangeLevel] = self._do
+        session.welcome_messages.append(lambda: Packet(self._content(everything=True)))
+        session.guards.append(self._refusal)
+        session.on_end.append(self._end)
 
     @classmethod
-    def of(cls, session: Session) -> Playing:
-        """The levels of a session; new ones if none has been played there yet."""
-        found = session.words.get("level")
+    def of(cls, session: Session) -> LevelBridge:
+        """The level bridge of a session; created if none has been played there yet."""
+        found = session.handlers.get(requests.ChangeLevel)
         owner = getattr(found, "__self__", None)
         return owner if isinstance(owner, cls) else cls(session)
 
     def begin(self, level: str | Level) -> None:
-        """Begin a level; MeshError if there is none of this name."""
+        """Start a level; MeshError if there is none of this name."""
         self.play.open(level)
 
     def _rival(self, document: Document) -> Assistant:
@@ -55,19 +62,20 @@ class Playing:
         self.play.changed.disconnect(self._on_changed)
         self.play.release()
 
-    # What browsers ask
+    # Requests
 
-    def _bar(self, request: Request) -> str:
-        """Why something is not played in a level; empty if it is."""
-        action = request["operation"] if request.do == "operate" else BARRED.get(request.do, "")
-        return self.play.refusal(action)
+    def _refusal(self, request: requests.Request) -> str:
+        """Why the level refuses a request; empty if it does not."""
+        if isinstance(request, requests.Operate):
+            return self.play.refusal(request.operation)
+        return self.play.refusal(ACTIONS.get(type(request), ""))
 
-    def _do(self, session: Session, request: Request) -> str:
-        play, action = self.play, request["action"]
+    def _do(self, session: Session, request: requests.ChangeLevel) -> str:
+        play, action = self.play, request.action
         if play.level is None:
             raise MeshError("No level is being played here.")
         if action == "open":
-            play.open(request.fields.get("name", play.level.name))
+            play.open(play.level.name if request.name is UNSET else request.name)
         elif action == "again":
             play.again()
         elif action == "next":
@@ -80,33 +88,33 @@ class Playing:
 
     @property
     def _answered(self) -> bool:
-        """Whether there is a way to show: the agent's, or that of a level it cannot play."""
+        """Whether there is a solution to show: the agent's, or that of a level it cannot play."""
         play = self.play
         done = play.rival is not None and play.rival.standing is OpponentState.DONE
         return done or (play.level is not None and bool(play.level.most))
 
-    # What browsers are told
+    # Messages
 
     def _on_changed(self) -> None:
         session, play = self._session, self.play
         session.level = play.level
         if play.notice:
-            session.telling.notice("failed", play.notice)
+            session.broadcaster.notice("failed", play.notice)
             play.notice = ""
         content = self._content()
-        if content != self._told:
-            self._told = content
-            session.telling.tell(Packet(content))
+        if content != self._sent:
+            self._sent = content
+            session.broadcaster.send_to_all(Packet(content))
         known = (play.level, play.done)
         if known != self._known:
             self._known = known
             session.level_changed.emit(play.level)
 
     def _content(self, everything: bool = False) -> dict[str, Any]:
-        """A message; the list of all levels is in it where it may be news."""
+        """The message; it holds the list of all levels where that may have changed."""
         progress, names = self.play.progress, levels.names()
         stars = tuple(progress.best(name).stars for name in names)
-        content: dict[str, Any] = {"say": "level", "level": self._level()}
+        content: dict[str, Any] = {"type": "level", "level": self._level()}
         if everything or stars != self._stars:
             content["all"] = [
                 {"name": level.name, "title": level.title, "stars": won}
@@ -144,7 +152,7 @@ class Playing:
         }
 
     def _agent(self, level: Level) -> dict[str, Any] | None:
-        """The agent's answer, or that it is thinking; None where it was not asked."""
+        """State of the agent's solution; None where none was requested."""
         rival = self.play.rival
         if rival is None:
             return None

@@ -1,12 +1,12 @@
-"""The mesh as a browser gets it: once as a whole, then only what differs from what was sent last.
+"""Synchronises a browser's copy of the mesh: one whole state, then patches.
 
-Differences are found by comparing arrays, so that nothing that changes a mesh needs to report what
-it does: operations, smoothing, undo and a jump through the history are all the same here. Arrays
-travel as little-endian buffers beside a small object. Places are float32 in a frame in which the
-mesh reaches from about -1 to 1.
+A patch is found by comparing arrays with those that were sent last, so that operations, smoothing,
+undo and jumps through the history need no code of their own. Arrays are sent as little-endian
+buffers beside a small object. Coordinates are float32 in a frame in which the mesh reaches from
+about -1 to 1.
 
-Every entry is a slot of the mesh: vertex v, half-edge h. Flags of a dead vertex are 0, the origin
-of a dead half-edge is -1. Slots never become fewer: an undo leaves dead ones behind.
+Arrays are indexed by slots of the mesh: vertex v, half-edge h. Flags of a dead vertex are 0, the
+origin of a dead half-edge is -1. The number of slots never decreases: an undo leaves dead slots.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ from meshwright_core.core.arrays import (
 
 VERSION = 1
 ALIVE, BOUNDARY, CORNER, FIXED = 1, 2, 4, 8
-"""Bits of a vertex's flags; FIXED is a vertex that a person has locked."""
+"""Bits of a vertex's flags; FIXED is a vertex locked by the user."""
 
 
 @dataclass
 class Packet:
-    """A message to the browser: a small object and the arrays that go with it."""
+    """A message to the browser: a small object, and arrays as bytes."""
 
     content: dict[str, Any]
     buffers: list[bytes] = field(default_factory=list)
@@ -49,15 +49,15 @@ class Packet:
 
 
 @dataclass(frozen=True)
-class Frame:
-    """From places of the mesh to places that are sent: x' = (x - cx) / scale, y' likewise."""
+class CoordinateFrame:
+    """Maps coordinates of the mesh to those that are sent: x' = (x - cx) / scale, y' likewise."""
 
     cx: float = 0.0
     cy: float = 0.0
     scale: float = 1.0
 
     @classmethod
-    def of(cls, mesh: HalfEdgeMesh) -> Frame:
+    def of(cls, mesh: HalfEdgeMesh) -> CoordinateFrame:
         """The frame in which the live vertices lie between -1 and 1."""
         live = mesh.points[mesh.vertices(), :2]
         if not len(live):
@@ -67,29 +67,31 @@ class Frame:
         return cls(cx, cy, scale if scale > 0 else 1.0)
 
     def normalised(self, places: np.ndarray) -> np.ndarray:
-        """Places (..., 2 or 3) as float32 (..., 2)."""
+        """Coordinates (..., 2 or 3) as float32 (..., 2)."""
         moved = (places[..., :2] - (self.cx, self.cy)) / self.scale
         return moved.astype("<f4")
 
 
 @dataclass(frozen=True)
-class Slots:
-    """What is sent of a mesh of ``V`` vertex slots and ``H`` half-edge slots."""
+class SlotArrays:
+    """The arrays that are sent of a mesh with ``V`` vertex slots and ``H`` half-edge slots."""
 
     places: np.ndarray
-    """(V, 2) float32; dead ones are at 0."""
+    """(V, 2) float32 coordinates; 0 for dead vertices."""
     delta: np.ndarray
-    """(V,) int8."""
+    """(V,) int8, degree minus desired degree."""
     flags: np.ndarray
-    """(V,) uint8."""
+    """(V,) uint8, bits as above."""
     origin: np.ndarray
     """(H,) int32."""
     twin: np.ndarray
     """(H,) int32."""
 
     @classmethod
-    def of(cls, mesh: HalfEdgeMesh, frame: Frame, vertices: int = 0, halfedges: int = 0) -> Slots:
-        """Copies from the mesh, with at least so many slots."""
+    def of(
+        cls, mesh: HalfEdgeMesh, frame: CoordinateFrame, vertices: int = 0, halfedges: int = 0
+    ) -> SlotArrays:
+        """Copies from the mesh, padded to at least so many slots."""
         arrays = mesh.arrays
         used, held = mesh.slots, mesh.k * int(arrays.counters[ELEMENT_SLOTS])
         rows, edges = arrays.vertex[:used], arrays.edge[:held]
@@ -115,8 +117,8 @@ class Slots:
         return cls(places, delta, flags, origin, twin)
 
     @classmethod
-    def none(cls) -> Slots:
-        """No slots at all."""
+    def none(cls) -> SlotArrays:
+        """Arrays without slots."""
         return cls(
             np.zeros((0, 2), "<f4"),
             np.zeros(0, np.int8),
@@ -132,55 +134,55 @@ class Slots:
         return [array.tobytes() for array in arrays]
 
 
-class Mirror:
-    """What the browsers know of a mesh: all views of a session know the same.
+class MeshSync:
+    """The arrays that were sent last; the same for all views of a session.
 
-    :attr:`revision` counts the patches that were made.
+    :attr:`revision` counts states and patches.
     """
 
     def __init__(self) -> None:
         self.revision = 0
-        self.frame = Frame()
+        self.frame = CoordinateFrame()
         self.moved = self.turned = np.zeros(0, np.int64)
-        """The vertices and the half-edges of the last patch."""
+        """Ids of the vertices and the half-edges in the last patch."""
         self._k = 3
-        self._known = Slots.none()
+        self._sent = SlotArrays.none()
 
     def reset(self, mesh: HalfEdgeMesh | None) -> None:
-        """Another mesh is here, or the first, or none: whoever follows needs :meth:`state`."""
+        """Start again with another mesh, or None; views need :meth:`state` next."""
         self.revision += 1
-        self.frame, self._k = Frame(), 3
-        self._known = Slots.none()
+        self.frame, self._k = CoordinateFrame(), 3
+        self._sent = SlotArrays.none()
         if mesh is not None:
-            self.frame, self._k = Frame.of(mesh), mesh.k
-            self._known = Slots.of(mesh, self.frame)
+            self.frame, self._k = CoordinateFrame.of(mesh), mesh.k
+            self._sent = SlotArrays.of(mesh, self.frame)
 
     def state(self) -> Packet:
-        """Everything that is known, as it was sent last."""
-        known = self._known
+        """The message with the whole mesh, as it was sent last."""
+        sent = self._sent
         content = {
-            "say": "state",
+            "type": "state",
             "version": VERSION,
             "revision": self.revision,
             "k": self._k,
-            "vertices": len(known.flags),
-            "halfedges": len(known.origin),
+            "vertices": len(sent.flags),
+            "halfedges": len(sent.origin),
             "frame": {"cx": self.frame.cx, "cy": self.frame.cy, "scale": self.frame.scale},
         }
-        return Packet(content, known.buffers)
+        return Packet(content, sent.buffers)
 
     def patch(self, mesh: HalfEdgeMesh | None) -> Packet:
-        """What differs from what was sent last, and from now on counts as sent.
+        """The message with all changes since the last message.
 
-        Where a patch would be larger than the whole it is the state.
+        Where it would be larger than the whole state: the state.
         """
-        old = self._known
+        old = self._sent
         new = old
         if mesh is not None:
-            new = Slots.of(mesh, self.frame, len(old.flags), len(old.origin))
+            new = SlotArrays.of(mesh, self.frame, len(old.flags), len(old.origin))
         changed = _differing((new.places, new.delta, new.flags), (old.places, old.delta, old.flags))
         turned = _differing((new.origin, new.twin), (old.origin, old.twin))
-        self._known, self.moved, self.turned = new, changed, turned
+        self._sent, self.moved, self.turned = new, changed, turned
         self.revision += 1
         buffers = [
             changed.astype("<i4").tobytes(),
@@ -192,7 +194,7 @@ class Mirror:
             new.twin[turned].tobytes(),
         ]
         content = {
-            "say": "patch",
+            "type": "patch",
             "from": self.revision - 1,
             "to": self.revision,
             "vertices": len(new.flags),
@@ -204,12 +206,12 @@ class Mirror:
 
 
 def _differing(new: Sequence[np.ndarray], old: Sequence[np.ndarray]) -> np.ndarray:
-    """Indices where any of the arrays differ from those before, to the bit; all new slots do."""
+    """Indices where any array differs from the older one, to the bit; new slots always differ."""
     count = len(old[0])
     differs = np.ones(len(new[0]), dtype=bool)
     differs[:count] = False
     for now, before in zip(new, old, strict=True):
-        # floats as bits: what is no number equals itself
+        # floats are compared as bits, so that NaN equals itself
         a, b = (x.view("<u4") if x.dtype.kind == "f" else x for x in (now[:count], before))
         unlike = a != b
         differs[:count] |= unlike.any(axis=1) if unlike.ndim == 2 else unlike

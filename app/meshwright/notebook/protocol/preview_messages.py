@@ -1,4 +1,4 @@
-"""What the operations at one half-edge would do, for the view whose pointer is there."""
+"""Messages with a preview of the operations at the half-edge under the pointer."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from typing import Any
 import numpy as np
 
 from meshwright.document.operation_preview import OperationOffer, best, choices, ghost
-from meshwright.notebook.protocol.mesh_sync import Frame, Packet
+from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet
 from meshwright_core import HalfEdgeMesh
 
 
 def ghost_packet(
     mesh: HalfEdgeMesh,
-    frame: Frame,
+    frame: CoordinateFrame,
     halfedge: int,
     operation: str | None,
     bar: Callable[[str], str] | None = None,
 ) -> Packet:
-    """Offers of every operation at a live half-edge, and the ghost of one of them.
+    """All operations at a live half-edge, and the preview ("ghost") of one of them.
 
-    Of ``operation``, or where that is None of the best that is allowed; no ghost where it is
-    refused, by the mesh or by the document's ``bar``.
+    The preview is of ``operation``, or where that is None of the best one that is allowed. There is
+    none where the operation is refused, by the mesh or by the document's ``bar``.
     """
     offered = choices(mesh, halfedge, bar)
     if operation is None:
@@ -30,9 +30,9 @@ def ghost_packet(
     else:
         meant = next((c for c in offered if c.operation == operation and c.allowed), None)
     content = {
-        "say": "ghost",
+        "type": "ghost",
         "halfedge": halfedge,
-        "offers": [_offer(choice) for choice in offered],
+        "offers": [_offer(offer) for offer in offered],
         "operation": str(meant.operation) if meant is not None else None,
         "change": meant.change if meant is not None else None,
     }
@@ -46,9 +46,9 @@ def ghost_packet(
 
 
 def no_ghost() -> Packet:
-    """The pointer is over no half-edge."""
+    """The message for a pointer over no half-edge."""
     content: dict[str, Any] = {
-        "say": "ghost",
+        "type": "ghost",
         "halfedge": -1,
         "offers": [],
         "operation": None,
@@ -57,10 +57,10 @@ def no_ghost() -> Packet:
     return Packet(content, [b""] * 5)
 
 
-def _offer(choice: OperationOffer) -> dict[str, Any]:
+def _offer(offer: OperationOffer) -> dict[str, Any]:
     return {
-        "operation": str(choice.operation),
-        "allowed": choice.allowed,
-        "reason": choice.verdict.reason,
-        "change": choice.change,
+        "operation": str(offer.operation),
+        "allowed": offer.allowed,
+        "reason": offer.verdict.reason,
+        "change": offer.change,
     }

@@ -1,179 +1,237 @@
-"""What a browser may ask: words with their fields, read strictly.
+"""Messages from the browser: one struct for each word, validated by msgspec.
 
-A message is ``{"do": word, "id": int, "view": str, ...}``. Whatever is not exactly what the word
-asks for is refused with one sentence, before anything else looks at it.
+A message is the object ``{"do": word, "id": int, "view": str, ...}``; :data:`AnyRequest` is the
+union of all structs, tagged by ``do``. Unknown words, unknown fields, missing fields and values out
+of range are refused with one sentence before any other code sees the message.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+import re
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, TypeAlias, get_args
+
+import msgspec
+from msgspec import UNSET, Meta, Struct, UnsetType
 
 LONGEST = 200
 """Characters of a string, at most."""
 LARGEST = 2**53 - 1
-"""The largest whole number that a browser can count to."""
+"""The largest integer that JavaScript represents exactly."""
+LARGEST_ID = 2**31 - 1
+"""The largest id of a vertex or a half-edge."""
 DEGREES = 1, 100
-"""Bounds of a degree that may be asked for at a vertex."""
+"""Bounds of the desired degree of a vertex."""
+SHOWN = 80
+"""Characters of a reason that are shown; it may quote a long value."""
+MOST_FIELDS = 16
+"""Fields of a message, at most."""
+
+Text: TypeAlias = Annotated[str, Meta(max_length=LONGEST)]
+Count: TypeAlias = Annotated[int, Meta(ge=0, le=LARGEST)]
+Id: TypeAlias = Annotated[int, Meta(ge=0, le=LARGEST_ID)]
+IdOrNone: TypeAlias = Annotated[int, Meta(ge=-1, le=LARGEST_ID)]
+
+
+class Envelope(Struct, frozen=True, kw_only=True):
+    """What every message has, and what an answer needs: its number, and the view that sent it."""
+
+    id: Count
+    view: Annotated[str, Meta(min_length=1, max_length=LONGEST)]
+
+
+class Request(Envelope, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="do"):
+    """A well-formed message; each subclass is one word."""
+
+    @property
+    def word(self) -> str:
+        """The value of the field ``do``."""
+        return word_of(type(self))
+
+
+class Hello(Request, frozen=True, tag="hello"):
+    """A new view asks for the whole state."""
+
+
+class Hover(Request, frozen=True, tag="hover"):
+    """The pointer is over a half-edge, -1 for none; asks for a preview of an operation there, by
+    default of the best one.
+    """
+
+    halfedge: IdOrNone
+    operation: Text | None
+
+
+class Operate(Request, frozen=True, tag="operate"):
+    """Apply an operation; ``ends`` are the half-edge's vertices as the browser knows them."""
+
+    operation: Text
+    halfedge: Id
+    ends: tuple[Id, Id]
+
+
+class Undo(Request, frozen=True, tag="undo"):
+    """Undo the last step."""
+
+
+class Redo(Request, frozen=True, tag="redo"):
+    """Redo the step that was undone last."""
+
+
+class Smooth(Request, frozen=True, tag="smooth"):
+    """Smooth the whole mesh."""
+
+
+class Untangle(Request, frozen=True, tag="untangle"):
+    """Repair inverted elements."""
+
+
+class CleanAll(Request, frozen=True, tag="clean_all"):
+    """Remove all removable global lines of a quad mesh."""
+
+
+class GoTo(Request, frozen=True, tag="go_to"):
+    """Go to a state of the history."""
+
+    cursor: Count
+
+
+class AutoSmooth(Request, frozen=True, tag="auto_smooth"):
+    """Switch smoothing after every operation on or off."""
+
+    on: bool
+
+
+class Desired(Request, frozen=True, tag="desired"):
+    """Set the desired degree of a vertex."""
+
+    vertex: Id
+    degree: Annotated[int, Meta(ge=DEGREES[0], le=DEGREES[1])]
+
+
+class Lock(Request, frozen=True, tag="lock"):
+    """Lock or unlock a vertex."""
+
+    vertex: Id
+    on: bool
+
+
+class Corner(Request, frozen=True, tag="corner"):
+    """Make a vertex a corner, or not."""
+
+    vertex: Id
+    on: bool
+
+
+class Agent(Request, frozen=True, tag="agent"):
+    """Start, pause or stop the agent, or ask it for hints."""
+
+    action: Literal["step", "play", "pause", "complete", "stop", "hint"]
+
+
+class Speed(Request, frozen=True, tag="speed"):
+    """Set the agent's speed in decisions per second."""
+
+    value: Annotated[float, Meta(ge=0.0, le=1e6)]
+
+
+class ChoosePolicy(Request, frozen=True, tag="policy"):
+    """Choose one of the policies on offer."""
+
+    name: Text
+
+
+class TakeHint(Request, frozen=True, tag="take_hint"):
+    """Apply the hint of this index."""
+
+    index: Annotated[int, Meta(ge=0, le=1000)]
+
+
+class ChangeLevel(Request, frozen=True, tag="level"):
+    """Restart a level, go to another one, or let the agent solve it."""
+
+    action: Literal["again", "next", "open", "solve"]
+    name: Text | UnsetType = UNSET
+
+
+AnyRequest: TypeAlias = (
+    Hello
+    | Hover
+    | Operate
+    | Undo
+    | Redo
+    | Smooth
+    | Untangle
+    | CleanAll
+    | GoTo
+    | AutoSmooth
+    | Desired
+    | Lock
+    | Corner
+    | Agent
+    | Speed
+    | ChoosePolicy
+    | TakeHint
+    | ChangeLevel
+)
+
+
+def word_of(kind: type[Request]) -> str:
+    """The value of the field ``do`` for messages of this type."""
+    return str(kind.__struct_config__.tag)
+
+
+WORDS: dict[str, type[Request]] = {word_of(kind): kind for kind in get_args(AnyRequest)}
+"""The type of message for each word."""
 
 
 class RefusedError(Exception):
-    """A message that cannot be taken; its text is a sentence for a person."""
+    """A message is malformed; ``sentence`` says why, in words for the reader of the notebook."""
 
-    def __init__(self, sentence: str, request: Request | None = None) -> None:
+    def __init__(self, sentence: str, sender: Envelope | None = None) -> None:
         super().__init__(sentence)
         self.sentence = sentence
-        self.request = request
-        """Whom to answer, as far as the message says it; None if it does not."""
+        self.sender = sender
+        """The message to answer and its view; None where these are malformed themselves."""
 
 
-@dataclass(frozen=True)
-class Request:
-    """A message that is well formed: what to do, for which view, and with what."""
+def parse(content: Any, buffers: Sequence[Any] | None = None) -> AnyRequest:
+    """The request in a message's ``content``.
 
-    do: str
-    id: int
-    view: str
-    fields: Mapping[str, Any]
-
-    def __getitem__(self, name: str) -> Any:
-        return self.fields[name]
-
-
-Check = Callable[[str, Any], Any]
-"""Returns the value of the field with this name, or raises ValueError with the end of a sentence:
-``must be ...``."""
-
-
-def whole(low: int, high: int = LARGEST) -> Check:
-    """A whole number from ``low`` to ``high``; true and false are none."""
-
-    def check(name: str, value: Any) -> int:
-        if type(value) is not int or not low <= value <= high:
-            upper = f" to {high:,}" if high < LARGEST else ""
-            raise ValueError(f"must be a whole number from {low}{upper}")
-        return value
-
-    return check
-
-
-def finite(low: float, high: float) -> Check:
-    """A number from ``low`` to ``high``."""
-
-    def check(name: str, value: Any) -> float:
-        if type(value) not in (int, float) or not (low <= value <= high and math.isfinite(value)):
-            raise ValueError(f"must be a number from {low:g} to {high:g}")
-        return float(value)
-
-    return check
-
-
-def boolean(name: str, value: Any) -> bool:
-    """True or false."""
-    if type(value) is not bool:
-        raise ValueError("must be true or false")
-    return value
-
-
-def text(name: str, value: Any) -> str:
-    """A string that is not too long."""
-    if type(value) is not str or len(value) > LONGEST:
-        raise ValueError(f"must be a string of at most {LONGEST} characters")
-    return value
-
-
-def one_of(*words: str) -> Check:
-    """One of a few words."""
-
-    def check(name: str, value: Any) -> str:
-        if type(value) is not str or value not in words:
-            raise ValueError(f"must be one of {', '.join(words)}")
-        return value
-
-    return check
-
-
-def pair(name: str, value: Any) -> tuple[int, int]:
-    """Two vertex ids."""
-    if type(value) is not list or len(value) != 2:
-        raise ValueError("must be two vertices")
-    first, second = (_vertex(name, v) for v in value)
-    return first, second
-
-
-def or_null(check: Check) -> Check:
-    """What ``check`` lets through, or null."""
-    return lambda name, value: None if value is None else check(name, value)
-
-
-_vertex = whole(0, 2**31 - 1)
-_halfedge = whole(0, 2**31 - 1)
-
-WORDS: dict[str, dict[str, Check]] = {
-    "hello": {},
-    "hover": {"halfedge": whole(-1, 2**31 - 1), "operation": or_null(text)},
-    "operate": {"operation": text, "halfedge": _halfedge, "ends": pair},
-    "undo": {},
-    "redo": {},
-    "smooth": {},
-    "untangle": {},
-    "clean_all": {},
-    "go_to": {"cursor": whole(0)},
-    "auto_smooth": {"on": boolean},
-    "desired": {"vertex": _vertex, "degree": whole(*DEGREES)},
-    "lock": {"vertex": _vertex, "on": boolean},
-    "corner": {"vertex": _vertex, "on": boolean},
-    "agent": {"action": one_of("step", "play", "pause", "complete", "stop", "hint")},
-    "speed": {"value": finite(0.0, 1e6)},
-    "policy": {"name": text},
-    "take_hint": {"index": whole(0, 1000)},
-    "level": {"action": one_of("again", "next", "open", "solve"), "name?": text},
-}
-"""The fields of every word; a name that ends in ``?`` may be missing."""
-
-FEW = 16
-"""Fields of a message, at most."""
-
-
-def parse(content: Any, buffers: Sequence[Any] | None = None) -> Request:
-    """The request in a message's ``content``; raises RefusedError, saying what is wrong."""
+    Raises:
+        RefusedError: one sentence on what is malformed.
+    """
     if type(content) is not dict:
         raise RefusedError("A message must be an object with a word in 'do'.")
-    if len(content) > FEW or any(type(name) is not str for name in content):
+    if len(content) > MOST_FIELDS or any(type(name) is not str for name in content):
         raise RefusedError("A message has too many fields, or fields without a name.")
-    number, view = content.get("id"), content.get("view")
-    if type(number) is not int or not 0 <= number <= LARGEST:
-        raise RefusedError("A message must have a whole number from 0 as its 'id'.")
-    if type(view) is not str or not 0 < len(view) <= LONGEST:
-        raise RefusedError("A message must name its 'view'.", Request("", number, "", {}))
-    do = content.get("do")
-    asked = Request(do if type(do) is str and do in WORDS else "", number, view, {})
-    if not asked.do:
-        said = f" '{do}'" if type(do) is str and len(do) <= 40 and do.isprintable() else " that"
-        raise RefusedError(f"There is nothing called{said} to do.", asked)
+    try:
+        sender = msgspec.convert(content, Envelope)
+    except msgspec.ValidationError as error:
+        raise RefusedError(f"Malformed message: {_reason(error)}.") from None
+    word = content.get("do")
+    if type(word) is not str or word not in WORDS:
+        raise RefusedError(f"Unknown request{_shown(word)}.", sender)
     if buffers:
-        raise RefusedError(f"'{do}' takes no arrays.", asked)
-    return Request(asked.do, number, view, _fields(asked, content))
+        raise RefusedError(f"'{word}' takes no arrays.", sender)
+    try:
+        request: AnyRequest = msgspec.convert(content, AnyRequest)
+    except msgspec.ValidationError as error:
+        raise RefusedError(f"Malformed '{word}': {_reason(error)}.", sender) from None
+    return request
 
 
-def _fields(asked: Request, content: dict[str, Any]) -> dict[str, Any]:
-    checks = WORDS[asked.do]
-    known = {name.removesuffix("?") for name in checks} | {"do", "id", "view"}
-    for name in content:
-        if name not in known:
-            shown = name if len(name) <= 40 and name.isprintable() else "that"
-            raise RefusedError(f"'{asked.do}' has no field '{shown}'.", asked)
-    fields = {}
-    for field, check in checks.items():
-        name = field.removesuffix("?")
-        if name not in content:
-            if name == field:
-                raise RefusedError(f"'{asked.do}' needs the field '{name}'.", asked)
-            continue
-        try:
-            fields[name] = check(name, content[name])
-        except ValueError as error:
-            raise RefusedError(f"'{asked.do}': '{name}' {error}.", asked) from None
-    return fields
+def _reason(error: msgspec.ValidationError) -> str:
+    """msgspec's message as a part of a sentence: ``expected 'int', got 'str' at 'halfedge'``."""
+    what, _, path = str(error).partition(" - at `$.")
+    what = "".join(c if c.isprintable() else "\ufffd" for c in what[:SHOWN]).replace("`", "'")
+    if len(what) == SHOWN:
+        what += "\u2026"
+    field = re.match(r"\w{1,40}", path)
+    at = f" at '{field[0]}'" if field else ""
+    return what[:1].lower() + what[1:] + at
+
+
+def _shown(word: Any) -> str:
+    short = type(word) is str and len(word) <= 40 and word.isprintable()
+    return f" '{word}'" if short else ""

@@ -43,7 +43,7 @@ def endings() -> tuple[str, ...]:
 
 
 def is_geometry(path: str | os.PathLike[str]) -> bool:
-    """Tell by its ending whether a file holds a shape, so that it must be meshed first."""
+    """Whether a file, by its ending, holds a shape, which must be meshed first."""
     return Path(path).suffix.lower() in SHAPES
 
 

@@ -1,4 +1,4 @@
-"""Domains out of loose lines: pieces of a drawing are joined to loops, the loops nested."""
+"""Traces domains: pieces of a drawing are joined to closed loops, and the loops nested."""
 
 from __future__ import annotations
 

@@ -75,9 +75,7 @@ def sight(insight: Insight, mesh: HalfEdgeMesh, words: tuple[str, ...] = ()) -> 
 
 
 def _corners(mesh: HalfEdgeMesh, elements: np.ndarray) -> np.ndarray:
-    halfedges = (mesh.k * elements[:, None] + np.arange(mesh.k)).ravel()
-    corners = mesh.points[mesh.arrays.edge[halfedges, 0], :2]
-    return corners.reshape(-1, mesh.k, 2)
+    return mesh.points[mesh.corners(elements), :2]
 
 
 class FieldLayer(Layer):

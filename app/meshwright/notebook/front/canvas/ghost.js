@@ -1,4 +1,8 @@
-// The ghost of an operation: what would be there dashed, what would go faded, and its numbers.
+// The preview of an operation ("ghost"): new edges dashed, removed edges faded, new irregularities.
+
+import { arrayOf } from "../mesh/mesh_replica.js";
+import { middleOf } from "../mesh/picking.js";
+import { clamp, signed } from "../numbers.js";
 
 const GHOST_DASHES = [7, 4.5];
 const MOST_NUMBERS = 24;
@@ -9,10 +13,10 @@ const TAG_HEIGHT = 24;
 const TAG_GAPS = [14, 36];
 const TAG_HIDES = 60;
 
-/** What a ghost message says, in the plane: {halfedge, operation, change, added, removed, gone,
+/** The content of a ghost message, in the plane: {halfedge, operation, change, added, removed, gone,
  * places, delta}; segments are flat [x, y, x, y, ...]; null if nothing is allowed.
  */
-function ghostOf(content, buffers) {
+export function ghostOf(content, buffers) {
   if (content.operation === null || content.operation === undefined) return null;
   return {
     halfedge: content.halfedge,
@@ -27,7 +31,7 @@ function ghostOf(content, buffers) {
 }
 
 /** {left, top, right, bottom} of a ghost and of the corners at its half-edge, on the screen. */
-function ghostBounds(view, ghost, corners) {
+export function ghostBounds(view, ghost, corners) {
   const box = { left: Infinity, top: Infinity, right: -Infinity, bottom: -Infinity };
   const take = ([x, y]) => {
     box.left = Math.min(box.left, x);
@@ -44,14 +48,14 @@ function ghostBounds(view, ghost, corners) {
   return box;
 }
 
-class GhostPainter {
-  constructor(palette) {
-    this._palette = palette;
+export class GhostPainter {
+  constructor(colours) {
+    this._colours = colours;
   }
 
-  /** The edges; they lie below the marks. */
+  /** Paint the edges; they lie below the markers. */
   paintEdges(pen, view, ghost) {
-    const palette = this._palette;
+    const colours = this._colours;
     const stroke = (colour, width, alpha, dashes, segments) => {
       pen.globalAlpha = alpha;
       pen.strokeStyle = colour;
@@ -61,16 +65,16 @@ class GhostPainter {
       pen.stroke();
     };
     pen.lineCap = "round";
-    stroke(palette.fill, 4, 0.86, [], ghost.removed);
+    stroke(colours.fill, 4, 0.86, [], ghost.removed);
     pen.lineCap = "butt";
-    stroke(palette.background, 4, 0.8, [], ghost.added);
-    stroke(palette.arrow, 1.9, 1, GHOST_DASHES, ghost.added);
+    stroke(colours.background, 4, 0.8, [], ghost.added);
+    stroke(colours.arrow, 1.9, 1, GHOST_DASHES, ghost.added);
     pen.setLineDash([]);
     pen.globalAlpha = 1;
   }
 
-  /** Pills with the irregularity that vertices would have, crosses on those that would go, and the
-   * tag unless `title` is empty. `corners`: of the half-edge's element, on the screen, its own ends
+  /** Paint labels with the new irregularity of vertices, crosses on removed ones, and a tag with the
+   * title unless that is empty. `corners`: of the half-edge's element, on the screen, its own ends
    * first.
    */
   paintNumbers(pen, view, ghost, title, corners, marks) {
@@ -90,7 +94,7 @@ class GhostPainter {
   _paintCrosses(pen, view, ghost) {
     if (ghost.gone.length > 2 * MOST_NUMBERS) return;
     pen.lineCap = "round";
-    for (const [colour, width] of [[this._palette.background, 6], [this._palette.text, 2.25]]) {
+    for (const [colour, width] of [[this._colours.background, 6], [this._colours.text, 2.25]]) {
       pen.strokeStyle = colour;
       pen.lineWidth = width;
       pen.beginPath();
@@ -105,10 +109,10 @@ class GhostPainter {
     }
   }
 
-  /** Beside their vertices, off the arrow, the marks and one another; returns their middles. */
+  /** Paint the labels beside their vertices, without overlaps if possible; returns their centres. */
   _paintPills(pen, view, ghost, corners, marks) {
-    const palette = this._palette;
-    pen.font = `600 11px ${palette.font}`;
+    const colours = this._colours;
+    pen.font = `600 11px ${colours.font}`;
     pen.textBaseline = "middle";
     pen.textAlign = "center";
     const [a, b] = corners;
@@ -125,42 +129,42 @@ class GhostPainter {
       const [left, top] = tries[hits.indexOf(Math.min(...hits))];
       pills.push([left + width / 2, top + PILL_HEIGHT / 2]);
       busy.push(pills[pills.length - 1]);
-      pen.fillStyle = palette.raised;
+      pen.fillStyle = colours.raised;
       pen.lineWidth = 1.25;
-      pen.strokeStyle = delta > 0 ? palette.plus : delta < 0 ? palette.minus : palette.faint;
+      pen.strokeStyle = delta > 0 ? colours.plus : delta < 0 ? colours.minus : colours.faint;
       pen.beginPath();
       pen.roundRect(left, top, width, PILL_HEIGHT, PILL_HEIGHT / 2);
       pen.fill();
       pen.stroke();
-      pen.fillStyle = palette.text;
+      pen.fillStyle = colours.text;
       pen.fillText(text, left + width / 2, top + PILL_HEIGHT / 2 + 0.5);
     });
     return pills;
   }
 
   _paintTag(pen, view, ghost, title, corners, marks) {
-    const palette = this._palette;
-    pen.font = `600 12px ${palette.font}`;
+    const colours = this._colours;
+    pen.font = `600 12px ${colours.font}`;
     pen.textBaseline = "middle";
     const change = signed(ghost.change);
     const width = pen.measureText(title).width + pen.measureText(change).width + 32;
     const [x, y] = this._tagPlace(view, ghost, corners, width, marks);
-    pen.fillStyle = palette.raised;
-    pen.strokeStyle = palette.line;
+    pen.fillStyle = colours.raised;
+    pen.strokeStyle = colours.line;
     pen.lineWidth = 1;
     pen.beginPath();
     pen.roundRect(x, y, width, TAG_HEIGHT, 6);
     pen.fill();
     pen.stroke();
-    pen.fillStyle = palette.text;
+    pen.fillStyle = colours.text;
     pen.textAlign = "left";
     pen.fillText(title, x + 9, y + TAG_HEIGHT / 2 + 0.5);
-    pen.fillStyle = palette.ofChange(ghost.change);
+    pen.fillStyle = colours.ofChange(ghost.change);
     pen.textAlign = "right";
     pen.fillText(change, x + width - 9, y + TAG_HEIGHT / 2 + 0.5);
   }
 
-  /** Beside the element that is pointed at, where the tag hides least. */
+  /** The place beside the element where the tag hides least. */
   _tagPlace(view, ghost, corners, width, marks) {
     const xs = corners.map((at) => at[0]);
     const ys = corners.map((at) => at[1]);

@@ -1,22 +1,26 @@
-// Hints on the mesh: a line along each half-edge, and a numbered badge that can be clicked.
+// Hints on the mesh: an arrow along each half-edge, and a numbered badge that can be clicked.
+
+import { middleOf } from "../mesh/picking.js";
+import { clamp, signed } from "../numbers.js";
+import { arrowOf, paintArrow } from "./arrow.js";
 
 const BADGE_HEIGHT = 22;
 const BADGE_GAP = 4;
-const MOST_HINTS = 5;
+export const MOST_HINTS = 5;
 const BADGE_TRIES = [[1, -1], [-1, -1], [1, 1], [-1, 1], [1, 0], [-1, 0], [0, -1], [0, 1]];
 
 /** "63 %"; very small ones are "< 1 %". */
-function percent(probability) {
+export function percent(probability) {
   return probability < 0.01 ? "< 1\u2009%" : `${Math.round(100 * probability)}\u2009%`;
 }
 
-class HintBadges {
-  constructor(palette) {
-    this._palette = palette;
+export class HintBadges {
+  constructor(colours) {
+    this._colours = colours;
     this._boxes = [];
   }
 
-  /** There are none. */
+  /** Remove all badges. */
   clear() {
     this._boxes = [];
   }
@@ -27,36 +31,36 @@ class HintBadges {
       && y >= box.y && y <= box.y + BADGE_HEIGHT);
   }
 
-  /** Places [x, y] that the badges take, for what has to keep clear of them. */
+  /** Points [x, y] covered by the badges, which labels avoid. */
   get places() {
     const shares = [0, 0.25, 0.5, 0.75, 1];
     return this._boxes.flatMap((box) => (box
       ? shares.map((share) => [box.x + share * box.width, box.y + BADGE_HEIGHT / 2]) : []));
   }
 
-  /** Paint all, the one that is meant in front. `marks`: places that badges keep clear of. */
-  paint(pen, view, mirror, hints, meant, marks) {
-    const palette = this._palette;
-    pen.font = `600 12px ${palette.font}`;
+  /** Paint all hints, the selected one in front. `marks`: points that badges avoid. */
+  paint(pen, view, replica, hints, selected, marks) {
+    const colours = this._colours;
+    pen.font = `600 12px ${colours.font}`;
     this._boxes = [];
     const roots = hints.slice(0, MOST_HINTS).map((hint) => {
-      if (!mirror.live(hint.halfedge)) return null;
-      const [tail, head] = arrowOf(mirror, view, hint.halfedge);
+      if (!replica.live(hint.halfedge)) return null;
+      const [tail, head] = arrowOf(replica, view, hint.halfedge);
       return { tail, head, middle: middleOf([tail, head]) };
     });
     roots.forEach((root, i) => {
       if (!root) return;
-      pen.globalAlpha = i === meant ? 1 : 0.6;
-      paintArrow(pen, root.tail, root.head, palette.accent, palette.background);
+      pen.globalAlpha = i === selected ? 1 : 0.6;
+      paintArrow(pen, root.tail, root.head, colours.accent, colours.background);
     });
     pen.globalAlpha = 1;
     roots.forEach((root, i) => this._boxes.push(root && this._place(pen, view, root, hints[i], marks)));
     const order = roots.map((_, i) => i).filter((i) => this._boxes[i]);
-    order.sort((a, b) => (a === meant) - (b === meant));
-    for (const i of order) this._paintBadge(pen, this._boxes[i], i + 1, hints[i], i === meant);
+    order.sort((a, b) => (a === selected) - (b === selected));
+    for (const i of order) this._paintBadge(pen, this._boxes[i], i + 1, hints[i], i === selected);
   }
 
-  /** Of the places around a root the one that covers least. */
+  /** The place around a root with the least overlap. */
   _place(pen, view, { middle }, hint, marks) {
     const [x, y] = middle;
     if (x < 0 || y < 0 || x > view.width || y > view.height) return null;
@@ -83,35 +87,35 @@ class HintBadges {
     return best;
   }
 
-  _paintBadge(pen, box, number, hint, meant) {
-    const palette = this._palette;
-    pen.strokeStyle = palette.accent;
+  _paintBadge(pen, box, number, hint, selected) {
+    const colours = this._colours;
+    pen.strokeStyle = colours.accent;
     pen.lineWidth = 1.25;
     pen.beginPath();
     pen.moveTo(...box.root);
     pen.lineTo(box.x + box.width / 2, box.y + BADGE_HEIGHT / 2);
     pen.stroke();
-    pen.fillStyle = palette.raised;
-    pen.strokeStyle = meant ? palette.accent : palette.line;
-    pen.lineWidth = meant ? 1.5 : 1;
+    pen.fillStyle = colours.raised;
+    pen.strokeStyle = selected ? colours.accent : colours.line;
+    pen.lineWidth = selected ? 1.5 : 1;
     pen.beginPath();
     pen.roundRect(box.x, box.y, box.width, BADGE_HEIGHT, BADGE_HEIGHT / 2);
     pen.fill();
     pen.stroke();
     const middle = box.y + BADGE_HEIGHT / 2;
-    pen.fillStyle = meant ? palette.accent : palette.accent_soft;
+    pen.fillStyle = selected ? colours.accent : colours.accent_soft;
     pen.beginPath();
     pen.arc(box.x + BADGE_HEIGHT / 2, middle, BADGE_HEIGHT / 2 - 2, 0, 2 * Math.PI);
     pen.fill();
     pen.textBaseline = "middle";
     pen.textAlign = "center";
-    pen.fillStyle = meant ? palette.accent_text : palette.accent;
+    pen.fillStyle = selected ? colours.accent_text : colours.accent;
     pen.fillText(String(number), box.x + BADGE_HEIGHT / 2, middle + 0.5);
     pen.textAlign = "left";
-    pen.fillStyle = palette.text;
+    pen.fillStyle = colours.text;
     pen.fillText(percent(hint.probability), box.x + BADGE_HEIGHT + 2, middle + 0.5);
     pen.textAlign = "right";
-    pen.fillStyle = palette.ofChange(hint.change);
+    pen.fillStyle = colours.ofChange(hint.change);
     pen.fillText(signed(hint.change), box.x + box.width - 9, middle + 0.5);
   }
 }

@@ -1,44 +1,46 @@
-// Inverted elements in plain sight: hatched, tinted, and with a sign where they are small.
+// Paints inverted elements: tinted, hatched, and with a warning sign where they are small.
+
+import { middleOf } from "../mesh/picking.js";
 
 const HATCH_GAP = 6;
 const MOST_HATCHED = 1500;
 const SMALLEST_HATCHED = 9;
 const MOST_SIGNS = 24;
 
-class Hatching {
-  constructor(palette) {
-    this._palette = palette;
+export class InvertedElementsPainter {
+  constructor(colours) {
+    this._colours = colours;
     this._tile = null;
     this._ratio = 0;
   }
 
-  /** Colours are others. */
+  /** Discard the tile after a change of colours. */
   forget() {
     this._tile = null;
   }
 
-  /** Paint these elements as `view` shows them. */
-  paint(pen, ratio, view, mirror, elements) {
+  /** Paint these elements in `view`. */
+  paint(pen, ratio, view, replica, elements) {
     const seen = [];
     for (const e of elements) {
-      const corners = mirror.corners(e).map(([x, y]) => view.toScreen(x, y));
+      const corners = replica.corners(e).map(([x, y]) => view.toScreen(x, y));
       const inside = corners.some(([x, y]) => x > -200 && x < view.width + 200 && y > -200 && y < view.height + 200);
       if (inside) seen.push(corners);
       if (seen.length >= MOST_HATCHED) break;
     }
     if (!seen.length) return;
     const pattern = pen.createPattern(this._strokes(ratio), "repeat");
-    // the strokes are of the plane: they move with the picture
+    // the pattern is fixed in the plane: it moves with the mesh
     const [x, y] = view.toScreen(0, 0).map((value) => Math.round(value * ratio) / ratio);
     pattern.setTransform(new DOMMatrix([1 / ratio, 0, 0, 1 / ratio, x, y]));
     pen.lineWidth = 1.5;
-    pen.strokeStyle = this._palette.warning;
+    pen.strokeStyle = this._colours.warning;
     for (const corners of seen) {
       pen.beginPath();
       corners.forEach((at, i) => (i ? pen.lineTo(...at) : pen.moveTo(...at)));
       pen.closePath();
       pen.globalAlpha = 0.18;
-      pen.fillStyle = this._palette.warning;
+      pen.fillStyle = this._colours.warning;
       pen.fill();
       pen.globalAlpha = 1;
       pen.fillStyle = pattern;
@@ -60,7 +62,7 @@ class Hatching {
     const tile = document.createElement("canvas");
     tile.width = tile.height = size;
     const pen = tile.getContext("2d");
-    pen.strokeStyle = this._palette.warning;
+    pen.strokeStyle = this._colours.warning;
     pen.lineWidth = 0.9 * ratio;
     pen.beginPath();
     for (const shift of [-size, 0, size]) {
@@ -82,8 +84,8 @@ class Hatching {
       pen.lineTo(x - 9, y + 7);
       pen.closePath();
     };
-    pen.fillStyle = this._palette.warning;
-    pen.strokeStyle = this._palette.background;
+    pen.fillStyle = this._colours.warning;
+    pen.strokeStyle = this._colours.background;
     pen.lineWidth = 3;
     triangle();
     pen.stroke();

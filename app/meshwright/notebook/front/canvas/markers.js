@@ -1,7 +1,10 @@
-// What stands on vertices: corners, irregular vertices with their signed number, locks.
+// Paints markers of vertices: corners, irregular vertices with their signed number, locks.
 //
-// The sizes are those of app/markers.py. In a crowd a disc keeps its number as long as it does not
-// cover the next one; where it would, it is a plain dot until one looks closer.
+// Sizes are those of meshwright.graphics.markers. In crowded places a disc keeps its number as long as
+// it does not cover the next one; otherwise it is a plain dot until the view is zoomed in.
+
+import { FLAG_CORNER } from "../mesh/mesh_replica.js";
+import { clamp, signed } from "../numbers.js";
 
 const BASE_RADIUS = 10;
 const RADIUS_GROWTH = 2.5;
@@ -14,15 +17,9 @@ const READABLE_BEST = 7;
 const CORNER_HALF = 4;
 const FEW_CORNERS = 64;
 const LOCK_RADIUS = 12.5;
-/** Pixels beside a vertex that its mark reaches; and those that make room for it. */
+/** Extent of a marker in pixels, and the margin of repainted regions. */
 const MARK_REACH = 20;
-const MARK_SLACK = 36;
-
-/** "+1", with a true minus sign for negative numbers. */
-function signed(number) {
-  if (number > 0) return `+${number.toLocaleString("en")}`;
-  return number < 0 ? `\u2212${(-number).toLocaleString("en")}` : "0";
-}
+export const MARK_SLACK = 36;
 
 /** Radius in pixels: larger with |delta|, smaller where the edges or the next disc are near. */
 function discRadius(delta, reach, apart) {
@@ -31,25 +28,25 @@ function discRadius(delta, reach, apart) {
   return Math.max(Math.min(wanted, room), SMALLEST_RADIUS);
 }
 
-class Marks {
-  constructor(palette) {
-    this._palette = palette;
+export class Markers {
+  constructor(colours) {
+    this._colours = colours;
     this._sprites = new Map();
     this._ratio = 0;
   }
 
-  /** Colours or pixels are others. */
+  /** Discard the sprites after a change of colours. */
   forget() {
     this._sprites.clear();
   }
 
-  /** Paint the marks that reach one of `boxes` {left, top, right, bottom} of the screen. */
-  paint(pen, ratio, view, mirror, facts, boxes) {
+  /** Paint the markers that reach one of `boxes` {left, top, right, bottom} of the screen. */
+  paint(pen, ratio, view, replica, derived, boxes) {
     if (ratio !== this._ratio) {
       this._sprites.clear();
       this._ratio = ratio;
     }
-    const { places } = mirror;
+    const { places } = replica;
     const [shiftX, shiftY] = view.toScreen(0, 0);
     const inside = (v) => {
       const x = shiftX + places[2 * v] * view.pixels;
@@ -58,14 +55,14 @@ class Marks {
         && y > box.top - MARK_REACH && y < box.bottom + MARK_REACH;
       return boxes.some(near) ? [x, y] : null;
     };
-    this._paintCorners(pen, view, facts, inside);
-    for (const v of facts.irregular) {
+    this._paintCorners(pen, view, derived, inside);
+    for (const v of derived.irregular) {
       const at = inside(v);
-      if (at) this._paintDisc(pen, view, mirror, facts, v, at);
+      if (at) this._paintDisc(pen, view, replica, derived, v, at);
     }
     pen.lineWidth = 1.5;
-    pen.strokeStyle = this._palette.boundary;
-    for (const v of facts.locked) {
+    pen.strokeStyle = this._colours.boundary;
+    for (const v of derived.locked) {
       const at = inside(v);
       if (!at) continue;
       pen.beginPath();
@@ -75,24 +72,24 @@ class Marks {
   }
 
   /** Radius of the disc of an irregular vertex, in pixels. */
-  radius(view, mirror, facts, v) {
-    const apart = facts.apart[v] * view.pixels;
-    return discRadius(mirror.delta[v], facts.reach[v] * view.pixels, apart);
+  radius(view, replica, derived, v) {
+    const apart = derived.apart[v] * view.pixels;
+    return discRadius(replica.delta[v], derived.reach[v] * view.pixels, apart);
   }
 
-  _paintCorners(pen, view, facts, inside) {
-    const many = facts.corners.length > FEW_CORNERS;
-    const half = many ? clamp(0.3 * facts.typical * view.pixels, 1, CORNER_HALF) : CORNER_HALF;
-    pen.fillStyle = this._palette.corner;
-    for (const v of facts.corners) {
+  _paintCorners(pen, view, derived, inside) {
+    const many = derived.corners.length > FEW_CORNERS;
+    const half = many ? clamp(0.3 * derived.typical * view.pixels, 1, CORNER_HALF) : CORNER_HALF;
+    pen.fillStyle = this._colours.corner;
+    for (const v of derived.corners) {
       const at = inside(v);
       if (at) pen.fillRect(at[0] - half, at[1] - half, 2 * half, 2 * half);
     }
   }
 
-  _paintDisc(pen, view, mirror, facts, v, [x, y]) {
-    const radius = Math.round(2 * this.radius(view, mirror, facts, v)) / 2;
-    const sprite = this._sprite(mirror.delta[v], radius, (mirror.flags[v] & FLAG_CORNER) !== 0);
+  _paintDisc(pen, view, replica, derived, v, [x, y]) {
+    const radius = Math.round(2 * this.radius(view, replica, derived, v)) / 2;
+    const sprite = this._sprite(replica.delta[v], radius, (replica.flags[v] & FLAG_CORNER) !== 0);
     const ratio = this._ratio;
     const [left, top] = [x - sprite.width / ratio / 2, y - sprite.height / ratio / 2];
     pen.drawImage(
@@ -112,14 +109,14 @@ class Marks {
   }
 
   _made(delta, radius, corner) {
-    const palette = this._palette;
+    const colours = this._colours;
     const half = Math.ceil((radius + 2) * this._ratio);
     const sprite = document.createElement("canvas");
     sprite.width = sprite.height = 2 * half;
     const pen = sprite.getContext("2d");
     pen.setTransform(this._ratio, 0, 0, this._ratio, half, half);
     if (corner) {
-      pen.fillStyle = palette.corner;
+      pen.fillStyle = colours.corner;
       pen.fillRect(-radius - 0.5, -radius - 0.5, 2 * radius + 1, 2 * radius + 1);
     }
     const disc = (colour, r) => {
@@ -128,14 +125,14 @@ class Marks {
       pen.arc(0, 0, r, 0, 2 * Math.PI);
       pen.fill();
     };
-    if (radius > 4) disc(palette.background, radius + 1.2);
-    disc(delta > 0 ? palette.plus : palette.minus, radius);
+    if (radius > 4) disc(colours.background, radius + 1.2);
+    disc(delta > 0 ? colours.plus : colours.minus, radius);
     if (radius >= READABLE) {
       const text = signed(delta);
       const size = Math.max(8, (text.length > 2 ? 0.95 : 1.2) * radius, Math.min(9, 1.45 * radius));
-      pen.font = `600 ${size}px ${palette.font}`;
-      pen.fillStyle = palette.marker_text;
-      const box = pen.measureText(text); // centred by its ink: fonts differ in their metrics
+      pen.font = `600 ${size}px ${colours.font}`;
+      pen.fillStyle = colours.marker_text;
+      const box = pen.measureText(text); // centred by its bounding box: font metrics differ
       pen.fillText(
         text, (box.actualBoundingBoxLeft - box.actualBoundingBoxRight) / 2,
         (box.actualBoundingBoxAscent - box.actualBoundingBoxDescent) / 2,

@@ -1,6 +1,9 @@
-// The picture of the mesh on the lower canvas. It is kept as long as it can be: panning moves its
-// pixels and paints what comes into view, an edit paints the tiles it touches, and while one zooms in
-// a large mesh the pixels are stretched until the fingers rest.
+// Paints the mesh on the lower canvas. Pixels are reused: panning moves them and paints the strips that
+// come into view, an edit repaints the tiles it touches, and zooming a large mesh stretches the pixels
+// until the zoom ends.
+
+import { InvertedElementsPainter } from "./inverted_elements.js";
+import { MARK_SLACK } from "./markers.js";
 
 const TILE = 64;
 const CHUNK = 1500;
@@ -10,15 +13,15 @@ const FEW_RECTANGLES = 3;
 const EDGE_WIDTH = 1.1;
 const BOUNDARY_WIDTH = 1.75;
 
-class Picture {
-  constructor(canvas, palette, marks, afterwards) {
-    this.view = null; // what the canvas shows; at most half a pixel from what was asked for
+export class MeshPainter {
+  constructor(canvas, colours, marks, afterwards) {
+    this.view = null; // the painted view; within half a pixel of the requested one
     this.paints = 0;
     this._canvas = canvas;
     this._pen = canvas.getContext("2d");
-    this._palette = palette;
-    this._marks = marks;
-    this._hatching = new Hatching(palette);
+    this._colours = colours;
+    this._markers = marks;
+    this._invertedPainter = new InvertedElementsPainter(colours);
     this._afterwards = afterwards;
     this._ratio = 1;
     this._cost = 0;
@@ -29,9 +32,9 @@ class Picture {
   }
 
   /** Paint this mesh from now on. */
-  show(mirror, facts, grid) {
-    this._mirror = mirror;
-    this._facts = facts;
+  show(replica, derived, grid) {
+    this._replica = replica;
+    this._derived = derived;
     this._grid = grid;
   }
 
@@ -43,10 +46,10 @@ class Picture {
     this.forget();
   }
 
-  /** Colours or everything else are others. */
+  /** Repaint everything next time. */
   forget() {
     this._stale = true;
-    this._hatching.forget();
+    this._invertedPainter.forget();
   }
 
   /** These boxes {left, bottom, right, top} of the plane have changed. */
@@ -54,9 +57,9 @@ class Picture {
     this._boxes.push(...boxes);
   }
 
-  /** See to it that the canvas shows `view`. */
+  /** Paint `view`, reusing pixels where possible. */
   paint(view) {
-    if (!this._mirror || !this._canvas.width) return;
+    if (!this._replica || !this._canvas.width) return;
     const shown = this.view;
     if (this._stale || !shown) this._paintAll(view);
     else if (shown.pixels !== view.pixels || this._stretched) this._zoom(view);
@@ -72,7 +75,7 @@ class Picture {
     clearTimeout(this._timer);
   }
 
-  // All of it, or parts
+  // Whole canvas, or parts
 
   _paintAll(view) {
     clearTimeout(this._timer);
@@ -80,7 +83,7 @@ class Picture {
     this.view = view;
     this._stale = false;
     this._stretched = null;
-    this._edgeWidth = Math.min(EDGE_WIDTH, Math.max(0.12 * this._facts.typical * view.pixels, 0.34));
+    this._edgeWidth = Math.min(EDGE_WIDTH, Math.max(0.12 * this._derived.typical * view.pixels, 0.34));
     this._paintRegion([[0, 0, this._canvas.width, this._canvas.height]]);
     this._cost = performance.now() - began;
   }
@@ -109,7 +112,7 @@ class Picture {
     this._paintRegion(strips);
   }
 
-  /** Stretch what was painted last, and paint crisply once it rests. */
+  /** Stretch the painted pixels, and repaint once the zoom ends. */
   _zoom(view) {
     if (this._cost < COSTLY) {
       this._paintAll(view);
@@ -163,8 +166,8 @@ class Picture {
     else if (count) this._paintRegion(tileRuns(dirty, columns, rows, tile));
   }
 
-  /** Paint rectangles [x, y, width, height] of device pixels. A few are painted one by one: to keep
-   * within one rectangle costs nothing.
+  /** Paint rectangles [x, y, width, height] of device pixels. A few are painted one by one: clipping
+   * to one rectangle is free.
    */
   _paintRegion(rectangles) {
     if (rectangles.length > FEW_RECTANGLES) this._paintClipped(rectangles);
@@ -181,33 +184,33 @@ class Picture {
     this._ground(pen);
     const elements = this._elementsIn(rectangles.map((r) => r.map((value) => value / ratio)));
     this._paintEdges(pen, elements);
-    this._hatching.paint(pen, ratio, view, this._mirror, this._facts.inverted);
+    this._invertedPainter.paint(pen, ratio, view, this._replica, this._derived.inverted);
     pen.lineWidth = Math.max(BOUNDARY_WIDTH, 1.3 * this._edgeWidth);
-    pen.strokeStyle = this._palette.boundary;
+    pen.strokeStyle = this._colours.boundary;
     this._outline(pen);
     pen.stroke();
-    this._marks.paint(pen, ratio, view, this._mirror, this._facts, boxesOf(rectangles, ratio));
+    this._markers.paint(pen, ratio, view, this._replica, this._derived, boxesOf(rectangles, ratio));
     pen.restore();
   }
 
   _ground(pen) {
     const { width, height } = this._canvas;
     pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.fillStyle = this._palette.background;
+    pen.fillStyle = this._colours.background;
     pen.fillRect(0, 0, width, height);
     pen.setTransform(this._ratio, 0, 0, this._ratio, 0, 0);
     pen.lineJoin = "round";
     pen.lineCap = "round";
-    pen.fillStyle = this._palette.fill;
+    pen.fillStyle = this._colours.fill;
     this._outline(pen);
     pen.fill("evenodd");
   }
 
   /** Begin a path of all boundary loops. */
   _outline(pen) {
-    const { places } = this._mirror;
+    const { places } = this._replica;
     pen.beginPath();
-    for (const loop of this._facts.loops) {
+    for (const loop of this._derived.loops) {
       loop.forEach((v, i) => {
         const at = this.view.toScreen(places[2 * v], places[2 * v + 1]);
         if (i) pen.lineTo(...at);
@@ -228,16 +231,16 @@ class Picture {
 
   /** Every inner edge of these elements once. */
   _paintEdges(pen, elements) {
-    const { k, origin, twin, places } = this._mirror;
+    const { k, origin, twin, places } = this._replica;
     const { pixels, width, height, x, y } = this.view;
     const [shiftX, shiftY] = [width / 2 - x * pixels, height / 2 + y * pixels];
-    pen.strokeStyle = this._palette.edge;
+    pen.strokeStyle = this._colours.edge;
     pen.lineWidth = this._edgeWidth;
     pen.beginPath();
     let count = 0;
     for (const e of elements) {
       for (let h = k * e, last = h + k - 1; h <= last; h += 1) {
-        if (twin[h] < h) continue; // the boundary, and what the other side draws
+        if (twin[h] < h) continue; // the boundary, and edges painted from the other side
         const a = 2 * origin[h];
         const b = 2 * origin[h === last ? k * e : h + 1];
         pen.moveTo(places[a] * pixels + shiftX, shiftY - places[a + 1] * pixels);

@@ -1,24 +1,34 @@
-// The stage: two canvases, the view of the mesh, and when they are painted.
+// The stage: two canvases, the view of the mesh, and the scheduling of paints.
+
+import { node } from "../dom.js";
+import { MeshState } from "../mesh/mesh_state.js";
+import { halfedgeAt, middleOf, vertexAt } from "../mesh/picking.js";
+import { clamp } from "../numbers.js";
+import { arrowOf } from "./arrow.js";
+import { Markers } from "./markers.js";
+import { MeshPainter } from "./mesh_painter.js";
+import { Overlay } from "./overlay.js";
+import { Viewport } from "./viewport.js";
 
 const FIT_SHARE = 0.08;
 const FIT_MOST = 48;
 const FIT_LEAST = 22;
 
-class Stage {
-  constructor(element, palette, painted) {
+export class Stage {
+  constructor(element, colours, painted) {
     this.element = element;
-    this.work = new MeshWork();
+    this.meshState = new MeshState();
     this.view = new Viewport();
-    this.fitted = true; // nobody has moved the view: it keeps showing all
-    this.shown = { halfedge: -1, ghost: null, title: "", hints: [], meant: 0 };
-    this._palette = palette;
+    this.fitted = true; // the view was not moved: it keeps fitting the mesh
+    this.shown = { halfedge: -1, ghost: null, title: "", hints: [], selected: 0 };
+    this._colours = colours;
     this._painted = painted;
     this._lower = node("canvas", "mw-lower", { "aria-hidden": "true" });
     this.surface = node("canvas", "mw-upper", { tabindex: "0", role: "application" });
     element.append(this._lower, this.surface);
-    this._marks = new Marks(palette);
-    this.picture = new Picture(this._lower, palette, this._marks, () => this.repaint());
-    this.overlay = new Overlay(this.surface, palette, this._marks);
+    this._markers = new Markers(colours);
+    this.painter = new MeshPainter(this._lower, colours, this._markers, () => this.repaint());
+    this.overlay = new Overlay(this.surface, colours, this._markers);
     this._ratio = 0;
     this._frame = 0;
     this._observer = new ResizeObserver(() => this.resize());
@@ -28,48 +38,48 @@ class Stage {
   release() {
     this._observer.disconnect();
     cancelAnimationFrame(this._frame);
-    this.picture.release();
+    this.painter.release();
   }
 
   // The mesh
 
   load(content, buffers) {
-    const before = this.work.mirror.frame;
-    const first = this.work.mirror.revision < 0;
-    this.work.load(content, buffers);
+    const before = this.meshState.replica.frame;
+    const first = this.meshState.replica.revision < 0;
+    this.meshState.load(content, buffers);
     const moved = ["cx", "cy", "scale"].some((name) => before[name] !== content.frame[name]);
     if (first || moved) this.fitted = true;
-    this.picture.forget();
+    this.painter.forget();
     this._show();
   }
 
-  /** False if the patch is not for what is here. */
+  /** Apply a patch; returns false if it is not for the present revision. */
   patch(content, buffers) {
-    const boxes = this.work.patch(content, buffers);
+    const boxes = this.meshState.patch(content, buffers);
     if (boxes === undefined) return false;
-    if (boxes) this.picture.touch(boxes);
-    else this.picture.forget();
+    if (boxes) this.painter.touch(boxes);
+    else this.painter.forget();
     this._show();
     return true;
   }
 
   _show() {
-    const { mirror, facts, grid } = this.work;
-    this.picture.show(mirror, facts, grid);
+    const { replica, derived, grid } = this.meshState;
+    this.painter.show(replica, derived, grid);
     if (this.fitted) this._fit();
     this.repaint();
   }
 
   // The view
 
-  /** Look through another view; the mesh stays in sight. */
+  /** Set the view; its centre is kept over the mesh. */
   see(view) {
-    this.view = view.over(this.work.facts.box);
+    this.view = view.over(this.meshState.derived.box);
     this.fitted = false;
     this.repaint();
   }
 
-  /** Show all of the mesh. */
+  /** Fit the mesh into the view. */
   fit() {
     this.fitted = true;
     this._fit();
@@ -77,13 +87,13 @@ class Stage {
   }
 
   _fit() {
-    const { box } = this.work.facts;
+    const { box } = this.meshState.derived;
     const { width, height } = this.view;
     const margin = clamp(FIT_SHARE * Math.min(width, height), FIT_LEAST, FIT_MOST);
     if (box) this.view = this.view.fitted(box, margin);
   }
 
-  /** Follow size and pixel ratio of the place on the page. */
+  /** Adapt to the size and pixel ratio of the element. */
   resize() {
     const ratio = globalThis.devicePixelRatio || 1;
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
@@ -96,28 +106,28 @@ class Stage {
       canvas.style.width = `${across / ratio}px`;
       canvas.style.height = `${down / ratio}px`;
     }
-    this.picture.resize(across, down, ratio);
+    this.painter.resize(across, down, ratio);
     this.overlay.resize(across, down, ratio);
     this.view = this.view.resized(across / ratio, down / ratio);
     if (this.fitted) this._fit();
-    this.paint(); // a canvas that was resized is empty
+    this.paint(); // resizing clears a canvas
   }
 
   pan(dx, dy) {
     this.see(this.view.panned(dx, dy));
   }
 
-  /** Closer by `factor` at (x, y), in the middle if that is left out. */
+  /** Zoom in by `factor` at (x, y), by default in the middle. */
   zoom(factor, x = this.view.width / 2, y = this.view.height / 2) {
     this.see(this.view.zoomed(factor, x, y));
   }
 
-  /** Look at a place so closely that `reach` around it is `least` pixels wide. */
+  /** Zoom in at a point until `reach` around it is `least` pixels wide. */
   reveal(x, y, reach, least) {
     if (this.view.pixels * 2 * reach < least) this.see(this.view.around(x, y, reach, least));
   }
 
-  /** Move the picture where a half-edge lies beside it. */
+  /** Pan until a half-edge lies `margin` pixels inside the canvas. */
   keepInView(halfedge, margin) {
     const [x, y] = this.middle(halfedge);
     const { width, height } = this.view;
@@ -126,21 +136,21 @@ class Stage {
     if (dx || dy) this.pan(dx, dy);
   }
 
-  /** Where on the canvas the arrow of a half-edge has its middle. */
+  /** The middle of a half-edge's arrow on the canvas. */
   middle(halfedge) {
-    return middleOf(arrowOf(this.work.mirror, this.view, halfedge));
+    return middleOf(arrowOf(this.meshState.replica, this.view, halfedge));
   }
 
   // Painting
 
-  /** The colours are others. */
+  /** Repaint after a change of colours. */
   recolour() {
-    this._marks.forget();
-    this.picture.forget();
+    this._markers.forget();
+    this.painter.forget();
     this.repaint();
   }
 
-  /** Paint with the next frame. */
+  /** Schedule a paint for the next frame. */
   repaint() {
     if (!this._frame) this._frame = requestAnimationFrame(() => this.paint());
   }
@@ -148,26 +158,26 @@ class Stage {
   paint() {
     cancelAnimationFrame(this._frame);
     this._frame = 0;
-    const { mirror, facts } = this.work;
-    if (mirror.revision < 0 || !this._lower.width || !this._palette.theme) return;
+    const { replica, derived } = this.meshState;
+    if (replica.revision < 0 || !this._lower.width || !this._colours.theme) return;
     if ((globalThis.devicePixelRatio || 1) !== this._ratio) {
       this.resize();
       return;
     }
-    this.picture.paint(this.view);
-    this.overlay.paint(this.picture.view, mirror, facts, this.shown);
+    this.painter.paint(this.view);
+    this.overlay.paint(this.painter.view, replica, derived, this.shown);
     this._painted();
   }
 
   /** The half-edge at [x, y] of the canvas, or of the boundary within `reach` pixels; or -1. */
   pick([x, y], reach) {
     const [px, py] = this.view.toPlane(x, y);
-    return halfedgeAt(this.work.mirror, this.work.grid, px, py, reach / this.view.pixels);
+    return halfedgeAt(this.meshState.replica, this.meshState.grid, px, py, reach / this.view.pixels);
   }
 
   /** A half-edge that starts at the vertex within `reach` pixels of [x, y]; or -1. */
   pickVertex([x, y], reach) {
     const [px, py] = this.view.toPlane(x, y);
-    return vertexAt(this.work.mirror, this.work.grid, px, py, reach / this.view.pixels);
+    return vertexAt(this.meshState.replica, this.meshState.grid, px, py, reach / this.view.pixels);
   }
 }

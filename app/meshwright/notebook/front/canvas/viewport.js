@@ -1,10 +1,12 @@
-// Which part of the plane is seen, and where a point of it is on the screen; as app/viewport.py.
+// The visible part of the plane, and its map to the screen; as in meshwright.graphics.viewport.
+
+import { clamp } from "../numbers.js";
 
 const NEAREST_PIXELS = 1e-3;
 const FARTHEST_PIXELS = 1e8;
 
 /** Centre of the view, pixels per unit of length, size in CSS pixels; y goes up in the plane. */
-class Viewport {
+export class Viewport {
   constructor(x = 0, y = 0, pixels = 100, width = 1, height = 1) {
     this.x = x;
     this.y = y;
@@ -27,7 +29,7 @@ class Viewport {
     ];
   }
 
-  /** Closer by `factor`; what is seen at (x, y) stays there. */
+  /** Zoomed in by `factor`; the point at (x, y) stays there. */
   zoomed(factor, x, y) {
     const pixels = Math.min(Math.max(this.pixels * factor, NEAREST_PIXELS), FARTHEST_PIXELS);
     const [px, py] = this.toPlane(x, y);
@@ -38,7 +40,7 @@ class Viewport {
     );
   }
 
-  /** The picture moved by (dx, dy) pixels. */
+  /** Panned by (dx, dy) pixels. */
   panned(dx, dy) {
     return new Viewport(
       this.x - dx / this.pixels, this.y + dy / this.pixels, this.pixels, this.width, this.height,
@@ -59,13 +61,13 @@ class Viewport {
     return new Viewport(middle[0], middle[1], pixels, this.width, this.height);
   }
 
-  /** The view centred on (x, y), so close that 2 * reach is `least` pixels; never farther away. */
+  /** Centred on (x, y) and zoomed in until 2 * reach is `least` pixels; never zoomed out. */
   around(x, y, reach, least) {
     const pixels = Math.max(this.pixels, least / Math.max(2 * reach, 1e-9));
     return new Viewport(x, y, Math.min(pixels, FARTHEST_PIXELS), this.width, this.height);
   }
 
-  /** This view, or the nearest one whose middle lies over a box {left, bottom, right, top}. */
+  /** This view with its centre clamped to a box {left, bottom, right, top}. */
   over(box) {
     if (!box) return this;
     const [x, y] = [clamp(this.x, box.left, box.right), clamp(this.y, box.bottom, box.top)];

@@ -1,26 +1,30 @@
-// What is pointed at, what operations would do there, and which one is meant.
+// The half-edge under the pointer, the operations there, and the one that is previewed.
 //
-// The arrow follows the pointer at once; offers and ghost come from Python. One question is under way
-// at a time, and the latest wins: what was passed over meanwhile is never asked.
+// The arrow follows the pointer at once; verdicts ("offers") and preview ("ghost") come from Python.
+// One request is pending at a time; half-edges passed in the meantime are skipped.
 
-const HOVER_PATIENCE = 3000;
+import { ghostOf } from "../canvas/ghost.js";
+import { asSentence } from "../dom.js";
+import { halfedgeNear, middleOf } from "../mesh/picking.js";
+
+const ANSWER_TIMEOUT = 3000;
 const ANTICIPATE = { after: 14, times: 3 };
 
-class Pointing {
+export class HoverState {
   constructor(card) {
     this.halfedge = -1;
-    this.pinned = false; // by the keyboard, a menu or a hint: the mouse is elsewhere
-    this.armed = null; // the operation that a click does
-    this.offers = null; // operation -> {allowed, reason, change}, of the half-edge pointed at
+    this.pinned = false; // set by keyboard, menu or hint, and not by the mouse
+    this.armed = null; // the operation that a click applies
+    this.offers = null; // operation -> {allowed, reason, change} at the half-edge
     this.ghost = null;
     this._card = card;
     this._picked = null; // chosen for this half-edge by the keyboard
-    this._previewed = null; // of the row of a menu that is pointed at
-    this._asked = null; // the question under way: {id, halfedge, operation, at}
-    this._answered = ""; // what offers and ghost are of
-    this._acting = false;
-    this._told = "";
-    this._place = null; // where in the plane the half-edge was
+    this._previewed = null; // of the focused row of a menu
+    this._pending = null; // the pending request: {id, halfedge, operation, at}
+    this._answered = ""; // the key of the request that offers and ghost answer
+    this._applyWhenKnown = false;
+    this._offersKey = "";
+    this._place = null; // centre of its element
   }
 
   /** Point at a half-edge, -1 for none. */
@@ -28,138 +32,138 @@ class Pointing {
     this.pinned = pinned && halfedge >= 0;
     if (halfedge === this.halfedge) return;
     this.halfedge = halfedge;
-    this._place = halfedge < 0 ? null : middleOf(this._card.mirror.corners(this._card.mirror.element(halfedge)));
+    this._place = halfedge < 0 ? null : middleOf(this._card.replica.corners(this._card.replica.element(halfedge)));
     this._picked = this._previewed = null;
-    this._acting = false;
+    this._applyWhenKnown = false;
     this._forget();
     this._card.pointed();
   }
 
-  /** The operation that has been chosen, by whatever way; null: Python says which is best. */
+  /** The chosen operation; null: the best one, chosen by Python. */
   get wanted() {
     return this._previewed || this._picked || this.armed;
   }
 
-  /** The operation whose ghost is shown, or null. */
-  get meant() {
+  /** The previewed operation, or null. */
+  get previewed() {
     return this.ghost ? this.ghost.operation : null;
   }
 
-  /** From now on a click does this operation; the armed one again: a click opens the menu. */
+  /** Arm an operation, which clicks apply from then on; the armed one: disarm it. */
   arm(operation) {
     this.armed = operation === this.armed ? null : operation;
     this._picked = null;
-    this._retell();
+    this._reset();
   }
 
-  /** Show the ghost of this operation while a menu points at it; null: as before. */
+  /** Preview the operation of a menu's row; null: end that. */
   preview(operation) {
     if (operation === this._previewed) return;
     this._previewed = operation;
-    this._retell();
+    this._reset();
   }
 
-  /** Mean the next operation that is allowed here (1), or the one before (-1). */
+  /** Choose the next allowed operation (1), or the previous one (-1). */
   cycle(step) {
     if (!this.offers) return;
     const allowed = [...this.offers.keys()].filter((name) => this.offers.get(name).allowed);
     if (!allowed.length) return;
-    const at = allowed.indexOf(this.meant);
+    const at = allowed.indexOf(this.previewed);
     const next = allowed[at < 0 ? (step > 0 ? 0 : allowed.length - 1)
       : (at + step + allowed.length) % allowed.length];
     if (this.armed) this.armed = next;
     else this._picked = next;
-    this._retell();
+    this._reset();
   }
 
-  /** Do what is meant here; if that is not known yet, as soon as it is. */
+  /** Apply the previewed operation; if the preview is pending, as soon as it arrives. */
   act() {
-    if (this.halfedge < 0) this._card.say("refused", "Point at a half-edge first.");
+    if (this.halfedge < 0) this._card.notify("refused", "Point at a half-edge first.");
     else if (this.ghost) this._card.operate(this.ghost.operation, this.halfedge);
-    else if (this.offers) this._card.say("refused", this._refusal());
-    else this._acting = true;
+    else if (this.offers) this._card.notify("refused", this._refusal());
+    else this._applyWhenKnown = true;
   }
 
-  /** The mesh has changed, or the agent has begun or ended: what was known is of the past. */
+  /** Discard what is known, after a change of the mesh or of the agent's state. */
   renew() {
-    const { mirror } = this._card;
-    if (this.halfedge >= 0 && !mirror.live(this.halfedge)) {
-      // who walks by keyboard goes on from the same place
-      this.halfedge = this.pinned && this._place ? halfedgeNear(mirror, ...this._place) : -1;
+    const { replica } = this._card;
+    if (this.halfedge >= 0 && !replica.live(this.halfedge)) {
+      // keyboard navigation continues at the same place
+      this.halfedge = this.pinned && this._place ? halfedgeNear(replica, ...this._place) : -1;
     }
     this._forget();
     this._card.pointed();
   }
 
-  /** An answer of Python. */
+  /** Handle a preview message. */
   receive(content, buffers) {
-    const asked = this._asked;
-    if (!asked || content.reply !== asked.id) return;
-    this._asked = null;
+    const pending = this._pending;
+    if (!pending || content.reply !== pending.id) return;
+    this._pending = null;
     if (content.halfedge === this.halfedge && content.halfedge >= 0) {
-      this._answered = this._question();
+      this._answered = this._key();
       this._offer(content.offers);
-      const of = asked.operation === this.wanted;
+      const of = pending.operation === this.wanted;
       this.ghost = of ? ghostOf(content, buffers) : null;
       if (!of) this._answered = "";
       this._card.pointed();
-      if (of && this._acting) {
-        this._acting = false;
+      if (of && this._applyWhenKnown) {
+        this._applyWhenKnown = false;
         this.act();
       }
     }
-    this.ask();
+    this.request();
   }
 
-  /** What was asked with this id has been refused; returns whether that was a question of ours:
-   * then the mesh has gone on meanwhile, which is nothing to tell a person.
+  /** Handle the refusal of the request of this id; returns whether it was one for a preview: then
+   * the mesh has changed in the meantime, and no message is shown.
    */
   refused(id) {
-    if (!this._asked || this._asked.id !== id) return false;
-    this._asked = null;
+    if (!this._pending || this._pending.id !== id) return false;
+    this._pending = null;
     return true;
   }
 
-  /** Ask Python what there is to know, unless it is known or asked already. */
-  ask() {
+  /** Request offers and preview, unless they are known or pending. */
+  request() {
     const card = this._card;
     if (card.readOnly || card.agentBusy || this.halfedge < 0) return;
-    if (this._question() === this._answered) return;
+    if (this._key() === this._answered) return;
     const now = performance.now();
-    if (this._asked && now - this._asked.at < HOVER_PATIENCE) return;
+    if (this._pending && now - this._pending.at < ANSWER_TIMEOUT) return;
     const fields = { halfedge: this.halfedge, operation: this.wanted };
-    this._asked = { id: card.link.send("hover", fields), at: now, ...fields };
+    this._pending = { id: card.link.send("hover", fields), at: now, ...fields };
   }
 
-  /** Ask now for what will be here once the operation under way is done, while `waiting()`.
+  /** Request the preview of the state after the pending operation, while `waiting()`.
    *
-   * This saves a way to Python and back. And Jupyter's server holds a small message back until the
-   * browser has acknowledged the one before, which takes 40 ms if it sends nothing meanwhile.
+   * This saves a round trip. And Jupyter's server delays a small message until the browser has
+   * acknowledged the previous one (Nagle's algorithm), which takes 40 ms unless the browser sends.
    */
   anticipate(waiting, times = ANTICIPATE.times) {
     if (times === 0) return;
     setTimeout(() => {
       if (!waiting()) return;
-      this._asked = null;
+      this._pending = null;
       this._answered = "";
-      this.ask();
+      this.request();
       this.anticipate(waiting, times - 1);
     }, ANTICIPATE.after);
   }
 
-  /** Keep the offers; the same ones stay the same object, so that an open menu stays as it is. */
+  /** Keep the offers; equal ones stay the same object, so that an open menu is not rebuilt. */
   _offer(offers) {
-    const told = JSON.stringify(offers);
-    if (this.offers && told === this._told) return;
-    this._told = told;
+    const key = JSON.stringify(offers);
+    if (this.offers && key === this._offersKey) return;
+    this._offersKey = key;
     this.offers = new Map(offers.map((offer) => [offer.operation, offer]));
   }
 
-  _question() {
-    return `${this._card.mirror.revision} ${this.halfedge} ${this.wanted}`;
+  _key() {
+    return `${this._card.replica.revision} ${this.halfedge} ${this.wanted}`;
   }
 
-  _retell() {
+  _reset() {
     this.ghost = null;
     this._answered = "";
     this._card.pointed();

@@ -1,9 +1,12 @@
 // Mouse, pen and touch on the canvas.
 //
-// Mouse and pen: pointing, click, drag moves the picture, right click is for the vertex. Touch: one
-// finger belongs to the page, a tap points and opens the menu, holding is for the vertex, two fingers
-// move and zoom. The wheel zooms with Ctrl (or Command), or once the widget has the focus; else the
-// page goes on scrolling.
+// Mouse and pen: hover, click, drag pans, right click opens the menu of the vertex. Touch: one finger
+// scrolls the page, a tap opens the menu of the half-edge, a long press that of the vertex, two
+// fingers pan and zoom. The wheel zooms with Ctrl (or Command), or while the canvas has the focus;
+// otherwise it scrolls the page.
+
+import { middleOf } from "../mesh/picking.js";
+import { clamp } from "../numbers.js";
 
 const CLICK_SLACK = { mouse: 4, pen: 7, touch: 12 };
 const OUTSIDE_REACH = { mouse: 8, pen: 12, touch: 22 };
@@ -11,9 +14,9 @@ const VERTEX_REACH = { mouse: 14, pen: 18, touch: 28 };
 const HOLD = 500;
 const LINE_HEIGHT = 16;
 
-class Pointer {
+export class Pointer {
   constructor(card, surface) {
-    this.place = null; // [x, y] of the mouse on the canvas, null while it is elsewhere
+    this.place = null; // [x, y] of the mouse on the canvas, null outside
     this.dragging = false;
     this._card = card;
     this._surface = surface;
@@ -77,7 +80,7 @@ class Pointer {
     }
     const slack = CLICK_SLACK[held.type] || CLICK_SLACK.mouse;
     if (Math.hypot(at[0] - held.start[0], at[1] - held.start[1]) > slack) {
-      if (!this._moved && held.type !== "touch") this._begin();
+      if (!this._moved && held.type !== "touch") this._startDrag();
       this._moved = true;
       clearTimeout(this._hold);
     }
@@ -103,7 +106,7 @@ class Pointer {
 
   _onCancel(event) {
     const held = this._down.get(event.pointerId);
-    if (held && held.type === "touch" && this._down.size === 1) this._card.tellTouch();
+    if (held && held.type === "touch" && this._down.size === 1) this._card.showTouchHint();
     this._end(event.pointerId);
     this._moved = false;
   }
@@ -111,10 +114,10 @@ class Pointer {
   _onLeave(event) {
     if (event.pointerType === "touch" || this._down.has(event.pointerId)) return;
     this.place = null;
-    this._card.left();
+    this._card.leave();
   }
 
-  _begin() {
+  _startDrag() {
     this.dragging = true;
     this._surface.dataset.dragging = "";
   }
@@ -131,7 +134,7 @@ class Pointer {
     this._card.hover(this._card.pick(at, OUTSIDE_REACH[type] || OUTSIDE_REACH.mouse), at);
   }
 
-  /** Two fingers: what lies between them stays between them. */
+  /** Pan and zoom with two fingers: the points under them stay under them. */
   _pinch(id, at) {
     const other = [...this._down.entries()].find(([key]) => key !== id)[1].at;
     const was = this._down.get(id).at;
@@ -148,7 +151,7 @@ class Pointer {
   _onWheel(event) {
     const zooms = event.ctrlKey || event.metaKey || this._card.focused;
     if (!zooms) {
-      this._card.tellWheel();
+      this._card.showWheelHint();
       return;
     }
     event.preventDefault();

@@ -1,56 +1,56 @@
-// The keys of the canvas. All other controls are buttons, which have keys of their own.
+// Keyboard shortcuts of the canvas.
 
-const KEY_HELP = [
-  ["\u2190 \u2192", "Half-edge before and after"],
+export const KEY_HELP = [
+  ["\u2190 \u2192", "Previous and next half-edge"],
   ["\u2191", "Other side of the edge"],
   ["\u2193", "Next irregular vertex"],
-  ["Return", "Do the operation that is shown"],
-  ["[ ]", "Show another operation"],
+  ["Return", "Apply the previewed operation"],
+  ["[ ]", "Preview another operation"],
   ["M", "Menu of the half-edge"],
   ["U", "Undo; with Shift redo"],
-  ["+ \u2212 0", "Zoom, and see all"],
-  ["H", "Hints; then 1 to 5 take one"],
+  ["+ \u2212 0", "Zoom in, zoom out, fit"],
+  ["H", "Hints; then 1 to 5 applies one"],
   [".", "One step of the agent"],
   ["Space", "Play or pause the agent"],
-  ["Esc", "Put down, close, stop"],
+  ["Esc", "Close, disarm, stop"],
 ];
-const MOUSE_HELP = [
+export const MOUSE_HELP = [
   ["Click", "Operations of a half-edge"],
   ["Right click", "Desired degree, corner, lock"],
-  ["Drag", "Move the picture"],
+  ["Drag", "Pan"],
   ["Ctrl + wheel", "Zoom"],
-  ["Double click", "See all"],
+  ["Double click", "Fit the mesh"],
 ];
 
-class Keys {
+export class Shortcuts {
   constructor(card) {
     this._card = card;
-    const walking = card.walking;
-    this._deeds = {
-      ArrowRight: () => walking.along(1),
-      ArrowLeft: () => walking.along(-1),
-      ArrowUp: () => walking.across(),
-      ArrowDown: (event) => walking.toIrregular(event.shiftKey ? -1 : 1),
-      Enter: () => card.pointing.act(),
+    const navigation = card.navigation;
+    this._actions = {
+      ArrowRight: () => navigation.along(1),
+      ArrowLeft: () => navigation.along(-1),
+      ArrowUp: () => navigation.across(),
+      ArrowDown: (event) => navigation.toIrregular(event.shiftKey ? -1 : 1),
+      Enter: () => card.hoverState.act(),
       "[": () => card.cycle(-1),
       "]": () => card.cycle(1),
       m: () => card.menus.openByKey(),
       ContextMenu: () => card.menus.openByKey(),
-      u: () => card.ask("undo"),
-      U: () => card.ask("redo"),
+      u: () => card.request("undo"),
+      U: () => card.request("redo"),
       "+": () => card.stage.zoom(1.25),
       "=": () => card.stage.zoom(1.25),
       "-": () => card.stage.zoom(0.8),
       0: () => card.stage.fit(),
-      h: () => card.agent.ask("hint"),
-      ".": () => card.agent.ask("step"),
+      h: () => card.agent.request("hint"),
+      ".": () => card.agent.request("step"),
       " ": () => card.agent.toggle(),
       "?": () => card.toggleHelp(),
       Escape: () => card.escape(),
     };
   }
 
-  /** A key on the canvas; returns whether it was ours. */
+  /** Handle a key event on the canvas; returns whether the key is a shortcut. */
   press(event) {
     if (event.altKey) return false;
     if (event.ctrlKey || event.metaKey) return this._pressWithControl(event);
@@ -59,18 +59,18 @@ class Keys {
       this._card.menus.openByKey();
       return true;
     }
-    const info = this._card.mirror.catalogue.find((one) => one.key.toLowerCase() === key);
+    const info = this._card.replica.catalogue.find((one) => one.key.toLowerCase() === key);
     if (info) this._card.operateByKey(info.operation);
     else if (/^[1-9]$/.test(key)) return this._card.agent.take(Number(key) - 1);
-    else if (this._deeds[key]) this._deeds[key](event);
+    else if (this._actions[key]) this._actions[key](event);
     else return false;
     return true;
   }
 
   _pressWithControl(event) {
     const key = event.key.toLowerCase();
-    if (key === "z") this._card.ask(event.shiftKey ? "redo" : "undo");
-    else if (key === "y") this._card.ask("redo");
+    if (key === "z") this._card.request(event.shiftKey ? "redo" : "undo");
+    else if (key === "y") this._card.request("redo");
     else return false;
     return true;
   }

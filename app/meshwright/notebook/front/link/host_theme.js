@@ -1,7 +1,7 @@
-// What the page around the widget says: light or dark.
+// The theme of the page around the widget.
 
-/** "light" or "dark", as JupyterLab, marimo, Colab or VS Code say, else as the system does. */
-function hostTheme() {
+/** "light" or "dark": the theme of JupyterLab, marimo, Colab or VS Code, else of the system. */
+export function hostTheme() {
   const body = document.body;
   if (body.dataset.jpThemeLight !== undefined) {
     return body.dataset.jpThemeLight === "false" ? "dark" : "light";
@@ -14,8 +14,8 @@ function hostTheme() {
   return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 }
 
-/** Call back whenever the page's theme may be another; returns what ends that. */
-function watchHost(callback) {
+/** Call `callback` when the theme may have changed; returns a function that ends this. */
+export function watchHost(callback) {
   const observer = new MutationObserver(callback);
   const wanted = { attributes: true, attributeFilter: ["class", "theme", "data-theme", "data-jp-theme-light"] };
   observer.observe(document.body, wanted);

@@ -1,67 +1,67 @@
-// The link to Python over the messages of an anywidget model.
+// The link to Python through the messages of an anywidget model.
 //
-// Every link has the same few members, whoever answers: send(word, fields) -> id of the message,
-// onmessage(content, buffers) to be set by who listens, close(), readOnly.
+// All links have the same members: send(word, fields) -> id of the message, onmessage(content,
+// buffers) to be set by the receiver, close(), readOnly.
 
 let viewsSoFar = 0;
 
-/** A name for one view of a model that no other has. */
-function viewName() {
+/** A unique name for one view of a model. */
+export function viewName() {
   viewsSoFar += 1;
   const random = Math.floor(Math.random() * 0x7fffffff).toString(36);
   return `v${viewsSoFar}-${Date.now().toString(36)}-${random}`;
 }
 
-const LONGER_WORDS = ["agent", "level"]; // what they bring about goes on after the answer
-const LOST = "The kernel that had this mesh is gone: run this cell again to go on.";
+const LASTING_WORDS = ["agent", "level"]; // their effects continue after the answer
+const LOST = "The kernel of this mesh has stopped: run this cell again to continue.";
 
-class KernelLink {
+export class KernelLink {
   constructor(model) {
     this.readOnly = false;
     this.onmessage = () => {};
     this.view = viewName();
     this._model = model;
     this._last = 0;
-    this._stirred = false; // something longer was asked for here, and is not over
-    this._revision = this._reckoned = -1;
+    this._lasting = false; // a lasting request from this view is in progress
+    this._revision = this._counted = -1;
     this._receive = (content, buffers) => {
-      // a patch is for all, and its "to" is a revision
-      const mine = content && (content.say === "patch" || !content.to || content.to === this.view);
+      // a patch is sent to all views, and its "to" is a revision
+      const mine = content && (content.type === "patch" || !content.to || content.to === this.view);
       if (!mine) return;
       this.onmessage(content, buffers || []);
-      this._reckon(content);
+      this._countChange(content);
     };
     model.on("msg:custom", this._receive);
   }
 
-  /** Say something to Python; answers carry the id as `reply`. */
+  /** Send a request to Python; answers carry its id as `reply`. */
   send(word, fields = {}) {
     this._last += 1;
-    if (LONGER_WORDS.includes(word) && !this._stirred) {
-      this._stirred = true;
-      this._reckoned = this._revision;
+    if (LASTING_WORDS.includes(word) && !this._lasting) {
+      this._lasting = true;
+      this._counted = this._revision;
     }
     try {
       this._model.send({ do: word, id: this._last, view: this.view, ...fields });
-    } catch (error) { // JupyterLab, once the kernel was restarted or shut down: "Cannot send"
+    } catch (error) { // JupyterLab, after a restart or shutdown of the kernel: "Cannot send"
       const reply = this._last;
-      // later, as any answer: who asked must first know the number of its question
-      setTimeout(() => this.onmessage({ say: "notice", tone: "failed", sentence: LOST, reply }, []));
+      // later, as any answer: the caller needs the id first
+      setTimeout(() => this.onmessage({ type: "notice", tone: "failed", sentence: LOST, reply }, []));
     }
     return this._last;
   }
 
-  /** In marimo: have the cells that use the widget run again, once what was asked for here is done.
+  /** In marimo: run the cells that use the widget again after a request of this view.
    *
-   * Not after what cells do themselves, or a cell that changes the mesh would run for ever.
+   * Not after changes made by cells, or a cell that changes the mesh would run forever.
    */
-  _reckon({ say, asked, state, to, revision }) {
-    if (say === "patch" || say === "state") this._revision = say === "patch" ? to : revision;
-    const rests = say === "agent" && ["idle", "paused"].includes(state);
-    const done = asked === this.view || (rests && this._stirred);
-    if (!done || this._revision === this._reckoned) return;
-    if (rests) this._stirred = false;
-    this._reckoned = this._revision;
+  _countChange({ type, asked, state, to, revision }) {
+    if (type === "patch" || type === "state") this._revision = type === "patch" ? to : revision;
+    const idle = type === "agent" && ["idle", "paused"].includes(state);
+    const done = asked === this.view || (idle && this._lasting);
+    if (!done || this._revision === this._counted) return;
+    if (idle) this._lasting = false;
+    this._counted = this._revision;
     if (!document.querySelector("marimo-anywidget")) return;
     this._model.set("seen", this._model.get("seen") + 1);
     this._model.save_changes();

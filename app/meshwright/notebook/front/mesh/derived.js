@@ -1,94 +1,96 @@
-// What follows from the arrays and is drawn: boundary loops, irregular vertices, folded elements.
+// Data derived from the arrays for painting: boundary loops, irregular vertices, inverted elements.
 //
-// All of it is found again after each change, in one pass over the arrays: well under a millisecond
-// for 10,000 elements, so that nothing has to be kept up.
+// Everything is computed again after each change, in one pass over the arrays: well under a
+// millisecond for 10,000 elements, so that nothing is updated incrementally.
+
+import { FLAG_ALIVE, FLAG_CORNER, FLAG_LOCKED } from "./mesh_replica.js";
 
 const FLAT_SINE = 1e-5;
 const SAMPLES = 1500;
 const NEAR_RINGS = 5;
 
-class Facts {
-  constructor(mirror) {
-    this.box = mirror.bounds();
-    this.loops = boundaryLoops(mirror);
-    this.irregular = verticesWith(mirror, (v) => mirror.delta[v] !== 0);
-    this.corners = verticesWith(mirror, (v) => (mirror.flags[v] & FLAG_CORNER) !== 0);
-    this.locked = verticesWith(mirror, (v) => (mirror.flags[v] & FLAG_LOCKED) !== 0);
-    this.typical = typicalEdge(mirror);
-    this.reach = shortestEdges(mirror);
-    this.apart = distancesApart(mirror, this.irregular, this.typical, this.box);
-    this.inverted = invertedElements(mirror);
+export class DerivedData {
+  constructor(replica) {
+    this.box = replica.bounds();
+    this.loops = boundaryLoops(replica);
+    this.irregular = verticesWith(replica, (v) => replica.delta[v] !== 0);
+    this.corners = verticesWith(replica, (v) => (replica.flags[v] & FLAG_CORNER) !== 0);
+    this.locked = verticesWith(replica, (v) => (replica.flags[v] & FLAG_LOCKED) !== 0);
+    this.typical = typicalEdge(replica);
+    this.reach = shortestEdges(replica);
+    this.apart = distancesApart(replica, this.irregular, this.typical, this.box);
+    this.inverted = invertedElements(replica);
   }
 }
 
-function verticesWith(mirror, test) {
+function verticesWith(replica, test) {
   const found = [];
-  for (let v = 0; v < mirror.vertices; v += 1) {
-    if (mirror.flags[v] & FLAG_ALIVE && test(v)) found.push(v);
+  for (let v = 0; v < replica.vertices; v += 1) {
+    if (replica.flags[v] & FLAG_ALIVE && test(v)) found.push(v);
   }
   return found;
 }
 
 /** Boundary loops as arrays of vertex ids. */
-function boundaryLoops(mirror) {
+function boundaryLoops(replica) {
   const from = new Map();
-  for (let h = 0; h < mirror.halfedges; h += 1) {
-    if (mirror.twin[h] < 0 && mirror.origin[h] >= 0) from.set(mirror.origin[h], h);
+  for (let h = 0; h < replica.halfedges; h += 1) {
+    if (replica.twin[h] < 0 && replica.origin[h] >= 0) from.set(replica.origin[h], h);
   }
   const loops = [];
   while (from.size) {
     const loop = [];
     let h = from.values().next().value;
     while (h !== undefined) {
-      from.delete(mirror.origin[h]);
-      loop.push(mirror.origin[h]);
-      h = from.get(mirror.target(h));
+      from.delete(replica.origin[h]);
+      loop.push(replica.origin[h]);
+      h = from.get(replica.target(h));
     }
     loops.push(loop);
   }
   return loops;
 }
 
-/** The median length of an edge, of a sample of them. */
-function typicalEdge(mirror) {
-  const step = Math.max(1, Math.floor(mirror.halfedges / SAMPLES));
+/** The median edge length of a sample. */
+function typicalEdge(replica) {
+  const step = Math.max(1, Math.floor(replica.halfedges / SAMPLES));
   const lengths = [];
-  for (let h = 0; h < mirror.halfedges; h += step) {
-    if (mirror.origin[h] >= 0) lengths.push(edgeLength(mirror, h));
+  for (let h = 0; h < replica.halfedges; h += step) {
+    if (replica.origin[h] >= 0) lengths.push(edgeLength(replica, h));
   }
   lengths.sort((a, b) => a - b);
   return lengths.length ? lengths[lengths.length >> 1] : 1;
 }
 
-function edgeLength(mirror, h) {
-  const { places } = mirror;
-  const a = 2 * mirror.origin[h];
-  const b = 2 * mirror.target(h);
+export function edgeLength(replica, h) {
+  const { places } = replica;
+  const a = 2 * replica.origin[h];
+  const b = 2 * replica.target(h);
   const x = places[b] - places[a];
   const y = places[b + 1] - places[a + 1];
   return Math.sqrt(x * x + y * y);
 }
 
 /** Length of the shortest edge at every irregular vertex, by vertex id. */
-function shortestEdges(mirror) {
-  const { k, origin, delta } = mirror;
-  const shortest = new Float32Array(mirror.vertices).fill(Infinity);
-  for (let h = 0; h < mirror.halfedges; h += 1) {
+function shortestEdges(replica) {
+  const { k, origin, delta } = replica;
+  const shortest = new Float32Array(replica.vertices).fill(Infinity);
+  for (let h = 0; h < replica.halfedges; h += 1) {
     const a = origin[h];
     if (a < 0) continue;
     const b = origin[h % k === k - 1 ? h - k + 1 : h + 1];
     if (delta[a] === 0 && delta[b] === 0) continue;
-    const length = edgeLength(mirror, h);
+    const length = edgeLength(replica, h);
     if (length < shortest[a]) shortest[a] = length;
     if (length < shortest[b]) shortest[b] = length;
   }
   return shortest;
 }
 
-/** How far the nearest other of `vertices` is from each, by vertex id; no more than a few edges. */
-function distancesApart(mirror, vertices, typical, box) {
-  const { places } = mirror;
-  const apart = new Float32Array(mirror.vertices);
+/** Distance to the nearest other of `vertices`, by vertex id; capped at a few edge lengths. */
+function distancesApart(replica, vertices, typical, box) {
+  const { places } = replica;
+  const apart = new Float32Array(replica.vertices);
   if (!box) return apart;
   const cell = Math.max(1.5 * typical, (box.right - box.left) / 1000, (box.top - box.bottom) / 1000);
   const columns = Math.floor((box.right - box.left) / cell) + 1;
@@ -125,11 +127,11 @@ function distancesApart(mirror, vertices, typical, box) {
   return apart;
 }
 
-/** Elements with a corner that is flat or turns the wrong way, as meshcore.quality.inverted. */
-function invertedElements(mirror) {
-  const { k, places, origin } = mirror;
+/** Elements with a flat or reflex corner, as meshwright_core.geometry.quality.inverted. */
+function invertedElements(replica) {
+  const { k, places, origin } = replica;
   const found = [];
-  for (let e = 0; e < mirror.elements; e += 1) {
+  for (let e = 0; e < replica.elements; e += 1) {
     if (origin[k * e] < 0) continue;
     for (let i = 0; i < k; i += 1) {
       const a = 2 * origin[k * e + ((i + k - 1) % k)];

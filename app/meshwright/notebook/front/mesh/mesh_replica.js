@@ -1,28 +1,28 @@
-// The mesh as the browser knows it: flat arrays, filled by a state message and kept up by patches.
+// The browser's copy of the mesh: flat arrays, set by a state message and updated by patches.
 //
 // Element e owns the half-edges k*e .. k*e+k-1, counter-clockwise. origin -1: the slot is dead.
-// Places are in the normalised frame of the state message, y up.
+// Coordinates are in the normalised frame of the state message, y up.
 
-const FLAG_ALIVE = 1;
+export const FLAG_ALIVE = 1;
 const FLAG_BOUNDARY = 2;
-const FLAG_CORNER = 4;
-const FLAG_LOCKED = 8;
+export const FLAG_CORNER = 4;
+export const FLAG_LOCKED = 8;
 
 /** A typed array over a copy of a message's buffer (buffers may begin at odd addresses). */
-function arrayOf(Type, view) {
+export function arrayOf(Type, view) {
   const start = view.byteOffset;
   return new Type(view.buffer.slice(start, start + view.byteLength));
 }
 
-/** `array`, or a longer one with the same beginning where `length` does not fit. */
-function withRoom(array, length) {
+/** `array`, or a longer copy if it is shorter than `length`. */
+export function withRoom(array, length) {
   if (length <= array.length) return array;
   const longer = new array.constructor(Math.max(length, Math.ceil(1.5 * array.length)));
   longer.set(array);
   return longer;
 }
 
-class Mirror {
+export class MeshReplica {
   constructor() {
     this.revision = -1;
     this.k = 4;
@@ -39,7 +39,7 @@ class Mirror {
     this.twin = new Int32Array(0);
   }
 
-  /** Take over a whole state. */
+  /** Load a whole state. */
   loadState(content, buffers) {
     this.k = content.k;
     this.vertices = content.vertices;
@@ -61,7 +61,7 @@ class Mirror {
     return { vertices: arrayOf(Int32Array, buffers[0]), halfedges: arrayOf(Int32Array, buffers[4]) };
   }
 
-  /** Take over a patch; false, and nothing done, if it is not for this revision. */
+  /** Apply a patch; returns false, unchanged, if it is not for this revision. */
   applyPatch(content, buffers) {
     if (content.from !== this.revision) return false;
     const ids = this.idsOf(buffers);
@@ -86,10 +86,7 @@ class Mirror {
     return true;
   }
 
-  /** The patch {content, buffers} that leads back from where this one leads to.
-   *
-   * To be asked for before the patch is applied; what the state has now is its content.
-   */
+  /** The inverse {content, buffers} of a patch; to be called before the patch is applied. */
   inverse(content, buffers) {
     const ids = this.idsOf(buffers);
     const vertices = ids.vertices.filter((v) => v < this.vertices);
@@ -104,7 +101,7 @@ class Mirror {
     ];
     return {
       content: {
-        say: "patch", from: content.to, to: content.from, vertices: this.vertices,
+        type: "patch", from: content.to, to: content.from, vertices: this.vertices,
         halfedges: this.halfedges, head: this.head,
       },
       buffers: back.map((array) => new DataView(array.buffer)),
@@ -162,7 +159,7 @@ class Mirror {
     return corners;
   }
 
-  /** The half-edges that start where h starts, h first; every traversal has an end. */
+  /** The half-edges with the origin of h, h first; traversals are capped. */
   around(h) {
     const found = [h];
     let at = this.twin[this.prev(h)];
@@ -180,7 +177,7 @@ class Mirror {
     return found;
   }
 
-  /** The degree of the vertex where h starts. */
+  /** The degree of the origin of h. */
   degree(h) {
     const boundary = this.flags[this.origin[h]] & FLAG_BOUNDARY;
     return this.around(h).length + (boundary ? 1 : 0);

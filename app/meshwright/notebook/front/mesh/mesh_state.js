@@ -1,47 +1,51 @@
-// A mesh and all that is derived from it, kept together while messages come in.
+// The mesh with its derived data and spatial grid, updated together by messages.
+
+import { DerivedData } from "./derived.js";
+import { MeshReplica } from "./mesh_replica.js";
+import { SpatialGrid } from "./spatial_grid.js";
 
 const DIRTY_SHARE = 0.4;
 
-class MeshWork {
+export class MeshState {
   constructor() {
-    this.mirror = new Mirror();
-    this.facts = new Facts(this.mirror);
-    this.grid = new Grid(this.mirror);
+    this.replica = new MeshReplica();
+    this.derived = new DerivedData(this.replica);
+    this.grid = new SpatialGrid(this.replica);
   }
 
-  /** Take over a state. */
+  /** Load a state. */
   load(content, buffers) {
-    this.mirror.loadState(content, buffers);
-    this.facts = new Facts(this.mirror);
-    this.grid = new Grid(this.mirror);
+    this.replica.loadState(content, buffers);
+    this.derived = new DerivedData(this.replica);
+    this.grid = new SpatialGrid(this.replica);
   }
 
-  /** Take over a patch. Returns the boxes of the plane that have changed, null if that is much of
-   * it, undefined if the patch is not for this revision.
+  /** Apply a patch. Returns the changed boxes of the plane, null for most of it, undefined if the
+   * patch is not for this revision.
    */
   patch(content, buffers) {
-    const { mirror } = this;
-    if (content.from !== mirror.revision) return undefined;
-    const touched = this._touched(mirror.idsOf(buffers), content);
-    const many = touched.length > DIRTY_SHARE * mirror.elements || mirror.elements > 2 * this.grid.made;
-    const boxes = many ? null : touched.map((e) => boxOf(mirror, e));
+    const { replica } = this;
+    if (content.from !== replica.revision) return undefined;
+    const touched = this._touched(replica.idsOf(buffers), content);
+    const many = touched.length > DIRTY_SHARE * replica.elements || replica.elements > 2 * this.grid.made;
+    const boxes = many ? null : touched.map((e) => boxOf(replica, e));
     if (!many) touched.forEach((e) => this.grid.remove(e));
-    mirror.applyPatch(content, buffers);
-    if (many) this.grid = new Grid(mirror);
+    replica.applyPatch(content, buffers);
+    if (many) this.grid = new SpatialGrid(replica);
     else {
       for (const e of touched) {
         this.grid.add(e);
-        boxes.push(boxOf(mirror, e));
+        boxes.push(boxOf(replica, e));
       }
     }
-    this.facts = new Facts(mirror);
+    this.derived = new DerivedData(replica);
     return boxes && boxes.filter((box) => box !== null);
   }
 
-  /** Elements that a patch changes: of its half-edges, and at its vertices as they are now. */
+  /** Elements changed by a patch: of its half-edges, and around its vertices before the patch. */
   _touched(ids, content) {
-    const { k, origin, halfedges } = this.mirror;
-    const changed = new Uint8Array(Math.max(content.vertices, this.mirror.vertices));
+    const { k, origin, halfedges } = this.replica;
+    const changed = new Uint8Array(Math.max(content.vertices, this.replica.vertices));
     ids.vertices.forEach((v) => (changed[v] = 1));
     const touched = new Uint8Array(Math.max(content.halfedges, halfedges) / k);
     ids.halfedges.forEach((h) => (touched[Math.floor(h / k)] = 1));
@@ -55,9 +59,9 @@ class MeshWork {
 }
 
 /** {left, bottom, right, top} of an element, null if it is dead. */
-function boxOf(mirror, e) {
-  if (!mirror.live(mirror.k * e)) return null;
-  const corners = mirror.corners(e);
+function boxOf(replica, e) {
+  if (!replica.live(replica.k * e)) return null;
+  const corners = replica.corners(e);
   const [xs, ys] = [corners.map((at) => at[0]), corners.map((at) => at[1])];
   return {
     left: Math.min(...xs), right: Math.max(...xs), bottom: Math.min(...ys), top: Math.max(...ys),

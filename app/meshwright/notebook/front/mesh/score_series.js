@@ -1,12 +1,12 @@
-// The track: score and optimum of every state of a history, and the lines to draw them with.
+// Score and optimum of every state of a history, and the polylines that show them.
 //
-// State 0 is the start, state i the one after step i; steps that were undone count too.
+// State 0 is the start, state i the one after step i; undone steps are included.
 
-/** Times the span of a curve beyond which what is left to the optimum is left out of it. */
-const TRACK_FAR = 4;
-const TRACK_COLUMNS = ["scores", "optima", "titles", "by"];
+/** Multiple of the curve's span beyond which the axis is broken above the optimum. */
+const FAR_FACTOR = 4;
+const COLUMNS = ["scores", "optima", "titles", "by"];
 
-class Track {
+export class ScoreSeries {
   constructor() {
     this.clear();
   }
@@ -24,13 +24,13 @@ class Track {
     return this.scores.length;
   }
 
-  /** Take over what a head tells: the states from `from` on are new, those beyond its end are gone. */
+  /** Update from a head: states from `from` on are new, those beyond its length are removed. */
   follow(head) {
     const fresh = head.track;
     if (fresh) {
       const by = fresh.by || [];
       const begin = Math.min(fresh.from, this.length);
-      for (const name of TRACK_COLUMNS) this[name].length = begin;
+      for (const name of COLUMNS) this[name].length = begin;
       fresh.scores.forEach((score, i) => {
         this.scores.push(score);
         this.optima.push(fresh.optima[i]);
@@ -38,7 +38,7 @@ class Track {
         this.by.push(by[i] || "");
       });
     }
-    for (const name of TRACK_COLUMNS) this[name].length = Math.min(this[name].length, head.length + 1);
+    for (const name of COLUMNS) this[name].length = Math.min(this[name].length, head.length + 1);
     this._best = -1;
     this._others = -1;
   }
@@ -55,63 +55,63 @@ class Track {
     return this._best;
   }
 
-  /** "Flip left by quad-paper": what led to a state. */
+  /** "Flip left by quad-paper": the step before a state. */
   words(state) {
     if (state <= 0) return "the start";
     return `${this.titles[state] || "a step"}${this.by[state] ? ` by ${this.by[state]}` : ""}`;
   }
 
-  /** " (−2)": what that did to the score; nothing for the start. */
+  /** " (−2)": its change of the score; empty for the start. */
   change(state) {
-    return state <= 0 ? "" : ` (${trackSigned(this.scores[state] - this.scores[state - 1])})`;
+    return state <= 0 ? "" : ` (${formatChange(this.scores[state] - this.scores[state - 1])})`;
   }
 
-  /** How many steps an agent took. */
+  /** Number of steps by agents. */
   get others() {
     if (this._others < 0) this._others = this.by.reduce((sum, _, i) => sum + (i > 0 && !this.mine(i)), 0);
     return this._others;
   }
 
-  /** True if a person took the step that led to a state. */
+  /** Whether the step before a state is the user's. */
   mine(state) {
     return this.by[state] === "" || this.by[state] === "you";
   }
 }
 
 /** "+1", "−2" with a true minus sign, "±0". */
-function trackSigned(change) {
+function formatChange(change) {
   if (change === 0) return "±0";
   return change > 0 ? `+${change}` : `−${-change}`;
 }
 
 /** "12,345". */
-function trackNumber(value) {
+export function formatNumber(value) {
   return value.toLocaleString("en-US");
 }
 
-/** Where a curve is drawn: pixels of states and scores.
+/** Maps states and scores to pixels.
  *
- * The frame is `broken` where the optimum lies so far below all that has happened that the curve
- * would be a level line; the optimum is drawn at the lower edge then.
+ * The axis is `broken` where the optimum lies so far below all scores that the curve would look flat;
+ * then the optimum is drawn at the lower edge.
  */
-class TrackFrame {
-  constructor(track, left, top, width, height) {
+export class CurveFrame {
+  constructor(series, left, top, width, height) {
     this.left = left;
     this.top = top;
     this.width = Math.max(width, 1);
     this.height = height;
-    this.last = Math.max(track.length - 1, 1);
+    this.last = Math.max(series.length - 1, 1);
     let goal = Infinity;
     let lowest = Infinity;
     let high = -Infinity;
-    for (let i = 0; i < track.length; i += 1) {
-      goal = Math.min(goal, track.optima[i]);
-      lowest = Math.min(lowest, track.scores[i]);
-      high = Math.max(high, track.scores[i]);
+    for (let i = 0; i < series.length; i += 1) {
+      goal = Math.min(goal, series.optima[i]);
+      lowest = Math.min(lowest, series.scores[i]);
+      high = Math.max(high, series.scores[i]);
     }
     this.high = Math.max(high, goal + 1);
     const room = Math.max(this.high - lowest, 4);
-    this.broken = lowest - goal > TRACK_FAR * room;
+    this.broken = lowest - goal > FAR_FACTOR * room;
     this.low = this.broken ? lowest - 0.5 * room : goal;
   }
 
@@ -133,10 +133,10 @@ class TrackFrame {
     return this.width / this.last;
   }
 
-  /** Values from state `first` to `last` as a line of steps [[x, y], ...].
+  /** Values from state `first` to `last` as a step curve [[x, y], ...].
    *
-   * With more states than pixels each column of pixels shows the lowest and the highest value in
-   * it, so that the line grows with the width and not with the history.
+   * With more states than pixels, each column of pixels shows the minimum and the maximum in it, so
+   * that the size depends on the width and not on the history.
    */
   steps(values, first, last) {
     const line = [];

@@ -1,29 +1,32 @@
-// A grid of cells that knows which elements are near a place; kept up cheaply after a patch.
+// A uniform grid of cells with the elements that touch them; updated incrementally by patches.
 
-class Grid {
-  /** All live elements of `mirror`, about one a cell. */
-  constructor(mirror) {
-    const box = mirror.bounds() || { left: 0, bottom: 0, right: 1, top: 1 };
+import { clamp } from "../numbers.js";
+import { withRoom } from "./mesh_replica.js";
+
+export class SpatialGrid {
+  /** All live elements of `replica`, about one per cell. */
+  constructor(replica) {
+    const box = replica.bounds() || { left: 0, bottom: 0, right: 1, top: 1 };
     const [wide, high] = [box.right - box.left || 1, box.top - box.bottom || 1];
-    this._mirror = mirror;
+    this._replica = replica;
     this._left = box.left;
     this._bottom = box.bottom;
-    this._size = Math.sqrt((wide * high) / Math.max(mirror.elements, 1)) || 1;
+    this._size = Math.sqrt((wide * high) / Math.max(replica.elements, 1)) || 1;
     this._size = Math.max(this._size, Math.max(wide, high) / 1000);
     this._columns = Math.floor(wide / this._size) + 1;
     this._rows = Math.floor(high / this._size) + 1;
     this._cells = Array.from({ length: this._columns * this._rows }, () => []);
     this._ranges = new Map();
-    this._stamps = new Int32Array(mirror.elements + 64);
+    this._stamps = new Int32Array(replica.elements + 64);
     this._stamp = 0;
-    this.made = mirror.elements;
-    for (let e = 0; e < mirror.elements; e += 1) this.add(e);
+    this.made = replica.elements;
+    for (let e = 0; e < replica.elements; e += 1) this.add(e);
   }
 
-  /** Take in an element where it is now; dead ones are passed over. */
+  /** Add an element at its present position; dead ones are ignored. */
   add(e) {
-    const { k, origin, places } = this._mirror;
-    if (k * e >= this._mirror.halfedges || origin[k * e] < 0) return;
+    const { k, origin, places } = this._replica;
+    if (k * e >= this._replica.halfedges || origin[k * e] < 0) return;
     let [left, bottom, right, top] = [Infinity, Infinity, -Infinity, -Infinity];
     for (let h = k * e; h < k * e + k; h += 1) {
       const [x, y] = [places[2 * origin[h]], places[2 * origin[h] + 1]];
@@ -37,7 +40,7 @@ class Grid {
     this._each(range, (cell) => cell.push(e));
   }
 
-  /** Take an element out of where it was put. */
+  /** Remove an element from the cells it was added to. */
   remove(e) {
     const range = this._ranges.get(e);
     if (!range) return;
@@ -52,7 +55,7 @@ class Grid {
   /** Elements that may touch a box of the plane, each once. */
   near(left, bottom, right, top) {
     this._stamp += 1;
-    this._stamps = withRoom(this._stamps, this._mirror.elements);
+    this._stamps = withRoom(this._stamps, this._replica.elements);
     const found = [];
     this._each(this._range(left, bottom, right, top), (cell) => {
       for (const e of cell) {
@@ -75,8 +78,4 @@ class Grid {
       for (let i = left; i <= right; i += 1) visit(this._cells[j * this._columns + i]);
     }
   }
-}
-
-function clamp(value, low, high) {
-  return Math.min(Math.max(value, low), high);
 }

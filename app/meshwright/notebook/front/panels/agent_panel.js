@@ -1,15 +1,19 @@
-// The agent beside the person: which policy, what it shall do, how far it is, and its hints.
+// The panel of the agent: policy, commands, progress, hints.
+
+import { MOST_HINTS, percent } from "../canvas/hint_badges.js";
+import { button, icon, node, setText } from "../dom.js";
+import { counted, signed } from "../numbers.js";
 
 const AGENT_SPEEDS = [0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60];
 const AGENT_AT_REST = ["idle", "paused"];
 
-class AgentPanel {
+export class AgentPanel {
   constructor(card) {
     this.hints = [];
     this.state = "idle";
     this._card = card;
     this._policies = "";
-    this._known = this._away = ""; // the hints that were told last, and those that were put away
+    this._received = this._hidden = ""; // the hints received last, and those that were hidden
     this._make();
     this.root = node("section", "mw-part mw-part-agent", { "aria-label": "Agent", hidden: true },
       node("div", "mw-head-line", {}, node("h4", "mw-heading", {}, "Agent"), this._policy),
@@ -19,78 +23,78 @@ class AgentPanel {
       this._words, this._list);
   }
 
-  /** Whether something runs that changes the mesh by itself. */
+  /** Whether the agent is changing the mesh. */
   get busy() {
     return !AGENT_AT_REST.includes(this.state);
   }
 
   _make() {
-    this._policy = node("select", "mw-select", { "aria-label": "Policy", title: "The policy that hints and runs follow" });
-    this._policy.addEventListener("change", () => this._card.ask("policy", { name: this._policy.value }));
+    this._policy = node("select", "mw-select", { "aria-label": "Policy", title: "Policy for hints and runs" });
+    this._policy.addEventListener("change", () => this._card.request("policy", { name: this._policy.value }));
     const action = (text, label, name, sign = null, look = "mw-button") =>
-      button(look, label, { text, sign, act: () => this.ask(name) });
+      button(look, label, { text, sign, act: () => this.request(name) });
     this._hint = action("Hint", "Show the policy's best few operations (H)", "hint");
-    this._step = action("Step", "Let the policy take one operation (.)", "step", "step");
+    this._step = action("Step", "Apply one operation chosen by the policy (.)", "step", "step");
     this._play = button("mw-button", "Play", { text: "Play", sign: "play", act: () => this.toggle() });
     this._complete = action(
-      "Complete", "Search for a few seconds, and go to the best state found", "complete", null,
+      "Complete", "Search for a few seconds and go to the best state found", "complete", null,
       "mw-button mw-primary",
     );
-    this._stop = action("Stop", "Stop the policy; what it has done stays", "stop");
+    this._stop = action("Stop", "Stop the policy; its operations are kept", "stop");
     this._speed = node("input", "mw-range", {
-      type: "range", min: 0, max: AGENT_SPEEDS.length - 1, step: 1, value: 3, "aria-label": "Speed of playing",
+      type: "range", min: 0, max: AGENT_SPEEDS.length - 1, step: 1, value: 3, "aria-label": "Playing speed",
     });
     this._speed.addEventListener("input", () => {
       const value = AGENT_SPEEDS[this._speed.valueAsNumber];
-      this._tellPace(value);
-      this._card.ask("speed", { value });
+      this._updatePace(value);
+      this._card.request("speed", { value });
     });
     this._pace = node("span", "mw-pace", { "aria-hidden": "true" });
     this._words = node("p", "mw-hint mw-agent-words", { role: "status" });
     this._list = node("div", "mw-hints", { role: "group", "aria-label": "Hints", hidden: true });
   }
 
-  /** Ask the agent for something. */
-  ask(action) {
+  /** Send a command to the agent. */
+  request(action) {
     if (this._card.readOnly || this.root.hidden) return;
     if (action === "hint" && this.hints.length) {
-      this._putAway();
+      this._hideHints();
       return;
     }
-    this._away = "";
-    this._card.ask("agent", { action });
+    this._hidden = "";
+    this._card.request("agent", { action });
   }
 
-  /** Play, or hold. */
+  /** Play or pause. */
   toggle() {
-    this.ask(this.state === "playing" ? "pause" : "play");
+    this.request(this.state === "playing" ? "pause" : "play");
   }
 
-  /** Take the hint of this index; returns whether there is one. */
+  /** Apply the hint of this index; returns whether there is one. */
   take(index) {
     if (index >= this.hints.length) return false;
-    this._card.ask("take_hint", { index });
+    this._card.request("take_hint", { index });
     return true;
   }
 
-  /** Put hints away, or stop what runs; returns whether there was something. */
+  /** Hide the hints, or stop the run; returns whether there was one of them. */
   escape() {
-    if (this.hints.length) this._putAway();
-    else if (this.state !== "idle") this.ask("stop");
+    if (this.hints.length) this._hideHints();
+    else if (this.state !== "idle") this.request("stop");
     else return false;
     return true;
   }
 
-  /** What an agent message says. */
+  /** Show the content of an agent message. */
   update(content) {
     this.state = content.state;
     this.root.hidden = this._card.readOnly;
-    this._tellPolicies(content);
+    this._updatePolicies(content);
     const playing = content.state === "playing";
-    const words = playing ? "Pause" : content.state === "paused" ? "Go on" : "Play";
+    const words = playing ? "Pause" : content.state === "paused" ? "Resume" : "Play";
     this._play.replaceChildren(icon(playing ? "pause" : "play"), node("span", "", {}, words));
-    this._play.setAttribute("aria-label", playing ? "Pause" : "Let the policy play at this speed");
-    this._play.title = playing ? "Hold the run (Space)" : "Let the policy go on at this speed (Space)";
+    this._play.setAttribute("aria-label", playing ? "Pause" : "Run the policy at this speed");
+    this._play.title = playing ? "Pause the run (Space)" : "Run the policy at this speed (Space)";
     const none = !content.policies.length;
     for (const one of [this._hint, this._step, this._complete]) {
       one.disabled = none || content.loading || this.busy;
@@ -101,40 +105,40 @@ class AgentPanel {
     if (!this._speed.matches(":active")) {
       const away = AGENT_SPEEDS.map((speed) => Math.abs(speed - content.speed));
       this._speed.value = away.indexOf(Math.min(...away));
-      this._tellPace(content.speed);
+      this._updatePace(content.speed);
     }
-    tell(this._words, this._told(content));
-    const told = JSON.stringify(content.hints);
-    this._setHints(told === this._away ? [] : content.hints);
-    this._known = told;
+    setText(this._words, this._statusText(content));
+    const key = JSON.stringify(content.hints);
+    this._setHints(key === this._hidden ? [] : content.hints);
+    this._received = key;
   }
 
-  /** Put the hints away until there are others, or they are asked for again. */
-  _putAway() {
-    this._away = this._known;
+  /** Hide the hints until they change or are requested again. */
+  _hideHints() {
+    this._hidden = this._received;
     this._setHints([]);
   }
 
-  _told({ loading, asking, state, progress, policies }) {
+  _statusText({ loading, asking, state, progress, policies }) {
     if (!policies.length) return "No policy for meshes of this kind.";
     const { decisions = 0, best = null } = progress || {};
     const lowest = best === null ? "" : `, best s ${best}`;
     if (loading) return "Loading the policy\u2026";
-    if (asking) return "Asking the policy\u2026";
+    if (asking) return "Computing hints\u2026";
     if (state === "searching") return `Searching${lowest}\u2026`;
     if (state === "playing") return `Playing: ${counted(decisions, "operation")}${lowest}`;
     if (state === "paused") return `Paused after ${counted(decisions, "operation")}${lowest}`;
     return decisions ? `${counted(decisions, "operation")} taken${lowest}` : "Ready";
   }
 
-  _tellPace(speed) {
+  _updatePace(speed) {
     const words = `${speed.toLocaleString("en")} operations per second`;
-    tell(this._pace, `${speed.toLocaleString("en")}\u2009/\u2009s`);
+    setText(this._pace, `${speed.toLocaleString("en")}\u2009/\u2009s`);
     this._speed.setAttribute("aria-valuetext", words);
-    this._speed.title = `Speed of playing: ${words}`;
+    this._speed.title = `Playing speed: ${words}`;
   }
 
-  _tellPolicies({ policies, policy }) {
+  _updatePolicies({ policies, policy }) {
     const known = JSON.stringify(policies);
     if (known !== this._policies) {
       this._policies = known;
@@ -150,20 +154,20 @@ class AgentPanel {
     const before = this.hints.length;
     this.hints = hints.slice(0, MOST_HINTS);
     this._list.hidden = !this.hints.length;
-    const { palette } = this._card;
+    const { colours } = this._card;
     this._list.replaceChildren(...this.hints.map((hint, index) => {
       const change = node("span", "mw-change", {}, signed(hint.change));
-      change.style.color = palette.ofChange(hint.change);
+      change.style.color = colours.ofChange(hint.change);
       const chance = percent(hint.probability);
       const row = node("button", "mw-operation mw-hint-row", {
         type: "button", "aria-label": `Hint ${index + 1}: ${hint.title}, ${chance}, s ${signed(hint.change)}`,
-        title: `Do it (${index + 1})`,
+        title: `Apply it (${index + 1})`,
       },
       node("kbd", "mw-key", {}, String(index + 1)), node("span", "mw-operation-title", {}, hint.title),
       node("span", "mw-chance", {}, chance), change);
       row.addEventListener("click", () => this.take(index));
       for (const type of ["pointerenter", "focus"]) {
-        row.addEventListener(type, () => this._card.meanHint(index));
+        row.addEventListener(type, () => this._card.showHint(index));
       }
       return row;
     }));

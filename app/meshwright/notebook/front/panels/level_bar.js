@@ -1,23 +1,25 @@
-// The strip over canvas and panel while a level is played: what is to be done, with how many
-// operations, what is won, and the agent's answer.
+// The bar above the canvas while a level is played: goal, par, operations used, stars, and the
+// agent's solution.
+
+import { drawn, node, setText } from "../dom.js";
 
 const STARS = 3;
 const STAR_PATH = starPath(10, 10, 8.5, 3.9);
 
-class Levels {
+export class LevelBar {
   constructor(place, card) {
     this._card = card;
     this._all = [];
     this._done = false;
     this._waits = false;
     this._choice = node("select", "mw-select mw-level-choice", { "aria-label": "Choose a level" });
-    this._choice.addEventListener("change", () => this._ask("open", this._choice.value));
+    this._choice.addEventListener("change", () => this._request("open", this._choice.value));
     this._stars = starRow("mw-level-stars");
     this._facts = node("div", "mw-level-facts");
     this._text = node("p", "mw-level-text");
-    this._again = this._button("Again", "again", "Begin this level again");
+    this._again = this._button("Again", "again", "Restart this level");
     this._solve = this._button("Ask the agent", "solve", "");
-    this._next = this._button("Next", "next", "Go on to the next level");
+    this._next = this._button("Next", "next", "Go to the next level");
     this._live = node("div", "mw-unseen", { role: "status", "aria-live": "polite" });
     place.append(
       node("div", "mw-level-line", {}, this._choice, this._stars, this._facts),
@@ -31,7 +33,7 @@ class Levels {
     place.hidden = true;
   }
 
-  /** Tell what a message `level` says. */
+  /** Show the content of a level message. */
   update({ level, all }) {
     this._place.hidden = level === null;
     if (all) this._all = all;
@@ -39,27 +41,27 @@ class Levels {
     this._waits = false;
     this._fill(level);
     showStars(this._stars, level.done ? level.stars : level.best_stars);
-    this._stars.title = level.done ? "Won just now" : "Your best so far";
-    this._tellFacts(level);
-    this._tellText(level);
-    this._tellButtons(level);
-    this._celebrate(level);
+    this._stars.title = level.done ? "Earned in this attempt" : "Your best so far";
+    this._updateFacts(level);
+    this._updateText(level);
+    this._updateButtons(level);
+    this._animateStars(level);
   }
 
   _button(title, action, label) {
     const made = node("button", "mw-button", { type: "button", title: label }, node("span", "", {}, title));
-    made.addEventListener("click", () => this._ask(action));
+    made.addEventListener("click", () => this._request(action));
     return made;
   }
 
-  _ask(action, name = null) {
+  _request(action, name = null) {
     if (this._waits || this._card.readOnly) return;
-    this._waits = true; // a second click before the answer means the first one
+    this._waits = true; // ignore a second click before the answer
     setTimeout(() => { this._waits = false; }, 400);
-    this._card.ask("level", name === null ? { action } : { action, name });
+    this._card.request("level", name === null ? { action } : { action, name });
   }
 
-  /** The list to choose from. */
+  /** Fill the list of levels. */
   _fill(level) {
     const rows = this._all.map((one, index) => {
       const won = one.stars ? `  ${"\u2605".repeat(one.stars)}` : "";
@@ -74,52 +76,52 @@ class Levels {
     this._choice.disabled = this._card.readOnly;
   }
 
-  _tellFacts(level) {
+  _updateFacts(level) {
     const { rival } = level;
     const facts = [
-      ["Goal", level.aim, "The score to reach: the lowest that is possible"],
+      ["Goal", level.aim, "The score to reach: the lowest possible"],
       ["Par", level.par, level.proved
-        ? "No fewer operations will do: all ways were tried"
-        : "The fewest operations known; perhaps you find fewer"],
-      ["You", level.used, "Your operations from the start to here; undo takes them back"],
+        ? "The minimum number of operations, proved by exhaustive search"
+        : "The fewest operations known; fewer may be possible"],
+      ["You", level.used, "Operations applied since the start; undo reduces the number"],
     ];
-    if (rival) facts.push(["Agent", answerOf(rival), "What the agent took, on a mesh of its own"]);
+    if (rival) facts.push(["Agent", answerOf(rival), "Operations of the agent, on its own copy of the mesh"]);
     const key = JSON.stringify(facts);
-    if (key === this._told) return;
-    this._told = key;
+    if (key === this._factsKey) return;
+    this._factsKey = key;
     this._facts.replaceChildren(...facts.map(([name, value, label]) =>
       node("span", "mw-level-fact", { title: label }, `${name} `, node("b", "", {}, String(value)))));
   }
 
-  _tellText(level) {
+  _updateText(level) {
     const { headline, remark, rival } = level;
     const failed = rival && rival.standing === "failed" ? rival.reason : "";
     this._text.dataset.tone = level.done && !level.helped ? "won" : remark || failed ? "warns" : "";
     const words = remark || failed || level.text;
     this._text.replaceChildren(...(headline ? [node("b", "", {}, `${headline}. `)] : []), words);
-    tell(this._live, headline || remark ? `${headline} ${remark}` : "");
+    setText(this._live, headline || remark ? `${headline} ${remark}` : "");
   }
 
-  _tellButtons(level) {
-    const thinks = level.rival !== null && level.rival.standing === "asked";
-    tell(this._solve.firstChild, level.answered ? "Show a way" : thinks ? "Thinking\u2026" : "Ask the agent");
+  _updateButtons(level) {
+    const searching = level.rival !== null && level.rival.standing === "asked";
+    setText(this._solve.firstChild, level.answered ? "Show a way" : searching ? "Searching\u2026" : "Ask the agent");
     this._solve.title = level.answered
-      ? "Begin again with this way ahead: redo goes along it"
-      : "Let the agent solve this level on a mesh of its own, and compare";
+      ? "Restart with the agent's operations in the history: redo applies them"
+      : "Let the agent solve this level on its own copy of the mesh";
     const reads = this._card.readOnly;
-    this._solve.disabled = thinks || reads;
+    this._solve.disabled = searching || reads;
     this._again.disabled = reads;
     this._next.disabled = level.next === null || reads;
     this._next.classList.toggle("mw-primary", level.done && level.stars > 0 && level.next !== null);
   }
 
-  /** The stars light up one after the other; at once for who wants no motion. */
-  _celebrate(level) {
+  /** Light up the stars one after the other; at once with reduced motion. */
+  _animateStars(level) {
     const won = level.done && level.stars > 0;
     this._place.toggleAttribute("data-won", won);
     if (won && !this._done) {
       this._stars.classList.remove("mw-fresh");
-      void this._stars.offsetWidth; // so that the motion begins again
+      void this._stars.offsetWidth; // restarts the animation
       this._stars.classList.add("mw-fresh");
     }
     if (!won) this._stars.classList.remove("mw-fresh");
@@ -127,7 +129,7 @@ class Levels {
   }
 }
 
-/** What the agent has come to, in few letters. */
+/** The agent's result in short. */
 function answerOf(rival) {
   if (rival.standing === "asked") return "\u2026";
   if (rival.standing === "failed") return "\u2013";

@@ -1,7 +1,12 @@
-// The menus at the pointer: the operations of a half-edge, and what there is to do with a vertex.
+// The context menus: operations of a half-edge, properties of a vertex.
+
+import { asSentence, icon, node } from "../dom.js";
+import { FLAG_CORNER, FLAG_LOCKED } from "../mesh/mesh_replica.js";
+import { signed } from "../numbers.js";
+import { Popup } from "./popup.js";
 
 /** At most one menu of a card is open. */
-class Menus {
+export class Menus {
   constructor(card) {
     this._card = card;
     this._open = null;
@@ -16,16 +21,16 @@ class Menus {
     this._show((closed) => new OperationMenu(this._card, halfedge, { ...this._onCard(at), touch, closed }));
   }
 
-  /** The same for the half-edge that is pointed at, with the focus in it. */
+  /** Open it for the current half-edge, with the focus in it. */
   openByKey() {
-    const { pointing, stage, readOnly } = this._card;
+    const { hoverState, stage, readOnly } = this._card;
     if (readOnly) return;
-    if (pointing.halfedge < 0) {
-      this._card.say("refused", "Point at a half-edge first.");
+    if (hoverState.halfedge < 0) {
+      this._card.notify("refused", "Point at a half-edge first.");
       return;
     }
-    pointing.pinned = true;
-    this.openOperations(pointing.halfedge, stage.middle(pointing.halfedge), false);
+    hoverState.pinned = true;
+    this.openOperations(hoverState.halfedge, stage.middle(hoverState.halfedge), false);
     this._open.popup.focusRow(0);
   }
 
@@ -36,12 +41,12 @@ class Menus {
     this._show((closed) => new VertexMenu(this._card, halfedge, { ...this._onCard(at), touch, closed }));
   }
 
-  /** Something has changed. */
+  /** Update the open menu after a change. */
   refresh() {
     if (this._open) this._open.refresh();
   }
 
-  /** Close what is open; returns whether there was something. */
+  /** Close the open menu; returns whether there was one. */
   close(focus = true) {
     const was = this._open;
     if (was) was.popup.close(focus);
@@ -52,7 +57,7 @@ class Menus {
     this.close(false);
     this._open = makeMenu(() => {
       this._open = null;
-      this._card.pointing.preview(null);
+      this._card.hoverState.preview(null);
     });
   }
 
@@ -63,38 +68,38 @@ class Menus {
   }
 }
 
-/** Everything that can be done at a half-edge, with what it would change and why it may not be. */
+/** All operations at a half-edge, with the change of s or the reason of a refusal. */
 class OperationMenu {
   constructor(card, halfedge, { x, y, touch, closed }) {
     this._card = card;
     this.halfedge = halfedge;
-    const { mirror } = card;
-    this._ends = [mirror.origin[halfedge], mirror.target(halfedge)];
+    const { replica } = card;
+    this._ends = [replica.origin[halfedge], replica.target(halfedge)];
     this.popup = new Popup(card, `Half-edge ${this._ends.join(" \u2192 ")}`, { touch, closed });
     this._fill();
     this.popup.show(x, y);
   }
 
-  /** Offers have come, or are others. */
+  /** Update the rows after an answer from Python. */
   refresh() {
-    const { mirror, pointing } = this._card;
-    const same = mirror.live(this.halfedge) && mirror.origin[this.halfedge] === this._ends[0]
-      && mirror.target(this.halfedge) === this._ends[1];
-    if (!same || pointing.halfedge !== this.halfedge) this.popup.close();
-    else if (pointing.offers !== this._offers) this._fill();
+    const { replica, hoverState } = this._card;
+    const same = replica.live(this.halfedge) && replica.origin[this.halfedge] === this._ends[0]
+      && replica.target(this.halfedge) === this._ends[1];
+    if (!same || hoverState.halfedge !== this.halfedge) this.popup.close();
+    else if (hoverState.offers !== this._offers) this._fill();
   }
 
   _fill() {
-    const { mirror, pointing, palette } = this._card;
-    this._offers = pointing.offers;
+    const { replica, hoverState, colours } = this._card;
+    this._offers = hoverState.offers;
     const focused = this.popup.rows.findIndex((row) => row.element.matches(":focus"));
     this.popup.clear();
-    for (const info of mirror.catalogue) {
+    for (const info of replica.catalogue) {
       const offer = this._offers ? this._offers.get(info.operation) : null;
       const refused = offer ? !offer.allowed : false;
       const known = offer && offer.change !== null;
       const change = node("span", "mw-change", {}, known ? signed(offer.change) : "");
-      if (known) change.style.color = palette.ofChange(offer.change);
+      if (known) change.style.color = colours.ofChange(offer.change);
       const reason = refused ? asSentence(offer.reason) : "";
       this.popup.addRow({
         label: `${info.title}${known ? `, s ${signed(offer.change)}` : ""}${reason ? `. Not here: ${reason}` : ""}`,
@@ -106,7 +111,7 @@ class OperationMenu {
         disabled: refused || !offer,
         key: info.key,
         act: () => this._card.operate(info.operation, this.halfedge),
-        pointed: () => pointing.preview(refused || !offer ? null : info.operation),
+        pointed: () => hoverState.preview(refused || !offer ? null : info.operation),
       });
     }
     if (focused >= 0) this.popup.focusRow(focused);
@@ -116,13 +121,13 @@ class OperationMenu {
 /** Desired degree, corner and lock of the vertex where a half-edge starts. */
 class VertexMenu {
   constructor(card, halfedge, { x, y, touch, closed }) {
-    const { mirror } = card;
+    const { replica } = card;
     this._card = card;
-    this.vertex = mirror.origin[halfedge];
-    this._revision = mirror.revision;
-    const degree = mirror.degree(halfedge);
-    const delta = mirror.delta[this.vertex];
-    const flags = mirror.flags[this.vertex];
+    this.vertex = replica.origin[halfedge];
+    this._revision = replica.revision;
+    const degree = replica.degree(halfedge);
+    const delta = replica.delta[this.vertex];
+    const flags = replica.flags[this.vertex];
     const words = `Vertex ${this.vertex}: degree ${degree}, \u0394 ${signed(delta)}`;
     this.popup = new Popup(card, words, { touch, closed });
     const desired = degree - delta;
@@ -137,16 +142,16 @@ class VertexMenu {
       choice(`Desired degree ${d}`, d === desired, () => this._send("desired", { degree: d }));
     }
     const [corner, locked] = [(flags & FLAG_CORNER) !== 0, (flags & FLAG_LOCKED) !== 0];
-    choice("Corner: it stays where it is", corner, () => this._send("corner", { on: !corner }));
-    choice("Locked: nothing changes it", locked, () => this._send("lock", { on: !locked }));
+    choice("Corner: keeps its position", corner, () => this._send("corner", { on: !corner }));
+    choice("Locked: not moved or removed", locked, () => this._send("lock", { on: !locked }));
     this.popup.show(x, y);
   }
 
   refresh() {
-    if (this._card.mirror.revision !== this._revision) this.popup.close();
+    if (this._card.replica.revision !== this._revision) this.popup.close();
   }
 
   _send(word, fields) {
-    this._card.ask(word, { vertex: this.vertex, ...fields });
+    this._card.request(word, { vertex: this.vertex, ...fields });
   }
 }

@@ -1,14 +1,16 @@
-// Sentences for a person: refusals and news over the lower edge of the canvas, what is pointed at in
-// the corner, and the same for those who hear the page instead.
+// Messages over the lower edge of the canvas, the current half-edge in the corner, and both as live
+// regions for screen readers.
 
-const NOTICE_TIME = { refused: 5000, said: 3500, failed: 60000, hint: 2500 };
-const SPOKEN_AFTER = 250;
+import { button, icon, node, setText } from "../dom.js";
+
+const NOTICE_TIME = { refused: 5000, info: 3500, failed: 60000, hint: 2500 };
+const ANNOUNCED_AFTER = 250;
 const WAITING_AFTER = 700;
 const SILENT_AFTER = 6000;
 
-class Notice {
+export class Notice {
   constructor(stage) {
-    this._timers = { hide: 0, speak: 0, wait: 0 };
+    this._timers = { hide: 0, announce: 0, wait: 0 };
     this._text = node("span", "mw-notice-text");
     this._close = button("mw-notice-close", "Close this message", { sign: "close", act: () => this.hide() });
     this._box = node("div", "mw-notice", { hidden: true }, icon("alert", 16), this._text, this._close);
@@ -20,7 +22,7 @@ class Notice {
     stage.append(this._where, this._waiting, this._box, this._live, this._walk);
   }
 
-  /** Show a sentence for a while; tone "refused", "said", "failed" or "hint" (how to use it). */
+  /** Show a sentence for a while; tone "refused", "info", "failed" or "hint" (usage). */
   show(tone, sentence) {
     this._box.dataset.tone = tone;
     this._box.hidden = false;
@@ -28,7 +30,7 @@ class Notice {
     this._text.textContent = sentence;
     if (tone !== "hint") this._live.textContent = sentence;
     clearTimeout(this._timers.hide);
-    this._timers.hide = setTimeout(() => this.hide(), NOTICE_TIME[tone] || NOTICE_TIME.said);
+    this._timers.hide = setTimeout(() => this.hide(), NOTICE_TIME[tone] || NOTICE_TIME.info);
   }
 
   hide() {
@@ -37,35 +39,35 @@ class Notice {
     this._live.textContent = "";
   }
 
-  /** What is pointed at, for those who see it. */
+  /** Show the current half-edge. */
   where(text) {
-    tell(this._where, text);
+    setText(this._where, text);
   }
 
-  /** What is pointed at, for those who hear it; the last of a quick series only. */
-  speak(makeText) {
-    clearTimeout(this._timers.speak);
-    this._timers.speak = setTimeout(() => {
+  /** Announce the current half-edge to screen readers; only the last of a quick series. */
+  announce(makeText) {
+    clearTimeout(this._timers.announce);
+    this._timers.announce = setTimeout(() => {
       this._walk.textContent = makeText();
-    }, SPOKEN_AFTER);
+    }, ANNOUNCED_AFTER);
   }
 
-  /** Something has been asked that Python has not answered yet, or (false) nothing is. */
+  /** Show after a delay that a request is unanswered, or (false) hide that. */
   wait(waits, empty) {
     clearTimeout(this._timers.wait);
     this._waiting.hidden = true;
     if (!waits) return;
     this._timers.wait = setTimeout(() => {
-      this._sayWaiting("Waiting for Python\u2026");
+      this._showWaiting("Waiting for Python\u2026");
       this._timers.wait = setTimeout(() => {
-        this._sayWaiting(empty
+        this._showWaiting(empty
           ? "Python does not answer: run this cell again to see the mesh."
           : "Python is busy, or its kernel has stopped.");
       }, SILENT_AFTER);
     }, WAITING_AFTER);
   }
 
-  _sayWaiting(text) {
+  _showWaiting(text) {
     this._waiting.hidden = false;
     this._waiting.lastChild.textContent = text;
   }

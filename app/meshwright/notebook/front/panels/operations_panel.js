@@ -1,6 +1,9 @@
-// A row for each operation: its key, how it would change s where one points, and which is armed.
+// A row for each operation: key, change of s at the current half-edge, armed or not.
 
-class OperationsPanel {
+import { asSentence, node, setText } from "../dom.js";
+import { signed } from "../numbers.js";
+
+export class OperationsPanel {
   constructor(card) {
     this._card = card;
     this._rows = [];
@@ -11,34 +14,34 @@ class OperationsPanel {
       node("h4", "mw-heading", {}, "Operations"), this._hint, this._list);
   }
 
-  /** Tell what is known of the half-edge that is pointed at. */
+  /** Show what is known of the current half-edge. */
   update() {
-    const { mirror, pointing, palette, readOnly } = this._card;
+    const { replica, hoverState, colours, readOnly } = this._card;
     this.root.hidden = readOnly;
-    if (this._catalogue !== mirror.catalogue) this._fill(mirror.catalogue);
+    if (this._catalogue !== replica.catalogue) this._fill(replica.catalogue);
     for (const { info, row, change } of this._rows) {
-      const offer = pointing.offers ? pointing.offers.get(info.operation) : null;
+      const offer = hoverState.offers ? hoverState.offers.get(info.operation) : null;
       const refused = Boolean(offer) && !offer.allowed;
       const known = Boolean(offer) && offer.change !== null && !refused;
-      tell(change, known ? signed(offer.change) : "");
-      change.style.color = known ? palette.ofChange(offer.change) : "";
+      setText(change, known ? signed(offer.change) : "");
+      change.style.color = known ? colours.ofChange(offer.change) : "";
       row.classList.toggle("mw-refused", refused);
-      row.classList.toggle("mw-meant", pointing.meant === info.operation);
-      const armed = pointing.armed === info.operation;
+      row.classList.toggle("mw-meant", hoverState.previewed === info.operation);
+      const armed = hoverState.armed === info.operation;
       row.setAttribute("aria-pressed", String(armed));
       const summary = asSentence(info.summary);
-      const told = refused ? `${summary}\nNot here: ${asSentence(offer.reason)}`
-        : `${summary}\n${armed ? "A click on the mesh does it." : "Click to arm it: then each click on the mesh does it."}`;
-      if (row.title !== told) row.title = told;
+      const title = refused ? `${summary}\nNot here: ${asSentence(offer.reason)}`
+        : `${summary}\n${armed ? "A click on the mesh applies it." : "Click to arm it: then each click on the mesh applies it."}`;
+      if (row.title !== title) row.title = title;
     }
-    tell(this._hint, this._words());
+    setText(this._hint, this._hintText());
   }
 
-  _words() {
-    const { mirror, pointing } = this._card;
-    const armed = mirror.catalogue.find((info) => info.operation === pointing.armed);
-    if (armed) return "A click does it. Esc puts it down.";
-    return pointing.offers ? "How each would change s here." : "Point at a half-edge of the mesh.";
+  _hintText() {
+    const { replica, hoverState } = this._card;
+    const armed = replica.catalogue.find((info) => info.operation === hoverState.armed);
+    if (armed) return "A click applies it. Esc disarms it.";
+    return hoverState.offers ? "Change of s here, for each." : "Point at a half-edge of the mesh.";
   }
 
   _fill(catalogue) {
@@ -48,7 +51,7 @@ class OperationsPanel {
       const row = node("button", "mw-operation", { type: "button", "aria-pressed": "false" },
         node("kbd", "mw-key", { "aria-hidden": "true" }, info.key),
         node("span", "mw-operation-title", {}, info.title), change);
-      row.addEventListener("click", () => this._card.pointing.arm(info.operation));
+      row.addEventListener("click", () => this._card.hoverState.arm(info.operation));
       return { info, row, change };
     });
     this._list.replaceChildren(...this._rows.map(({ row }) => row));

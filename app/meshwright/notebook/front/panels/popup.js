@@ -1,10 +1,12 @@
-// A small menu inside the card: rows that arrows walk, keys and clicks choose, and Esc leaves.
+// A context menu inside the card, operated by pointer or keyboard.
+
+import { node } from "../dom.js";
 
 const POPUP_GAP = 24;
 const NARROW_CARD = 640;
 
-class Popup {
-  /** `closed(focus)` is called once when it goes; focus: whether the canvas shall have it again. */
+export class Popup {
+  /** `closed()` is called once, when the menu is closed. */
   constructor(card, title, { touch = false, closed = null } = {}) {
     this._card = card;
     this._closed = closed;
@@ -20,7 +22,7 @@ class Popup {
     this.root.addEventListener("contextmenu", (event) => event.preventDefault());
   }
 
-  /** A row; `row` {label, parts, disabled, checked, key, act, pointed}. */
+  /** Add a row {label, parts, disabled, checked, key, act, pointed}. */
   addRow(row) {
     const role = row.checked === undefined ? "menuitem" : "menuitemcheckbox";
     const made = node("button", "mw-row", {
@@ -36,7 +38,7 @@ class Popup {
     return made;
   }
 
-  /** Take all rows out, to be filled again. */
+  /** Remove all rows. */
   clear() {
     this.rows = [];
     this.root.replaceChildren(this.head);
@@ -48,7 +50,7 @@ class Popup {
     root.append(this.root);
     const [width, height] = [this.root.offsetWidth, this.root.offsetHeight];
     const [roomX, roomY] = [root.clientWidth - 8, root.clientHeight - 8];
-    const narrow = root.clientWidth < NARROW_CARD; // then there is room below, and none beside
+    const narrow = root.clientWidth < NARROW_CARD; // there is room below, but not beside
     let left = x + POPUP_GAP;
     let top = y - 16;
     if (narrow) [left, top] = [x - width / 2, y + 2 * POPUP_GAP];
@@ -69,7 +71,7 @@ class Popup {
     if (focus) this._card.focusCanvas();
   }
 
-  /** Have the row `index` places after the first one the focus. */
+  /** Focus the row of this index. */
   focusRow(index) {
     if (this.rows[index]) this.rows[index].element.focus({ preventScroll: true });
   }

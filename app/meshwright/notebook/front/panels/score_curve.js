@@ -1,43 +1,45 @@
-// The score curve, painted.
+// Paints the score curve.
 
-/** Pixels between states above which every step has its own mark. */
-const TRACK_APART = 7;
+import { formatNumber } from "../mesh/score_series.js";
 
-/** Paint the curve of `track` in `frame`. where: {shown, hovered}, states, -1 for none. */
-function paintTrack(pen, frame, track, card, where) {
-  const last = track.length - 1;
+/** Pixels between states above which every step gets its own mark. */
+const APART = 7;
+
+/** Paint the curve of `series` in `frame`. where: {shown, hovered}, states, -1 for none. */
+export function paintScoreCurve(pen, frame, series, card, where) {
+  const last = series.length - 1;
   const bottom = frame.top + frame.height;
   pen.textBaseline = "middle";
   pen.lineJoin = "round";
-  trackLevels(pen, frame, track, card);
+  paintLevels(pen, frame, series, card);
   pen.setLineDash([4, 4]);
-  trackLine(pen, frame.steps(track.optima, 0, last), card.colour("muted"), 1.2);
+  strokeLine(pen, frame.steps(series.optima, 0, last), card.colour("muted"), 1.2);
   pen.setLineDash([]);
-  if (frame.broken) trackBreak(pen, frame, card.colour("muted"));
+  if (frame.broken) paintBreak(pen, frame, card.colour("muted"));
   const thin = frame.pace < 1;
-  if (where.shown < last) trackLine(pen, frame.steps(track.scores, where.shown, last), card.colour("faint"), 1);
-  trackLine(pen, frame.steps(track.scores, 0, where.shown), card.colour("accent"), thin ? 1 : 1.8);
-  trackAuthors(pen, frame, track, card, where.shown);
-  trackDiamond(pen, frame.x(track.best), frame.y(track.scores[track.best]), 5, card.colour("panel"), card.colour("accent"));
+  if (where.shown < last) strokeLine(pen, frame.steps(series.scores, where.shown, last), card.colour("faint"), 1);
+  strokeLine(pen, frame.steps(series.scores, 0, where.shown), card.colour("accent"), thin ? 1 : 1.8);
+  paintAuthors(pen, frame, series, card, where.shown);
+  paintDiamond(pen, frame.x(series.best), frame.y(series.scores[series.best]), 5, card.colour("panel"), card.colour("accent"));
   if (where.hovered >= 0 && where.hovered <= last && where.hovered !== where.shown) {
-    trackMark(pen, frame, track, where.hovered, card.colour("muted"), card.colour("panel"), 3, bottom);
+    paintMark(pen, frame, series, where.hovered, card.colour("muted"), card.colour("panel"), 3, bottom);
   }
-  trackMark(pen, frame, track, where.shown, card.colour("accent"), card.colour("panel"), 4.5, bottom);
+  paintMark(pen, frame, series, where.shown, card.colour("accent"), card.colour("panel"), 4.5, bottom);
 }
 
 /** The highest score and the optimum beside the curve. */
-function trackLevels(pen, frame, track, card) {
+function paintLevels(pen, frame, series, card) {
   pen.textAlign = "right";
   pen.fillStyle = card.colour("muted");
-  const goal = track.optima[track.optima.length - 1];
+  const goal = series.optima[series.optima.length - 1];
   const high = frame.y(frame.high);
   const low = frame.y(goal);
-  pen.fillText(trackNumber(frame.high), frame.left - 10, high);
-  if (low - high > 12) pen.fillText(trackNumber(goal), frame.left - 10, low);
-  trackLine(pen, [[frame.left, high], [frame.left + frame.width, high]], card.colour("line"), 1);
+  pen.fillText(formatNumber(frame.high), frame.left - 10, high);
+  if (low - high > 12) pen.fillText(formatNumber(goal), frame.left - 10, low);
+  strokeLine(pen, [[frame.left, high], [frame.left + frame.width, high]], card.colour("line"), 1);
 }
 
-function trackLine(pen, line, colour, width) {
+function strokeLine(pen, line, colour, width) {
   if (!line.length) return;
   pen.strokeStyle = colour;
   pen.lineWidth = width;
@@ -46,36 +48,36 @@ function trackLine(pen, line, colour, width) {
   pen.stroke();
 }
 
-/** Two slanted lines at the left edge: the optimum lies further below than it looks. */
-function trackBreak(pen, frame, colour) {
+/** Two slanted lines at the left edge: the axis is broken above the optimum. */
+function paintBreak(pen, frame, colour) {
   const y = frame.top + frame.height - 7;
   for (const shift of [-1.75, 1.75]) {
-    trackLine(pen, [[frame.left - 4, y + shift + 2], [frame.left + 4, y + shift - 2]], colour, 1.2);
+    strokeLine(pen, [[frame.left - 4, y + shift + 2], [frame.left + 4, y + shift - 2]], colour, 1.2);
   }
 }
 
-/** Who took each step: below the curve a dot for a person, a small diamond for an agent.
+/** The author of each step, below the curve: a dot for the user, a diamond for an agent.
  *
- * Where steps lie too close, runs of them: a bar for a person, two thin lines for an agent.
+ * Where steps are too close, runs of steps: a bar for the user, two thin lines for an agent.
  */
-function trackAuthors(pen, frame, track, card, shown) {
+function paintAuthors(pen, frame, series, card, shown) {
   const y = frame.top + frame.height + 12;
-  const last = track.length - 1;
+  const last = series.length - 1;
   const mine = card.colour("text");
   const theirs = card.colour("accent");
-  if (frame.pace >= TRACK_APART) {
+  if (frame.pace >= APART) {
     for (let i = 1; i <= last; i += 1) {
       pen.globalAlpha = i > shown ? 0.4 : 1;
-      if (track.mine(i)) trackDot(pen, frame.x(i), y, 2.2, mine);
-      else trackDiamond(pen, frame.x(i), y, 3.2, card.colour("panel"), theirs);
+      if (series.mine(i)) paintDot(pen, frame.x(i), y, 2.2, mine);
+      else paintDiamond(pen, frame.x(i), y, 3.2, card.colour("panel"), theirs);
     }
     pen.globalAlpha = 1;
     return;
   }
   for (let i = 1; i <= last;) {
     const begin = i;
-    const person = track.mine(i);
-    while (i <= last && track.mine(i) === person && (i <= shown) === (begin <= shown)) i += 1;
+    const person = series.mine(i);
+    while (i <= last && series.mine(i) === person && (i <= shown) === (begin <= shown)) i += 1;
     const from = frame.x(begin - 1);
     const width = Math.max(frame.x(i - 1) - from, 1);
     pen.globalAlpha = begin > shown ? 0.4 : 1;
@@ -86,14 +88,14 @@ function trackAuthors(pen, frame, track, card, shown) {
   pen.globalAlpha = 1;
 }
 
-function trackDot(pen, x, y, radius, colour) {
+function paintDot(pen, x, y, radius, colour) {
   pen.fillStyle = colour;
   pen.beginPath();
   pen.arc(x, y, radius, 0, 2 * Math.PI);
   pen.fill();
 }
 
-function trackDiamond(pen, x, y, reach, fill, line) {
+function paintDiamond(pen, x, y, reach, fill, line) {
   pen.beginPath();
   pen.moveTo(x, y - reach);
   pen.lineTo(x + reach, y);
@@ -107,9 +109,9 @@ function trackDiamond(pen, x, y, reach, fill, line) {
   pen.stroke();
 }
 
-function trackMark(pen, frame, track, state, colour, rim, radius, bottom) {
+function paintMark(pen, frame, series, state, colour, rim, radius, bottom) {
   const x = frame.x(state);
-  trackLine(pen, [[x, frame.top - 6], [x, bottom + 4]], colour, 1);
-  trackDot(pen, x, frame.y(track.scores[state]), radius + 1.5, rim);
-  trackDot(pen, x, frame.y(track.scores[state]), radius, colour);
+  strokeLine(pen, [[x, frame.top - 6], [x, bottom + 4]], colour, 1);
+  paintDot(pen, x, frame.y(series.scores[state]), radius + 1.5, rim);
+  paintDot(pen, x, frame.y(series.scores[state]), radius, colour);
 }

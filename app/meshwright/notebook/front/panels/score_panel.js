@@ -1,6 +1,9 @@
-// The score against the optimum, what the mesh consists of, and going back and forth.
+// The panel of the score: score and optimum, counts of the mesh, undo, redo and smoothing.
 
-class ScorePanel {
+import { button, icon, node, setText } from "../dom.js";
+import { clamp, counted } from "../numbers.js";
+
+export class ScorePanel {
   constructor(card) {
     this._card = card;
     this._number = node("div", "mw-score-number");
@@ -8,14 +11,14 @@ class ScorePanel {
     this._gap = node("div", "mw-score-gap");
     this._bar = node("div", "mw-bar-done");
     this._barBox = node("div", "mw-bar", {
-      role: "progressbar", "aria-label": "Way from the start to the optimum",
+      role: "progressbar", "aria-label": "Progress from the start to the optimum",
       "aria-valuemin": "0", "aria-valuemax": "100",
-      title: "How much of the way from the start to the optimum is done",
+      title: "Normalised return: (s at the start \u2212 s) / (s at the start \u2212 optimum)",
     }, this._bar);
     this._optimal = node("div", "mw-optimal", { hidden: true },
       node("div", "mw-optimal-title", {}, icon("check", 16), "At the optimum"),
-      node("div", "mw-optimal-text", {}, "No connectivity is better under these desired degrees."));
-    this._words = node("div", "mw-score-words", {}, this._goal, this._gap);
+      node("div", "mw-optimal-text", {}, "No connectivity scores lower for these desired degrees."));
+    this._summary = node("div", "mw-score-words", {}, this._goal, this._gap);
     this._facts = node("dl", "mw-facts");
     this._irregular = this._fact("Irregular vertices");
     this._elements = this._fact("Elements");
@@ -24,31 +27,31 @@ class ScorePanel {
     this._makeSteps();
     this.root = node("section", "mw-part mw-part-score", { "aria-label": "Score" },
       node("h4", "mw-heading", {}, "Score"),
-      node("div", "mw-score", {}, this._number, this._words, this._optimal),
+      node("div", "mw-score", {}, this._number, this._summary, this._optimal),
       this._barBox, this._facts, this._steps);
   }
 
-  /** Tell what a head says. */
+  /** Show the numbers of a head. */
   update(head) {
     const solved = head.at_optimum;
-    tell(this._number, head.score.toLocaleString("en"));
+    setText(this._number, head.score.toLocaleString("en"));
     this._number.setAttribute("aria-label", `Score ${head.score}, optimum ${head.optimum}`);
     this._number.title = "s: the sum of |degree \u2212 desired degree| over all vertices";
-    tell(this._goal, `Optimum ${head.optimum.toLocaleString("en")}`);
-    tell(this._gap, `${(head.score - head.optimum).toLocaleString("en")} above it`);
+    setText(this._goal, `Optimum ${head.optimum.toLocaleString("en")}`);
+    setText(this._gap, `${(head.score - head.optimum).toLocaleString("en")} above it`);
     this._optimal.hidden = !solved;
-    this._words.hidden = solved;
+    this._summary.hidden = solved;
     const share = solved ? 1 : clamp(head.return, 0, 1);
     this._bar.style.width = `${100 * share}%`;
     this._barBox.setAttribute("aria-valuenow", String(Math.round(100 * share)));
     const [count, all] = [head.irregular, head.vertices].map((n) => n.toLocaleString("en"));
-    tell(this._irregular, `${count} of ${all}`);
-    tell(this._elements, counted(head.elements, head.kind === "quad" ? "quad" : "triangle"));
-    tell(this._blocks, head.blocks === null ? "" : head.blocks.toLocaleString("en"));
+    setText(this._irregular, `${count} of ${all}`);
+    setText(this._elements, counted(head.elements, head.kind === "quad" ? "quad" : "triangle"));
+    setText(this._blocks, head.blocks === null ? "" : head.blocks.toLocaleString("en"));
     this._blocks.parentElement.hidden = head.blocks === null;
-    tell(this._inverted, head.inverted.toLocaleString("en"));
+    setText(this._inverted, head.inverted.toLocaleString("en"));
     this._inverted.parentElement.hidden = !head.inverted;
-    this._tellSteps(head);
+    this._updateSteps(head);
   }
 
   _fact(title) {
@@ -58,33 +61,33 @@ class ScorePanel {
   }
 
   _makeSteps() {
-    const ask = (word) => () => this._card.ask(word);
-    this._undo = button("mw-tool", "Undo (U)", { sign: "undo", act: ask("undo") });
-    this._redo = button("mw-tool", "Redo (Shift+U)", { sign: "redo", act: ask("redo") });
-    this._smooth = button("mw-tool", "Smooth the whole mesh", { sign: "smooth", act: ask("smooth") });
-    this._clean = button("mw-tool", "Clean all: remove every global line that can be removed", {
-      sign: "clean", act: ask("clean_all"),
+    const request = (word) => () => this._card.request(word);
+    this._undo = button("mw-tool", "Undo (U)", { sign: "undo", act: request("undo") });
+    this._redo = button("mw-tool", "Redo (Shift+U)", { sign: "redo", act: request("redo") });
+    this._smooth = button("mw-tool", "Smooth the whole mesh", { sign: "smooth", act: request("smooth") });
+    this._clean = button("mw-tool", "Clean all: remove every removable global line", {
+      sign: "clean", act: request("clean_all"),
     });
-    this._mend = button("mw-tool mw-tool-warning", "Untangle: mend the inverted elements", {
-      sign: "alert", act: ask("untangle"),
+    this._untangle = button("mw-tool mw-tool-warning", "Untangle: repair the inverted elements", {
+      sign: "alert", act: request("untangle"),
     });
-    this._auto = button("mw-tool mw-tool-text", "Smooth around every operation", { text: "Auto" });
+    this._auto = button("mw-tool mw-tool-text", "Smooth around every operation automatically", { text: "Auto" });
     this._auto.addEventListener("click", () => {
-      this._card.ask("auto_smooth", { on: this._auto.getAttribute("aria-pressed") !== "true" });
+      this._card.request("auto_smooth", { on: this._auto.getAttribute("aria-pressed") !== "true" });
     });
     this._steps = node("div", "mw-tools", { role: "toolbar", "aria-label": "History and smoothing" },
       this._undo, this._redo, node("span", "mw-tools-gap"),
-      this._smooth, this._auto, this._clean, this._mend);
+      this._smooth, this._auto, this._clean, this._untangle);
   }
 
-  _tellSteps(head) {
+  _updateSteps(head) {
     const locked = this._card.readOnly;
     this._steps.hidden = locked;
     this._undo.disabled = !head.can_undo;
     this._redo.disabled = !head.can_redo;
     this._steps.hidden = locked;
     this._clean.hidden = head.kind !== "quad";
-    this._mend.hidden = !head.inverted;
+    this._untangle.hidden = !head.inverted;
     this._auto.setAttribute("aria-pressed", String(head.auto_smooth));
   }
 }

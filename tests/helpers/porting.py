@@ -1,4 +1,4 @@
-"""A browser in a few lines: a port that keeps messages, and a replica that applies them."""
+"""A stand-in for a browser: a port that records messages, and a replica that applies them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from meshwright.notebook.kernel_warmup import Preparation, Stage
-from meshwright.notebook.protocol.mesh_sync import Frame, Packet, Slots
+from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet, SlotArrays
 from meshwright.notebook.session import Session
 from meshwright_core import HalfEdgeMesh
 
@@ -16,26 +16,26 @@ TYPES = ("<f4", "i1", "u1", "<i4", "<i4")
 
 
 class Replica:
-    """The mesh as a browser holds it, made of messages only."""
+    """The browser's copy of the mesh, built from messages only."""
 
     def __init__(self) -> None:
         self.revision = -1
-        self.slots = Slots.none()
+        self.slots = SlotArrays.none()
         self.scores: list[int] = []
 
     def take(self, packet: Packet) -> None:
-        said = packet.content["say"]
-        if said == "state":
+        kind = packet.content["type"]
+        if kind == "state":
             self._state(packet)
-        elif said == "patch":
+        elif kind == "patch":
             self._patch(packet)
-        if said in ("state", "patch") and "head" in packet.content:
+        if kind in ("state", "patch") and "head" in packet.content:
             track = packet.content["head"]["track"]
             self.scores[track["from"] :] = track["scores"]
 
     def _state(self, packet: Packet) -> None:
         arrays = [np.frombuffer(b, t) for b, t in zip(packet.buffers, TYPES, strict=True)]
-        self.slots = Slots(arrays[0].reshape(-1, 2).copy(), *(a.copy() for a in arrays[1:]))
+        self.slots = SlotArrays(arrays[0].reshape(-1, 2).copy(), *(a.copy() for a in arrays[1:]))
         self.revision = packet.content["revision"]
         assert len(self.slots.flags) == packet.content["vertices"]
         assert len(self.slots.origin) == packet.content["halfedges"]
@@ -56,16 +56,16 @@ class Replica:
             grown[: len(before)] = before
             grown[at] = value
             new.append(grown)
-        self.slots = Slots(*new)
+        self.slots = SlotArrays(*new)
 
-    def shows(self, mesh: HalfEdgeMesh, frame: Frame) -> bool:
-        """Whether it is this mesh, to the bit."""
-        real = Slots.of(mesh, frame, len(self.slots.flags), len(self.slots.origin))
+    def shows(self, mesh: HalfEdgeMesh, frame: CoordinateFrame) -> bool:
+        """Whether it equals this mesh, to the bit."""
+        real = SlotArrays.of(mesh, frame, len(self.slots.flags), len(self.slots.origin))
         return real.buffers == self.slots.buffers
 
 
 class Port:
-    """Stands in for a widget: keeps what it is told, and follows it in a replica."""
+    """Stands in for a widget: records messages, and applies them to a replica."""
 
     def __init__(self, session: Session, view: str = "v", read_only: bool = False) -> None:
         self.session, self.view, self.read_only = session, view, read_only
@@ -89,7 +89,7 @@ class Port:
         self.session.leave(self)
 
     def ask(self, do: str, **fields: Any) -> list[dict[str, Any]]:
-        """Say something; returns the contents of what was answered at once."""
+        """Send a request; returns the contents of the immediate answers."""
         before = len(self.packets)
         content = {"do": do, "id": next(self._ids), "view": self.view, **fields}
         self.session.receive(self, content, [])
@@ -102,7 +102,7 @@ class Port:
 
     def of(self, say: str) -> list[dict[str, Any]]:
         """The contents of all messages of one kind so far."""
-        return [packet.content for packet in self.packets if packet.content["say"] == say]
+        return [packet.content for packet in self.packets if packet.content["type"] == say]
 
     @property
     def sentence(self) -> str:
@@ -111,7 +111,7 @@ class Port:
 
 
 def allowed(mesh: HalfEdgeMesh, names: tuple[str, ...] = ("flip_left", "flip")) -> tuple[str, int]:
-    """The first of these operations that may be done, and where."""
+    """The first allowed operation of ``names``, and its half-edge."""
     k = mesh.k
     for element in mesh.element_ids().tolist():
         for halfedge in range(k * element, k * element + k):
@@ -122,7 +122,7 @@ def allowed(mesh: HalfEdgeMesh, names: tuple[str, ...] = ("flip_left", "flip")) 
 
 
 def script_agent(monkeypatch: Any, greedy: Any) -> None:
-    """Let every assistant that is made from now on follow a scripted policy: no torch, no search.
+    """Replace policy and search of new assistants by a scripted runner, without torch.
 
     greedy: the class ``Greedy`` of the tests of the application.
     """
@@ -144,7 +144,7 @@ def script_agent(monkeypatch: Any, greedy: Any) -> None:
 
 
 def _ready() -> Preparation:
-    """Kernels are compiled in the tests' own process: nothing is to be made ready behind them."""
+    """No compilation in another process: tests compile in their own."""
     preparation = Preparation()
     preparation._stage = Stage.READY
     return preparation

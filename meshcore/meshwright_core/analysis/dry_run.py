@@ -1,13 +1,13 @@
-"""What an operation would do, found by doing it on the side and taking it back to the bit.
+"""Dry run of an operation: apply it with a journal of its own, read the changes, and undo it.
 
-The mesh's own journal is not touched, so that what can be undone and redone stays so.
+The journal of the mesh is not touched, so that its undo and redo stay as they are.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from meshwright_core.core.arrays import (
     JOURNAL_TOP,
     JOURNALLING,
     NEW_COUNT,
-    ORIGIN,
     RESTORED,
     SIDES,
     STEP,
@@ -29,71 +28,70 @@ from meshwright_core.core.arrays import (
     TRACE_IDS,
     VERTEX_COLUMNS,
     MeshArrays,
+    corners_of,
 )
 from meshwright_core.errors import OperationRefused
 from meshwright_core.history import journal
+from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations import catalogue, refusals
 from meshwright_core.operations.catalogue import Operation
-
-if TYPE_CHECKING:
-    from meshwright_core.mesh import HalfEdgeMesh
 
 Result = TypeVar("Result")
 
 _WRITE_KINDS = 1 + journal.LIST_WRITE
 _ENTRIES = 1024
-"""Journal entries that there is room for before an operation says that it needs more."""
+"""Room for journal entries at the first attempt."""
 
 
 @dataclass(frozen=True)
-class Trial:
-    """What `operation` at half-edge `halfedge` would change; ids are those it would give.
+class DryRun:
+    """The changes that `operation` at half-edge `halfedge` makes; ids are those after it.
 
-    An edge that would only be cut into two pieces, or be one piece where it was two, counts neither
-    as added nor as removed.
+    An edge that is only split in two, or two edges that become one, count neither as added nor as
+    removed.
     """
 
     operation: Operation
     halfedge: int
     score_change: int
     added: np.ndarray
-    """(n, 2, 3) both ends of each edge that there would be, where they would first be put."""
+    """(n, 2, 3) ends of each added edge, new vertices at their initial positions."""
     removed: np.ndarray
-    """(m, 2, 3) both ends of each edge that would go."""
+    """(m, 2, 3) ends of each removed edge."""
     vertices: np.ndarray
-    """(p,) the vertices that there would be with another Delta than now, new ones included."""
+    """(p,) vertices whose Delta changes, new ones included."""
     places: np.ndarray
-    """(p, 3) where they would be."""
+    """(p, 3) their positions."""
     delta: np.ndarray
-    """(p,) their Delta then."""
+    """(p,) their Delta after the operation."""
     new_vertices: np.ndarray
-    """(q,) those of all vertices then that there are not now."""
+    """(q,) ids of the vertices that the operation creates."""
     gone: np.ndarray
-    """(g, 3) where the vertices are now that there would not be then."""
+    """(g, 3) positions of the vertices that the operation deletes."""
 
 
 class _State(NamedTuple):
-    """What some elements and vertices are at one time."""
+    """Edges and vertices of some elements, before or after the operation."""
 
     keys: np.ndarray
     """(n,) the edges of the elements as sorted numbers, one for each pair of vertices."""
     ends: np.ndarray
-    """(n, 2) the pairs."""
+    """(n, 2) their vertex ids."""
     segments: np.ndarray
-    """(n, 2, 3) where they are."""
+    """(n, 2, 3) the positions of their ends."""
     alive: np.ndarray
-    """(p,) which of the vertices there are."""
+    """(p,) which of the vertices are live."""
     delta: np.ndarray
     """(p,)"""
     places: np.ndarray
     """(p, 3)"""
 
 
-def trial(mesh: HalfEdgeMesh, operation: Operation | str, h: int) -> Trial:
-    """What the operation would do at half-edge h, before any smoothing.
+def dry_run(mesh: HalfEdgeMesh, operation: Operation | str, h: int) -> DryRun:
+    """The changes that the operation makes at half-edge h, without smoothing.
 
-    The mesh is left as it was, bit for bit, its undo and redo included; only its arrays may have
-    grown. Raises OperationRefused where :meth:`HalfEdgeMesh.check` says no.
+    The mesh stays as it is to the bit, with its undo and redo; only its arrays may be enlarged.
+    Raises OperationRefused where :meth:`HalfEdgeMesh.check` refuses it.
     """
     verdict = mesh.check(operation, h)
     if not verdict:
@@ -104,9 +102,9 @@ def trial(mesh: HalfEdgeMesh, operation: Operation | str, h: int) -> Trial:
 
 
 def score_change(mesh: HalfEdgeMesh, operation: Operation | str, h: int) -> int:
-    """How s would change, for an operation that :meth:`HalfEdgeMesh.check` allows at h.
+    """The change of s, for an operation that :meth:`HalfEdgeMesh.check` allows at h.
 
-    As :func:`trial`, where nothing else is asked; for operations without a formula.
+    For operations without a formula; cheaper than :func:`dry_run`.
     """
     return _aside(mesh, operation, h, _undone)
 
@@ -122,7 +120,7 @@ def _aside(
     h: int,
     then: Callable[[MeshArrays, int], Result],
 ) -> Result:
-    """Apply the operation with another journal; `then` is told the change of s and undoes it."""
+    """Apply the operation with another journal; `then` gets the change of s and undoes it."""
     code = catalogue.CODES[mesh.k][Operation(operation)]
     entries = _ENTRIES
     while True:
@@ -133,9 +131,9 @@ def _aside(
         aside.counters[[JOURNAL_TOP, STEP, STEP_END, GROUPED]] = 0
         aside.counters[JOURNALLING] = 1
         try:
-            done = catalogue.apply_once(*aside, code, h, mesh.degree_cap)
-            if done[0] == refusals.ALLOWED:
-                return then(aside, int(done[1]))
+            done = catalogue.apply_once(aside, code, h, mesh.degree_cap)
+            if done.code == refusals.ALLOWED:
+                return then(aside, done.score_change)
         finally:
             aside.counters[RESTORED:] = held[RESTORED:]
         vertices, elements, more = aside.trace[TRACE_IDS : TRACE_IDS + 3].tolist()
@@ -144,7 +142,7 @@ def _aside(
 
 
 def _make_room(mesh: HalfEdgeMesh, vertices: int, elements: int) -> None:
-    """Room for so many more; twice what there is, so that it is seldom made."""
+    """Room for so many more vertices and elements, at least doubled so that this is rare."""
     arrays = mesh.arrays
     slots = int(arrays.counters[ELEMENT_SLOTS])
     short = mesh.slots + vertices > len(arrays.vertex)
@@ -152,8 +150,8 @@ def _make_room(mesh: HalfEdgeMesh, vertices: int, elements: int) -> None:
         mesh.reserve(max(vertices, mesh.slots), max(elements, slots))
 
 
-def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> Trial:
-    """Compare with what was, and take the operation back."""
+def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> DryRun:
+    """Undo the operation and compare the states before and after it."""
     entries = aside.journal[: aside.counters[JOURNAL_TOP], 0]
     index, kind = entries // _WRITE_KINDS, entries % _WRITE_KINDS
     k = int(aside.counters[SIDES])
@@ -174,7 +172,7 @@ def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> Trial
     elif len(new):
         _halve(before, removed, after, added, new, new_places)
     differs = after.alive & ((after.delta != before.delta) | ~before.alive)
-    return Trial(
+    return DryRun(
         operation=operation,
         halfedge=h,
         score_change=change,
@@ -189,8 +187,7 @@ def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> Trial
 
 
 def _state(m: MeshArrays, elements: np.ndarray, vertices: np.ndarray) -> _State:
-    k = int(m.counters[SIDES])
-    corners = m.edge[k * elements[:, None] + np.arange(k), ORIGIN].astype(np.int64)
+    corners = corners_of(m, elements)
     corners = corners[corners[:, 0] >= 0]
     a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
     low, high = np.minimum(a, b), np.maximum(a, b)
@@ -215,9 +212,7 @@ def _halve(
     new: np.ndarray,
     places: np.ndarray,
 ) -> None:
-    """Strike edges that a new vertex would cut in two from `removed`, and the halves from
-    `added`.
-    """
+    """Drop edges that a new vertex splits from `removed`, and their halves from `added`."""
     rows = np.flatnonzero(removed).tolist()
     middles = 0.5 * (before.segments[rows, 0] + before.segments[rows, 1])
     halved = {middle.tobytes(): row for row, middle in zip(rows, middles, strict=True)}
@@ -235,7 +230,7 @@ def _halve(
 def _join(
     before: _State, removed: np.ndarray, after: _State, added: np.ndarray, gone: np.ndarray
 ) -> None:
-    """Strike the edges that would become one where a line is deleted: what stays is the line."""
+    """Drop pairs of edges that become one where a line is deleted: only the line is removed."""
     going = set(gone.tolist())
     beside: dict[int, list[tuple[int, int]]] = {v: [] for v in going}
     for (a, b), row in _rows_of(before, removed).items():

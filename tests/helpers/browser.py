@@ -1,4 +1,4 @@
-"""Notebooks in a real browser, for tests: JupyterLab and marimo, watched for complaints."""
+"""Notebooks in a real browser for tests: JupyterLab and marimo; console errors are collected."""
 
 import json
 from pathlib import Path
@@ -66,33 +66,33 @@ if __name__ == "__main__":
 """
 
 
-class Watched:
-    """A page whose complaints are collected: errors in its console, and exceptions in its scripts.
+class WatchedPage:
+    """A page whose console errors and uncaught exceptions are collected.
 
     Attributes:
-        complaints: what was complained of, in words.
+        complaints: their messages.
     """
 
     def __init__(self, page: Any) -> None:
         self.page = page
         self.complaints: list[str] = []
-        page.on("console", self._said)
+        page.on("console", self._on_console)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
 
-    def _said(self, message: Any) -> None:
+    def _on_console(self, message: Any) -> None:
         if message.type == "error":
             self.complaints.append(message.text)
 
 
 class Lab(LabNotebook):
-    """A notebook in JupyterLab whose page is watched."""
+    """A notebook in JupyterLab with a watched page."""
 
-    def __init__(self, watched: Watched, server: Server, name: str = "book.ipynb") -> None:
+    def __init__(self, watched: WatchedPage, server: Server, name: str = "book.ipynb") -> None:
         super().__init__(watched.page, server, name)
         self.watched = watched
 
     def card(self, *sources: str, number: int = 0) -> Card:
-        """Show these cells in the place of all others; the card of the widget in their output."""
+        """Replace all cells by these; returns the card of the widget in their output."""
         self.show(*sources)
         return Card(self.page, number)
 
@@ -111,7 +111,7 @@ class Lab(LabNotebook):
         return found
 
     def theme(self, name: str) -> None:
-        """Let JupyterLab be ``Light`` or ``Dark``."""
+        """Set JupyterLab's theme, ``Light`` or ``Dark``."""
         self.page.evaluate(
             "theme => jupyterapp.commands.execute('apputils:change-theme', { theme })",
             f"JupyterLab {name}",
@@ -119,13 +119,13 @@ class Lab(LabNotebook):
 
 
 class Marimo:
-    """A marimo notebook with one widget, whose page is watched.
+    """A marimo notebook with one widget and a watched page.
 
     Besides the widget it has a paragraph that follows the widget's score, and a button that lets a
     cell look at the kernel's mesh.
     """
 
-    def __init__(self, watched: Watched, server: Server) -> None:
+    def __init__(self, watched: WatchedPage, server: Server) -> None:
         self.watched, self.page = watched, watched.page
         self._server = server
         self.open()
@@ -138,13 +138,13 @@ class Marimo:
         return path
 
     def open(self) -> None:
-        """Load the page, or load it again."""
+        """Load or reload the page."""
         self.page.goto(self._server.url, wait_until="domcontentloaded")
         self.page.locator("pre.kernel").wait_for(timeout=3 * MOMENT)
         self.card = Card(self.page)
 
     def kernel(self) -> dict[str, Any]:
-        """What a cell sees of the widget when it is run now."""
+        """State of the widget as seen by a cell that runs now."""
         self.page.get_by_role("button", name="look").click()
         self.page.wait_for_timeout(400)
         seen: dict[str, Any] = json.loads(self.page.locator("pre.kernel").inner_text())
@@ -153,5 +153,5 @@ class Marimo:
     @property
     def follows(self) -> str:
         """The paragraph of the cell that depends on the widget."""
-        said: str = self.page.locator("p.follows").inner_text()
-        return said
+        text: str = self.page.locator("p.follows").inner_text()
+        return text

@@ -1,6 +1,9 @@
-// Buttons over the canvas: closer, farther, all of it, and what mouse and keys do.
+// Buttons over the canvas: zoom in, zoom out, fit, and help on mouse and keys.
 
-class StageTools {
+import { button, icon, node } from "../dom.js";
+import { KEY_HELP, MOUSE_HELP } from "../input/shortcuts.js";
+
+export class ZoomButtons {
   constructor(card, stage) {
     this._card = card;
     this._help = null;
@@ -14,7 +17,7 @@ class StageTools {
     stage.append(node("div", "mw-stage-tools", { role: "toolbar", "aria-label": "View" },
       tool("Zoom in (+)", zoomSign(true), () => card.stage.zoom(1.25)),
       tool("Zoom out (\u2212)", zoomSign(false), () => card.stage.zoom(0.8)),
-      tool("See all of the mesh (0)", icon("fit"), () => card.stage.fit()),
+      tool("Fit the mesh (0)", icon("fit"), () => card.stage.fit()),
       this._question));
     this._stage = stage;
   }

@@ -5,9 +5,10 @@ import pytest
 from tiny_meshes import faces, grid, ring, square_of_triangles
 
 from meshwright_core import HalfEdgeMesh, OperationRefused
+from meshwright_core.analysis.dry_run import dry_run
+from meshwright_core.core.arrays import ELEMENT_SLOTS, JOURNAL_TOP
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.operations.catalogue import of_kind
-from meshwright_core.operations.dry_run import trial
 
 
 def _pairs(segments):
@@ -27,9 +28,9 @@ def _edges(mesh):
 def _bits(mesh):
     arrays = mesh.arrays
     slots = {
-        "edge": mesh.k * int(arrays.counters[1]),
+        "edge": mesh.k * int(arrays.counters[ELEMENT_SLOTS]),
         "trace": 0,
-        "journal": int(arrays.counters[12]),
+        "journal": int(arrays.counters[JOURNAL_TOP]),
     }
     return [
         np.array(array[: slots.get(name, len(array))]).tobytes()
@@ -37,9 +38,9 @@ def _bits(mesh):
     ]
 
 
-def test_a_flip_shows_one_edge_for_another():
+def test_a_flip_replaces_one_edge():
     mesh = square_of_triangles()
-    seen = trial(mesh, "flip", mesh.halfedge(0, 2))
+    seen = dry_run(mesh, "flip", mesh.halfedge(0, 2))
     assert _pairs(seen.removed) == {frozenset([(0.0, 0.0), (1.0, 1.0)])}
     assert _pairs(seen.added) == {frozenset([(1.0, 0.0), (0.0, 1.0)])}
     assert sorted(seen.vertices.tolist()) == [0, 1, 2, 3]
@@ -47,9 +48,9 @@ def test_a_flip_shows_one_edge_for_another():
     assert faces(mesh) == {(0, 1, 2), (0, 2, 3)}
 
 
-def test_the_two_halves_of_an_edge_are_not_news():
+def test_the_two_halves_of_an_edge_count_as_unchanged():
     mesh = square_of_triangles()
-    seen = trial(mesh, "split", mesh.halfedge(0, 2))
+    seen = dry_run(mesh, "split", mesh.halfedge(0, 2))
     assert len(seen.removed) == 0
     assert _pairs(seen.added) == {
         frozenset([(0.5, 0.5), (1.0, 0.0)]),
@@ -61,7 +62,7 @@ def test_the_two_halves_of_an_edge_are_not_news():
 
 def test_a_global_split_shows_its_whole_path():
     mesh = grid(6)
-    seen = trial(mesh, "global_split", mesh.halfedge(24, 31))
+    seen = dry_run(mesh, "global_split", mesh.halfedge(24, 31))
     ends = {place for edge in _pairs(seen.added) for place in edge}
     assert ends >= {(2.5, y) for y in (4.0, 5.0, 6.0)} | {(3.5, y) for y in (4.0, 5.0, 6.0)}
     assert _pairs(seen.removed) <= {frozenset([(3.0, 3.0), (3.0, 4.0)])}
@@ -71,19 +72,19 @@ def test_a_global_split_shows_its_whole_path():
 
 def test_a_clean_up_shows_the_line_that_goes():
     mesh = grid(3)
-    seen = trial(mesh, "cleanup", mesh.halfedge(1, 5))
+    seen = dry_run(mesh, "cleanup", mesh.halfedge(1, 5))
     assert len(seen.added) == 0
     assert _pairs(seen.removed) == {
         frozenset([(1.0, float(y)), (1.0, float(y + 1))]) for y in range(3)
     }
     mesh = ring(6, 2)
-    seen = trial(mesh, "cleanup", mesh.halfedge(6, 7))
+    seen = dry_run(mesh, "cleanup", mesh.halfedge(6, 7))
     assert (len(seen.removed), len(seen.added)) == (6, 0)
 
 
 def test_a_collapse_shows_the_vertex_that_goes():
     mesh = grid(3)
-    seen = trial(mesh, "collapse", mesh.halfedge(5, 6))
+    seen = dry_run(mesh, "collapse", mesh.halfedge(5, 6))
     assert seen.gone.tolist() == [[2.0, 2.0, 0.0]]
     assert 5 in seen.vertices
 
@@ -91,11 +92,11 @@ def test_a_collapse_shows_the_vertex_that_goes():
 def test_a_refused_operation_says_why():
     mesh = square_of_triangles()
     with pytest.raises(OperationRefused, match="boundary"):
-        trial(mesh, "flip", mesh.halfedge(0, 1))
+        dry_run(mesh, "flip", mesh.halfedge(0, 1))
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
-def test_trials_tell_the_truth_and_change_nothing(kind):
+def test_dry_runs_agree_with_the_operation_and_change_nothing(kind):
     mesh = meshing.mesh_domain(gallery.shape("star"), kind)
     rng = np.random.default_rng(3)
     infos = of_kind(kind)
@@ -108,7 +109,7 @@ def test_trials_tell_the_truth_and_change_nothing(kind):
         if not mesh.live(h) or not mesh.check(operation, h):
             continue
         steps, redo, bits = mesh.steps, mesh.can_redo, _bits(mesh)
-        seen = trial(mesh, operation, h)
+        seen = dry_run(mesh, operation, h)
         arrays = mesh.arrays
         if len(arrays.points) == len(np.frombuffer(bits[2])) // 3:  # the arrays did not grow
             assert _bits(mesh) == bits
@@ -136,16 +137,16 @@ def test_trials_tell_the_truth_and_change_nothing(kind):
     assert len(seen_once) >= 3
 
 
-def test_trials_make_room_and_keep_the_history_that_can_be_redone():
+def test_dry_runs_enlarge_arrays_and_keep_redo():
     points = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
     mesh = HalfEdgeMesh.from_elements(points, [(0, 1, 2), (0, 2, 3)])
     for _ in range(200):
         mesh.apply("split", 0)
-        trial(mesh, "split", 0)
+        dry_run(mesh, "split", 0)
     end = mesh.elements()
     while mesh.undo():
         continue
-    trial(mesh, "flip", mesh.halfedge(0, 2))
+    dry_run(mesh, "flip", mesh.halfedge(0, 2))
     assert faces(mesh) == {(0, 1, 2), (0, 2, 3)}
     while mesh.redo():
         continue

@@ -1,0 +1,78 @@
+"""Skips tests whose display, browser or other program is missing, and compiles kernels first."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import system_requirements
+
+HERE = Path(__file__).parent
+NEEDED_BY_FIXTURE = {"qapp": "qt", "open_window": "window", "browser": "chromium"}
+
+
+def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginManager) -> None:
+    """Unload pytest-qt where Qt cannot be imported: it would end the whole run."""
+    if system_requirements.missing_qt():
+        pluginmanager.unregister(name="pytest-qt")
+        pluginmanager.set_blocked("pytest-qt")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark tests by the fixtures that they use, before ``-m`` selects by marks."""
+    for item in items:
+        for fixture, need in NEEDED_BY_FIXTURE.items():
+            if fixture in getattr(item, "fixturenames", ()):
+                item.add_marker(pytest.mark.needs(need))
+        if "chromium" in needs(item):
+            item.add_marker(pytest.mark.browser)
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Compile kernels before the first test: on a slow machine this exceeds a test's time limit."""
+    needing = (HERE / "agent", HERE / "app")
+    if session.config.option.collectonly or not any(
+        item.path.is_relative_to(folder) for item in session.items for folder in needing
+    ):
+        return
+    from meshwright_agent import warm_up
+
+    if not warm_up.is_warm_on_disk():
+        reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+        reporter.write_line("compiling kernels; this takes some minutes, once")
+        for package in ("meshwright_core", "meshwright_agent"):
+            subprocess.run([sys.executable, "-m", f"{package}.warm_up"], check=False)
+
+
+def needs(item: pytest.Item) -> list[str]:
+    """The names in all ``needs`` markers of a test."""
+    return [name for mark in item.iter_markers("needs") for name in mark.args]
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip the test if something that it needs is missing."""
+    for name in needs(item):
+        reason = system_requirements.MISSING[name]()
+        if reason:
+            pytest.skip(reason)
+
+
+@pytest.fixture(scope="session")
+def qapp_args(pytestconfig: pytest.Config) -> list[str]:
+    """Arguments of the QApplication: without a display it runs on Qt's offscreen platform."""
+    arguments = [pytestconfig.getini("qt_qapp_name")]
+    if system_requirements.missing_display():
+        arguments += ["-platform", "offscreen"]
+    return arguments
+
+
+if system_requirements.missing_qt():
+
+    @pytest.fixture(scope="session")
+    def qapp() -> None:
+        """Stands in for pytest-qt's fixture: tests that use it are skipped before."""
+
+    @pytest.fixture
+    def qtbot(qapp: None) -> None:
+        """Stands in for pytest-qt's fixture: tests that use it are skipped before."""
