@@ -125,8 +125,8 @@ class Preparation:
 
 
 WAITS: dict[Stage, str] = {
-    Stage.EDITING: "Preparing the operations: a minute or two, on this machine only once.",
-    Stage.AGENT: "Preparing the agent: a minute or two, on this machine only once.",
+    Stage.EDITING: "Preparing the operations: some seconds, on this machine only once.",
+    Stage.AGENT: "Preparing the agent: half a minute or so, on this machine only once.",
 }
 DONE: dict[Stage, str] = {
     Stage.AGENT: "The operations are ready.",

@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable
 from functools import partial
 
-from qtpy.QtCore import QObject, QProcess, Signal
+from qtpy.QtCore import QObject, QProcess, QTimer, Signal
 
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright_core.core import compilation
@@ -13,12 +13,14 @@ from meshwright_core.core import compilation
 FIRST_START = "Preparing (first start only)\u2026"
 EVERY_START = "Preparing\u2026"
 AGENT_FIRST = "Preparing the agent (first start only)\u2026"
+AGENT_PROGRESS = "Preparing the agent (first start only): {done} of {total}\u2026"
+PROGRESS_MILLISECONDS = 1000
 
 
 class Warmup(QObject):
     """Compiles the kernels in a process of their own where that was never done, then loads them.
 
-    Compiling holds the interpreter for minutes, which a thread would pass on to the window.
+    Compiling holds the interpreter for seconds on end, which a thread would pass on to the window.
     ``ready()`` comes once, when a person can edit, ``agent_ready()`` when the agent can run;
     ``noted(text)`` with what is being done; ``failed(sentence)`` if the kernels cannot be made.
     """
@@ -36,6 +38,10 @@ class Warmup(QObject):
         self._then: Callable[[], None] = self._load
         self._thread: threading.Thread | None = None
         self._stopped = False
+        self._progress = QTimer(self)
+        self._progress.setInterval(PROGRESS_MILLISECONDS)
+        self._progress.timeout.connect(self._note_progress)
+        self.agent_ready.connect(self._progress.stop)
 
     def start(self) -> None:
         """Begin; returns at once."""
@@ -62,6 +68,7 @@ class Warmup(QObject):
         What a thread has reported by then is not told any more: the window may be gone.
         """
         self._stopped = True
+        self._progress.stop()
         if self._process is not None:
             self._process.finished.disconnect(self._on_compiled)
             self._process.errorOccurred.disconnect(self._on_error)
@@ -103,6 +110,13 @@ class Warmup(QObject):
         else:
             self.noted.emit(AGENT_FIRST)
             self._run("meshwright_agent.warm_up", self.agent_ready.emit)
+            self._progress.start()
+
+    def _note_progress(self) -> None:
+        from meshwright_agent.warm_up import progress
+
+        done, total = progress()
+        self.noted.emit(AGENT_PROGRESS.format(done=done, total=total))
 
     def _fail(self, sentence: str) -> None:
         if not self._stopped:
