@@ -1,14 +1,31 @@
-"""Makes ready what an agent compiles, so that nobody waits for it in the middle of their work.
+"""Compiles the kernels that runs and searches need, or loads them from the cache on disk.
 
-`python -m meshwright_agent.warm_up` does so in a process of its own, whose cache others then load.
-Nothing heavy is imported before it is needed: the window asks here whether there is anything to do.
+`python -m meshwright_agent.warm_up` does so in a process of its own. The kernels are divided into
+two sets with little in common, and a second process compiles one of them. Heavy modules are
+imported inside functions, because the window calls :func:`is_warm_on_disk` when it starts.
 """
 
 from __future__ import annotations
 
-from meshwright_core.core.compilation import cache_folder
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from meshwright_core.core.compilation import cache_folder, entry_points_on_disk
+
+ENTRY_POINTS = 27
+"""Entry points of both packages that searches and runs leave on disk, for messages of progress."""
 
 _MARK = "warm"
+_REPORT_SECONDS = 0.5
+_CHANGING = "changing"
+"""The argument with which this module compiles the second share only."""
+
+Tell = Callable[[int, int], None]
+"""Called as ``tell(done, total)`` with numbers of entry points."""
 
 
 def is_warm_on_disk() -> bool:
@@ -16,19 +33,22 @@ def is_warm_on_disk() -> bool:
     return (cache_folder("meshwright_agent") / _MARK).exists()
 
 
-def warm() -> None:
-    """Compile, or load from the cache, what runs and searches need, for both kinds of mesh."""
-    import numpy as np
+def progress() -> tuple[int, int]:
+    """How many entry points are on disk, and how many there will be, about."""
+    done = entry_points_on_disk("meshwright_agent") + entry_points_on_disk()
+    return min(done, ENTRY_POINTS), ENTRY_POINTS
 
-    from meshwright_agent.policy.policy_files import load, shipped
-    from meshwright_agent.policy.rollout import Runner
-    from meshwright_agent.search.solver import prepare
-    from meshwright_core.domains.meshing import benchmark_mesh
 
-    for kind in ("quad", "tri"):
-        policy = load(shipped(kind)[0])
-        Runner(benchmark_mesh(kind, 8, np.random.default_rng(0)), policy, 0).step()
-        prepare(policy)
+def warm(tell: Tell | None = None) -> None:
+    """Compile, or load from the cache, what runs and searches need, for both kinds of mesh.
+
+    ``tell(done, total)`` is called from another thread now and then while kernels are compiled.
+    """
+    if not is_warm_on_disk():
+        with _told(tell), _second_process():
+            _exercise_observing()
+    _exercise_observing()
+    _exercise_changing()
     try:
         cache_folder("meshwright_agent").mkdir(parents=True, exist_ok=True)
         (cache_folder("meshwright_agent") / _MARK).touch()
@@ -36,8 +56,102 @@ def warm() -> None:
         return  # a read-only home: each process compiles for itself
 
 
-if __name__ == "__main__":
+def _exercise_observing() -> None:
+    """Observe meshes, as policies do, and smooth one."""
+    import numpy as np
+
+    from meshwright_agent.env.vector_env import Batch
+    from meshwright_agent.policy.policy_files import load, shipped
+    from meshwright_core.domains.meshing import benchmark_mesh
+    from meshwright_core.geometry import smoothing
+
+    for kind in ("quad", "tri"):
+        mesh = benchmark_mesh(kind, 8, np.random.default_rng(0))
+        batch = Batch(load(shipped(kind)[0]).task, [mesh], 1, np.random.default_rng(0))
+        batch.observe()
+        smoothing.relax(mesh)
+
+
+def _exercise_changing() -> None:
+    """Change meshes: annealing, shortening, coarsening, the step of a policy."""
+    from meshwright_agent.policy.policy_files import load, shipped
+    from meshwright_agent.search.solver import prepare
+    from meshwright_core.core.arrays import allocate
+    from meshwright_core.operations.catalogue import provide_rewrite
+
+    provide_rewrite(allocate(4, 4, 1))  # first, while the other process compiles the checks
+    for kind in ("quad", "tri"):
+        prepare(load(shipped(kind)[0]))
+
+
+@contextmanager
+def _second_process() -> Iterator[None]:
+    """Compile the second share in another process, if there is a core for it; wait for it at the
+    end of the block. That process ends when this one does.
+    """
+    if (os.cpu_count() or 1) < 2:
+        yield
+        return
+    process = subprocess.Popen(
+        [sys.executable, "-m", "meshwright_agent.warm_up", _CHANGING],
+        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    try:
+        yield
+        process.wait()
+    finally:
+        process.kill()
+        process.wait()
+        assert process.stdin is not None
+        process.stdin.close()
+
+
+@contextmanager
+def _told(tell: Tell | None) -> Iterator[None]:
+    """Call ``tell`` with :func:`progress` each time it has changed during the block."""
+    if tell is None:
+        yield
+        return
+    ended = threading.Event()
+
+    def watch() -> None:
+        last = -1
+        while not ended.wait(_REPORT_SECONDS):
+            done, total = progress()
+            if done != last:
+                last = done
+                tell(done, total)
+
+    thread = threading.Thread(target=watch, name="progress of the kernels", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+def _end_with_parent() -> None:
+    """Leave when the other end of stdin is closed, as it is when the parent process has ended."""
+
+    def wait() -> None:
+        sys.stdin.buffer.read()
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def main(arguments: list[str]) -> None:
+    """Compile everything, or the second share for another process that does so."""
     from meshwright_agent.policy.policy_files import decide_on_one_thread
 
     decide_on_one_thread()
-    warm()
+    if arguments == [_CHANGING]:
+        _end_with_parent()
+        _exercise_changing()
+    else:
+        warm()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

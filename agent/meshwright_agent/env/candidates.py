@@ -25,7 +25,7 @@ from meshwright_core.core.arrays import (
     preceding,
     turned,
 )
-from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.compilation import bare_kernel, bare_shared_kernel, kernel
 from meshwright_core.operations.catalogue import (
     GLOBAL_SPLIT,
     TRI_COLLAPSE,
@@ -181,6 +181,32 @@ def _collect_around(m, v, k, found, count):
 
 
 @kernel
+def _least_of_largest(keys, total, wanted):
+    """The smallest of the `wanted` largest of the first `total` keys.
+
+    By insertion into a short sorted list: numba takes two seconds to compile its sort.
+    """
+    largest = np.empty(wanted)
+    held = 0
+    for i in range(total):
+        if held == wanted:
+            if keys[i] <= largest[0]:
+                continue
+            at = 0
+            while at + 1 < held and largest[at + 1] < keys[i]:
+                largest[at] = largest[at + 1]
+                at += 1
+        else:
+            at = held
+            held += 1
+            while at > 0 and largest[at - 1] > keys[i]:
+                largest[at] = largest[at - 1]
+                at -= 1
+        largest[at] = keys[i]
+    return largest[0]
+
+
+@kernel
 def shortlist(m, k, first, count, cap, floor, ceiling, extended, noise, rng, found, keys, chosen):
     """Fill `chosen` (K,) with half-edges, -1 where there are fewer; returns their number.
 
@@ -200,7 +226,7 @@ def shortlist(m, k, first, count, cap, floor, ceiling, extended, noise, rng, fou
     wanted = min(len(chosen), total)
     taken = 0
     if total > 0:
-        least = np.sort(keys[:total])[total - wanted]
+        least = _least_of_largest(keys, total, wanted)
         for i in range(total):
             if keys[i] >= least and keys[i] > -np.inf and taken < wanted:
                 chosen[taken] = found[i // k] * k + i % k
@@ -256,7 +282,7 @@ def best_template(m, k, source, turn, rng, found, slots, chosen):
     return real
 
 
-@bare_kernel
+@bare_shared_kernel
 def masks(m, chosen, first, count, cap, floor, ceiling, extended, mask, changes):
     """Fill `mask` (K, A) and `changes` (K, A), the exact change of s of permitted operations.
 

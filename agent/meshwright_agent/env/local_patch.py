@@ -146,7 +146,8 @@ def _copy_rows(features, sizes, starts, picked, out):
     at = 0
     for d in picked:
         for i in range(sizes[d, 0]):
-            out[at] = features[starts[d] + i]
+            for column in range(out.shape[1]):
+                out[at, column] = features[starts[d] + i, column]
             at += 1
 
 

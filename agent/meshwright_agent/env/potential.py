@@ -14,6 +14,7 @@ import numpy as np
 
 from meshwright_core.core.arrays import DEGREE, DESIRED, ELEMENT_SLOTS, ORIGIN, TWIN, following
 from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.references import by_reference
 
 SWEEPS = 16
 """Jacobi sweeps; a charge has an effect over as many edges."""
@@ -25,6 +26,7 @@ _SOFT = 0.05
 _SCALE = 25.0
 
 
+@by_reference
 class Field(NamedTuple):
     """Work arrays of one computation, whose vertices and edges are numbered from 0."""
 

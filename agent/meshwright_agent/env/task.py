@@ -22,7 +22,7 @@ from meshwright_agent.env.checked_settings import (
 from meshwright_agent.env.local_patch import LARGEST, POTENTIALS, Patches, describe, list_patch
 from meshwright_agent.env.potential import field, forget, solve_potential
 from meshwright_core.core.arrays import HALF, NEW_COUNT, TOUCHED_COUNT, TRACE_IDS, MeshArrays
-from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.compilation import bare_shared_kernel, shared_kernel
 from meshwright_core.operations.catalogue import (
     CLEANUP,
     FLIP_LEFT,
@@ -139,7 +139,7 @@ class Scratch:
         self.cleaned = np.zeros(MOST_CLEANUPS, np.int64)
 
 
-@bare_kernel
+@bare_shared_kernel
 def transition(m, operation, h, cap, touched, cleaned):
     """Apply an operation, then every global clean-up that it makes possible (section 3.2).
 
@@ -171,7 +171,7 @@ def transition(m, operation, h, cap, touched, cleaned):
     return cleanups
 
 
-@kernel
+@shared_kernel
 def choose_candidates(
     m, k, first, count, cap, floor, ceiling, extended, listed, noise, source, turn, rng,
     found, keys, slots, chosen,
@@ -184,7 +184,7 @@ def choose_candidates(
     return best_template(m, k, source, turn, rng, found, slots, chosen)
 
 
-@bare_kernel
+@bare_shared_kernel
 def look(m, chosen, k, sizes, listed, reads, slot_of, field, features):
     """List the local patch of the candidates and write the channels of its half-edges into
     `features` (N, C) int8.

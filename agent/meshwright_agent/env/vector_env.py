@@ -110,13 +110,21 @@ def member(meshes, b):
 
 @kernel
 def _reset(meshes, pool, b, p):
-    """Start episode b from mesh p of the pool."""
-    meshes.edge[b] = pool.edge[p]
-    meshes.vertex[b] = pool.vertex[p]
-    meshes.points[b] = pool.points[p]
-    meshes.irregular[b] = pool.irregular[p]
-    meshes.element_mark[b] = pool.element_mark[p]
-    meshes.counters[b] = pool.counters[p]
+    """Start run b afresh from mesh p of the pool."""
+    # loops, because numba takes a second to compile an assignment of a whole array
+    for h in range(pool.edge.shape[1]):
+        for column in range(pool.edge.shape[2]):
+            meshes.edge[b, h, column] = pool.edge[p, h, column]
+    for v in range(pool.vertex.shape[1]):
+        for column in range(pool.vertex.shape[2]):
+            meshes.vertex[b, v, column] = pool.vertex[p, v, column]
+        for axis in range(pool.points.shape[2]):
+            meshes.points[b, v, axis] = pool.points[p, v, axis]
+        meshes.irregular[b, v] = pool.irregular[p, v]
+    for e in range(pool.element_mark.shape[1]):
+        meshes.element_mark[b, e] = pool.element_mark[p, e]
+    for i in range(pool.counters.shape[1]):
+        meshes.counters[b, i] = pool.counters[p, i]
 
 
 @kernel
@@ -147,7 +155,9 @@ def _observe_all(
             chosen[b] = -1
             continue
         look(m, chosen[b], k, sizes[b], listed, reads, slot_of, field, features[rows:])
-        all_reads[read_rows : read_rows + sizes[b, 1]] = reads[: sizes[b, 1]]
+        for i in range(sizes[b, 1]):
+            for j in range(reads.shape[1]):
+                all_reads[read_rows + i, j] = reads[i, j]
         rows += sizes[b, 0]
         read_rows += sizes[b, 1]
     return rows, read_rows

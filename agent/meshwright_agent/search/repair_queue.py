@@ -23,6 +23,7 @@ from meshwright_core.core.arrays import (
     turned,
 )
 from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.operations.catalogue import (
     needs_twin,
     rewrite,
@@ -33,6 +34,7 @@ from meshwright_core.operations.catalogue import (
 HEAD, FILL = 0, 1
 
 
+@by_reference
 class Agenda(NamedTuple):
     """Arrays by vertex slot (V,) and element slot (E,) of one mesh."""
 

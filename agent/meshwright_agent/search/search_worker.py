@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from enum import Enum
 from typing import Protocol
 
 import numpy as np
@@ -41,6 +42,30 @@ class Candidate:
     score: int
     method: str
     """What found it: "rollouts", "annealing" or "none"."""
+
+
+class Kind(Enum):
+    """What a worker can spend its time on."""
+
+    ROLLOUTS = "rollouts from the start"
+    ANNEALING = "annealing from the best state"
+    CONTINUE = "rollouts from the best state"
+
+
+@dataclass
+class Arm:
+    """One of the alternatives that share a worker's time."""
+
+    kind: Kind
+    seconds: float = 0.0
+    """Time spent on it."""
+    finds: int = 0
+    """How often it has found something better."""
+
+    @property
+    def cost(self) -> float:
+        """Seconds for each find; the arm where it is least comes next."""
+        return self.seconds / (1 + self.finds)
 
 
 class Shared(Protocol):
@@ -76,34 +101,35 @@ class Worker:
         self._generator = torch.Generator().manual_seed(seed)
         self._annealer: Annealer | None = None
         self._from = search.best
-        self._seconds = {"rollouts": 0.0}
-        self._finds = {"rollouts": 0}
+        self._arms = [Arm(Kind.ROLLOUTS)]
+        self._opening = True
+        """Whether only rollouts from the start have been made."""
 
     def work(self) -> None:
         """Rollouts from the start first; then the arm that has had least time for what it found."""
         search = self._search
         while not self._stop():
-            arm = min(self._seconds, key=lambda arm: self._seconds[arm] / (1 + self._finds[arm]))
+            arm = min(self._arms, key=lambda arm: arm.cost)
             began, before = time.perf_counter(), search.score
-            if arm == "annealing":
-                most = max(self._seconds.values())
+            if arm.kind is Kind.ANNEALING:
+                most = max(arm.seconds for arm in self._arms)
                 self._anneal(max(min(most, 0.5), _SHORTEST))
             else:
                 granted = search.book(self._together())
                 if not granted:
                     return
-                going_on = arm == "continue" and search.best.score > self._mesh.optimum
+                going_on = arm.kind is Kind.CONTINUE and search.best.score > self._mesh.optimum
                 self._roll(granted, search.best.operations if going_on else [])
-            self._seconds[arm] += time.perf_counter() - began
-            self._finds[arm] += len(self._seconds) > 1 and search.score < before
-            if len(self._seconds) == 1 and search.annealing:
+            arm.seconds += time.perf_counter() - began
+            if not self._opening:
+                arm.finds += search.score < before
+            elif search.annealing:
                 # what comes after the first rollouts starts level with them
-                for other in ("annealing", "continue"):
-                    self._seconds[other], self._finds[other] = 0.0, 0
-                self._seconds["rollouts"] = 0.0
+                self._opening = False
+                self._arms = [Arm(kind) for kind in Kind]
 
     def _together(self) -> int:
-        most = TOGETHER if len(self._seconds) > 1 else FIRST
+        most = FIRST if self._opening else TOGETHER
         return max(1, min(most, SIDE_BY_SIDE // max(self._mesh.n_elements, 1)))
 
     def _roll(self, count: int, before: Operations) -> None:

@@ -1,7 +1,7 @@
 """Compiles and loads the kernels in the background, for the window and the notebook.
 
-On a machine where they were never compiled this takes a minute or more. Compiling holds the
-interpreter, so it is done in another process, whose cache this one then loads.
+Compiling holds the interpreter for seconds on end, so it is done in another process, whose cache
+this one then loads.
 """
 
 from __future__ import annotations
@@ -60,6 +60,13 @@ class KernelPreparation:
     def compiling(self) -> Stage:
         """The stage that is being compiled; READY when none is, also before :meth:`begin`."""
         return self._stage or Stage.READY
+
+    @property
+    def progress(self) -> tuple[int, int]:
+        """How many parts of the agent's kernels are compiled, and how many there are."""
+        from meshwright_agent.warm_up import progress
+
+        return progress()
 
     def begin(self, dispatch: Dispatch, changed: Callable[[], None]) -> None:
         """Begin, or join a preparation that has begun; returns at once.

@@ -90,9 +90,11 @@ def prepare_agent(report: Report) -> None:
     """Compile the kernels of the agent if they are not in the cache yet, with a message."""
     from meshwright_agent import warm_up
 
-    if not warm_up.is_warm_on_disk():
-        report.note("Preparing the agent. This takes a minute or two, once on this machine.")
-        warm_up.warm()
+    if warm_up.is_warm_on_disk():
+        return
+    report.note("Preparing the agent. This takes half a minute or so, once on this machine.")
+    with report.progress("preparing the agent", warm_up.ENTRY_POINTS) as update:
+        warm_up.warm(lambda done, total: update(done, f"{done} of {total} kernels"))
 
 
 def read_policy(name: str | None, kind: str) -> Policy:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from meshwright.assistant.kernel_preparation import KernelPreparation, Stage
 
 WAITS: dict[Stage, str] = {
-    Stage.EDITING: "Preparing the operations: a minute or two, on this machine only once.",
-    Stage.AGENT: "Preparing the agent: a minute or two, on this machine only once.",
+    Stage.EDITING: "Preparing the operations: some seconds, on this machine only once.",
+    Stage.AGENT: "Preparing the agent: half a minute or so, on this machine only once.",
 }
 """Why a request is refused while a stage is compiled."""
 DONE: dict[Stage, str] = {

@@ -35,6 +35,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.references import by_reference
 
 # columns of MeshArrays.edge
 ORIGIN, TWIN = 0, 1
@@ -57,6 +58,7 @@ STEP_COLUMNS = STEP_COUNTERS + RESTORED
 NEW_COUNT, TOUCHED_COUNT, TRACE_IDS = 0, 1, 2
 
 
+@by_reference
 class MeshArrays(NamedTuple):
     """All data of a mesh; H half-edge, V vertex and E = H / k element slots of capacity."""
 

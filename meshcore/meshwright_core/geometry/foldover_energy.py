@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.outline import Polylines, place_on
 
 MEMORY = 10
@@ -31,6 +32,7 @@ GAP_WEIGHT = 0.01
 """Weight of the gap barrier: enough to keep the order, too little to shape the mesh."""
 
 
+@by_reference
 class Problem(NamedTuple):
     """A mesh to untangle, in units of its mean element size."""
 
@@ -75,7 +77,8 @@ def place(problem, x):
 def energy(problem, x, gradient, eps, weight):
     """Energy, smallest determinant; `gradient` is overwritten. Infinite where a gap closes."""
     place(problem, x)
-    gradient[:] = 0.0
+    for i in range(len(gradient)):
+        gradient[i] = 0.0
     total = 0.0
     for i in range(len(problem.gaps)):
         a, b = problem.gaps[i, 0], problem.gaps[i, 1]
@@ -93,11 +96,11 @@ def energy(problem, x, gradient, eps, weight):
             gradient[a] += slope
         if b >= 0:
             gradient[b] -= slope
-    alpha, beta, delta = problem.shape
+    alpha, beta, delta = problem.shape[0], problem.shape[1], problem.shape[2]
     smallest = np.inf
     points = problem.points
     for c in range(len(problem.corners)):
-        o, s, t = problem.corners[c]
+        o, s, t = problem.corners[c, 0], problem.corners[c, 1], problem.corners[c, 2]
         scale = problem.scale[c]
         px, py = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
         qx, qy = points[t, 0] - points[o, 0], points[t, 1] - points[o, 1]
@@ -139,18 +142,25 @@ def _pull(problem, gradient, v, gx, gy):
 @kernel
 def _direction(gradient, steps, changes, rho, count, newest, direction):
     """Two-loop recursion of L-BFGS: `direction` = -H gradient."""
-    memory = len(steps)
+    # loops in place of whole-array expressions, which take numba a second each to compile
+    memory, n = len(steps), len(direction)
     alphas = np.zeros(memory)
-    direction[:] = -gradient
+    for c in range(n):
+        direction[c] = -gradient[c]
     for j in range(count):
         i = (newest - j) % memory
         alphas[i] = rho[i] * np.dot(steps[i], direction)
-        direction -= alphas[i] * changes[i]
+        for c in range(n):
+            direction[c] -= alphas[i] * changes[i, c]
     if count:
-        direction *= 1.0 / (rho[newest] * np.dot(changes[newest], changes[newest]))
+        scale = 1.0 / (rho[newest] * np.dot(changes[newest], changes[newest]))
+        for c in range(n):
+            direction[c] *= scale
     for j in range(count - 1, -1, -1):
         i = (newest - j) % memory
-        direction += (alphas[i] - rho[i] * np.dot(changes[i], direction)) * steps[i]
+        share = alphas[i] - rho[i] * np.dot(changes[i], direction)
+        for c in range(n):
+            direction[c] += share * steps[i, c]
 
 
 @kernel
@@ -175,11 +185,15 @@ def descend(problem, x, eps, weight, iterations, precision):
         if not descent < 0.0:
             break
         # without curvature a first step moves no vertex by more than a tenth of an element
-        step = 1.0 if count else 0.1 / (1e-300 + np.abs(direction).max())
+        farthest = 0.0
+        for c in range(n):
+            farthest = max(farthest, abs(direction[c]))
+        step = 1.0 if count else 0.1 / (1e-300 + farthest)
         low, high = 0.0, np.inf
         found, found_smallest = np.inf, -np.inf
         for _ in range(40):
-            trial[:] = x + step * direction
+            for c in range(n):
+                trial[c] = x[c] + step * direction[c]
             found, found_smallest = energy(problem, trial, slope, eps, weight)
             evaluations += 1
             if not found <= value + SUFFICIENT * step * descent:
@@ -192,8 +206,9 @@ def descend(problem, x, eps, weight, iterations, precision):
         if not found < value:
             break
         newest = (newest + 1) % MEMORY
-        steps[newest] = trial - x
-        changes[newest] = slope - gradient
+        for c in range(n):
+            steps[newest, c] = trial[c] - x[c]
+            changes[newest, c] = slope[c] - gradient[c]
         curvature = np.dot(steps[newest], changes[newest])
         if curvature > 1e-14 * np.dot(changes[newest], changes[newest]):
             rho[newest] = 1.0 / curvature
@@ -201,8 +216,8 @@ def descend(problem, x, eps, weight, iterations, precision):
         else:
             count, newest = 0, -1
         gain = value - found
-        x[:] = trial
-        gradient[:] = slope
+        for c in range(n):
+            x[c], gradient[c] = trial[c], slope[c]
         value, smallest = found, found_smallest
         if gain <= precision * value:
             break

@@ -12,6 +12,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
+from meshwright_core.core.references import by_reference
 from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ NEAR = 1e-9
 """Distance, relative to the outline's extent, below which a point lies on the outline."""
 
 
+@by_reference
 class Polylines(NamedTuple):
     """Sides as flat arrays. Closed ones repeat their first point at the end."""
 

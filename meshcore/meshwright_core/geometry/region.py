@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from meshwright_core.core.arrays import FLAGS, GEOMETRIC, HALF, LOCKED, TWIN
+from meshwright_core.core.references import by_reference
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.outline import Outline, Polylines, place_all
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
@@ -27,6 +28,7 @@ ON_SIDE = 1e-13
 """Distance, relative to the region's size, below which a vertex counts as on its side."""
 
 
+@by_reference
 class Seats(NamedTuple):
     """Positions of the sliding vertices of a region on their sides, and the bounds of each."""
 

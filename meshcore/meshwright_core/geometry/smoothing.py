@@ -91,8 +91,9 @@ def move_to_means(points, stars, order, seats, sides, guarded):
     before = np.zeros(64)
     for v in order:
         begin, end = stars.first[v], stars.first[v + 1]
-        mean[:] = 0.0
-        normal[:] = 0.0
+        for c in range(3):
+            mean[c] = normal[c] = 0.0
+            old[c] = points[v, c]
         size = 0.0
         for i in range(begin, end):
             e, corner = incident[i] // k, incident[i] % k
@@ -104,7 +105,6 @@ def move_to_means(points, stars, order, seats, sides, guarded):
         size /= 2.0 * (end - begin)
         for c in range(3):
             mean[c] = mean[c] / (2.0 * (end - begin)) - points[v, c]
-        old[:] = points[v]
         slides = seats.side[v] >= 0
         start = seats.parameter[v]
         shift = 0.0
@@ -150,7 +150,8 @@ def move_to_means(points, stars, order, seats, sides, guarded):
                 break
             step *= 0.5
         if not fine:
-            points[v, :] = old
+            for c in range(3):
+                points[v, c] = old[c]
             if slides:
                 seats.parameter[v] = start
         elif size > 0.0:

@@ -29,7 +29,7 @@ from meshwright_core.core.arrays import (
     MeshArrays,
     allocate,
 )
-from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.compilation import bare_kernel, bare_shared_kernel
 from meshwright_core.history.journal import begin_step, end_step
 from meshwright_core.operations import (
     chord_collapse,
@@ -216,7 +216,7 @@ _GROWTH = np.array([info.growth or (0, 0) for info in CATALOGUE])
 _NEEDS_TWIN = np.array([info.needs_twin for info in CATALOGUE])
 
 
-@bare_kernel
+@bare_shared_kernel
 def check(m, operation, h, cap):
     """A code of :mod:`meshwright_core.operations.refusals`: may `operation` be applied to h? No
     side effect.
@@ -246,7 +246,7 @@ def check(m, operation, h, cap):
     return chord_collapse.check_chord_collapse(m, h, cap)
 
 
-@bare_kernel
+@bare_shared_kernel
 def rewrite(m, operation, h):
     """Apply an operation that :func:`check` allowed, as one step of the journal."""
     begin_step(m, operation, h)
@@ -271,6 +271,12 @@ def rewrite(m, operation, h):
     else:
         chord_collapse.chord_collapse(m, h)
     end_step(m)
+
+
+def provide_rewrite(arrays: MeshArrays) -> None:
+    """Compile :func:`rewrite` for such arrays, or load it, without applying an operation."""
+    shared: Any = rewrite
+    shared.provide((numba.typeof(arrays), numba.int64, numba.int64))
 
 
 @bare_kernel

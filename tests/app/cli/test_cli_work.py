@@ -118,7 +118,7 @@ def test_improve_keeps_corners_and_the_optimum(run, kind, tmp_path):
 def test_improve_announces_the_compilation(run, capfd, monkeypatch):
     run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
     monkeypatch.setattr(warm_up, "is_warm_on_disk", lambda: False)
-    monkeypatch.setattr(warm_up, "warm", lambda: None)
+    monkeypatch.setattr(warm_up, "warm", lambda tell: None)
     assert cli.main(["improve", "a.vtk", "-o", "a.vtk", "--rollouts", "1"]) == 0
     assert "Preparing the agent" in capfd.readouterr().err
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from qtpy.QtCore import QTimer
+
 from meshwright.assistant.kernel_preparation import KernelPreparation, Stage, load_kernels
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.application.readiness import Readiness
@@ -15,7 +17,9 @@ from meshwright.graphics.theme import Theme
 
 COMPILING = "Compiling operations (first start only)\u2026"
 LOADING = "Loading operations\u2026"
-COMPILING_AGENT = "Compiling the agent (first start only)\u2026"
+COMPILING_AGENT = "Compiling the agent (first start only): {done} of {total}\u2026"
+PROGRESS_MILLISECONDS = 1000
+"""Milliseconds between updates of the progress."""
 
 MakePreparation = Callable[[Callable[[], None]], KernelPreparation]
 
@@ -44,6 +48,9 @@ class KernelWarmup(Controller):
         self._load_kernels = load
         self._dispatch = Dispatcher()
         self._preparation = prepare(self._load)
+        self._progress = QTimer(status)
+        self._progress.setInterval(PROGRESS_MILLISECONDS)
+        self._progress.timeout.connect(self._update)
         self._loading = self._loaded = self._failed = self._closed = False
 
     def start(self) -> None:
@@ -56,6 +63,7 @@ class KernelWarmup(Controller):
         """End compilation; loading that has begun is waited for."""
         super().close()
         self._closed = True
+        self._progress.stop()
         self._preparation.stop()
 
     def _load(self) -> None:
@@ -77,11 +85,21 @@ class KernelWarmup(Controller):
         if self._loaded:
             self._readiness.editing = True
             self._readiness.agent = compiling is Stage.READY
-            self._status.show_preparation(COMPILING_AGENT if compiling is Stage.AGENT else "")
+            self._show_progress(compiling is Stage.AGENT)
         elif compiling is Stage.EDITING and not self._loading:
             self._status.show_preparation(COMPILING)
         else:
             self._status.show_preparation(LOADING)
+
+    def _show_progress(self, compiling_agent: bool) -> None:
+        if not compiling_agent:
+            self._progress.stop()
+            self._status.show_preparation("")
+            return
+        done, total = self._preparation.progress
+        self._status.show_preparation(COMPILING_AGENT.format(done=done, total=total))
+        if not self._progress.isActive():
+            self._progress.start()
 
     def _fail(self, sentence: str) -> None:
         self._failed = True

@@ -1,0 +1,357 @@
+# mypy: disable-error-code="attr-defined,name-defined"
+"""How kernels are compiled and linked, so that a cold start compiles each of them once.
+
+Numba compiles every function that a kernel calls into a library of its own, with machine code and
+a wrapper for Python, and optimises it again in each of its callers. Here there are three forms:
+
+part
+    A kernel that another kernel calls: type inference and unoptimised LLVM IR only. Its arguments
+    are canonical (see :func:`canonical`), so that there is one part for int32 and int64.
+entry point
+    A kernel that Python calls: all parts that it reaches are linked into one LLVM module, made
+    internal, optimised once and cached on disk as machine code.
+shared kernel
+    An entry point that other kernels reach by the name of a symbol, without linking its code. The
+    machine code in the cache holds the name; before it is loaded, what it names is.
+"""
+
+from __future__ import annotations
+
+import copy
+import gc
+import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+import llvmlite.binding as llvm
+from numba.core import compiler, types, typing
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import compile_result
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.environment import lookup_environment
+from numba.core.registry import CPUDispatcher
+from numba.core.runtime import rtsys
+
+from meshwright_core.core.references import declare_read_only
+
+Types = tuple[Any, ...]
+"""Numba types of arguments."""
+
+_SYMBOL = "meshwright."
+_ENVIRONMENT = "_ZN08NumbaEnv"
+
+_shared: dict[str, tuple[str, str, Types]] = {}
+"""Module, name and argument types of shared kernels, by the symbol of their machine code."""
+
+
+def canonical(kind: Any) -> Any:
+    """The type that a kernel's argument has when another kernel calls it: int64 for every integer
+    that fits into it, literals included; any other type as it is.
+    """
+    kind = types.unliteral(kind)
+    if isinstance(kind, types.Integer) and (kind.signed or kind.bitwidth < 64):
+        return types.int64
+    return kind
+
+
+class Part(JITCodeLibrary):
+    """Unoptimised code of one kernel, and the libraries that it calls."""
+
+    def add_ir_module(self, ir_module: Any) -> None:
+        """Add code to this library."""
+        declare_read_only(ir_module)
+        super().add_ir_module(ir_module)
+
+    def finalize(self) -> None:
+        """Nothing is linked or optimised before an entry point asks for it."""
+        self._finalized = True
+
+    def reached(self, found: dict[Any, None]) -> None:
+        """Add this library and all that it calls, directly or not, to ``found``."""
+        if self in found:
+            return
+        found[self] = None
+        for library in self._linking_libraries:
+            if isinstance(library, Part):
+                library.reached(found)
+            else:
+                found[library] = None
+
+
+class EntryPoint(JITCodeLibrary):
+    """Optimised machine code of one kernel with everything that it calls."""
+
+    exported: frozenset[str] = frozenset()
+    """Names of the functions that are reached from outside."""
+
+    def finalize(self) -> None:
+        """Link all parts, optimise them together, and make machine code."""
+        self._codegen._check_llvm_bugs()
+        self._raise_if_finalized()
+        found: dict[Any, None] = {}
+        for library in self._linking_libraries:
+            if isinstance(library, Part):
+                library.reached(found)
+            else:
+                found[library] = None
+        runtime = found.pop(rtsys.library, 0) is None
+        for library in found:
+            self._reload_init.update(library._reload_init)
+            if isinstance(library, Part):
+                self._final_module.link_in(library._final_module, preserve=True)
+            else:
+                self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        if runtime and self._counts_references():
+            self._final_module.link_in(rtsys.library._get_module_for_linking(), preserve=True)
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.name not in self.exported:
+                function.linkage = "internal"
+        self._optimize_final_module()
+        self._final_module.verify()
+        self._finalize_final_module()
+
+    def _counts_references(self) -> bool:
+        return any(
+            function.is_declaration and function.name.startswith("NRT_")
+            for function in self._final_module.functions
+        )
+
+    def needed(self) -> list[tuple[str, str, Types]]:
+        """The shared kernels that the code calls: module, name, argument types."""
+        return [
+            _shared[function.name]
+            for function in self._final_module.functions
+            if function.is_declaration and function.name in _shared
+        ]
+
+    def environments(self) -> list[Any]:
+        """The environments (constants of raised exceptions) that the code refers to."""
+        names = [variable.name for variable in self._final_module.global_variables]
+        found = [lookup_environment(name) for name in names if name.startswith(_ENVIRONMENT)]
+        return [environment for environment in found if environment is not None]
+
+    def machine_code(self) -> tuple[str, bytes, list[str]]:
+        """Name, object file, and the names that it defines."""
+        module = self._final_module
+        defined = [
+            value.name
+            for values in (module.functions, module.global_variables)
+            for value in values
+            if not value.is_declaration
+        ]
+        return self.name, self._get_compiled_object(), defined
+
+    @classmethod
+    def load(cls, codegen: Any, name: str, code: bytes, defined: list[str]) -> EntryPoint:
+        """The library of which :meth:`machine_code` told."""
+        library = cls(codegen, name)
+        library.enable_object_caching()
+        library._set_compiled_object(code)
+        library._finalize_final_module()
+        codegen._engine._defined_symbols.update(defined)
+        return library
+
+
+class _StoredForm(CompileResultCacheImpl):
+    """What of an entry point is written to disk."""
+
+    def reduce(self, result: Any) -> Any:
+        library = result.library
+        description = copy.copy(result.fndesc)
+        description.typemap = description.calltypes = None
+        environments = [each for each in library.environments() if each.can_cache()]
+        return (
+            library.machine_code(), library.needed(), description, result.environment,
+            result.signature, tuple(result.reload_init), environments,
+        )  # fmt: skip
+
+    def rebuild(self, target_context: Any, stored: Any) -> Any:
+        code, needed, description, environment, signature, reload_init, environments = stored
+        for begin in reload_init:
+            begin()
+        for module, name, kinds in needed:
+            getattr(import_module(module), name).provide(kinds)
+        library = EntryPoint.load(target_context.codegen(), *code)
+        entry = target_context.get_executable(library, description, environment)
+        for each in environments:
+            library.codegen.set_env(each.env_name, each)
+        return compile_result(
+            typing_context=target_context.typing_context,
+            target_context=target_context,
+            entry_point=entry,
+            library=library,
+            signature=signature,
+            objectmode=False,
+            lifted=(),
+            fndesc=description,
+            environment=environment,
+            reload_init=list(reload_init),
+            type_annotation="",
+        )
+
+
+class KernelCache(FunctionCache):
+    """Numba's cache of one function with entry points in it."""
+
+    _impl_class = _StoredForm
+
+
+class Kernel(CPUDispatcher):
+    """A function that numba compiles as a part for kernels and as an entry point for Python."""
+
+    def __init__(
+        self, py_func: Callable[..., Any], locals: Any = None, targetoptions: Any = None,
+        pipeline_class: Any = compiler.Compiler,
+    ) -> None:  # fmt: skip
+        super().__init__(py_func, locals, targetoptions, pipeline_class)
+        self._parts: dict[Types, Any] = {}
+        self._keys: dict[Types, object] = {}
+
+    def enable_caching(self) -> None:
+        """Keep entry points on disk; RuntimeError or OSError if there is no folder for them."""
+        self._cache = KernelCache(self.py_func)
+
+    # Called by numba's type inference and code generation, for calls from other kernels
+
+    def get_call_template(self, args: Any, kws: Any) -> tuple[Any, Any, Any, Any]:
+        """A template of one signature, that of the part."""
+        pysig, args = self._compiler.fold_argument_types(args, kws)
+        signature = self._callable(tuple(canonical(kind) for kind in args))
+        name = self.py_func.__name__
+        template = typing.make_concrete_template(
+            f"CallTemplate({name})", key=name, signatures=[signature]
+        )
+        return template, pysig, args, {}
+
+    def get_overload(self, sig: Any) -> object:
+        """The key under which the code generator finds how to call the part."""
+        return self._keys[typing_of(sig)[0]]
+
+    def _callable(self, args: Types) -> Any:
+        """The signature under which kernels call this one with canonical arguments."""
+        part = self._part(args)
+        if args not in self._keys:
+            self._keys[args] = object()
+            self.targetctx.insert_user_function(self._keys[args], part.fndesc, [part.library])
+        return part.signature
+
+    def _part(self, args: Types) -> Any:
+        part = self._parts.get(args)
+        if part is None:
+            flags = compiler.Flags()
+            self.targetdescr.options.parse_as_flags(flags, self.targetoptions)
+            flags.no_cpython_wrapper = flags.no_cfunc_wrapper = flags.no_compile = True
+            part = compiler.compile_extra(
+                self.typingctx, self.targetctx, self.py_func, args, None, flags, self.locals,
+                Part(self.targetctx.codegen(), self.py_func.__qualname__), compiler.Compiler,
+            )  # fmt: skip
+            self._parts[args] = part
+        return part
+
+    # For calls from Python
+
+    def compile(self, sig: Any) -> Any:
+        """Compile an entry point for these arguments, or load it; returns what Python calls."""
+        with global_compiler_lock, _collecting_seldom():
+            args, _ = typing_of(sig)
+            known = self.overloads.get(args)
+            if known is None:
+                known = self._cache.load_overload(args, self.targetctx)
+                if known is None:
+                    self._cache_misses[args] += 1
+                    known = self._linked(self._part(args))
+                    self._cache.save_overload(args, known)
+                else:
+                    self._cache_hits[args] += 1
+                self.targetctx.insert_user_function(known.entry_point, known.fndesc, [])
+                self.add_overload(known)
+            return known.entry_point
+
+    def _linked(self, part: Any) -> Any:
+        """The entry point of a part."""
+        library = EntryPoint(self.targetctx.codegen(), self.py_func.__qualname__)
+        library.enable_object_caching()
+        description = part.fndesc
+        library.exported = frozenset(
+            (description.llvm_func_name, description.llvm_cpython_wrapper_name)
+        )
+        context = part.target_context.subtarget(environment=part.environment, fndesc=description)
+        library.add_linking_library(part.library)
+        with context.push_code_library(library):
+            context.create_cpython_wrapper(
+                library, description, part.environment, part.call_helper, release_gil=True
+            )
+        entry = context.get_executable(library, description, part.environment)
+        for environment in library.environments():
+            library.codegen.set_env(environment.env_name, environment)
+        return compile_result(
+            typing_context=part.typing_context,
+            target_context=part.target_context,
+            entry_point=entry,
+            type_annotation="",
+            library=library,
+            signature=part.signature,
+            objectmode=False,
+            lifted=(),
+            fndesc=description,
+            environment=part.environment,
+            reload_init=list(library._reload_init),
+        )
+
+
+class SharedKernel(Kernel):
+    """A kernel whose code is linked into none of its callers: they call it by its symbol."""
+
+    def _callable(self, args: Types) -> Any:
+        symbol = self.provide(args)
+        result = self.overloads[args]
+        if args not in self._keys:
+            description = copy.copy(result.fndesc)
+            description.mangled_name = symbol
+            self._keys[args] = object()
+            self.targetctx.insert_user_function(self._keys[args], description, [])
+        return result.signature
+
+    def provide(self, args: Types) -> str:
+        """Have the machine code in memory under its symbol, which is returned."""
+        module, name = self.py_func.__module__, self.py_func.__name__
+        kinds = hashlib.sha256(str(args).encode()).hexdigest()[:16]
+        symbol = f"{_SYMBOL}{module}.{name}.{kinds}"
+        if symbol not in _shared:
+            self.compile(args)
+            result = self.overloads[args]
+            address = result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
+            llvm.add_symbol(symbol, address)
+            _shared[symbol] = module, name, args
+        return symbol
+
+
+@contextmanager
+def _collecting_seldom() -> Iterator[None]:
+    """Let Python look for garbage cycles less often: compiling makes many objects and few cycles,
+    and looking takes an eighth of the time.
+    """
+    usual = gc.get_threshold()
+    if usual[0]:
+        gc.set_threshold(max(usual[0], 100_000), *usual[1:])
+    try:
+        yield
+    finally:
+        gc.set_threshold(*usual)
+
+
+def typing_of(sig: Any) -> tuple[Types, Any]:
+    """Argument types, and the return type or None, of a signature or a tuple of types."""
+    if isinstance(sig, tuple):
+        return sig, None
+    return tuple(sig.args), sig.return_type
+
+
+def kernels(module: Any) -> Iterator[Kernel]:
+    """The kernels that are defined in a module."""
+    for value in vars(module).values():
+        if isinstance(value, Kernel) and value.py_func.__module__ == module.__name__:
+            yield value
