@@ -200,9 +200,9 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
     from meshwright.desktop.main_window.startup import application
     from meshwright.desktop.main_window.window import MainWindow
     from meshwright.document.document import Document
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
 
-    compilation.warm()
+    warm_up.warm()
     application()
     Settings().clear()
     windows = []

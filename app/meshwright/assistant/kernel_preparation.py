@@ -152,7 +152,7 @@ class KernelPreparation:
 def is_warm(stage: Stage) -> bool:
     """Whether a stage was compiled on this machine before, by these very sources."""
     if stage is Stage.EDITING:
-        from meshwright_core.core.compilation import is_warm_on_disk
+        from meshwright_core.warm_up import is_warm_on_disk
     else:
         from meshwright_agent.warm_up import is_warm_on_disk
     return is_warm_on_disk()
@@ -160,9 +160,9 @@ def is_warm(stage: Stage) -> bool:
 
 def load_kernels() -> None:
     """Load the kernels of the editor from the cache; compiles those that are missing."""
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
 
-    compilation.warm()
+    warm_up.warm()
 
 
 def _command(stage: Stage) -> list[str]:

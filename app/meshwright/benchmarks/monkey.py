@@ -256,9 +256,9 @@ def _play(seed: int, events: int) -> dict[str, Any]:
     from meshwright.desktop.main_window.startup import application
     from meshwright.desktop.main_window.window import MainWindow
     from meshwright.document.document import Document
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
 
-    compilation.warm()
+    warm_up.warm()
     exceptions: list[str] = []
 
     def note(kind: Any, value: Any, trace: Any) -> None:

@@ -4,14 +4,14 @@ import pytest
 
 from meshwright.benchmarks import desktop
 from meshwright.benchmarks.desktop.display import display
-from meshwright_core.core import compilation
+from meshwright_core import warm_up
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.mark.needs("window")
 def test_first_paint_needs_neither_torch_nor_kernels():
-    compilation.warm()
+    warm_up.warm()
     with display() as environment:
         started = desktop._probe("start", environment)
     assert not started["torch_at_first_paint"]

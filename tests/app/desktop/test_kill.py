@@ -30,10 +30,10 @@ from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.main_window.window import MainWindow
 from meshwright.document.document import Document
 from meshwright.document.history import YOU
-from meshwright_core.core import compilation
+from meshwright_core import warm_up
 from meshwright_core.domains import gallery, meshing
 
-compilation.warm()
+warm_up.warm()
 folder = Path({folder!r})
 app = application()
 document = Document(meshing.mesh_domain(gallery.shape("star"), "quad"), "star")

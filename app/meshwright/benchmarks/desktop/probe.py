@@ -112,9 +112,9 @@ def _open(mesh: Any) -> tuple[Any, Any]:
     from meshwright.desktop.main_window.startup import application
     from meshwright.desktop.main_window.window import MainWindow
     from meshwright.document.document import Document
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
 
-    compilation.warm()
+    warm_up.warm()
     app = application()
     window = MainWindow(Document(mesh), ready=True)
     window.resize(1280, 800)
@@ -127,11 +127,11 @@ def _open(mesh: Any) -> tuple[Any, Any]:
 
 def scrambled(size: int, seed: int, every: int = SCRAMBLES) -> Any:
     """A square grid of ``size`` quads after random flips, smoothed."""
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
     from meshwright_core.domains import meshing
     from meshwright_core.geometry import smoothing
 
-    compilation.warm()
+    warm_up.warm()
     rng = np.random.default_rng(seed)
     mesh = meshing.grid("quad", size)
     for h in rng.integers(0, 4 * mesh.n_elements, size // every).tolist():
