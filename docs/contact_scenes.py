@@ -27,10 +27,10 @@ def empty() -> Image.Image:
 def tour() -> Image.Image:
     """The second step of the tour."""
     stage = Stage(shape("star"), "star", SMALL, "light")
-    stage.window.guide.show_tour()
+    stage.window.help.show_tour()
     stage.rest(0.3)
     stage.point_at(allowed(stage.window.document.mesh, "flip_left")[0])
-    callout = stage.window.guide.tour.callout
+    callout = stage.window.help.tour.callout
     QTest.mouseClick(callout.next, Qt.MouseButton.LeftButton)
     stage.rest(0.3)
     return shot(stage)
@@ -228,7 +228,7 @@ def quality() -> Image.Image:
         place = mesh.points[[vertex]] + (0.09, 0.05, 0.0)
         document.move(np.array([vertex]), place)
     stage.rest(1.2)
-    stage.window.reveal(stage.window.dashboard.quality)
+    stage.window.reveal(stage.window.quality.quality)
     stage.rest(0.6)
     return shot(stage)
 
@@ -320,8 +320,7 @@ def scrambled(mesh: HalfEdgeMesh, seed: int, count: int = 10) -> HalfEdgeMesh:
 def use_policy(stage: Stage) -> None:
     """Wait until the agent is ready."""
     stage.window.assistant.policy = shipped(stage.window.document.kind)[0]
-    stage.window.agent_ready = True
-    stage.window.refresh()
+    stage.window.readiness.agent = True
 
 
 def search(stage: Stage, seconds: float) -> None:
@@ -371,7 +370,7 @@ SCENES: dict[str, tuple[str, Play]] = {
     "palette": ("The command palette", palette),
     "export": (
         "Export of the film",
-        partial(dialog, lambda stage: stage.window.film.exporting.ask, "light"),
+        partial(dialog, lambda stage: stage.window.playback.exporting.ask, "light"),
     ),
     "preferences": (
         "Preferences",
@@ -379,6 +378,6 @@ SCENES: dict[str, tuple[str, Play]] = {
     ),
     "about": (
         "About, with all licences",
-        partial(dialog, lambda stage: stage.window.guide.show_about, "light"),
+        partial(dialog, lambda stage: stage.window.help.show_about, "light"),
     ),
 }

@@ -16,7 +16,7 @@ from PIL import Image, ImageDraw
 from qtpy.QtWidgets import QApplication
 
 from meshwright.desktop.main_window.startup import application
-from meshwright_core.core import compilation
+from meshwright_core import warm_up
 
 IMAGES = Path(__file__).parent / "images"
 IN_README = {
@@ -32,7 +32,7 @@ def main(folder: Path, names: list[str]) -> None:
     """Make all pictures or those named, then the sheet."""
     folder.mkdir(parents=True, exist_ok=True)
     application()
-    compilation.warm()
+    warm_up.warm()
     QApplication.setQuitOnLastWindowClosed(False)
     sheet = []
     for name, (caption, play) in SCENES.items():

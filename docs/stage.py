@@ -42,7 +42,7 @@ class Stage:
         self.window.move(0, 0)
         self.window.show()
         self.window.activateWindow()
-        self.until(lambda: self.window.canvas.plotter is not None)
+        self.until(lambda: self.window.canvas.built)
         self.rest(0.6)
 
     @property

@@ -5,13 +5,20 @@
 
 from __future__ import annotations
 
+import shutil
+import time
+from pathlib import Path
+
 import numpy as np
 
 from meshwright_core.analysis.cleanable_lines import cleanable_lines
-from meshwright_core.core.compilation import warm
+from meshwright_core.core.compilation import cache_folder, cache_root
 from meshwright_core.geometry.sides import Sides
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
+
+_KEPT_SECONDS = 30 * 24 * 3600
+_WARM_MARK = "warm"
 
 
 def exercise() -> None:
@@ -35,6 +42,30 @@ def exercise() -> None:
     quads.redo()
     cleanable_lines(quads)
     quads.clean_all()
+
+
+def is_warm_on_disk() -> bool:
+    """Whether :func:`warm` has run to its end for these very sources on this machine."""
+    return (cache_folder() / _WARM_MARK).exists()
+
+
+def warm() -> None:
+    """Compile, or load from the cache, every kernel that editing needs. Blocks; thread-safe."""
+    exercise()
+    try:
+        folder = cache_folder()
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / _WARM_MARK).touch()
+        _remove_stale(cache_root())
+    except OSError:
+        return  # a read-only home: the kernels are in memory, which is what matters now
+
+
+def _remove_stale(root: Path) -> None:
+    deadline = time.time() - _KEPT_SECONDS
+    for folder in root.iterdir():
+        if folder.is_dir() and folder.stat().st_mtime < deadline:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 if __name__ == "__main__":

@@ -184,7 +184,7 @@ def _own_settings(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 def _without_question(window: Any) -> None:
     """A test that ends leaves nobody there to answer."""
-    if window.files.guard is not None and window.isVisible():
+    if window.isVisible():
         window.files.leave()
 
 
@@ -200,9 +200,9 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
     from meshwright.desktop.main_window.startup import application
     from meshwright.desktop.main_window.window import MainWindow
     from meshwright.document.document import Document
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
 
-    compilation.warm()
+    warm_up.warm()
     application()
     Settings().clear()
     windows = []
@@ -234,6 +234,6 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
         window.close()
         assert not [t for t in window.findChildren(QTimer) if t.isActive()]
     for thread in threading.enumerate():
-        if thread.name.startswith(("assistant", "warmup", "quality")):
+        if thread.name.startswith(("assistant", "kernel-preparation", "quality")):
             thread.join(10)
             assert not thread.is_alive()

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.notebook.kernel_warmup import Preparation, Stage
+from meshwright.assistant.kernel_preparation import KernelPreparation, Stage
 from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet, SlotArrays
 from meshwright.notebook.session import Session
 from meshwright_core import HalfEdgeMesh
@@ -143,9 +143,9 @@ def script_agent(monkeypatch: Any, greedy: Any) -> None:
     )
 
 
-def _ready() -> Preparation:
+def _ready() -> KernelPreparation:
     """No compilation in another process: tests compile in their own."""
-    preparation = Preparation()
+    preparation = KernelPreparation()
     preparation._stage = Stage.READY
     return preparation
 

@@ -159,7 +159,7 @@ class Monkey:
         from qtpy.QtTest import QTest
 
         rng = self.rng
-        if target is self.window and rng.random() < 0.7 and self.window.canvas.plotter is not None:
+        if target is self.window and rng.random() < 0.7 and self.window.canvas.built:
             widget = self.window.canvas.plotter
         else:
             at = QPoint(*(int(rng.integers(max(n, 1))) for n in (target.width(), target.height())))
@@ -218,7 +218,7 @@ class Monkey:
         from meshwright_core.operations.catalogue import of_kind
 
         canvas, mesh = self.window.canvas, self.window.document.mesh
-        if canvas.plotter is None or not canvas.isVisible():
+        if not canvas.built or not canvas.isVisible():
             return
         place = mesh.points[self._pick(mesh.vertices())]
         x, y = canvas.viewport.to_screen(place) + self.rng.normal(0.0, 12.0, 2)
@@ -256,9 +256,9 @@ def _play(seed: int, events: int) -> dict[str, Any]:
     from meshwright.desktop.main_window.startup import application
     from meshwright.desktop.main_window.window import MainWindow
     from meshwright.document.document import Document
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
 
-    compilation.warm()
+    warm_up.warm()
     exceptions: list[str] = []
 
     def note(kind: Any, value: Any, trace: Any) -> None:

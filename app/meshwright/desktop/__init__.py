@@ -15,9 +15,9 @@ def run(
     """Open the window and return its exit code when it is closed.
 
     ``source`` is a document, the name of a gallery shape, or a mesh file; shapes are meshed with
-    elements of ``kind`` ("tri" or "quad"). ``demo`` takes the star if there is no source, and gets
-    the agent ready. ``level`` is played in place of a source. Raises MeshError or OSError for a
-    source that cannot be had, and KeyboardInterrupt after the window was closed by Ctrl-C in the
+    elements of ``kind`` ("tri" or "quad"). ``demo`` loads the policy at once, and uses the star
+    where there is no source. ``level`` is played instead of a source. Raises MeshError or OSError
+    if the source cannot be read, and KeyboardInterrupt after the window was closed by Ctrl-C in the
     terminal.
     """
     from meshwright.desktop.application.sigint import on_interrupt
@@ -25,7 +25,7 @@ def run(
 
     app = application()
     window = open_window(source, kind, demo, guided=True, level=level)
-    with on_interrupt(window.files.leave):
+    with on_interrupt(window.leave):
         code = int(app.exec())
-    window.warmup.stop()
+    window.stop_preparing()
     return code

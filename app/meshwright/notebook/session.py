@@ -8,9 +8,10 @@ from typing import Any, ClassVar, TypeVar
 from weakref import WeakValueDictionary, finalize
 
 from meshwright.assistant.assistant import Assistant
+from meshwright.assistant.kernel_preparation import Stage
 from meshwright.document.document import NO_MESH, Document
 from meshwright.notebook import kernel_warmup
-from meshwright.notebook.kernel_warmup import DONE, WAITS, Stage
+from meshwright.notebook.kernel_warmup import DONE, WAITS
 from meshwright.notebook.protocol.agent_bridge import AgentBridge
 from meshwright.notebook.protocol.broadcaster import Broadcaster, Port
 from meshwright.notebook.protocol.mesh_sync import Packet

@@ -10,9 +10,7 @@ from __future__ import annotations
 import hashlib
 import importlib
 import os
-import shutil
 import sys
-import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -25,9 +23,6 @@ from numba.core import config as numba_config
 from meshwright_core.core.linking import Kernel, SharedKernel
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-_KEPT_SECONDS = 30 * 24 * 3600
-_WARM_MARK = "warm"
 
 
 @cache
@@ -115,29 +110,3 @@ def _compiled(function: F, counts_references: bool, form: type[Kernel] = Kernel)
 def entry_points_on_disk(package: str = "meshwright_core") -> int:
     """How many kernels of the package are in its cache, in one form at least."""
     return sum(1 for _ in cache_folder(package).rglob("*.nbi"))
-
-
-def is_warm_on_disk() -> bool:
-    """Whether :func:`warm` has run to its end for these very sources on this machine."""
-    return (cache_folder() / _WARM_MARK).exists()
-
-
-def warm() -> None:
-    """Compile, or load from the cache, every kernel that editing needs. Blocks; thread-safe."""
-    from meshwright_core import warm_up
-
-    warm_up.exercise()
-    try:
-        folder = cache_folder()
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / _WARM_MARK).touch()
-        _remove_stale(cache_root())
-    except OSError:
-        return  # a read-only home: the kernels are in memory, which is what matters now
-
-
-def _remove_stale(root: Path) -> None:
-    deadline = time.time() - _KEPT_SECONDS
-    for folder in root.iterdir():
-        if folder.is_dir() and folder.stat().st_mtime < deadline:
-            shutil.rmtree(folder, ignore_errors=True)

@@ -92,18 +92,24 @@ def _unbox(typ: Referenced, obj: Any, c: Any) -> NativeValue:
     place = cgutils.alloca_once(c.builder, model.struct)
     failed = cgutils.false_bit
     cleanups = []
+    held = []
     for i, kind in enumerate(typ.types):
         field = c.unbox(kind, c.pyapi.tuple_getitem(obj, i))
         c.builder.store(field.value, model.place(c.builder, place, i))
         failed = c.builder.or_(failed, field.is_error)
         if field.cleanup is not None:
             cleanups.append(field.cleanup)
+        held.append((kind, field.value))
 
     def clean_up() -> None:
         for cleanup in reversed(cleanups):
             cleanup()
+        # numba releases what an argument holds by its data model, which is only a pointer here
+        if c.context.enable_nrt:
+            for kind, value in held:
+                c.context.nrt.decref(c.builder, kind, value)
 
-    return NativeValue(place, is_error=failed, cleanup=clean_up if cleanups else None)
+    return NativeValue(place, is_error=failed, cleanup=clean_up)
 
 
 class _Maker(types.NamedTupleClass):

@@ -316,7 +316,7 @@ def test_failed_hints_are_reported(make, desk, star):
     assistant = make(Document(star), ask=lambda *_: ())
     assistant.hint()
     assert hinted(assistant, desk) == ()
-    assert "no operation" in assistant.heard[-1]
+    assert "no allowed operation" in assistant.heard[-1]
 
 
 def test_the_insight_shows_the_next_decision(make, desk, star):

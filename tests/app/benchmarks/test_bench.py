@@ -52,6 +52,6 @@ def test_parts_suite_prints_a_table(capsys):
 
 def test_seconds_option_is_refused_by_suites_without_search(capsys):
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--seconds", "2"]) == 2
-    assert "takes no search time" in capsys.readouterr().err
+    assert "has no search time" in capsys.readouterr().err
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--meshes", "2"]) == 2
-    assert "has meshes of its own" in capsys.readouterr().err
+    assert "has fixed meshes" in capsys.readouterr().err

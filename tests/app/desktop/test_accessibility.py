@@ -1,4 +1,4 @@
-"""Whoever opens the window for the first time, without a mouse or without eyes, finds the way."""
+"""Accessible names, tooltips and keyboard focus of all controls; help at the first start."""
 
 import pytest
 from driving import WAIT
@@ -24,7 +24,7 @@ CONTROLS = (QAbstractButton, QAbstractSlider, QAbstractSpinBox, QComboBox, QLine
 
 
 def controls(parent: QObject) -> list[QWidget]:
-    """What a person can use, without the parts that Qt makes for itself."""
+    """The controls of a widget, without Qt's internal ones."""
     return [
         found
         for kind in CONTROLS
@@ -63,7 +63,7 @@ def test_every_control_of_the_window_has_a_name_and_a_tooltip(open_window, star,
 
 
 @pytest.mark.parametrize("page", [PreferencesDialog, AboutDialog])
-def test_every_control_of_the_dialogs_has_them_too(qtbot, open_window, star, page):
+def test_every_control_of_the_dialogs_has_a_name_and_a_tooltip(qtbot, open_window, star, page):
     window = open_window(star)
     dialog = page(window.settings, window) if page is PreferencesDialog else page(window)
     qtbot.addWidget(dialog)
@@ -72,7 +72,7 @@ def test_every_control_of_the_dialogs_has_them_too(qtbot, open_window, star, pag
     assert [told(control) for control in found if not control.toolTip()] == []
 
 
-def test_every_action_says_what_it_does():
+def test_every_action_has_a_tooltip():
     for action in registry.ACTIONS:
         assert action.title and action.tooltip and action.menu, action.id
         assert not action.tooltip.endswith("."), action.id
@@ -80,24 +80,24 @@ def test_every_action_says_what_it_does():
         assert len(action.tooltip) < 100, action.id
 
 
-def test_all_that_is_reached_by_the_mouse_is_reached_by_tab(open_window, star):
+def test_every_control_can_be_focused_with_tab(open_window, star):
     window = open_window(star)
     for button in controls(window.sidebar):
         assert button.focusPolicy() & Qt.FocusPolicy.TabFocus, where(button)
 
 
-def test_a_persons_own_window_shows_the_tour_once(qtbot, open_window, star, tmp_path, monkeypatch):
+def test_guided_window_shows_the_tour_once(qtbot, open_window, star, tmp_path, monkeypatch):
     monkeypatch.setenv("MESHWRIGHT_STATE_DIR", str(tmp_path))
-    open_window(star).settings.clear()  # tests have settings of their own
+    open_window(star).settings.clear()  # tests use separate settings
     for expected in (True, False):
         window = open_a_window(Document(star.copy(), "star"), guided=True)
         qtbot.addWidget(window)
-        qtbot.waitUntil(lambda window=window: window.canvas.plotter is not None, timeout=WAIT)
-        assert (window.guide.tour is not None) == expected
+        qtbot.waitUntil(lambda window=window: window.canvas.built, timeout=WAIT)
+        assert (window.help.tour is not None) == expected
         window.close()
 
 
-def test_recent_files_are_offered_where_there_is_no_mesh(qtbot, open_window, star, tmp_path):
+def test_empty_page_lists_recent_files(qtbot, open_window, star, tmp_path):
     path = tmp_path / "part.vtk"
     mesh_files.write(path, star)
     window = open_window()

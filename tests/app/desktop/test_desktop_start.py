@@ -1,17 +1,17 @@
-"""What the window needs before it is there, measured in a process of its own."""
+"""What is imported and compiled before the first paint, measured in a separate process."""
 
 import pytest
 
 from meshwright.benchmarks import desktop
 from meshwright.benchmarks.desktop.display import display
-from meshwright_core.core import compilation
+from meshwright_core import warm_up
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.mark.needs("window")
-def test_the_window_is_there_before_torch_and_kernels():
-    compilation.warm()
+def test_first_paint_needs_neither_torch_nor_kernels():
+    warm_up.warm()
     with display() as environment:
         started = desktop._probe("start", environment)
     assert not started["torch_at_first_paint"]

@@ -1,4 +1,4 @@
-"""Files in the window: open, save, recent, drop, projects; unsaved and lost work is asked about."""
+"""Files in the window: open, save, recent, drop, projects, unsaved work and recovery."""
 
 import numpy as np
 import pytest
@@ -7,8 +7,8 @@ from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
 from qtpy.QtWidgets import QApplication, QFileDialog
 
-from meshwright.desktop.files.recovery_dialog import LostWork
-from meshwright.desktop.files.save_question import Question
+from meshwright.desktop.files.recovery_dialog import RecoveryDialog
+from meshwright.desktop.files.save_question import QuestionDialog
 from meshwright.document.document import Document
 from meshwright.document.storage import recovery
 from meshwright.document.storage.autosave import Autosave
@@ -19,7 +19,7 @@ CONTROL = Qt.KeyboardModifier.ControlModifier
 
 @pytest.fixture
 def watched(open_window, tmp_path):
-    """Opens a window that guards its work, in a folder of the test."""
+    """Opens a window with autosave in a folder of the test."""
 
     def build(mesh: HalfEdgeMesh | None = None, **options):
         window = open_window(mesh, **options)
@@ -30,7 +30,7 @@ def watched(open_window, tmp_path):
 
 
 def edit(qtbot, window) -> None:
-    """One operation by the keyboard."""
+    """Apply one operation by its key."""
     mesh = window.document.mesh
     halfedge = next(h for h in range(4 * mesh.n_elements) if mesh.check("flip_left", h))
     point_at(qtbot, window, halfedge)
@@ -40,7 +40,9 @@ def edit(qtbot, window) -> None:
 
 
 def when_shown(qtbot, kind, act) -> list:
-    """Call ``act(dialog)`` as soon as a dialog of this kind is there; the dialogs met so far."""
+    """Call ``act(dialog)`` as soon as a dialog of this class opens; returns the list of opened
+    dialogs.
+    """
     met = []
 
     def look() -> None:
@@ -59,19 +61,19 @@ def when_shown(qtbot, kind, act) -> list:
 
 
 def answering(qtbot, answer: str) -> list:
-    """Press that button of the next question; nothing is Escape."""
+    """Click a button of the next question; an empty answer presses Escape."""
 
-    def act(dialog: Question) -> None:
+    def act(dialog: QuestionDialog) -> None:
         if answer:
             qtbot.mouseClick(dialog.buttons[answer], Qt.MouseButton.LeftButton)
         else:
             qtbot.keyClick(dialog, Qt.Key.Key_Escape)
 
-    return when_shown(qtbot, Question, act)
+    return when_shown(qtbot, QuestionDialog, act)
 
 
 @pytest.mark.parametrize("answer", ["drop", "save", "cancel", ""])
-def test_closing_asks_for_what_is_not_saved(qtbot, watched, star, tmp_path, answer):
+def test_closing_asks_about_unsaved_work(qtbot, watched, star, tmp_path, answer):
     window = watched(star)
     window.document.save(tmp_path / "star.vtk")
     edit(qtbot, window)
@@ -88,7 +90,7 @@ def test_closing_asks_for_what_is_not_saved(qtbot, watched, star, tmp_path, answ
     assert (fresh.score == window.document.score) == (answer == "save")
 
 
-def test_nothing_is_asked_when_there_is_nothing_to_lose(qtbot, watched, star):
+def test_closing_asks_nothing_without_unsaved_work(qtbot, watched, star):
     window = watched(star)
     edit(qtbot, window)
     press(qtbot, window, Qt.Key.Key_Z, CONTROL)
@@ -96,7 +98,7 @@ def test_nothing_is_asked_when_there_is_nothing_to_lose(qtbot, watched, star):
     assert not window.isVisible()
 
 
-def test_saving_as_a_project_keeps_everything(qtbot, watched, star, tmp_path, monkeypatch):
+def test_project_stores_history_view_and_policy(qtbot, watched, star, tmp_path, monkeypatch):
     window = watched(star)
     edit(qtbot, window)
     edit(qtbot, window)
@@ -112,7 +114,7 @@ def test_saving_as_a_project_keeps_everything(qtbot, watched, star, tmp_path, mo
     press(qtbot, window, Qt.Key.Key_S, CONTROL)
     assert asked[0][0] == "star.vtk"
     assert (tmp_path / "work.meshwright").exists()
-    assert window.said.text() == "Saved work.meshwright."
+    assert window.status.message == "Saved work.meshwright."
     assert not window.isWindowModified()
     assert window.files.guard.autosave.path is None
     assert window.windowTitle().startswith("work")
@@ -128,17 +130,17 @@ def test_saving_as_a_project_keeps_everything(qtbot, watched, star, tmp_path, mo
     assert not other.isWindowModified()
 
 
-def test_what_a_format_leaves_out_is_said(qtbot, open_window, star, triangles, tmp_path):
+def test_saving_reports_what_the_format_does_not_store(
+    qtbot, open_window, star, triangles, tmp_path
+):
     window = open_window(triangles)
     window.files._save(str(tmp_path / "a.stl"))
-    assert "keep no corners" in window.said.text()
+    assert "store no corners" in window.status.message
     window.files._save(str(tmp_path / "a.vtk"))
-    assert window.said.text() == "Saved a.vtk."
+    assert window.status.message == "Saved a.vtk."
 
 
-def test_a_file_that_cannot_be_written_or_read_is_one_sentence(
-    qtbot, open_window, star, tmp_path, monkeypatch
-):
+def test_file_errors_are_reported_in_one_sentence(qtbot, open_window, star, tmp_path, monkeypatch):
     window = open_window(star)
     place = str(tmp_path / "nowhere" / "a.vtk")
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (place, "Meshes (*.vtk)"))
@@ -182,7 +184,7 @@ def dragged(path) -> QMimeData:
 
 
 def send(window, kind, data) -> bool:
-    """A drag event as the desktop sends it; whether it is taken."""
+    """Send a drag event; returns whether it was accepted."""
     actions = Qt.DropAction.CopyAction
     buttons, keys = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
     where = QPoint(300, 300) if kind is QDragEnterEvent else QPointF(300, 300)
@@ -192,7 +194,7 @@ def send(window, kind, data) -> bool:
     return event.isAccepted()
 
 
-def test_a_file_is_dropped(qtbot, open_window, star, tmp_path):
+def test_dropped_file_is_opened(qtbot, open_window, star, tmp_path):
     Document(star.copy(), "star").save(tmp_path / "dropped.vtk")
     window = open_window()
     assert not window.canvas.plotter.acceptDrops()
@@ -213,7 +215,7 @@ def test_a_file_is_dropped(qtbot, open_window, star, tmp_path):
 
 
 def left_behind(folder, mesh, name="lost", seeds=(1, 2, 3)) -> Document:
-    """What a process that died leaves."""
+    """Write the state of a process that was killed."""
     from document_edits import wander
 
     document = Document(mesh, name)
@@ -224,21 +226,21 @@ def left_behind(folder, mesh, name="lost", seeds=(1, 2, 3)) -> Document:
     return document
 
 
-def test_lost_work_is_offered_and_recovered(qtbot, watched, star, triangles, tmp_path):
+def test_unsaved_work_of_a_dead_process_is_recovered(qtbot, watched, star, triangles, tmp_path):
     lost = left_behind(tmp_path / "state", triangles)
     window = watched(star)
     met = when_shown(
         qtbot,
-        LostWork,
+        RecoveryDialog,
         lambda dialog: qtbot.mouseClick(dialog.cards[0].recover, Qt.MouseButton.LeftButton),
     )
     window.files.guard.offer()
     assert len(met) == 1
     assert np.array_equal(window.document.mesh.points, lost.mesh.points)
     assert window.document.history.cursor == 3
-    assert window.said.text() == "Recovered lost, 3 steps."
+    assert window.status.message == "Recovered lost, 3 steps."
     assert window.isWindowModified()
-    # it is still kept, now by this window, until it is saved
+    # this window keeps it until it is saved
     (journal,) = (tmp_path / "state").iterdir()
     assert journal == window.files.guard.autosave.path
     window.activateWindow()  # there is no window manager to do it
@@ -250,26 +252,26 @@ def test_lost_work_is_offered_and_recovered(qtbot, watched, star, triangles, tmp
     again.release()
 
 
-def test_lost_work_is_discarded_by_two_clicks_or_left_for_later(qtbot, watched, star, tmp_path):
+def test_unsaved_work_is_discarded_by_two_clicks_or_kept(qtbot, watched, star, tmp_path):
     folder = tmp_path / "state"
     left_behind(folder, star.copy(), "first")
     left_behind(folder, star.copy(), "second", (4,))
     window = watched(star)
     said = []
 
-    def discard_one(dialog: LostWork) -> None:
+    def discard_one(dialog: RecoveryDialog) -> None:
         said.extend(
             (card.title.text(), card.story.text(), card.place.text()) for card in dialog.cards
         )
         card = dialog.cards[0]
         qtbot.mouseClick(card.discard, Qt.MouseButton.LeftButton)
         assert len(list(folder.iterdir())) == 2
-        assert card.discard.text() == "Delete for good?"
+        assert card.discard.text() == "Delete permanently?"
         qtbot.mouseClick(card.discard, Qt.MouseButton.LeftButton)
         assert len(list(folder.iterdir())) == 1
         qtbot.mouseClick(dialog.later, Qt.MouseButton.LeftButton)
 
-    met = when_shown(qtbot, LostWork, discard_one)
+    met = when_shown(qtbot, RecoveryDialog, discard_one)
     window.actions_by_id["recover"].trigger()
     assert len(met) == 1
     assert {title for title, _, _ in said} == {"first", "second"}
@@ -279,16 +281,16 @@ def test_lost_work_is_discarded_by_two_clicks_or_left_for_later(qtbot, watched, 
     (left,) = recovery.lost(folder)
     left.discard()
     window.actions_by_id["recover"].trigger()
-    assert window.said.text().startswith("There is no lost work")
+    assert window.status.message.startswith("There is no unsaved work")
 
 
-def test_recovering_asks_for_what_is_here(qtbot, watched, star, tmp_path):
+def test_recovering_asks_about_the_current_unsaved_mesh(qtbot, watched, star, tmp_path):
     left_behind(tmp_path / "state", star.copy())
     window = watched(star)
     edit(qtbot, window)
     when_shown(
         qtbot,
-        LostWork,
+        RecoveryDialog,
         lambda dialog: qtbot.mouseClick(dialog.cards[0].recover, Qt.MouseButton.LeftButton),
     )
     met = answering(qtbot, "cancel")
@@ -299,7 +301,7 @@ def test_recovering_asks_for_what_is_here(qtbot, watched, star, tmp_path):
     left.release()
 
 
-def test_autosave_follows_the_setting_and_tells_when_it_cannot(qtbot, watched, star, tmp_path):
+def test_autosave_follows_the_setting_and_reports_failure(qtbot, watched, star, tmp_path):
     (tmp_path / "state").write_text("in the way")
     window = watched(star)
     edit(qtbot, window)
@@ -309,10 +311,10 @@ def test_autosave_follows_the_setting_and_tells_when_it_cannot(qtbot, watched, s
     assert not window.files.guard.autosave.enabled
 
 
-def test_ctrl_c_closes_without_a_question_and_loses_nothing(qtbot, watched, star, tmp_path):
+def test_ctrl_c_closes_without_a_question_and_keeps_the_work(qtbot, watched, star, tmp_path):
     window = watched(star)
     edit(qtbot, window)
-    met = when_shown(qtbot, Question, lambda dialog: window.files.leave())
+    met = when_shown(qtbot, QuestionDialog, lambda dialog: window.files.leave())
     assert window.close()
     assert len(met) == 1
     assert not window.isVisible()

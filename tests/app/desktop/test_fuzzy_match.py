@@ -1,4 +1,4 @@
-"""Typed letters find what a person means."""
+"""Fuzzy matching of typed letters."""
 
 import pytest
 
@@ -20,12 +20,12 @@ TITLES = ["Flip left", "Flip right", "Fit", "Light or dark", "Save as\u2026", "S
         ("smth", "Smooth"),
     ],
 )
-def test_the_best_match_is_what_is_meant(query, meant):
+def test_best_match(query, meant):
     found = {title: match(query, title) for title in TITLES}
     assert max((m.score, title) for title, m in found.items() if m)[1] == meant
 
 
-def test_places_are_the_letters_that_were_typed():
+def test_places_are_the_matched_letters():
     assert match("fr", "Flip right").places == (0, 5)
     assert (
         match("st", "Step").score > match("st", "Show the tour").score > match("st", "Best").score

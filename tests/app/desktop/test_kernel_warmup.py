@@ -1,44 +1,117 @@
-"""Getting the kernels ready behind the window, and a window that is closed before they are."""
+"""Preparing the kernels behind the window: stages, failure, and a window that closes meanwhile."""
 
-from meshwright.desktop.application.kernel_warmup import Warmup
+import sys
+import threading
+
+import pytest
+from driving import WAIT
+
+from meshwright.assistant.kernel_preparation import KernelPreparation, Stage
+from meshwright.desktop.application.kernel_warmup import (
+    COMPILING,
+    LOADING,
+    KernelWarmup,
+)
+from meshwright.desktop.application.readiness import Readiness
+from meshwright.desktop.widgets.basic import NoticeBar
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.graphics.theme import theme
 
 
-def test_what_was_loaded_when_the_window_closed_is_told_to_nobody(qtbot, monkeypatch):
-    monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.compilation.is_warm_on_disk", lambda: True
-    )
-    monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.compilation.warm", lambda: None
-    )
-    warmup, told = Warmup(), []
-    warmup.ready.connect(lambda: told.append("ready"))
-    warmup.start()
-    warmup.stop()  # the thread has ended, and its report waits in the queue
+class Prepared:
+    """A warm-up whose compilations end when files appear in ``folder``."""
+
+    def __init__(self, qtbot, folder, cold=(), load=lambda: None):
+        self.folder, self.cold = folder, list(cold)
+        self.readiness, self.status = Readiness(), StatusBar()
+        self.notice = NoticeBar(theme("light"))
+        for widget in (self.status, self.notice):
+            qtbot.addWidget(widget)
+        self.warmup = KernelWarmup(
+            self.readiness, self.status, self.notice, theme("light"), self._prepare, load
+        )
+
+    def _prepare(self, load) -> KernelPreparation:
+        return KernelPreparation(lambda stage: stage not in self.cold, load, self._command)
+
+    def _command(self, stage: Stage) -> list[str]:
+        code = "import os, sys, time\nwhile not os.path.exists(sys.argv[1]): time.sleep(0.01)"
+        return [sys.executable, "-c", code, str(self.folder / stage)]
+
+    def finish(self, stage: Stage) -> None:
+        self.cold.remove(stage)
+        (self.folder / stage).touch()
+
+
+@pytest.fixture
+def prepared(qtbot, tmp_path):
+    made = []
+
+    def build(*arguments, **named) -> Prepared:
+        made.append(Prepared(qtbot, tmp_path, *arguments, **named))
+        return made[-1]
+
+    yield build
+    for one in made:
+        one.warmup.close()
+
+
+def test_each_stage_is_shown_and_enables_what_it_compiled(qtbot, prepared):
+    state = prepared([Stage.EDITING, Stage.AGENT])
+    state.warmup.start()
+    assert state.status.preparation == COMPILING
+    assert not state.readiness.editing
+    state.finish(Stage.EDITING)
+    qtbot.waitUntil(lambda: "agent" in state.status.preparation, timeout=WAIT)
+    assert state.readiness.editing
+    assert not state.readiness.agent
+    state.finish(Stage.AGENT)
+    qtbot.waitUntil(lambda: state.readiness.agent, timeout=WAIT)
+    assert state.status.preparation == ""
+
+
+def test_compiled_kernels_are_only_loaded(qtbot, prepared):
+    state = prepared()
+    state.warmup.start()
+    assert state.status.preparation == LOADING
+    qtbot.waitUntil(lambda: state.readiness.agent, timeout=WAIT)
+    assert state.readiness.editing
+    assert state.status.preparation == ""
+
+
+def test_nothing_is_reported_after_closing(qtbot, prepared):
+    closing = threading.Event()
+    state = prepared(load=lambda: closing.wait(WAIT / 1000) and None)
+    state.warmup.start()
+    closing.set()
+    state.warmup.close()  # the thread has ended, and its report waits in the queue
     qtbot.wait(20)
-    assert told == []
-    assert not warmup.done
+    assert not state.readiness.editing
 
 
-def test_a_window_that_has_closed_starts_nothing(qtbot, monkeypatch):
-    monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.compilation.is_warm_on_disk", lambda: True
-    )
-    warmup = Warmup()
-    warmup.stop()
-    warmup.start()
-    assert warmup._thread is None
+def test_closing_kills_the_compiling_process(prepared):
+    state = prepared([Stage.EDITING])
+    state.warmup.start()
+    state.warmup.close()  # waits for the thread
+    assert not state.readiness.editing
 
 
-def test_failure_is_told_in_a_sentence(qtbot, monkeypatch):
-    def break_off() -> None:
+def test_nothing_starts_after_closing(prepared):
+    state = prepared()
+    state.warmup.close()
+    state.warmup.start()
+    assert state.status.preparation == ""
+
+
+def test_a_failure_is_reported_as_a_sentence(qtbot, prepared):
+    def fail() -> None:
         raise OSError("no room")
 
-    monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.compilation.is_warm_on_disk", lambda: True
-    )
-    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.compilation.warm", break_off)
-    warmup = Warmup()
-    with qtbot.waitSignal(warmup.failed) as failed:
-        warmup.start()
-    warmup.stop()
-    assert failed.args == ["The compiled kernels cannot be used: no room"]
+    state = prepared([Stage.EDITING], load=fail)
+    state.warmup.start()
+    state.finish(Stage.EDITING)
+    qtbot.waitUntil(lambda: state.notice.text != "", timeout=WAIT)
+    assert state.notice.text == "The compiled kernels cannot be used: no room"
+    qtbot.wait(20)
+    assert not state.readiness.editing
+    assert state.status.preparation == ""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from meshwright.desktop.files.unsaved_work import Guard
+from meshwright.desktop.files.unsaved_work import UnsavedWorkGuard
 from meshwright.document.document import Document
 from meshwright.document.history import YOU
 from meshwright.document.storage import recovery
@@ -30,10 +30,10 @@ from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.main_window.window import MainWindow
 from meshwright.document.document import Document
 from meshwright.document.history import YOU
-from meshwright_core.core import compilation
+from meshwright_core import warm_up
 from meshwright_core.domains import gallery, meshing
 
-compilation.warm()
+warm_up.warm()
 folder = Path({folder!r})
 app = application()
 document = Document(meshing.mesh_domain(gallery.shape("star"), "quad"), "star")
@@ -92,7 +92,7 @@ def child_of(tmp_path: Path, work: str) -> subprocess.Popen:
 
 
 def killed(child: subprocess.Popen, enough) -> list[str]:
-    """Read what the child says until ``enough(line)``, then kill it; all whole lines."""
+    """Read the child's output until ``enough(line)``, then kill it; returns all complete lines."""
     lines = []
     for line in child.stdout:
         lines.append(line)
@@ -104,21 +104,24 @@ def killed(child: subprocess.Popen, enough) -> list[str]:
     return [line for line in lines if line.endswith("\n")]
 
 
-def test_in_the_middle_of_a_run(qtbot, open_window, tmp_path):
+def test_kill_during_a_run(qtbot, open_window, tmp_path):
     child = child_of(tmp_path, RUN)
     lines = killed(child, lambda line: line.startswith("at 17 "))
     cursor, score = map(int, lines[-1].split()[1:])
     assert cursor >= 17
     (lost,) = recovery.lost(tmp_path / "state")
     assert (lost.name, lost.file) == ("star", None)
-    assert lost.now["steps"] in (cursor, cursor + 1)  # one more may have been done and not told
+    assert lost.now["steps"] in (
+        cursor,
+        cursor + 1,
+    )  # one more step may have been applied but not printed
     lost.release()
 
     window = open_window()
     window.files.watch(tmp_path / "state")
     offered = []
 
-    def take(guard: Guard, works) -> None:
+    def take(guard: UnsavedWorkGuard, works) -> None:
         offered.extend(works)
         guard._recover(works[0])
 
@@ -136,7 +139,7 @@ def test_in_the_middle_of_a_run(qtbot, open_window, tmp_path):
     document.mesh.validate()
 
 
-def test_in_the_middle_of_a_save(tmp_path):
+def test_kill_during_a_save(tmp_path):
     child = child_of(tmp_path, SAVE)
     killed(child, lambda line: line == "saving\n")
     old = Document()

@@ -1,17 +1,16 @@
-"""Licences of what is installed, and the pages of help that tell them."""
+"""Licences of dependencies, and the dialogs that show them."""
 
 import re
 
 from driving import press
 from qtpy.QtCore import Qt
 
-from meshwright.desktop.actions import registry
 from meshwright.desktop.help.about_dialog import AboutDialog, own_version
 from meshwright.desktop.help.licences import UNKNOWN, licences
 from meshwright.desktop.help.shortcuts_dialog import MOUSE, key_blocks, spread
 
 
-def test_every_package_that_is_needed_is_told_with_its_licence():
+def test_every_dependency_is_listed_with_its_licence():
     found = {re.sub("[-_.]+", "-", one.package).lower(): one for one in licences()}
     for name in ("numpy", "numba", "scipy", "torch", "pyvista", "vtk", "triangle", "qtpy"):
         assert found[name].licence not in ("", UNKNOWN)
@@ -22,12 +21,12 @@ def test_every_package_that_is_needed_is_told_with_its_licence():
     assert "pytest" not in found  # an extra
 
 
-def test_texts_are_those_that_were_installed():
+def test_licence_texts_are_the_installed_ones():
     found = {one.package.lower(): one for one in licences()}
     assert "BSD" in found["numpy"].text() or "Redistribution" in found["numpy"].text()
 
 
-def test_about_shows_them_and_copies_versions(qtbot, open_window, star):
+def test_about_dialog_shows_licences_and_copies_versions(qtbot, open_window, star):
     window = open_window(star)
     page = AboutDialog(window)
     qtbot.addWidget(page)
@@ -40,13 +39,13 @@ def test_about_shows_them_and_copies_versions(qtbot, open_window, star):
     assert "numpy " in page.details()
 
 
-def test_the_page_of_keys_has_every_key_and_stays_open(qtbot, open_window, star):
+def test_shortcuts_dialog_lists_every_shortcut_and_is_not_modal(qtbot, open_window, star):
     window = open_window(star)
     press(qtbot, window, Qt.Key.Key_F1)
-    assert window.guide.keys.isVisible()
+    assert window.help.keys.isVisible()
     window.activateWindow()
-    assert window.guide.keys.isVisible()
-    blocks = key_blocks(registry.groups(window))
+    assert window.help.keys.isVisible()
+    blocks = key_blocks(window.actions_by_id.menus(window.document.kind))
     told = {keys for _, lines in blocks for keys, *_ in lines}
     assert {"Ctrl+Z", "F1", "Ctrl+K", "F"} <= told
     assert len(blocks[-1][1]) == len(MOUSE)
@@ -54,4 +53,4 @@ def test_the_page_of_keys_has_every_key_and_stays_open(qtbot, open_window, star)
     assert [block for column in columns for block in column] == blocks
     assert len(columns) <= 3
     window.close()
-    assert window.guide.keys is None
+    assert window.help.keys is None

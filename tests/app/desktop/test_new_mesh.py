@@ -11,7 +11,7 @@ from qtpy.QtGui import QDropEvent
 from qtpy.QtWidgets import QApplication
 
 from meshwright.desktop.files.new_mesh import NewMeshDialog
-from meshwright.desktop.files.new_mesh.mesh_process import Maker
+from meshwright.desktop.files.new_mesh.mesh_process import MeshProcess
 from meshwright.graphics.theme import theme
 from meshwright.sources import mesh_worker
 from meshwright_core import MeshError, read, write
@@ -30,7 +30,7 @@ REQUEST = {
 
 @pytest.fixture
 def dialog(qtbot):
-    """The dialog, with its first mesh made."""
+    """The dialog, after the first mesh has been made."""
     made = NewMeshDialog("quad", theme("light"))
     qtbot.addWidget(made)
     made.show()
@@ -133,7 +133,7 @@ def test_size_kind_and_quality_change_the_mesh(qtbot, dialog):
     assert len(wait_for_mesh(qtbot, dialog).elements) != len(triangles.elements)
 
 
-def test_slider_and_field_are_in_step(qtbot, dialog):
+def test_slider_and_field_are_synchronised(qtbot, dialog):
     size = dialog.options.size_of
     assert size.value is None and not size.slider.isEnabled()
     size.tick.click()
@@ -152,12 +152,12 @@ def test_too_many_elements_are_refused_in_one_sentence(qtbot, dialog):
     size.slider.setValue(size.slider.maximum())
     size.field.setDecimals(5)
     size.field.setValue(2e-4)
-    wait_for_words(qtbot, dialog, "2,000,000 are the most")
+    wait_for_words(qtbot, dialog, "the limit is 2,000,000")
     assert "This mesh would need about" in dialog.status.text()
     assert not dialog.make.isEnabled() and not dialog.mark.isHidden()
 
 
-def test_the_last_request_wins_and_the_window_answers_meanwhile(qtbot, dialog):
+def test_last_request_wins_and_the_dialog_stays_responsive(qtbot, dialog):
     size = dialog.options.size_of
     size.tick.click()
     size.field.setDecimals(5)
@@ -184,7 +184,7 @@ def test_make_waits_for_the_mesh(qtbot, dialog):
     assert (mesh.desired() == same.desired()).all()
 
 
-def test_return_on_a_picture_makes_the_mesh_but_not_in_a_field(qtbot, dialog):
+def test_return_accepts_on_a_picture_but_not_in_a_field(qtbot, dialog):
     dialog.options.size_of.tick.click()
     dialog.options.size_of.field.setFocus()
     key(qtbot, dialog.options.size_of.field, Qt.Key.Key_Return)
@@ -243,7 +243,7 @@ def test_a_square_with_a_hole_is_drawn_with_the_mouse(qtbot, dialog, pen):
     assert places == {*SQUARE, (-0.2, -0.2), (0.2, -0.2), (0.0, 0.2)}
 
 
-def test_right_click_and_backspace_take_back(qtbot, dialog, pen):
+def test_right_click_and_backspace_undo(qtbot, dialog, pen):
     for place in SQUARE:
         pen.click(*place)
     pen.click(0.9, 0.9, button=RIGHT)
@@ -255,7 +255,7 @@ def test_right_click_and_backspace_take_back(qtbot, dialog, pen):
     assert not dialog.draw.sketch.open and dialog.isVisible()
 
 
-def test_escape_does_not_throw_a_drawing_away(qtbot, dialog, pen):
+def test_escape_does_not_discard_a_drawing(qtbot, dialog, pen):
     pen.click(0, 0)
     key(qtbot, dialog.draw.area, Qt.Key.Key_Escape)
     assert dialog.isVisible() and "press Cancel" in dialog.status.text()
@@ -264,7 +264,7 @@ def test_escape_does_not_throw_a_drawing_away(qtbot, dialog, pen):
     assert not dialog.isVisible()
 
 
-def test_a_corner_is_dragged_as_one_edit_and_an_edge_takes_a_new_one(qtbot, dialog, pen):
+def test_corner_drag_is_one_edit_and_click_on_edge_inserts_a_corner(qtbot, dialog, pen):
     pen.loop(SQUARE)
     pen.drag((0.5, 0.5), (0.8, 0.7))
     assert dialog.draw.sketch.loops[0].corners[2] == (0.8, 0.7)
@@ -277,7 +277,7 @@ def test_a_corner_is_dragged_as_one_edit_and_an_edge_takes_a_new_one(qtbot, dial
     assert dialog.draw.sketch.loops[0].corners == tuple(SQUARE)
 
 
-def test_what_crosses_is_said_before_and_after(qtbot, dialog, pen):
+def test_crossing_edges_are_reported_before_and_after_the_click(qtbot, dialog, pen):
     for place in [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5)]:
         pen.click(*place)
     pen.point(0.1, -0.9)
@@ -354,7 +354,7 @@ def test_a_drawing_is_chosen_and_meshed(qtbot, dialog, tmp_path):
     assert not dialog.make.isEnabled()
 
 
-def test_a_mesh_file_is_opened_as_it_is(qtbot, dialog, tmp_path, star):
+def test_mesh_file_is_opened_unchanged(qtbot, dialog, tmp_path, star):
     write(tmp_path / "star.vtk", star)
     dialog.show_page("file")
     data = QMimeData()
@@ -373,7 +373,7 @@ def test_a_mesh_file_is_opened_as_it_is(qtbot, dialog, tmp_path, star):
 # The window, the process
 
 
-def test_the_window_takes_the_drawn_mesh(qtbot, open_window):
+def test_accepted_dialog_replaces_the_mesh_of_the_window(qtbot, open_window):
     window = open_window()
 
     def draw():
@@ -388,21 +388,21 @@ def test_the_window_takes_the_drawn_mesh(qtbot, open_window):
     assert window.pages.currentWidget() is window.canvas
 
 
-def test_a_process_that_dies_is_told_and_replaced(qtbot):
-    maker = Maker()
+def test_dead_process_is_reported_and_replaced(qtbot):
+    maker = MeshProcess()
     maker.start()
     maker.ask({**REQUEST, "max_edge": 1.5e-3}, at_once=True)
     qtbot.waitUntil(lambda: maker._asked is not None, timeout=WAIT)
     with qtbot.waitSignal(maker.failed, timeout=WAIT) as told:
         maker._process.kill()
-    assert "process at work ended" in told.args[0]
+    assert "process ended unexpectedly" in told.args[0]
     with qtbot.waitSignal(maker.made, timeout=WAIT) as made:
         maker.ask(REQUEST, at_once=True)
     assert made.args[0].score == 12
     maker.close()
 
 
-def test_frames_hold_all():
+def test_message_frames_round_trip():
     made = mesh_worker.make(REQUEST)
     content = mesh_worker.frame(made)
     assert mesh_worker.length(content[:8]) == len(content)
@@ -417,10 +417,10 @@ def test_frames_hold_all():
     [
         ({"source": {"shape": "sta"}}, "did you mean"),
         ({"source": {"domain": {"outline": [[0, 0], [1, 1]]}}}, "at least 3"),
-        ({"max_edge": 1e-4}, "2,000,000 are the most"),
+        ({"max_edge": 1e-4}, "the limit is 2,000,000"),
         ({"min_angle": 60}, "34"),
     ],
 )
-def test_bad_requests_end_in_a_sentence(change, says):
+def test_invalid_requests_are_reported_in_one_sentence(change, says):
     with pytest.raises(MeshError, match=says):
         mesh_worker.make({**REQUEST, **change})

@@ -1,4 +1,4 @@
-"""Fields for numbers: typed as usual, and left alone by a wheel that means the page."""
+"""Number fields: typing, and the wheel with and without focus."""
 
 import pytest
 from qtpy.QtCore import QPoint, QPointF, Qt
@@ -10,7 +10,7 @@ from meshwright.desktop.widgets.number_box import DecimalBox, IntegerBox
 
 
 def turn(box) -> bool:
-    """Turn the wheel one step up over ``box``; whether it took the event."""
+    """Turn the wheel one step up over ``box``; returns whether it accepted the event."""
     event = QWheelEvent(
         QPointF(5, 5),
         box.mapToGlobal(QPointF(5, 5)),
@@ -26,7 +26,7 @@ def turn(box) -> bool:
 
 
 @pytest.mark.parametrize("kind", [IntegerBox, DecimalBox])
-def test_the_wheel_is_for_the_field_that_has_the_keyboard(qtbot, kind):
+def test_wheel_changes_only_the_focused_field(qtbot, kind):
     application()
     box = kind()
     qtbot.addWidget(box)

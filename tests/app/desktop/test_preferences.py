@@ -1,4 +1,4 @@
-"""Preferences: kept in a store that may hold nonsense, applied at once, followed everywhere."""
+"""Settings: persistence, invalid values, and their effect on the window."""
 
 import pytest
 from driving import find, point_at, press
@@ -26,7 +26,7 @@ def dialog(qtbot, open_window, star):
     return window, made
 
 
-def test_what_is_kept_is_there_at_the_next_start(store):
+def test_settings_persist(store):
     first = Settings(store)
     first.theme, first.colours, first.auto_smooth = "dark", "gold", False
     first.recent = ["a.vtk", "b.vtk", "a.vtk"]
@@ -39,7 +39,7 @@ def test_what_is_kept_is_there_at_the_next_start(store):
     assert third.recent == []
 
 
-def test_a_store_full_of_nonsense_gives_the_defaults(store):
+def test_invalid_stored_values_read_as_defaults(store):
     raw = QSettings(store, QSettings.Format.IniFormat)
     for key in ("look/theme", "look/colours", "look/numbers", "editing/auto_smooth"):
         raw.setValue(key, "mauve")
@@ -53,7 +53,7 @@ def test_a_store_full_of_nonsense_gives_the_defaults(store):
     assert settings.number("speed", 4.0) == 4.0
 
 
-def test_changes_are_told_once(store):
+def test_a_change_is_emitted_once(store):
     settings = Settings(store)
     told = []
     settings.changed.connect(told.append)
@@ -63,13 +63,13 @@ def test_changes_are_told_once(store):
     assert told == ["look/theme", "look/theme"]
 
 
-def test_recent_files_are_few(store):
+def test_recent_files_are_limited(store):
     settings = Settings(store)
     settings.recent = [f"{number}.vtk" for number in range(30)]
     assert settings.recent == [f"{number}.vtk" for number in range(RECENT)]
 
 
-def test_the_theme_is_applied_and_kept_at_once(qtbot, dialog):
+def test_theme_is_applied_and_stored_at_once(qtbot, dialog):
     window, page = dialog
     assert page.themes["system"].isChecked()
     assert window.theme.name == system_theme()
@@ -83,7 +83,7 @@ def test_the_theme_follows_the_desktop_until_one_is_chosen(open_window, star, mo
     window = open_window(star)
     desktop = QGuiApplication.styleHints()
 
-    def turn(name: str, scheme: Qt.ColorScheme) -> None:  # this platform tells no scheme itself
+    def turn(name: str, scheme: Qt.ColorScheme) -> None:  # this platform reports no colour scheme
         monkeypatch.setattr(preferences_controller, "system_theme", lambda: name)
         desktop.colorSchemeChanged.emit(scheme)
 
@@ -96,7 +96,7 @@ def test_the_theme_follows_the_desktop_until_one_is_chosen(open_window, star, mo
     assert window.theme.name == "light"
 
 
-def test_the_toggle_is_the_same_setting(qtbot, open_window, star):
+def test_toggle_and_dialog_share_the_setting(qtbot, open_window, star):
     window = open_window(star)
     press(qtbot, window, Qt.Key.Key_T, Qt.KeyboardModifier.ControlModifier)
     assert window.theme.name == window.settings.theme == "dark"
@@ -110,13 +110,13 @@ def test_colours_and_numbers_reach_the_canvas(qtbot, dialog):
     assert window.settings.colours == name
     assert (window.theme.plus, window.theme.minus) == COLOURS[name][1:]
     assert window.canvas.overlay.markers.theme.plus == COLOURS[name][1]
-    assert window.score_panel.tally._theme.plus == COLOURS[name][1]
+    assert window.quality.score.tally._theme.plus == COLOURS[name][1]
     assert window.canvas.overlay.markers.numbers
     page.switches["numbers"].click()
     assert not window.canvas.overlay.markers.numbers
 
 
-def test_without_auto_smooth_an_operation_moves_nothing(qtbot, open_window, star):
+def test_operation_moves_no_vertices_without_auto_smooth(qtbot, open_window, star):
     window = open_window(star)
     window.actions_by_id["auto_smooth"].trigger()
     assert not window.settings.auto_smooth
@@ -128,7 +128,7 @@ def test_without_auto_smooth_an_operation_moves_nothing(qtbot, open_window, star
     assert (star.points == before).all()
 
 
-def test_defaults_come_back(qtbot, dialog):
+def test_defaults_button_resets_all_settings(qtbot, dialog):
     window, page = dialog
     page.themes["dark"].click()
     page.switches["auto_smooth"].click()
@@ -141,7 +141,7 @@ def test_defaults_come_back(qtbot, dialog):
     assert window.settings.autosave
 
 
-def test_the_window_comes_back_where_it_was(open_window, star):
+def test_window_position_is_restored(open_window, star):
     window = open_window(star)
     window.resize(930, 640)
     window.close()

@@ -1,4 +1,4 @@
-"""The program as a person starts it, driven from outside by events of the X server (xdotool)."""
+"""The program started from the command line, driven by X events (xdotool)."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ pytestmark = [pytest.mark.needs("window", "xdotool"), pytest.mark.slow]
 
 
 class Program:
-    """``meshwright`` in a process of its own, with settings and state in ``home``."""
+    """Start ``meshwright`` in a process, with settings and state in ``home``."""
 
     def __init__(self, home: Path, *words: str) -> None:
         self.environment = {
@@ -30,14 +30,14 @@ class Program:
         )
 
     def xdotool(self, *words: str) -> str:
-        """What xdotool answers; empty where it finds nothing."""
+        """The output of xdotool; empty if it finds nothing."""
         done = subprocess.run(
             ["xdotool", *words], env=self.environment, capture_output=True, text=True, timeout=30
         )
         return done.stdout.strip()
 
     def window(self, title: str) -> str:
-        """The X window with this title, as soon as it is there."""
+        """Wait for the X window with this title."""
 
         def found() -> str:
             ids = self.xdotool("search", "--onlyvisible", "--name", title).split()
@@ -46,13 +46,13 @@ class Program:
         return until(found)
 
     def kill(self) -> None:
-        """End it as a crash does."""
+        """Kill the process."""
         self.process.send_signal(signal.SIGKILL)
         self.process.wait()
 
 
 def until(condition):
-    """The first answer that is not empty."""
+    """Poll until the result is not empty."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         answer = condition()
@@ -63,12 +63,12 @@ def until(condition):
 
 
 def steps(state: Path) -> int:
-    """Steps that the autosave has written down: the first together with the mesh."""
+    """Number of steps in the autosave file."""
     written = [list(autosave_log.records(path)) for path in (state / "autosave").glob("*.journal")]
     return max((len(records) for records in written), default=0)
 
 
-def test_keys_edit_a_crash_loses_nothing_and_the_next_start_offers_it(tmp_path):
+def test_work_edited_by_keys_is_recovered_after_a_crash(tmp_path):
     state = tmp_path / "state"
     program = Program(tmp_path, "star")
     try:
@@ -77,7 +77,7 @@ def test_keys_edit_a_crash_loses_nothing_and_the_next_start_offers_it(tmp_path):
         def edited() -> bool:
             x, y = places[edited.turn % len(places)]
             edited.turn += 1
-            window = program.window("^star")  # Qt makes it anew when the canvas comes
+            window = program.window("^star")  # Qt recreates the X window with the canvas
             program.xdotool("windowfocus", window)
             program.xdotool("mousemove", "--window", window, str(x), str(y), "key", "f")
             return steps(state) >= 2

@@ -1,4 +1,4 @@
-"""The window, driven by real mouse and key events under a virtual screen."""
+"""The window, driven by real mouse and key events."""
 
 import subprocess
 import sys
@@ -12,8 +12,8 @@ from qtpy.QtWidgets import QApplication, QWidget
 
 from meshwright.assistant.assistant import State
 from meshwright.desktop.actions import registry
-from meshwright.desktop.application.kernel_warmup import AGENT_FIRST
-from meshwright.desktop.editing.edit_controller import POINT_FIRST, PREPARING
+from meshwright.desktop.application.readiness import PREPARING
+from meshwright.desktop.editing.edit_controller import POINT_FIRST
 from meshwright_core.operations.catalogue import of_kind
 
 
@@ -23,13 +23,13 @@ def test_hover_finds_every_half_edge(qtbot, open_window, kind, star, triangles):
     window = open_window(mesh)
     for halfedge in range(0, mesh.k * mesh.n_elements, 7):
         point_at(qtbot, window, halfedge)
-        assert str(mesh.origin(halfedge)) in window.pointed.text()
+        assert str(mesh.origin(halfedge)) in window.status.halfedge
     qtbot.mouseMove(window.canvas.plotter, QPoint(3, 3))
     qtbot.waitUntil(lambda: window.document.hover == -1, timeout=WAIT)
-    assert window.pointed.text() == ""
+    assert window.status.halfedge == ""
 
 
-def test_a_key_does_the_operation_and_ctrl_z_undoes_it(qtbot, open_window, star):
+def test_key_applies_an_operation_and_ctrl_z_undoes_it(qtbot, open_window, star):
     window = open_window(star)
     elements = star.elements()
     halfedge = find(star, "flip_left")
@@ -37,7 +37,7 @@ def test_a_key_does_the_operation_and_ctrl_z_undoes_it(qtbot, open_window, star)
     press(qtbot, window, Qt.Key.Key_F)
     assert [row.action for row in window.document.history] == ["flip_left"]
     assert not np.array_equal(star.elements(), elements)
-    assert window.said.text().startswith("Flip left:  s 12")
+    assert window.status.message.startswith("Flip left:  s 12")
     assert window.isWindowModified()
     press(qtbot, window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert np.array_equal(star.elements(), elements)
@@ -73,19 +73,19 @@ def test_a_refused_key_shows_the_reason(qtbot, open_window, star):
     point_at(qtbot, window, halfedge)
     press(qtbot, window, Qt.Key.Key_F)
     reason = star.check("flip_left", halfedge).reason
-    assert window.said.text().lower() == f"{reason.lower()}."
-    assert window.canvas.overlay.card.text == window.said.text()
+    assert window.status.message.lower() == f"{reason.lower()}."
+    assert window.canvas.overlay.card.text == window.status.message
     assert window.document.history.cursor == 0
 
 
-def test_a_key_beside_the_mesh_says_what_to_do(qtbot, open_window, star):
+def test_operation_key_without_a_half_edge_shows_a_message(qtbot, open_window, star):
     window = open_window(star)
     qtbot.mouseMove(window.canvas.plotter, QPoint(4, 4))
     press(qtbot, window, Qt.Key.Key_F)
-    assert window.said.text() == POINT_FIRST
+    assert window.status.message == POINT_FIRST
 
 
-def test_a_click_offers_all_operations_with_reasons(qtbot, open_window, star):
+def test_click_opens_the_menu_with_reasons(qtbot, open_window, star):
     window = open_window(star)
     boundary = next(h for h in range(star.k * star.n_elements) if star.twin(h) < 0)
     point_at(qtbot, window, boundary)
@@ -124,7 +124,7 @@ def test_the_menu_by_keyboard(qtbot, open_window, star):
         qtbot.waitUntil(lambda: not window.editing.menu, timeout=WAIT)
 
 
-def test_hover_over_an_irregular_vertex_tells_its_degree(qtbot, open_window, star):
+def test_hover_over_an_irregular_vertex_shows_its_degree(qtbot, open_window, star):
     window = open_window(star)
     vertex = int(np.flatnonzero(star.irregularity() == 2)[0])
     qtbot.mouseMove(window.canvas.plotter, pixel(window, star.points[vertex]) + QPoint(2, 2))
@@ -164,7 +164,6 @@ def test_wheel_zooms_at_the_mouse_drag_pans_and_home_fits(qtbot, open_window, st
 
 def test_step_play_pause_complete(qtbot, open_window, star):
     window = open_window(star)
-    window.refresh()
     panel, document = window.agent_panel, window.document
     qtbot.mouseClick(panel.step, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: document.history.cursor == 1, timeout=WAIT)
@@ -178,15 +177,14 @@ def test_step_play_pause_complete(qtbot, open_window, star):
     qtbot.mouseClick(panel.complete, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: not window.assistant.running, timeout=WAIT)
     assert document.at_optimum
-    assert window.score_panel.optimal.isVisible()
-    assert window.score_panel.gained.text == "1.00"
-    assert "optimum" in window.said.text()
+    assert window.quality.score.optimal.isVisible()
+    assert window.quality.score.gained.text == "1.00"
+    assert "optimum" in window.status.message
     star.validate()
 
 
 def test_escape_stops_and_an_edit_takes_over(qtbot, open_window, star):
     window = open_window(star, bad_steps=500, longest=500)
-    window.refresh()
     window.assistant.speed = 30
     press(qtbot, window, Qt.Key.Key_Space)
     qtbot.waitUntil(lambda: window.document.history.cursor >= 2, timeout=WAIT)
@@ -200,7 +198,7 @@ def test_escape_stops_and_an_edit_takes_over(qtbot, open_window, star):
     assert window.document.can_redo
 
 
-def test_the_window_closes_in_mid_run(qtbot, open_window, star):
+def test_window_closes_during_a_run(qtbot, open_window, star):
     window = open_window(star, bad_steps=500, longest=500)
     window.assistant.search()
     qtbot.waitUntil(lambda: window.document.history.cursor >= 1, timeout=WAIT)
@@ -208,37 +206,31 @@ def test_the_window_closes_in_mid_run(qtbot, open_window, star):
     assert not window.assistant.running
 
 
-def test_before_the_kernels_are_ready_operations_say_so(qtbot, open_window, star, monkeypatch):
+def test_operations_show_a_message_until_kernels_are_ready(qtbot, open_window, star, monkeypatch):
     monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.Warmup.start", lambda self: None
+        "meshwright.desktop.application.kernel_warmup.KernelWarmup.start", lambda self: None
     )
-    monkeypatch.setattr(
-        "meshwright.desktop.application.kernel_warmup.Warmup._run", lambda self, module, then: None
-    )
-    monkeypatch.setattr("meshwright.desktop.application.kernel_warmup.agent_is_warm", lambda: False)
     window = open_window(star, ready=False)
     halfedge = find(star, "flip_left")
     point_at(qtbot, window, halfedge)
     press(qtbot, window, Qt.Key.Key_F)
-    assert window.said.text() == PREPARING
+    assert window.status.message == PREPARING
     assert not window.agent_panel.step.isEnabled()
-    window.warmup._finish()
+    window.readiness.editing = True
     assert not window.agent_panel.step.isEnabled()
-    assert window.preparing.text() == AGENT_FIRST
-    window.warmup.agent_ready.emit()
+    window.readiness.agent = True
     assert window.agent_panel.step.isEnabled()
-    assert window.preparing.text() == ""
     press(qtbot, window, Qt.Key.Key_F)
     assert window.document.history.cursor == 1
 
 
-def test_the_kernels_are_made_ready_behind_the_window(qtbot, open_window, star):
+def test_kernels_are_loaded_after_the_window_opens(qtbot, open_window, star):
     window = open_window(star, ready=False)
-    qtbot.waitUntil(lambda: window.ready, timeout=60_000)
-    assert window.preparing.text() == ""
+    qtbot.waitUntil(lambda: window.readiness.editing, timeout=60_000)
+    assert window.status.preparation == ""
 
 
-def test_a_wrong_file_is_one_sentence(qtbot, open_window, star, tmp_path):
+def test_invalid_file_is_reported_in_one_sentence(qtbot, open_window, star, tmp_path):
     window = open_window(star)
     broken = tmp_path / "broken.vtk"
     broken.write_text("this is no mesh")
@@ -300,7 +292,7 @@ def test_themes(qtbot, open_window, star):
     assert window.theme.name == "light"
 
 
-def test_the_mesh_is_seen(qtbot, open_window, star):
+def test_the_mesh_is_drawn(qtbot, open_window, star):
     window = open_window(star)
 
     def is_painted(point, wanted):
@@ -317,7 +309,7 @@ def test_the_mesh_is_seen(qtbot, open_window, star):
     assert is_painted(spot, window.theme.plus)
 
 
-def test_qt_calls_do_not_eat_references_of_none(qtbot):
+def test_qt_calls_keep_the_reference_count_of_none(qtbot):
     """A release of PySide6 lost one reference of None per call and died after some thousands."""
     code = (
         "from PySide6.QtWidgets import QApplication, QWidget\n"

@@ -14,18 +14,18 @@ from meshwright_core.geometry.region import rings
 
 def hinted(qtbot, window):
     press(qtbot, window, Qt.Key.Key_H)
-    qtbot.waitUntil(lambda: len(window.agent.hints.shown) > 0, timeout=WAIT)
-    return window.agent.hints.shown
+    qtbot.waitUntil(lambda: len(window.hints.shown) > 0, timeout=WAIT)
+    return window.hints.shown
 
 
 def middle_of(box) -> QPoint:
     return box.center().toPoint()
 
 
-def test_hints_are_shown_as_ghosts_badges_and_rows(qtbot, open_window, star):
+def test_hints_are_shown_as_previews_badges_and_rows(qtbot, open_window, star):
     window = open_window(star)
     hints = hinted(qtbot, window)
-    layer = window.agent.hints.layer
+    layer = window.hints.layer
     assert [hint.number for hint in layer.hints] == list(range(1, len(hints) + 1))
     changes = [choice.change for choice in window.assistant.hinting.hints]
     assert [hint.ghost.change for hint in hints] == changes
@@ -36,25 +36,25 @@ def test_hints_are_shown_as_ghosts_badges_and_rows(qtbot, open_window, star):
     assert len(rows) == len(hints) and "1" in rows[0].accessibleName()
     assert window.document.history.cursor == 0
     press(qtbot, window, Qt.Key.Key_H)
-    assert not window.agent.hints.shown and not window.agent_panel.hints.isVisibleTo(window)
+    assert not window.hints.shown and not window.agent_panel.hints.isVisibleTo(window)
 
 
-def test_a_key_takes_a_hint_and_the_next_ones_come(qtbot, open_window, star):
+def test_key_applies_a_hint_and_requests_the_next(qtbot, open_window, star):
     window = open_window(star)
     second = hinted(qtbot, window)[1]
     press(qtbot, window, Qt.Key.Key_2)
     row = window.document.history.last
     assert (row.halfedge, row.change, row.by) == (second.ghost.halfedge, second.ghost.change, "you")
-    qtbot.waitUntil(lambda: len(window.agent.hints.shown) > 0, timeout=WAIT)
+    qtbot.waitUntil(lambda: len(window.hints.shown) > 0, timeout=WAIT)
     press(qtbot, window, Qt.Key.Key_Escape)
-    assert not window.agent.hints.shown
+    assert not window.hints.shown
     assert not window.actions_by_id["agent.take_1"].isEnabled()
 
 
-def test_a_click_on_a_badge_takes_its_hint(qtbot, open_window, star):
+def test_click_on_a_badge_applies_its_hint(qtbot, open_window, star):
     window = open_window(star)
     hints = hinted(qtbot, window)
-    layer = window.agent.hints.layer
+    layer = window.hints.layer
     at = middle_of(layer.badges.boxes[2])
     qtbot.mouseMove(window.canvas.plotter, at + QPoint(1, 0))
     qtbot.mouseMove(window.canvas.plotter, at)
@@ -64,43 +64,43 @@ def test_a_click_on_a_badge_takes_its_hint(qtbot, open_window, star):
     assert window.editing.menu is None
 
 
-def test_a_row_of_the_panel_takes_its_hint(qtbot, open_window, star):
+def test_click_on_a_panel_row_applies_its_hint(qtbot, open_window, star):
     window = open_window(star)
     hints = hinted(qtbot, window)
     qtbot.mouseClick(window.agent_panel.hints.rows[1], Qt.MouseButton.LeftButton)
     assert window.document.history.last.halfedge == hints[1].ghost.halfedge
 
 
-def test_hints_go_when_the_mesh_changes_and_with_the_view(qtbot, open_window, star):
+def test_hints_disappear_when_the_mesh_changes(qtbot, open_window, star):
     window = open_window(star)
     hinted(qtbot, window)
-    before = [box.center() for box in window.agent.hints.layer.badges.boxes]
+    before = [box.center() for box in window.hints.layer.badges.boxes]
     window.canvas.see(window.canvas.viewport.panned(30, 0))
-    after = [box.center() for box in window.agent.hints.layer.badges.boxes]
+    after = [box.center() for box in window.hints.layer.badges.boxes]
     assert before != after
     window.document.set_locked(0, True)
-    assert not window.agent.hints.shown and not window.agent.hints.layer.hints
+    assert not window.hints.shown and not window.hints.layer.hints
 
 
-def test_watching_shows_each_decision_before_it_is_taken(qtbot, open_window, star):
+def test_watching_shows_each_decision_in_advance(qtbot, open_window, star):
     window = open_window(star)
     press(qtbot, window, Qt.Key.Key_W)
     field = window.agent.field
     qtbot.waitUntil(lambda: field.sight is not None, timeout=WAIT)
     assert window.agent_panel.watch.isChecked()
-    assert any("weighs" in line for line in field.sight.words)
+    assert any("rates" in line for line in field.sight.words)
     for count in (1, 2):
         wanted = window.assistant.insight.wanted
         press(qtbot, window, Qt.Key.Key_Period)
         qtbot.waitUntil(lambda n=count: window.document.history.cursor == n, timeout=WAIT)
         assert window.document.history.last.halfedge == wanted.halfedge
         qtbot.waitUntil(lambda: field.sight is not None, timeout=WAIT)
-    assert window.grab().width() == window.width()  # it paints
+    assert window.grab().width() == window.width()  # paint it
     press(qtbot, window, Qt.Key.Key_W)
     assert field.sight is None and not window.agent_panel.watch.isChecked()
 
 
-def test_the_region_button_wants_a_selection_and_searches_in_it(qtbot, open_window, star):
+def test_region_button_needs_a_selection_and_searches_in_it(qtbot, open_window, star):
     window = open_window(star)
     button = window.agent_panel.region
     assert not button.isEnabled()
@@ -123,10 +123,10 @@ def test_a_finished_region_is_still_selected(qtbot, open_window, star):
     qtbot.waitUntil(lambda: not window.assistant.running, timeout=WAIT)
     assert window.document.history.cursor >= 4
     assert np.array_equal(window.document.selection.vertices, star.vertices())
-    assert "The region is finished" in window.said.text()
+    assert "The region is finished" in window.status.message
 
 
-def test_numbers_of_the_panel_are_used_and_kept(qtbot, open_window, star):
+def test_numbers_of_the_panel_are_used_and_stored(qtbot, open_window, star):
     window = open_window(star)
     panel, efforts = window.agent_panel, []
     window.assistant.search = efforts.append
@@ -163,7 +163,7 @@ def policy_file(path, kind):
     return str(path)
 
 
-def test_a_policy_file_is_chosen_and_offered_again(qtbot, open_window, star, tmp_path, monkeypatch):
+def test_policy_file_is_loaded_and_remembered(qtbot, open_window, star, tmp_path, monkeypatch):
     path = policy_file(tmp_path / "mine.safetensors", "quad")
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (path, ""))
     window = open_window(star)
@@ -178,7 +178,7 @@ def test_a_policy_file_is_chosen_and_offered_again(qtbot, open_window, star, tmp
 
 
 @pytest.mark.parametrize("kind", ["tri", "", None])
-def test_a_wrong_policy_file_is_one_sentence(open_window, star, tmp_path, kind):
+def test_invalid_policy_file_is_reported_in_one_sentence(open_window, star, tmp_path, kind):
     window = open_window(star)
     path = tmp_path / "other.safetensors"
     if kind is not None:

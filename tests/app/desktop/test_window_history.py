@@ -1,4 +1,4 @@
-"""History list, timeline, film and export, by real mouse and key events."""
+"""History list, timeline, playback and export, by real mouse and key events."""
 
 import numpy as np
 import pytest
@@ -31,25 +31,25 @@ def walked(qtbot, open_window, star, greedy):
 
 
 def settle(qtbot, window) -> None:
-    """Wait until list and curve have followed."""
+    """Wait until list and curve are up to date."""
     history = window.document.history
     qtbot.waitUntil(
         lambda: (
-            window.film.timeline.curve.cursor_state == history.cursor
-            and window.film.panel.model.rowCount() == len(history) + 1 + len(history.branches)
+            window.playback.timeline.curve.cursor_state == history.cursor
+            and window.playback.panel.model.rowCount() == len(history) + 1 + len(history.branches)
         ),
         timeout=WAIT,
     )
 
 
 def on_curve(window, state: int) -> QPoint:
-    curve = window.film.timeline.curve
+    curve = window.playback.timeline.curve
     curve.grab()  # the frame of a curve is known once it has been painted
     return QPoint(round(float(curve._frame.x(state))), curve.height() // 2)
 
 
 def on_list(window, place: int) -> QPoint:
-    panel = window.film.panel
+    panel = window.playback.panel
     index = panel.model.index(place)
     panel.list.scrollTo(index)
     return panel.list.visualRect(index).center()
@@ -57,7 +57,7 @@ def on_list(window, place: int) -> QPoint:
 
 def test_a_click_on_a_line_goes_there_and_back(qtbot, walked):
     window, document = walked, walked.document
-    panel = window.film.panel
+    panel = window.playback.panel
     scores = [document.history.first[0], *(row.after for row in document.history)]
     points = {len(document.history): document.mesh.points.copy()}
     for state in (3, 0, 7, len(document.history)):
@@ -75,8 +75,8 @@ def test_a_click_on_a_line_goes_there_and_back(qtbot, walked):
     qtbot.waitUntil(lambda: document.history.cursor == len(document.history) - 2, timeout=WAIT)
 
 
-def test_lines_say_what_who_and_how_much(walked):
-    model = walked.film.panel.model
+def test_list_lines_state_title_author_and_change(walked):
+    model = walked.playback.panel.model
     words = [model.data(model.index(place)) for place in range(model.rowCount())]
     assert words[0] == "Start, s 12"
     row = walked.document.history[0]
@@ -86,7 +86,7 @@ def test_lines_say_what_who_and_how_much(walked):
 
 def test_scrubbing_by_the_mouse(qtbot, walked):
     window, document = walked, walked.document
-    curve = window.film.timeline.curve
+    curve = window.playback.timeline.curve
     qtbot.mousePress(curve, LEFT, pos=on_curve(window, 6))
     qtbot.waitUntil(lambda: document.history.cursor == 6, timeout=WAIT)
     for state in (5, 4, 2, 1):
@@ -105,7 +105,7 @@ def test_scrubbing_by_the_mouse(qtbot, walked):
 
 def test_wheel_and_keys_on_the_curve(qtbot, walked):
     window, document = walked, walked.document
-    curve, last = window.film.timeline.curve, len(document.history)
+    curve, last = window.playback.timeline.curve, len(document.history)
     curve.setFocus()
     for key, wanted in (
         (Qt.Key.Key_Home, 0),
@@ -130,7 +130,7 @@ def test_wheel_and_keys_on_the_curve(qtbot, walked):
     qtbot.waitUntil(lambda: document.history.cursor == last - 1, timeout=WAIT)
 
 
-def test_keys_walk_from_the_canvas(qtbot, walked):
+def test_history_keys_work_on_the_canvas(qtbot, walked):
     window, document = walked, walked.document
     last = len(document.history)
     best = min(range(1, last + 1), key=lambda state: (document.history[state - 1].after, state))
@@ -146,13 +146,13 @@ def test_keys_walk_from_the_canvas(qtbot, walked):
         assert document.history.cursor == wanted
 
 
-def test_the_film_plays_at_its_speed_and_is_held(qtbot, walked):
-    window, document, film = walked, walked.document, walked.film
+def test_playback_follows_the_speed_and_can_be_paused(qtbot, walked):
+    window, document, film = walked, walked.document, walked.playback
     film.timeline.speed.setCurrentIndex(film.timeline.speed.count() - 1)
     assert window.settings.number("film/speed", 0) == 60
     qtbot.mouseClick(film.timeline.buttons["history.play"], LEFT)
     assert film.playing
-    assert document.history.cursor <= 1  # it was at its end: it begins again
+    assert document.history.cursor <= 1  # it was at its end, so playback restarts
     qtbot.waitUntil(lambda: not film.playing, timeout=WAIT)
     assert document.history.cursor == len(document.history)
     film.timeline.speed.setCurrentIndex(0)
@@ -162,12 +162,12 @@ def test_the_film_plays_at_its_speed_and_is_held(qtbot, walked):
     assert not film.playing
     press(qtbot, window, Qt.Key.Key_Space, SHIFT)
     press(qtbot, window, Qt.Key.Key_Y, Qt.KeyboardModifier.ControlModifier)
-    assert not film.playing  # whoever takes a step takes over
+    assert not film.playing  # a step by the user stops playback
     assert window.assistant.state is State.IDLE
 
 
-def test_branches_are_seen_and_taken(qtbot, walked, greedy):
-    window, document, film = walked, walked.document, walked.film
+def test_branches_are_listed_and_can_be_switched_to(qtbot, walked, greedy):
+    window, document, film = walked, walked.document, walked.playback
     former = [row.serial for row in document.history]
     end = document.mesh.points.tobytes()
     document.go_to(4)
@@ -192,8 +192,8 @@ def test_branches_are_seen_and_taken(qtbot, walked, greedy):
     document.mesh.validate()
 
 
-def test_list_and_timeline_can_be_hidden_and_stay_so(qtbot, walked):
-    window, film = walked, walked.film
+def test_hidden_list_and_timeline_are_remembered(qtbot, walked):
+    window, film = walked, walked.playback
     height = window.canvas.height()
     press(qtbot, window, Qt.Key.Key_F3)
     press(qtbot, window, Qt.Key.Key_F4)
@@ -209,8 +209,8 @@ def test_list_and_timeline_can_be_hidden_and_stay_so(qtbot, walked):
     assert window.actions_by_id["history.list"].isChecked()
 
 
-def test_a_history_that_begins_again(qtbot, walked, triangles):
-    window, film = walked, walked.film
+def test_history_of_a_new_mesh_replaces_the_list(qtbot, walked, triangles):
+    window, film = walked, walked.playback
     window.document.replace(triangles, "triangles")
     settle(qtbot, window)
     assert film.panel.model.rowCount() == 1
@@ -221,9 +221,9 @@ def test_a_history_that_begins_again(qtbot, walked, triangles):
     assert not film.timeline.isVisible()
 
 
-def test_a_mark_under_the_mouse_goes_with_its_state(qtbot, walked, triangles):
+def test_hovered_state_that_disappears_is_no_longer_marked(qtbot, walked, triangles):
     window = walked
-    curve = window.film.timeline.curve
+    curve = window.playback.timeline.curve
     qtbot.mouseMove(curve, on_curve(window, 3))
     qtbot.mouseMove(curve, on_curve(window, 4))
     qtbot.waitUntil(lambda: curve.hovered == 4, timeout=WAIT)
@@ -235,7 +235,7 @@ def test_a_mark_under_the_mouse_goes_with_its_state(qtbot, walked, triangles):
 
 def test_ten_thousand_steps_are_listed_and_hovered_cheaply(qtbot, open_window, star):
     window = open_window(star)
-    document, film = window.document, window.film
+    document, film = window.document, window.playback
     vertices = np.array([star.vertices()[-1]])
     place = star.points[vertices].copy()
     window.document.changed.disconnect(window.canvas._on_changed)
@@ -251,13 +251,13 @@ def test_ten_thousand_steps_are_listed_and_hovered_cheaply(qtbot, open_window, s
     assert curve.builds == builds
     document.undo()
     settle(qtbot, window)
-    assert curve.builds == builds  # the cursor has moved, the curve has not
+    assert curve.builds == builds  # only the cursor has moved
     qtbot.mouseClick(film.panel.list.viewport(), LEFT, pos=on_list(window, 9_998))
     qtbot.waitUntil(lambda: document.history.cursor == 9_998, timeout=WAIT)
 
 
 def ask(qtbot, window, choose, monkeypatch, path) -> None:
-    """Open the dialog by its key, ``choose(dialog)`` in it, and name ``path``."""
+    """Open the export dialog by its key, call ``choose(dialog)``, and enter ``path``."""
     monkeypatch.setattr(
         "meshwright.desktop.history.export_controller.QFileDialog.getSaveFileName",
         lambda *arguments: (str(path), ""),
@@ -268,19 +268,19 @@ def ask(qtbot, window, choose, monkeypatch, path) -> None:
         choose(dialog)
         qtbot.mouseClick(dialog.export, LEFT)
 
-    window.activateWindow()  # the dialog before took that away
+    window.activateWindow()  # the previous dialog deleted it
     qtbot.waitUntil(window.isActiveWindow, timeout=WAIT)
     QTimer.singleShot(200, answer)
     press(qtbot, window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
 
 
 @pytest.mark.parametrize("number", range(4))
-def test_export_writes_what_was_asked_for(qtbot, walked, monkeypatch, tmp_path, number):
+def test_export_writes_the_chosen_format(qtbot, walked, monkeypatch, tmp_path, number):
     window = walked
     chosen = []
 
     def choose(dialog):
-        qtbot.mouseClick(dialog.formats.buttons()[number], LEFT)
+        qtbot.mouseClick(list(dialog.formats.values())[number], LEFT)
         dialog.size_box.setCurrentIndex(0)
         dialog.seconds.setValue(0.1)
         assert dialog.preview.pixmap().width() > 100
@@ -288,26 +288,26 @@ def test_export_writes_what_was_asked_for(qtbot, walked, monkeypatch, tmp_path, 
 
     ask(qtbot, window, choose, monkeypatch, tmp_path / "star")
     path = tmp_path / f"star{chosen[0].ending}"
-    qtbot.waitUntil(lambda: not window.film.exporting.running, timeout=WAIT)
+    qtbot.waitUntil(lambda: not window.playback.exporting.running, timeout=WAIT)
     assert path.stat().st_size > 1000
-    assert window.said.text().startswith(f"Written: {path.name}")
-    assert not window.film.exporting.bar.isVisible()
+    assert window.status.message.startswith(f"Written: {path.name}")
+    assert not window.playback.exporting.bar.isVisible()
     assert chosen[0].size == (640, 480)
     if chosen[0].moving:
-        assert f"{len(window.document.history) + 1} frames" in window.said.text()
+        assert f"{len(window.document.history) + 1} frames" in window.status.message
 
 
-def test_export_can_be_cancelled_and_says_what_is_wrong(qtbot, walked, monkeypatch, tmp_path):
-    window, exporting = walked, walked.film.exporting
+def test_export_can_be_cancelled_and_reports_errors(qtbot, walked, monkeypatch, tmp_path):
+    window, exporting = walked, walked.playback.exporting
     choose = lambda dialog: None  # noqa: E731
     ask(qtbot, window, choose, monkeypatch, tmp_path / "star.gif")
     qtbot.mouseClick(exporting.bar.cancel, LEFT)
     qtbot.waitUntil(lambda: not exporting.running, timeout=WAIT)
-    assert window.said.text() == "Cancelled: star.gif was not written."
+    assert window.status.message == "Cancelled: star.gif was not written."
     assert list(tmp_path.iterdir()) == []
     ask(qtbot, window, choose, monkeypatch, tmp_path / "none" / "star.gif")
     qtbot.waitUntil(lambda: not exporting.running, timeout=WAIT)
-    assert "does not exist" in window.notice.text, window.said.text()
+    assert "does not exist" in window.notice.text, window.status.message
     ask(qtbot, window, choose, monkeypatch, tmp_path / "late.gif")
     window.close()
     assert not exporting.running

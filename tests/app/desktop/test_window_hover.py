@@ -1,4 +1,4 @@
-"""Ghosts, what each operation would change, arming: by real mouse and keys."""
+"""Previews, changes of s, armed operations and navigation, by real mouse and keys."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def click_at(qtbot, window, halfedge, button=Qt.MouseButton.LeftButton):
 
 
 def row_of(window, operation):
-    return next(r for r in window.operations_panel.rows if r.info.operation == operation)
+    return next(r for r in window.hover.panel.rows if r.info.operation == operation)
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
@@ -35,45 +35,45 @@ def test_hover_shows_what_each_operation_would_change(qtbot, open_window, kind, 
             assert row.change in (f"+{edit.score_change}", f"\u2212{-edit.score_change}", "0")
         else:
             assert choice.verdict.reason in row.toolTip()
-    ghost = window.pointing.layer.ghost
+    ghost = window.hover.layer.ghost
     assert ghost.operation == best(choices(mesh, halfedge)).operation
-    assert window.pointing.layer.numbers.text.startswith(window.pointing.current.info.title)
+    assert window.hover.layer.numbers.text.startswith(window.hover.current.info.title)
     assert np.array_equal(mesh.elements(), before)
     assert not window.document.can_undo
     qtbot.mouseMove(window.canvas.plotter, QPoint(3, 3))
-    qtbot.waitUntil(lambda: window.pointing.layer.ghost is None, timeout=WAIT)
-    assert {row.change for row in window.operations_panel.rows} == {""}
+    qtbot.waitUntil(lambda: window.hover.layer.ghost is None, timeout=WAIT)
+    assert {row.change for row in window.hover.panel.rows} == {""}
 
 
-def test_tab_walks_through_what_is_allowed_and_return_does_it(qtbot, open_window, star):
+def test_tab_cycles_allowed_operations_and_return_applies_one(qtbot, open_window, star):
     window = open_window(star)
     halfedge = next(h for h in range(96) if sum(c.allowed for c in choices(star, h)) > 3)
     point_at(qtbot, window, halfedge)
-    met = [window.pointing.layer.ghost.operation]
+    met = [window.hover.layer.ghost.operation]
     for _ in range(2):
         press(qtbot, window, Qt.Key.Key_Tab)
-        met.append(window.pointing.layer.ghost.operation)
+        met.append(window.hover.layer.ghost.operation)
     assert len(set(met)) == 3
     press(qtbot, window, Qt.Key.Key_Backtab, Qt.KeyboardModifier.ShiftModifier)
-    assert window.pointing.layer.ghost.operation == met[1]
-    change = window.pointing.layer.ghost.change
+    assert window.hover.layer.ghost.operation == met[1]
+    change = window.hover.layer.ghost.change
     press(qtbot, window, Qt.Key.Key_Return)
     row = window.document.history.last
     assert (row.action, row.change, row.halfedge) == (met[1].value, change, halfedge)
 
 
-def test_what_was_chosen_with_tab_is_for_this_half_edge_only(qtbot, open_window, star):
+def test_choice_by_tab_is_for_one_half_edge_only(qtbot, open_window, star):
     window = open_window(star)
     first = find(star, "collapse")
     second = next(h for h in range(first + 1, 96) if best(choices(star, h)))
     point_at(qtbot, window, first)
     press(qtbot, window, Qt.Key.Key_Tab)
     point_at(qtbot, window, second)
-    meant = window.pointing.current.operation
+    meant = window.hover.current.operation
     assert meant == best(choices(star, second)).operation
 
 
-def test_an_armed_operation_is_done_by_a_click(qtbot, open_window, star):
+def test_click_applies_the_armed_operation(qtbot, open_window, star):
     window = open_window(star)
     row = row_of(window, "split")
     qtbot.mouseClick(row, Qt.MouseButton.LeftButton)
@@ -94,15 +94,15 @@ def test_an_armed_operation_is_done_by_a_click(qtbot, open_window, star):
     window.editing.menu.close()
 
 
-def test_escape_puts_the_armed_operation_down(qtbot, open_window, star):
+def test_escape_disarms_the_operation(qtbot, open_window, star):
     window = open_window(star)
     qtbot.mouseClick(row_of(window, "collapse"), Qt.MouseButton.LeftButton)
     press(qtbot, window, Qt.Key.Key_Escape)
-    assert window.pointing.armed is None
-    assert not any(row.isChecked() for row in window.operations_panel.rows)
+    assert window.hover.armed is None
+    assert not any(row.isChecked() for row in window.hover.panel.rows)
 
 
-def test_a_row_of_the_menu_shows_its_ghost_and_number(qtbot, open_window, star):
+def test_menu_row_previews_its_operation(qtbot, open_window, star):
     window = open_window(star)
     halfedge = find(star, "collapse")
     click_at(qtbot, window, halfedge)
@@ -112,44 +112,46 @@ def test_a_row_of_the_menu_shows_its_ghost_and_number(qtbot, open_window, star):
         assert bool(row.change) == choice.allowed
         qtbot.mouseMove(row, QPoint(20, 8))
         row.enterEvent(None)
-        ghost = window.pointing.layer.ghost
+        ghost = window.hover.layer.ghost
         assert (ghost is not None and ghost.operation == row.info.operation) or not row.allowed
     menu.close()
     assert window.document.history.cursor == 0
 
 
-def test_the_ghost_of_a_global_split_reaches_the_boundary(qtbot, open_window, star):
+def test_preview_of_a_global_split_reaches_the_boundary(qtbot, open_window, star):
     window = open_window(star)
     halfedge = find(star, "global_split")
     point_at(qtbot, window, halfedge)
     qtbot.mouseClick(row_of(window, "global_split"), Qt.MouseButton.LeftButton)
     point_at(qtbot, window, halfedge)
-    seen = {tuple(np.round(p, 9)) for p in window.pointing.layer.ghost.added.reshape(-1, 2)}
+    seen = {tuple(np.round(p, 9)) for p in window.hover.layer.ghost.added.reshape(-1, 2)}
     edit = window.document.mesh.apply("global_split", halfedge)
     ends = {tuple(np.round(star.points[v, :2], 9)) for v in edit.new_vertices}
     star.undo()
     assert ends <= seen
 
 
-def test_ghosts_can_be_switched_off(qtbot, open_window, star):
+def test_previews_can_be_switched_off(qtbot, open_window, star):
     window = open_window(star)
     point_at(qtbot, window, find(star, "collapse"))
-    assert window.pointing.layer.ghost is not None
+    assert window.hover.layer.ghost is not None
     press(qtbot, window, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier)
-    assert window.pointing.layer.ghost is None
+    assert window.hover.layer.ghost is None
     assert row_of(window, "collapse").change
     press(qtbot, window, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier)
-    assert window.pointing.layer.ghost is not None
+    assert window.hover.layer.ghost is not None
 
 
-def test_a_ghost_through_a_large_mesh_waits_for_rest(qtbot, open_window, monkeypatch, grid):
+def test_global_preview_in_a_large_mesh_waits_for_a_resting_mouse(
+    qtbot, open_window, monkeypatch, grid
+):
     monkeypatch.setattr(hover_controller, "LARGE", 4)
     window = open_window(grid)
-    window.pointing.arm("cleanup")
+    window.hover.arm("cleanup")
     point_at(qtbot, window, grid.halfedge(8, 15))
-    assert window.pointing.layer.ghost is None
-    qtbot.waitUntil(lambda: window.pointing.layer.ghost is not None, timeout=WAIT)
-    assert window.pointing.layer.ghost.operation == "cleanup"
+    assert window.hover.layer.ghost is None
+    qtbot.waitUntil(lambda: window.hover.layer.ghost is not None, timeout=WAIT)
+    assert window.hover.layer.ghost.operation == "cleanup"
 
 
 @pytest.fixture
@@ -160,7 +162,7 @@ def grid() -> HalfEdgeMesh:
     return HalfEdgeMesh.from_elements(points, [(c, c + 1, c + 8, c + 7) for c in corners])
 
 
-def test_lines_glow_and_a_click_removes_one(qtbot, open_window, grid):
+def test_click_removes_a_highlighted_line(qtbot, open_window, grid):
     window = open_window(grid)
     press(qtbot, window, Qt.Key.Key_L)
     assert window.lines.layer.count == 8
@@ -199,7 +201,7 @@ def test_keys_move_the_view(qtbot, open_window, star):
     assert canvas.viewport.pixels == pytest.approx(pixels)
 
 
-def test_a_key_walks_through_the_irregular_vertices(qtbot, open_window, star):
+def test_key_cycles_through_irregular_vertices(qtbot, open_window, star):
     window = open_window(star)
     irregular = set(np.flatnonzero(star.irregularity()).tolist())
     met = []
@@ -211,7 +213,7 @@ def test_a_key_walks_through_the_irregular_vertices(qtbot, open_window, star):
     assert set(met) == irregular
     press(qtbot, window, Qt.Key.Key_N, Qt.KeyboardModifier.ShiftModifier)
     assert star.origin(window.document.hover) == met[-2]
-    assert window.pointing.layer.ghost is not None
+    assert window.hover.layer.ghost is not None
 
 
 def test_the_mesh_is_edited_without_a_mouse(qtbot, open_window, star):

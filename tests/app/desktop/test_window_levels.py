@@ -36,7 +36,7 @@ def click(qtbot, button):
 
 
 def in_dialog(act):
-    """Do ``act(dialog)`` once a dialog is open."""
+    """Call ``act(dialog)`` once a dialog is open."""
 
     def look():
         dialog = QApplication.activeModalWidget()
@@ -82,7 +82,7 @@ def press_to_choose(qtbot, window):
     )
 
 
-def test_undo_and_again_take_operations_back(qtbot, window):
+def test_undo_and_restart_reduce_the_count(qtbot, window):
     window.levels.open("two-turns")
     bar = window.levels.bar
     solve(window)
@@ -93,10 +93,10 @@ def test_undo_and_again_take_operations_back(qtbot, window):
     click(qtbot, bar.again)
     assert bar.used.text == "0"
     assert len(window.document.history) == 0
-    assert bar.stars.count == 3  # won before
+    assert bar.stars.count == 3  # won earlier
 
 
-def test_the_dialog_shows_what_is_won_and_goes_by_keys(qtbot, window):
+def test_level_dialog_shows_stars_and_is_navigated_by_keys(qtbot, window):
     window.levels.play.progress.note("one-flip", 2, 3)
     seen = {}
 
@@ -124,25 +124,23 @@ def test_escape_leaves_the_dialog_without_a_level(qtbot, window):
     assert window.document.empty
 
 
-def test_what_is_not_played_in_a_level_is_refused_with_a_reason(qtbot, window):
-    from meshwright.desktop.editing.vertex_menu import vertex_menu
-
+def test_forbidden_actions_of_a_level_are_refused_with_a_reason(qtbot, window):
     window.levels.open("three-blocks")
     window.actions_by_id["clean_all"].trigger()
-    assert "one by one" in window.said.text()
+    assert "one by one" in window.status.message
     window.editing.submit("chord_collapse", window.document.mesh.halfedge(0, 1))
-    assert "beyond the paper" in window.said.text()
+    assert "beyond the paper" in window.status.message
     assert len(window.document.history) == 0
-    menu = vertex_menu(window, 0)
+    menu = window.selection_tools.menus.of_vertex(0)
     titles = {action.text(): action.isEnabled() for action in menu.actions()}
     assert titles["Locked (nothing changes it)"] is False
     menu.deleteLater()
     window.levels.leave()
     window.actions_by_id["clean_all"].trigger()
-    assert "Removed 4 lines" in window.said.text()
+    assert "Removed 4 lines" in window.status.message
 
 
-def test_the_agent_answers_beside_and_shows_its_way(qtbot, window):
+def test_agent_solves_a_copy_and_shows_its_solution(qtbot, window):
     window.levels.open("two-turns")
     bar = window.levels.bar
     assert not bar.agent.isVisible()
@@ -152,18 +150,20 @@ def test_the_agent_answers_beside_and_shows_its_way(qtbot, window):
     rival = window.levels.play.rival
     qtbot.waitUntil(lambda: rival.standing is not OpponentState.ASKED, timeout=WAIT)
     assert bar.agent.text.startswith(str(len(rival.operations)))
-    assert bar.answer.text() == "Show a way"
+    assert bar.answer.text() == "Show a solution"
     assert len(window.document.history) == 0
     click(qtbot, bar.answer)
     assert len(window.document.history) == len(rival.operations)
-    window.film.hold()
-    window.film.go_to(len(rival.operations))
+    window.playback.hold()
+    window.playback.go_to(len(rival.operations))
     assert "win no stars" in bar.text.text()
 
 
-def test_levels_are_dropped_without_a_question(qtbot, window, tmp_path, monkeypatch):
+def test_leaving_a_level_asks_nothing(qtbot, window, tmp_path, monkeypatch):
     window.files.watch(tmp_path / "autosave")
-    monkeypatch.setattr("meshwright.desktop.files.unsaved_work.Question", None)  # who asks fails
+    monkeypatch.setattr(
+        "meshwright.desktop.files.unsaved_work.QuestionDialog", None
+    )  # who asks fails
     window.levels.open("two-turns")
     solve(window)
     assert not window.isWindowModified()
@@ -175,7 +175,7 @@ def test_levels_are_dropped_without_a_question(qtbot, window, tmp_path, monkeypa
     assert window.document.name == "star"
 
 
-def test_unsaved_work_is_asked_for_before_a_level(window, star, monkeypatch):
+def test_starting_a_level_asks_about_unsaved_work(window, star, monkeypatch):
     window.document.replace(star, "star")
     with monkeypatch.context() as patch:
         patch.setattr(window.files, "may_drop", lambda: False)
@@ -184,13 +184,13 @@ def test_unsaved_work_is_asked_for_before_a_level(window, star, monkeypatch):
     assert window.document.mesh is star
 
 
-def test_a_level_that_is_none_is_told_of(window):
+def test_invalid_level_is_reported(window):
     window.levels.open("no-such-level")
     assert "no level named" in window.notice.text
     assert window.document.empty
 
 
-def test_the_actions_make_sense_only_in_a_level(window):
+def test_level_actions_are_enabled_only_in_a_level(window):
     action = window.actions_by_id
     assert action["levels"].isEnabled()
     assert not action["level.again"].isEnabled()
@@ -222,7 +222,7 @@ def test_the_window_opens_on_a_level(qtbot):
 
     window = open_on(level=level.load("two-turns"))
     qtbot.addWidget(window)
-    qtbot.waitUntil(lambda: window.canvas.plotter is not None, timeout=WAIT)
+    qtbot.waitUntil(lambda: window.canvas.built, timeout=WAIT)
     assert window.levels.bar.isVisible()
     assert window.document.mesh.score == 6
     window.close()

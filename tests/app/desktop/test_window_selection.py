@@ -8,7 +8,7 @@ from driving import WAIT, beside, pixel, press
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QApplication
 
-from meshwright.desktop.editing.vertex_menu import GONE_ON
+from meshwright.desktop.editing.vertex_menu import OUTDATED
 from meshwright.document.vertex_drag import CORNER, LOCK
 from meshwright_core import HalfEdgeMesh
 
@@ -52,15 +52,15 @@ def entry(menu, text):
     return next(action for action in menu.actions() if action.text().startswith(text))
 
 
-def test_shift_click_selects_and_takes_out(qtbot, open_window, grid):
+def test_shift_click_adds_and_removes(qtbot, open_window, grid):
     window = open_window(grid)
     selection = window.document.selection
     for vertex in (8, 9, 15, 16):
         shift_click(qtbot, window, vertex)
     assert selection.vertices.tolist() == [8, 9, 15, 16]
     assert len(selection.elements) == 1
-    assert window.selecting.layer.count == 4
-    assert "4 vertices selected" in window.said.text()
+    assert window.selection_tools.layer.count == 4
+    assert "4 vertices selected" in window.status.message
     shift_click(qtbot, window, 9)
     assert selection.vertices.tolist() == [8, 15, 16]
     assert window.editing.menu is None
@@ -78,7 +78,7 @@ def test_boxes_and_lassos_with_the_shift_key(qtbot, open_window, grid):
     selection.clear()
     drag(qtbot, window, (3.5, 3.4), (2.4, 1.5), (3.6, 1.5), modifier=LASSO)
     assert selection.vertices.tolist() == [17]
-    assert window.selecting.band.outline == []
+    assert window.selection_tools.band.outline == []
     assert window.document.history.cursor == 0
 
 
@@ -96,12 +96,12 @@ def test_the_tools_of_the_toolbar(qtbot, open_window, grid):
     assert window.document.selection.vertices.tolist() == [8, 9]
     assert window.canvas.viewport.centre == centre
     press(qtbot, window, Qt.Key.Key_Escape)
-    assert window.selecting.tool == "edit"
+    assert window.selection_tools.tool == "edit"
     press(qtbot, window, Qt.Key.Key_Escape)
     assert len(window.document.selection) == 0
 
 
-def test_select_by_what_vertices_are(qtbot, open_window, star):
+def test_select_by_degree_and_irregularity(qtbot, open_window, star):
     window = open_window(star)
     selection = window.document.selection
     window.actions_by_id["select.irregular"].trigger()
@@ -120,7 +120,7 @@ def test_a_vertex_is_dragged_and_the_drag_undone(qtbot, open_window, grid):
     window = open_window(grid)
     centre = window.canvas.viewport.centre
     drag(qtbot, window, (2, 2), (2.2, 2.3), (2.4, 2.4), release=False)
-    assert len(window.selecting.rubber.places) == 1
+    assert len(window.selection_tools.rubber.places) == 1
     assert grid.points[16].tolist() == [2.0, 2.0, 0.0]
     at = pixel(window, (2.4, 2.4))
     qtbot.mouseRelease(window.canvas.plotter, Qt.MouseButton.LeftButton, pos=at)
@@ -131,42 +131,42 @@ def test_a_vertex_is_dragged_and_the_drag_undone(qtbot, open_window, grid):
     assert grid.points[16].tolist() == [2.0, 2.0, 0.0]
 
 
-def test_boundary_vertices_keep_to_their_side(qtbot, open_window, grid):
+def test_boundary_vertices_stay_on_their_side(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 0), (2.3, 0.8))
     assert grid.points[2, 1] == 0.0
     assert grid.points[2, 0] == pytest.approx(2.3, abs=0.02)
 
 
-def test_corners_and_locked_vertices_stay_and_say_so(qtbot, open_window, grid):
+def test_dragging_fixed_vertices_shows_a_reason(qtbot, open_window, grid):
     window = open_window(grid)
     before = grid.points.copy()
     drag(qtbot, window, (0, 0), (0.3, 0.3))
-    assert window.canvas.overlay.card.text == window.said.text() == CORNER
+    assert window.canvas.overlay.card.text == window.status.message == CORNER
     window.document.set_locked(16, True)
     qtbot.wait(50)
     drag(qtbot, window, (2, 2), (2.3, 2.3))
-    assert window.said.text() == LOCK
+    assert window.status.message == LOCK
     assert np.array_equal(grid.points, before)
 
 
-def test_folded_elements_are_seen_while_dragging_and_after(qtbot, open_window, grid):
+def test_inverted_elements_are_hatched_during_and_after_a_drag(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 2), (3.4, 3.4), release=False)
-    assert window.selecting.rubber.folded > 0
+    assert window.selection_tools.rubber.folded > 0
     qtbot.mouseRelease(
         window.canvas.plotter, Qt.MouseButton.LeftButton, pos=pixel(window, (3.4, 3.4))
     )
-    assert "inverted" in window.said.text()
+    assert "inverted" in window.status.message
     qtbot.waitUntil(lambda: window.inverted.layer.count > 0, timeout=WAIT)
     press(qtbot, window, Qt.Key.Key_U, Qt.KeyboardModifier.ControlModifier)
-    assert window.said.text().startswith("Untangled")
+    assert window.status.message.startswith("Repaired")
     qtbot.waitUntil(lambda: window.inverted.layer.count == 0, timeout=WAIT)
     press(qtbot, window, Qt.Key.Key_U, Qt.KeyboardModifier.ControlModifier)
-    assert window.said.text() == "No element is inverted."
+    assert window.status.message == "No element is inverted."
 
 
-def test_escape_calls_a_drag_off(qtbot, open_window, grid):
+def test_escape_cancels_a_drag(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 2), (2.4, 2.4), release=False)
     press(qtbot, window, Qt.Key.Key_Escape)
@@ -174,16 +174,16 @@ def test_escape_calls_a_drag_off(qtbot, open_window, grid):
         window.canvas.plotter, Qt.MouseButton.LeftButton, pos=pixel(window, (2.4, 2.4))
     )
     assert window.document.history.cursor == 0
-    assert len(window.selecting.rubber.places) == 0
+    assert len(window.selection_tools.rubber.places) == 0
     assert window.editing.menu is None
 
 
-def test_an_edit_of_the_agent_calls_a_drag_off(qtbot, open_window, grid):
+def test_an_edit_by_the_agent_cancels_a_drag(qtbot, open_window, grid):
     window = open_window(grid)
     drag(qtbot, window, (2, 2), (2.4, 2.4), release=False)
     window.document.submit("collapse", grid.halfedge(16, 17), "greedy")
     assert not window.canvas.mouse.dragging
-    assert len(window.selecting.rubber.places) == 0
+    assert len(window.selection_tools.rubber.places) == 0
     qtbot.mouseRelease(
         window.canvas.plotter, Qt.MouseButton.LeftButton, pos=pixel(window, (2.4, 2.4))
     )
@@ -201,7 +201,6 @@ def test_a_selection_is_dragged_as_one(qtbot, open_window, grid):
 def test_the_menu_of_a_whole_selection(qtbot, open_window, grid):
     window = open_window(grid)
     window.document.selection.set([8, 9, 15, 16])
-    window.refresh()
     menu = open_menu(qtbot, window, pixel(window, (1, 1)) + QPoint(1, 1))
     assert menu.actions()[0].text().startswith("4 vertices")
     entry(menu, "Locked").trigger()
@@ -222,14 +221,14 @@ def test_the_menu_of_a_whole_selection(qtbot, open_window, grid):
     menu.close()
 
 
-def test_a_menu_of_a_mesh_that_has_gone_on_does_nothing(qtbot, open_window, grid):
+def test_menu_of_an_outdated_mesh_changes_nothing(qtbot, open_window, grid):
     window = open_window(grid)
     menu = open_menu(qtbot, window, pixel(window, grid.points[16]) + QPoint(1, 1))
     window.document.submit("collapse", grid.halfedge(9, 16), "greedy")
     window.document.submit("collapse", grid.halfedge(17, 24), "greedy")
     for text in ("Smooth here", "Locked", "Corner"):
         entry(menu, text).trigger()
-        assert window.said.text() == GONE_ON
+        assert window.status.message == OUTDATED
     menu.close()
     assert window.document.history.cursor == 2
 
@@ -243,12 +242,12 @@ def test_the_menu_of_one_vertex_smooths_and_selects(qtbot, open_window, grid):
     menu.close()
     assert grid.points[16, :2] == pytest.approx([2.0, 2.0], abs=0.02)
     menu = open_menu(qtbot, window, pixel(window, grid.points[16]) + QPoint(1, 1))
-    entry(menu, "Add to the selection").trigger()
+    entry(menu, "Add to selection").trigger()
     menu.close()
     assert 16 in window.document.selection
 
 
-def test_small_elements_are_not_grabbed_the_picture_moves(qtbot, open_window, grid):
+def test_drag_over_small_elements_pans(qtbot, open_window, grid):
     window = open_window(grid)
     for _ in range(12):
         press(qtbot, window, Qt.Key.Key_Minus)

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -260,6 +261,7 @@ def test_a_complete_but_invalid_file_is_reported_and_kept(document, tmp_path):
     assert path.exists()
 
 
+HELPERS = Path(__file__).parents[2] / "helpers"
 CHILD = """
 import sys
 from pathlib import Path
@@ -282,7 +284,7 @@ for seed in range(1_000_000):
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
 @pytest.mark.slow
 def test_kill_9_loses_at_most_the_last_operation(tmp_path, seconds):
-    code = CHILD.format(tests=os.path.dirname(__file__), folder=str(tmp_path), kind="quad")
+    code = CHILD.format(tests=str(HELPERS), folder=str(tmp_path), kind="quad")
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
     told = [child.stdout.readline()]
     time.sleep(seconds)

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from meshwright.document.document import Document
-from meshwright_core import HalfEdgeMesh
-from meshwright_core.core import compilation
+from meshwright_core import HalfEdgeMesh, warm_up
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.operations.catalogue import of_kind
 
@@ -19,7 +18,7 @@ MOST_BYTES = 2048
 
 @pytest.fixture(scope="module", autouse=True)
 def _kernels():
-    compilation.warm()
+    warm_up.warm()
 
 
 def everything(mesh: HalfEdgeMesh) -> list[bytes]:

@@ -37,6 +37,6 @@ def lab(_lab: Lab) -> Iterator[Lab]:
 @pytest.fixture(scope="session")
 def warm(prepared_agent) -> None:
     """Fills the kernel cache on disk, so that no server process has to compile."""
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
 
-    compilation.warm()
+    warm_up.warm()

@@ -15,6 +15,7 @@ BEGIN = """
 import sys
 sys.path.insert(0, {folder!r})
 import meshwright.assistant.worker, meshwright.notebook.kernel_warmup as preparing
+from meshwright.assistant.kernel_preparation import Stage
 from meshwright.notebook import MeshWidget
 from meshwright.document.operation_preview import choices
 
@@ -40,7 +41,7 @@ class Runner:
 
 meshwright.assistant.worker._load_policy = lambda name: name
 meshwright.assistant.worker._make_runner = Runner
-preparing.PREPARATION._stage = preparing.Stage.READY
+preparing.PREPARATION._stage = Stage.READY
 w = MeshWidget("star")
 """
 

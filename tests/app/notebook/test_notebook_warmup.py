@@ -7,8 +7,8 @@ import time
 import pytest
 from porting import Port, allowed, script_agent
 
+from meshwright.assistant.kernel_preparation import KernelPreparation, Stage
 from meshwright.document.document import Document
-from meshwright.notebook.kernel_warmup import Preparation, Stage
 from meshwright.notebook.session import Session
 
 
@@ -26,7 +26,9 @@ class Gates:
     def __init__(self, tmp_path, cold: tuple[Stage, ...], code: int = 0) -> None:
         self.cold, self.loaded = list(cold), 0
         self._folder, self._code = tmp_path, code
-        self.preparation = Preparation(lambda stage: stage not in self.cold, self._load, self._go)
+        self.preparation = KernelPreparation(
+            lambda stage: stage not in self.cold, self._load, self._go
+        )
 
     def _load(self) -> None:
         self.loaded += 1
@@ -90,7 +92,7 @@ def test_a_failed_compilation_is_logged_and_blocks_nothing(port, monkeypatch, ca
     def broken() -> None:
         raise RuntimeError("no compiler")
 
-    preparation = Preparation(lambda stage: True, broken)
+    preparation = KernelPreparation(lambda stage: True, broken)
     monkeypatch.setattr("meshwright.notebook.kernel_warmup.PREPARATION", preparation)
     port.ask("hello")
     until(port, lambda: "no compiler" in caplog.text)
@@ -104,7 +106,7 @@ def test_two_sessions_are_notified_by_one_thread(port, triangles, tmp_path, monk
     other = Port(Session.of(Document(triangles)))
     port.ask("hello")
     other.ask("hello")
-    assert sum(thread.name == "preparing" for thread in threading.enumerate()) == 1
+    assert sum(thread.name == "kernel-preparation" for thread in threading.enumerate()) == 1
     gates.open(Stage.EDITING)
     until(port, lambda: port.sentence == "Everything is ready.")
     until(other, lambda: other.sentence == "Everything is ready.")

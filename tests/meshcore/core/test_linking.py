@@ -4,13 +4,16 @@ import json
 import os
 import subprocess
 import sys
+from typing import NamedTuple
 
 import numba
 import numpy as np
 import pytest
 
 from meshwright_core.core import compilation
+from meshwright_core.core.compilation import kernel
 from meshwright_core.core.linking import canonical
+from meshwright_core.core.references import by_reference
 
 KERNELS = """
 from typing import NamedTuple
@@ -122,3 +125,25 @@ def test_entry_points_are_counted(tiny, tmp_path, monkeypatch):
     tiny()
     monkeypatch.setattr(compilation, "cache_folder", lambda package: tmp_path / "cache")
     assert compilation.entry_points_on_disk() == 2
+
+
+@by_reference
+class Samples(NamedTuple):
+    values: np.ndarray
+    weights: np.ndarray
+
+
+@kernel
+def weighted_sum(samples):
+    scratch = np.zeros(len(samples.values))
+    for i in range(len(scratch)):
+        scratch[i] = samples.values[i] * samples.weights[i]
+    return scratch.sum()
+
+
+def test_a_call_from_python_keeps_no_reference_to_the_arrays_of_a_tuple():
+    samples = Samples(np.arange(3.0), np.ones(3))
+    before = [sys.getrefcount(array) for array in samples]
+    for _ in range(5):
+        assert weighted_sum(samples) == 3.0
+    assert [sys.getrefcount(array) for array in samples] == before

@@ -33,23 +33,24 @@ def start(began: float, *numbers: int) -> dict[str, Any]:
 
     result: dict[str, Any] = {}
 
-    class Watch(QObject):
+    class FirstPaintFilter(QObject):
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
             if event.type() == QEvent.Type.Paint and "first_paint_s" not in result:
                 result["first_paint_s"] = time.time() - began
                 result["torch_at_first_paint"] = "torch" in sys.modules
                 result["pyvista_at_first_paint"] = "pyvista" in sys.modules
-                result["compiled_at_first_paint"] = window.ready
+                result["compiled_at_first_paint"] = window.readiness.editing
             return False
 
     app = application()
-    watch = Watch()
+    watch = FirstPaintFilter()
     window = open_window("star", demo=False)
     window.installEventFilter(watch)
-    _spin(app, lambda: window.canvas.plotter is not None)
+    _spin(app, lambda: window.canvas.built)
     _frame(app, window)
     result["mesh_drawn_s"] = time.time() - began
-    _spin(app, lambda: window.ready, KERNELS_S)  # minutes where nothing was compiled yet
+    # minutes where nothing was compiled yet
+    _spin(app, lambda: window.readiness.editing, KERNELS_S)
     result["kernels_ready_s"] = time.time() - began
     result["torch_at_the_end"] = "torch" in sys.modules
     window.close()
@@ -111,14 +112,14 @@ def _open(mesh: Any) -> tuple[Any, Any]:
     from meshwright.desktop.main_window.startup import application
     from meshwright.desktop.main_window.window import MainWindow
     from meshwright.document.document import Document
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
 
-    compilation.warm()
+    warm_up.warm()
     app = application()
     window = MainWindow(Document(mesh), ready=True)
     window.resize(1280, 800)
     window.show()
-    _spin(app, lambda: window.canvas.plotter is not None)
+    _spin(app, lambda: window.canvas.built)
     window.activateWindow()
     _frame(app, window)
     return app, window
@@ -126,11 +127,11 @@ def _open(mesh: Any) -> tuple[Any, Any]:
 
 def scrambled(size: int, seed: int, every: int = SCRAMBLES) -> Any:
     """A square grid of ``size`` quads after random flips, smoothed."""
-    from meshwright_core.core import compilation
+    from meshwright_core import warm_up
     from meshwright_core.domains import meshing
     from meshwright_core.geometry import smoothing
 
-    compilation.warm()
+    warm_up.warm()
     rng = np.random.default_rng(seed)
     mesh = meshing.grid("quad", size)
     for h in rng.integers(0, 4 * mesh.n_elements, size // every).tolist():
@@ -151,12 +152,12 @@ def _hover(app: Any, window: Any, count: int) -> list[float]:
 
     painted = [0]
 
-    class Watch(QObject):
+    class EventFilter(QObject):
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
             painted[0] += event.type() == QEvent.Type.Paint
             return False
 
-    watch = Watch()
+    watch = EventFilter()
     overlay, plotter = window.canvas.overlay, window.canvas.plotter
     overlay.installEventFilter(watch)
     times = []

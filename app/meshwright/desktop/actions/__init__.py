@@ -1,3 +1,3 @@
-"""The parts of the table of actions, one module a topic; :mod:`meshwright.desktop.actions.registry`
-joins them.
+"""The table of user actions, one module per menu; :mod:`meshwright.desktop.actions.registry` joins
+them.
 """

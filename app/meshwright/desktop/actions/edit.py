@@ -1,4 +1,4 @@
-"""Going back and forth, and what is selected."""
+"""Actions of the menu Edit: undo and redo."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "undo",
         "Undo",
-        "Take back the last step",
-        lambda window: window.editing.undo(),
-        ("Ctrl+Z",),
-        lambda window: window.document.can_undo,
+        "Undo the last step",
+        run=lambda context: context.editing.undo(),
+        shortcuts=("Ctrl+Z",),
+        enabled=lambda context: context.document.can_undo,
         menu="Edit",
         icon="undo",
-        needs="There is nothing to take back.",
+        needs="There is nothing to undo.",
     ),
     Action(
         "redo",
         "Redo",
-        "Do again what was taken back",
-        lambda window: window.editing.redo(),
-        ("Ctrl+Shift+Z", "Ctrl+Y"),
-        lambda window: window.document.can_redo,
+        "Redo the step that was undone last",
+        run=lambda context: context.editing.redo(),
+        shortcuts=("Ctrl+Shift+Z", "Ctrl+Y"),
+        enabled=lambda context: context.document.can_redo,
         menu="Edit",
         icon="redo",
-        needs="Nothing has been taken back.",
+        needs="There is nothing to redo.",
     ),
 )

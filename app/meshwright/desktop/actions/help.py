@@ -1,4 +1,4 @@
-"""Help."""
+"""Actions of the menu Help: palette, shortcuts, tour, About."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "palette",
         "Find a command\u2026",
-        "Every command, found by a few letters",
-        lambda window: window.guide.show_palette(),
-        ("Ctrl+K", "Ctrl+Shift+P"),
+        "Search all commands by a few letters",
+        run=lambda context: context.help.show_palette(),
+        shortcuts=("Ctrl+K", "Ctrl+Shift+P"),
         menu="Help",
         icon="search",
         repeats=False,
     ),
     Action(
         "help",
-        "Keys and mouse",
-        "All keys, and what the mouse does",
-        lambda window: window.guide.show_keys(),
-        ("F1",),
+        "Keyboard and mouse",
+        "All keyboard shortcuts and mouse gestures",
+        run=lambda context: context.help.show_keys(),
+        shortcuts=("F1",),
         menu="Help",
         icon="help",
     ),
@@ -28,14 +28,14 @@ ACTIONS: tuple[Action, ...] = (
         "tour",
         "Show the tour",
         "Five steps around the window",
-        lambda window: window.guide.show_tour(),
+        run=lambda context: context.help.show_tour(),
         menu="Help",
     ),
     Action(
         "about",
         "About Meshwright",
         "Version and licences",
-        lambda window: window.guide.show_about(),
+        run=lambda context: context.help.show_about(),
         menu="Help",
     ),
 )

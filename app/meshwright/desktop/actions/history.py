@@ -1,43 +1,39 @@
-"""The film: walking through the history, and exporting it."""
+"""Actions of the menu History: navigation, playback, branches and export."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from meshwright.desktop.actions.action import Action, has_mesh, needing
-
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
+from meshwright.desktop.actions.context import ActionContext
 
 
-@needing("This is the start.")
-def _can_go_back(window: MainWindow) -> bool:
-    return window.ready and window.document.can_undo
+@needing("This is the start of the history.")
+def _can_go_back(context: ActionContext) -> bool:
+    return context.readiness.editing and context.document.can_undo
 
 
-@needing("This is the end.")
-def _can_go_on(window: MainWindow) -> bool:
-    return window.ready and window.document.can_redo
+@needing("This is the end of the history.")
+def _can_go_on(context: ActionContext) -> bool:
+    return context.readiness.editing and context.document.can_redo
 
 
-@needing("There are no steps yet.")
-def _has_steps(window: MainWindow) -> bool:
-    return window.ready and len(window.document.history) > 0
+@needing("The history is empty.")
+def _has_steps(context: ActionContext) -> bool:
+    return context.readiness.editing and len(context.document.history) > 0
 
 
-@needing("There is no branch.")
-def _has_branches(window: MainWindow) -> bool:
-    return window.ready and len(window.document.history.branches) > 0
+@needing("The history has no branches.")
+def _has_branches(context: ActionContext) -> bool:
+    return context.readiness.editing and len(context.document.history.branches) > 0
 
 
 ACTIONS: tuple[Action, ...] = (
     Action(
         "history.play",
-        "Play or hold the film",
-        "Play the recorded steps from here, from the start if this is the end; or hold",
-        lambda window: window.film.play_or_hold(),
-        ("Shift+Space",),
-        _has_steps,
+        "Play or pause the history",
+        "Play the recorded steps from here, or from the start if this is the end; or pause",
+        run=lambda context: context.playback.play_or_hold(),
+        shortcuts=("Shift+Space",),
+        enabled=_has_steps,
         menu="History",
         repeats=False,
     ),
@@ -45,64 +41,64 @@ ACTIONS: tuple[Action, ...] = (
         "history.back",
         "One step back",
         "Show the state before the last step",
-        lambda window: window.film.walk(-1),
-        ("Alt+Left", "["),
-        _can_go_back,
+        run=lambda context: context.playback.walk(-1),
+        shortcuts=("Alt+Left", "["),
+        enabled=_can_go_back,
         menu="History",
     ),
     Action(
         "history.forward",
         "One step forward",
         "Show the state after the next step",
-        lambda window: window.film.walk(1),
-        ("Alt+Right", "]"),
-        _can_go_on,
+        run=lambda context: context.playback.walk(1),
+        shortcuts=("Alt+Right", "]"),
+        enabled=_can_go_on,
         menu="History",
     ),
     Action(
         "history.first",
         "To the start",
         "Show the mesh as it was before the first step",
-        lambda window: window.film.go_to(0),
-        ("Alt+Home",),
-        _can_go_back,
+        run=lambda context: context.playback.go_to(0),
+        shortcuts=("Alt+Home",),
+        enabled=_can_go_back,
         menu="History",
     ),
     Action(
         "history.last",
         "To the end",
         "Show the mesh after the last step",
-        lambda window: window.film.go_to(len(window.document.history)),
-        ("Alt+End",),
-        _can_go_on,
+        run=lambda context: context.playback.go_to(len(context.document.history)),
+        shortcuts=("Alt+End",),
+        enabled=_can_go_on,
         menu="History",
     ),
     Action(
         "history.best",
         "To the best state",
         "Show the first state with the lowest score",
-        lambda window: window.film.go_to_best(),
-        ("Alt+Up",),
-        _has_steps,
+        run=lambda context: context.playback.go_to_best(),
+        shortcuts=("Alt+Up",),
+        enabled=_has_steps,
         menu="History",
     ),
     Action(
         "history.branch",
-        "To the branch left last",
-        "Take the steps up again that were left last; the present ones become a branch",
-        lambda window: window.film.take_last_branch(),
-        ("Alt+Down",),
-        _has_branches,
+        "To the last branch",
+        "Switch to the branch that was left last; the current steps become a branch",
+        run=lambda context: context.playback.take_last_branch(),
+        shortcuts=("Alt+Down",),
+        enabled=_has_branches,
         menu="History",
         repeats=False,
     ),
     Action(
         "history.export",
-        "Export film or picture\u2026",
-        "Write the history as a film (GIF, MP4), or this state as a picture (PNG, SVG)",
-        lambda window: window.film.export(),
-        ("Ctrl+E",),
-        has_mesh,
+        "Export video or image\u2026",
+        "Export the history as a video (GIF, MP4), or this state as an image (PNG, SVG)",
+        run=lambda context: context.playback.export(),
+        shortcuts=("Ctrl+E",),
+        enabled=has_mesh,
         menu="History",
         repeats=False,
     ),
@@ -110,20 +106,20 @@ ACTIONS: tuple[Action, ...] = (
         "history.list",
         "History list",
         "Show or hide the list of all steps",
-        lambda window: window.film.show_list(not window.film.lists),
-        ("F3",),
+        run=lambda context: context.playback.show_list(not context.playback.lists),
+        shortcuts=("F3",),
         menu="History",
-        checked=lambda window: window.film.lists,
+        checked=lambda context: context.playback.lists,
         repeats=False,
     ),
     Action(
         "history.timeline",
         "Timeline",
         "Show or hide the score curve below the mesh",
-        lambda window: window.film.show_timeline(not window.film.times),
-        ("F4",),
+        run=lambda context: context.playback.show_timeline(not context.playback.times),
+        shortcuts=("F4",),
         menu="History",
-        checked=lambda window: window.film.times,
+        checked=lambda context: context.playback.times,
         repeats=False,
     ),
 )

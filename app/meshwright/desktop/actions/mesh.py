@@ -1,4 +1,4 @@
-"""Changes of the mesh: the catalogue's operations, and what concerns the whole mesh."""
+"""Actions of the menu Mesh: the catalogue's operations, and edits of the whole mesh."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from meshwright_core.operations.catalogue import CATALOGUE, OperationInfo
 
 
 def operation_id(info: OperationInfo) -> str:
-    """The id of the action that does an operation on the half-edge under the mouse."""
+    """The id of the action that applies an operation to the half-edge under the mouse."""
     return f"{info.kind}.{info.operation.value}"
 
 
@@ -16,10 +16,11 @@ def _operation(info: OperationInfo) -> Action:
         id=operation_id(info),
         title=info.title,
         tooltip=info.summary[:1].upper() + info.summary[1:],
-        run=lambda window: window.editing.operate(info.operation),
+        run=lambda context: context.editing.operate(info.operation),
         shortcuts=(info.key.upper(),),
-        enabled=lambda window: window.document.kind == info.kind,
+        enabled=lambda context: context.document.kind == info.kind,
         menu="Mesh",
+        kind=info.kind,
     )
 
 
@@ -29,9 +30,9 @@ ACTIONS: tuple[Action, ...] = (
         "clean_all",
         "Clean all",
         "Remove every global line that can be removed",
-        lambda window: window.editing.clean_all(),
-        ("Ctrl+L",),
-        has_quads,
+        run=lambda context: context.editing.clean_all(),
+        shortcuts=("Ctrl+L",),
+        enabled=has_quads,
         menu="Mesh",
         icon="clean",
         word="Clean all",
@@ -39,10 +40,10 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "smooth",
         "Smooth",
-        "Smooth and untangle the whole mesh; corners stay",
-        lambda window: window.editing.smooth(),
-        ("Ctrl+M",),
-        has_mesh,
+        "Smooth and untangle the whole mesh; corners are fixed",
+        run=lambda context: context.editing.smooth(),
+        shortcuts=("Ctrl+M",),
+        enabled=has_mesh,
         menu="Mesh",
         icon="smooth",
         word="Smooth",
@@ -50,20 +51,20 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "smooth_here",
         "Smooth the selection",
-        "Smooth and untangle the selected vertices; no others move",
-        lambda window: window.editing.smooth_here(),
-        ("Ctrl+Shift+M",),
-        lambda window: len(window.document.selection) > 0,
+        "Smooth and untangle the selected vertices; all others are fixed",
+        run=lambda context: context.editing.smooth_here(),
+        shortcuts=("Ctrl+Shift+M",),
+        enabled=lambda context: len(context.document.selection) > 0,
         menu="Mesh",
         needs="Nothing is selected.",
     ),
     Action(
         "untangle",
         "Untangle",
-        "Mend inverted elements; what is not near them stays where it is",
-        lambda window: window.editing.untangle(),
-        ("Ctrl+U",),
-        has_mesh,
+        "Repair inverted elements; only vertices near them move",
+        run=lambda context: context.editing.untangle(),
+        shortcuts=("Ctrl+U",),
+        enabled=has_mesh,
         menu="Mesh",
     ),
 )

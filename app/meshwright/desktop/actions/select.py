@@ -1,35 +1,32 @@
-"""What is selected, and the tools of the mouse."""
+"""Actions of the menu Select: the selection, and the mouse tools."""
 
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 from meshwright.desktop.actions.action import Action, has_mesh
+from meshwright.desktop.actions.context import ActionContext
 from meshwright.desktop.editing.selection_controller import BOX, EDIT, LASSO
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
-
 DEGREES = range(2, 9)
-"""Degrees that can be selected by."""
+"""Degrees with a command that selects their vertices."""
 
 
-def has_selection(window: MainWindow) -> bool:
+def has_selection(context: ActionContext) -> bool:
     """Some vertex is selected."""
-    return len(window.document.selection) > 0
+    return len(context.document.selection) > 0
 
 
-def _use(tool: str, window: MainWindow) -> None:
-    window.selecting.use(tool)
+def _use(tool: str, context: ActionContext) -> None:
+    context.selection_tools.use(tool)
 
 
-def _uses(tool: str, window: MainWindow) -> bool:
-    return window.selecting.tool == tool
+def _uses(tool: str, context: ActionContext) -> bool:
+    return context.selection_tools.tool == tool
 
 
-def _of_degree(degree: int, window: MainWindow) -> None:
-    window.document.selection.of_degree(degree)
+def _of_degree(degree: int, context: ActionContext) -> None:
+    context.document.selection.of_degree(degree)
 
 
 def _tool(tool: str, title: str, tooltip: str, keys: str) -> Action:
@@ -37,9 +34,9 @@ def _tool(tool: str, title: str, tooltip: str, keys: str) -> Action:
         f"tool.{tool}",
         title,
         tooltip,
-        partial(_use, tool),
-        (keys,),
-        has_mesh,
+        run=partial(_use, tool),
+        shortcuts=(keys,),
+        enabled=has_mesh,
         menu="Select",
         icon=tool,
         checked=partial(_uses, tool),
@@ -47,56 +44,54 @@ def _tool(tool: str, title: str, tooltip: str, keys: str) -> Action:
 
 
 ACTIONS: tuple[Action, ...] = (
-    _tool(EDIT, "Edit", "Click half-edges, drag vertices, drag beside them to move the view", "A"),
-    _tool(BOX, "Select by box", "Drag a box around vertices; with Shift at any time", "B"),
-    _tool(
-        LASSO, "Select by lasso", "Draw around vertices; with Shift and Alt at any time", "Shift+B"
-    ),
+    _tool(EDIT, "Edit", "Click half-edges, drag vertices; drag anywhere else to pan", "A"),
+    _tool(BOX, "Select by box", "Drag a box around vertices; Shift+drag in any tool", "B"),
+    _tool(LASSO, "Select by lasso", "Draw around vertices; Shift+Alt+drag in any tool", "Shift+B"),
     Action(
         "select.all",
         "Select all",
         "Select every vertex",
-        lambda window: window.document.selection.everything(),
-        ("Ctrl+A",),
-        has_mesh,
+        run=lambda context: context.document.selection.everything(),
+        shortcuts=("Ctrl+A",),
+        enabled=has_mesh,
         menu="Select",
     ),
     Action(
         "select.none",
-        "Select nothing",
-        "Empty the selection",
-        lambda window: window.document.selection.clear(),
-        ("Ctrl+Shift+A",),
-        has_selection,
+        "Clear selection",
+        "Deselect all vertices",
+        run=lambda context: context.document.selection.clear(),
+        shortcuts=("Ctrl+Shift+A",),
+        enabled=has_selection,
         menu="Select",
         needs="Nothing is selected.",
     ),
     Action(
         "select.invert",
-        "Invert the selection",
+        "Invert selection",
         "Select the vertices that are not selected",
-        lambda window: window.document.selection.invert(),
-        ("Ctrl+I",),
-        has_mesh,
+        run=lambda context: context.document.selection.invert(),
+        shortcuts=("Ctrl+I",),
+        enabled=has_mesh,
         menu="Select",
     ),
     Action(
         "select.grow",
-        "Grow the selection",
-        "Select the elements around it too",
-        lambda window: window.document.selection.grow(),
-        (">",),
-        has_selection,
+        "Grow selection",
+        "Add the neighbouring elements",
+        run=lambda context: context.document.selection.grow(),
+        shortcuts=(">",),
+        enabled=has_selection,
         menu="Select",
         needs="Nothing is selected.",
     ),
     Action(
         "select.shrink",
-        "Shrink the selection",
-        "Take out the vertices at its rim",
-        lambda window: window.document.selection.shrink(),
-        ("<",),
-        has_selection,
+        "Shrink selection",
+        "Remove the vertices at its border",
+        run=lambda context: context.document.selection.shrink(),
+        shortcuts=("<",),
+        enabled=has_selection,
         menu="Select",
         needs="Nothing is selected.",
     ),
@@ -104,9 +99,9 @@ ACTIONS: tuple[Action, ...] = (
         "select.irregular",
         "Select irregular vertices",
         "Select every vertex whose degree is not the desired one",
-        lambda window: window.document.selection.irregular(),
-        ("Ctrl+Shift+I",),
-        has_mesh,
+        run=lambda context: context.document.selection.irregular(),
+        shortcuts=("Ctrl+Shift+I",),
+        enabled=has_mesh,
         menu="Select",
     ),
     *(
@@ -114,9 +109,8 @@ ACTIONS: tuple[Action, ...] = (
             f"select.degree_{degree}",
             f"Select degree {degree}",
             f"Select every vertex with {degree} edges",
-            partial(_of_degree, degree),
-            (),
-            has_mesh,
+            run=partial(_of_degree, degree),
+            enabled=has_mesh,
             menu="Select",
         )
         for degree in DEGREES

@@ -1,4 +1,4 @@
-"""The agent panel: which policy, what it shall do, and how far it is."""
+"""The agent panel: choice of policy, buttons for hints and runs, progress."""
 
 from __future__ import annotations
 
@@ -20,34 +20,36 @@ from qtpy.QtWidgets import (
 
 from meshwright.assistant.assistant import Assistant, State
 from meshwright.assistant.policy_catalogue import kind_of, label, shipped
-from meshwright.desktop.actions.registry import ActionSet
 from meshwright.desktop.agent.hint_list import HintList
 from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.controller import Connections
 from meshwright.desktop.widgets import icons
-from meshwright.desktop.widgets.basic import Bar, named
+from meshwright.desktop.widgets.action_set import ActionSet
+from meshwright.desktop.widgets.basic import ShareBar, named
 from meshwright.desktop.widgets.number_box import IntegerBox
 from meshwright.document.document import Document
 from meshwright.graphics.theme import GRID, Theme
 
 NO_POLICY = {"tri": "No policy for triangle meshes", "quad": "No policy for quad meshes"}
 SPEEDS = (0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60)
-"""What the slider offers, in decisions per second."""
+"""Steps of the slider, in decisions per second."""
 USUAL_SPEED, USUAL_ROLLOUTS, USUAL_SECONDS = 4, 10, 10
 MOST_ROLLOUTS, MOST_SECONDS = 1000, 3600
 TICK = 100
-"""Milliseconds between two looks at the clock while something is under way."""
+"""Milliseconds between updates of the elapsed time during a run."""
 FILES = "agent/files"
-"""The setting that remembers policy files."""
+"""The setting with the paths of the user's policy files."""
 MOST_FILES = 10
 
 
 class AgentPanel(QWidget):
-    """Follows the assistant; its buttons are the table's actions."""
+    """Shows the state of ``assistant``; its buttons trigger ``actions``."""
 
     def __init__(
         self,
         document: Document,
         assistant: Assistant,
+        settings: Settings,
         actions: ActionSet,
         theme: Theme,
     ) -> None:
@@ -55,69 +57,50 @@ class AgentPanel(QWidget):
         self._document = document
         self._assistant = assistant
         self._actions = actions
-        self._settings: Settings | None = None
+        self._settings = settings
         self._theme = theme
-        self._buttons: list[tuple[QWidget, str]] = []
-        self._numbers: dict[QSpinBox, str] = {}
-        self._files: list[str] = []
-        self._drawn: tuple[bool, Theme] | None = None  # what the icons are for
+        self._files = settings.texts(FILES)
+        # whether it was playing, and the theme, when the icons were drawn
+        self._drawn: tuple[bool, Theme] | None = None
         self._make_policy()
         self._make_buttons()
         self._make_progress()
         self._arrange()
-        document.replaced.connect(self._on_replaced)
-        assistant.changed.connect(self._on_assistant_changed)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._on_replaced)
+        self._connections.add(assistant.changed, self._on_assistant_changed)
         self._on_replaced()
 
-    def use(self, settings: Settings) -> None:
-        """Take up what was set last time, and keep what is set from now on."""
-        speed = settings.number("agent/speed", USUAL_SPEED)
-        self.speed.setValue(min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - speed)))
-        for box, key in self._numbers.items():
-            box.setValue(round(min(max(settings.number(key, box.value()), 1), box.maximum())))
-        self._settings, self._files = settings, settings.texts(FILES)
-        self._fill()
-
     def release(self) -> None:
-        """Let go of document and assistant."""
+        """Disconnect from document and assistant."""
         self._clock.stop()
-        self._document.replaced.disconnect(self._on_replaced)
-        self._assistant.changed.disconnect(self._on_assistant_changed)
+        self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.bar.set_theme(theme)
         self.hints.set_theme(theme)
         self._on_assistant_changed()
 
-    def refresh(self) -> None:
-        """Enable the buttons whose actions are enabled."""
-        for button, name in self._buttons:
-            button.setEnabled(self._actions[name].isEnabled())
-
     @property
     def rollouts(self) -> int:
-        """Runs of *Best of*."""
+        """Number of runs of *Best of*."""
         return int(self.rollouts_box.value())
 
     @property
     def seconds(self) -> float:
-        """Seconds of *Search*."""
+        """Time limit of *Search* in seconds."""
         return float(self.seconds_box.value())
 
     def offer(self, path: str, kind: str) -> None:
-        """Offer a policy file from now on, too, where meshes are of its kind."""
+        """Add a policy file for meshes of ``kind`` to the list, also in later sessions."""
         self._files = [path, *(one for one in self._files if one != path)][:MOST_FILES]
-        self._keep(FILES, self._files)
+        self._settings.put(FILES, self._files)
         if kind == self._document.kind:
             self._fill()
 
-    def _keep(self, key: str, value: object) -> None:
-        if self._settings is not None:
-            self._settings.put(key, value)
-
-    # Making
+    # Construction
 
     def _make_policy(self) -> None:
         self.policy = QComboBox()
@@ -142,26 +125,28 @@ class AgentPanel(QWidget):
         self.region = self._button("agent.region", "Finish only this region")
         self.rollouts_box = self._number("agent/rollouts", MOST_ROLLOUTS, USUAL_ROLLOUTS, " runs")
         self.rollouts_box.setAccessibleName("Runs of Best of")
-        self.rollouts_box.setToolTip("How often Best of runs the policy")
+        self.rollouts_box.setToolTip("Number of runs of Best of")
         self.seconds_box = self._number("agent/seconds", MOST_SECONDS, USUAL_SECONDS, " s")
         self.seconds_box.setAccessibleName("Seconds of Search")
-        self.seconds_box.setToolTip("How long Search and Finish only this region look")
+        self.seconds_box.setToolTip("Time limit of Search and of Finish only this region")
         self.watch = QCheckBox("Show what the policy sees")
         self.watch.setToolTip(self._actions["agent.watch"].toolTip())
         self.watch.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.watch.clicked.connect(self._actions["agent.watch"].trigger)
-        self._buttons.append((self.watch, "agent.watch"))
+        self._follow(self.watch, "agent.watch")
         self.speed = QSlider(Qt.Orientation.Horizontal)
         self.speed.setRange(0, len(SPEEDS) - 1)
         self.speed.setToolTip("Decisions per second of Play")
         self.speed.setAccessibleName("Speed")
         self.speed.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.pace = named("", "Label")
+        usual = self._settings.number("agent/speed", USUAL_SPEED)
+        self.speed.setValue(min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - usual)))
+        self._set_speed(self.speed.value())
         self.speed.valueChanged.connect(self._on_speed_moved)
-        self.speed.setValue(SPEEDS.index(USUAL_SPEED))
 
     def _make_progress(self) -> None:
-        self.bar = Bar(self._theme)
+        self.bar = ShareBar(self._theme)
         self.bar.hide()
         self.progress = named("", "Hint")
         self.progress.setWordWrap(True)
@@ -172,25 +157,29 @@ class AgentPanel(QWidget):
         self._clock.timeout.connect(self._on_tick)
 
     def _button(self, name: str, text: str) -> QPushButton:
-        """A button for an action that leaves the keyboard to the canvas."""
+        """A button for an action; a click leaves the keyboard focus with the canvas."""
         action: QAction = self._actions[name]
         made = QPushButton(text)
         made.setToolTip(action.toolTip())
         made.setAccessibleName(action.text())
         made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         made.clicked.connect(action.trigger)
-        self._buttons.append((made, name))
+        self._follow(made, name)
         return made
+
+    def _follow(self, widget: QWidget, name: str) -> None:
+        """Enable ``widget`` while the action is enabled."""
+        widget.setEnabled(self._actions[name].isEnabled())
+        self._actions[name].enabledChanged.connect(widget.setEnabled)
 
     def _number(self, key: str, most: int, usual: int, unit: str) -> QSpinBox:
         made = IntegerBox()
         made.setRange(1, most)
         made.setSuffix(unit)
-        made.setValue(usual)
+        made.setValue(round(min(max(self._settings.number(key, usual), 1), most)))
         made.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         made.setKeyboardTracking(False)
-        made.valueChanged.connect(partial(self._keep, key))
-        self._numbers[made] = key
+        made.valueChanged.connect(partial(self._settings.put, key))
         return made
 
     def _arrange(self) -> None:
@@ -220,14 +209,14 @@ class AgentPanel(QWidget):
     # Following
 
     def _on_replaced(self) -> None:
-        """Another mesh: offer the policies of its kind."""
+        """List the policies for the kind of the new mesh."""
         names = self._fill()
         if self._assistant.policy not in names:
             self._assistant.policy = names[0] if names else ""
         self._on_assistant_changed()
 
     def _fill(self) -> list[str]:
-        """The policies on offer, which the box lists from now on."""
+        """Fill the box with the policies for the kind of the mesh, and return their names."""
         kind = self._document.kind
         names = shipped(kind) if kind else []
         names += [path for path in self._files if kind and _is_for(path, kind)]
@@ -240,13 +229,13 @@ class AgentPanel(QWidget):
                         self.policy.count() - 1, name, Qt.ItemDataRole.ToolTipRole
                     )
             if not names:
-                self.policy.addItem("No policy yet" if not kind else NO_POLICY[kind])
+                self.policy.addItem("No policy" if not kind else NO_POLICY[kind])
         self.policy.setEnabled(bool(names))
         self._select()
         return names
 
     def _select(self) -> None:
-        """Let the box show the policy that is followed."""
+        """Show the policy in use."""
         at = self.policy.findData(self._assistant.policy)
         if at >= 0 and at != self.policy.currentIndex():
             with QSignalBlocker(self.policy):
@@ -256,24 +245,27 @@ class AgentPanel(QWidget):
         name = self.policy.itemData(index)
         if name:
             self._assistant.choose(name)
-            self._select()  # what is chosen is followed only once it is loaded
+            self._select()  # the chosen policy is in use only once it is loaded
 
     def _on_speed_moved(self, index: int) -> None:
+        self._set_speed(index)
+        self._settings.put("agent/speed", SPEEDS[index])
+
+    def _set_speed(self, index: int) -> None:
         self._assistant.speed = SPEEDS[index]
         self.pace.setText(f"{SPEEDS[index]:g} per second")
-        self._keep("agent/speed", SPEEDS[index])
 
     def _on_assistant_changed(self) -> None:
         assistant = self._assistant
         playing = assistant.state is State.PLAYING
         self.play.setText(
-            "Pause" if playing else "Go on" if assistant.state is State.PAUSED else "Play"
+            "Pause" if playing else "Resume" if assistant.state is State.PAUSED else "Play"
         )
         if self._drawn != (playing, self._theme):
             self._drawn = (playing, self._theme)
             self.step.setIcon(icons.icon("step", self._theme))
             self.play.setIcon(icons.icon("pause" if playing else "play", self._theme))
-        self.stop.setText("Stop at once" if assistant.stopping else "Stop")
+        self.stop.setText("Stop now" if assistant.stopping else "Stop")
         self.watch.setChecked(assistant.watch)
         self._select()
         if assistant.running != self._clock.isActive():
@@ -282,26 +274,25 @@ class AgentPanel(QWidget):
             else:
                 self._clock.stop()
         self._on_tick()
-        self.refresh()
 
     def _on_tick(self) -> None:
         share = self._assistant.progress.share
         self.bar.setVisible(share is not None)
         self.bar.share = share or 0.0
-        text = told(self._assistant)
+        text = activity(self._assistant)
         if text != self.progress.text():
             self.progress.setText(text)
 
 
-def told(assistant: Assistant) -> str:
-    """What the assistant is doing, in a few words."""
+def activity(assistant: Assistant) -> str:
+    """The state of the assistant in a few words."""
     progress = assistant.progress
     decisions = progress.counted
     best = "" if progress.best is None else f", best s {progress.best}"
     if assistant.loading:
         return "Loading the policy\u2026"
     if assistant.hinting.asking:
-        return "Asking the policy\u2026"
+        return "Computing hints\u2026"
     if assistant.stopping:
         return f"Stopping{best}"
     if assistant.state is State.SEARCHING:
@@ -318,7 +309,7 @@ def told(assistant: Assistant) -> str:
 
 
 def _is_for(path: str, kind: str) -> bool:
-    """Whether there is a policy file for this kind of mesh; it may have gone since it was used."""
+    """Whether the file still exists and holds a policy for this kind of mesh."""
     try:
         return kind_of(path) == kind
     except (ValueError, OSError):

@@ -1,4 +1,4 @@
-"""The hints as rows of the agent panel: number, operation, probability, change of s."""
+"""The list of hints in the agent panel: number, operation, probability, change of s."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST = 5
 
 
 class HintRow(QPushButton):
-    """One hint; a click takes it."""
+    """One hint; a click applies it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -43,7 +43,7 @@ class HintRow(QPushButton):
             part.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setFixedHeight(30)
 
-    def tell(self, hint: Hint, theme: Theme) -> None:
+    def show_hint(self, hint: Hint, theme: Theme) -> None:
         """Show this hint."""
         change = label(hint.ghost.change)
         self.number.setText(str(hint.number))
@@ -51,15 +51,17 @@ class HintRow(QPushButton):
         self.chance.setText(hint.chance)
         self.change.setText(change)
         self.change.setStyleSheet(f"color: {change_colour(hint.ghost.change, theme)};")
-        self.setToolTip(f"Do it: s changes by {change}  ({hint.number})")
+        self.setToolTip(f"Apply: s changes by {change}  ({hint.number})")
         self.setAccessibleName(f"Hint {hint.number}: {hint.title}, {hint.chance}, s {change}")
 
 
 class HintList(QWidget):
-    """Rows of hints. ``taken(index)``: one is clicked; ``pointed(index)``: the mouse is on one."""
+    """Rows of hints. ``taken(index)``: one was clicked; ``hovered(index)``: the mouse or the
+    keyboard focus is on one.
+    """
 
     taken = Signal(int)
-    pointed = Signal(int)
+    hovered = Signal(int)
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -76,23 +78,26 @@ class HintList(QWidget):
         self.hide()
 
     def show_hints(self, hints: tuple[Hint, ...]) -> None:
-        """Show these, or nothing."""
+        """Show ``hints``; an empty tuple hides the list."""
         self._hints = hints[:MOST]
         for index, row in enumerate(self.rows):
             row.setVisible(index < len(self._hints))
             if index < len(self._hints):
-                row.tell(self._hints[index], self._theme)
+                row.show_hint(self._hints[index], self._theme)
         self.setVisible(bool(self._hints))
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.show_hints(self._hints)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Tell which row is pointed at."""
-        if event.type() in (QEvent.Type.Enter, QEvent.Type.FocusIn):
-            self.pointed.emit(self.rows.index(watched))
+        """Report the row under the mouse, or with the focus."""
+        if isinstance(watched, HintRow) and event.type() in (
+            QEvent.Type.Enter,
+            QEvent.Type.FocusIn,
+        ):
+            self.hovered.emit(self.rows.index(watched))
         return False
 
     def _on_clicked(self, index: int, checked: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""The bridge from worker threads into Qt's main thread."""
+"""Calls from worker threads into Qt's main thread."""
 
 from collections.abc import Callable
 
@@ -6,9 +6,9 @@ from qtpy.QtCore import QObject, Qt, Signal, Slot
 
 
 class Dispatcher(QObject):
-    """Calls what it is given in the thread that made it, in order, from the event loop.
+    """Runs calls in the thread that constructed it, in order, from the event loop.
 
-    The slot is a bound method on purpose: a lambda would run in the thread that emits.
+    The slot is a bound method because a lambda would run in the emitting thread.
     """
 
     _queued = Signal(object)
@@ -18,7 +18,7 @@ class Dispatcher(QObject):
         self._queued.connect(self._call, Qt.ConnectionType.QueuedConnection)
 
     def __call__(self, call: Callable[[], None]) -> None:
-        """Have ``call()`` called soon; returns at once, from any thread."""
+        """Queue ``call()``; returns at once, from any thread."""
         self._queued.emit(call)
 
     @Slot(object)

@@ -1,98 +1,108 @@
-"""What the settings say about the whole window, applied to it now and whenever they change."""
+"""Applies the settings to the window, at the start and when they change."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QGuiApplication
+from qtpy.QtWidgets import QWidget
 
-from meshwright.desktop.application.settings import SYSTEM
+from meshwright.desktop.application.settings import SYSTEM, Settings
+from meshwright.desktop.canvas.canvas import Canvas
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
+from meshwright.graphics.theme import Theme
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
+class PreferencesController(Controller):
+    """Applies the settings: theme, colours, numbers, smoothing, position of ``window``.
 
-class Preferences:
-    """Applies the window's settings: theme, colours, numbers, smoothing, place on the screen."""
+    ``set_window_theme(name)`` changes the theme of the whole window.
+    """
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
-
-    def connect(self) -> None:
-        """Apply what is kept, and follow settings and desktop."""
-        self._window.settings.changed.connect(self._on_changed)
+    def __init__(
+        self,
+        document: Document,
+        canvas: Canvas,
+        settings: Settings,
+        status: StatusBar,
+        window: QWidget,
+        set_window_theme: Callable[[str], None],
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._canvas, self._settings = document, canvas, settings
+        self._status, self._window = status, window
+        self._set_window_theme = set_window_theme
+        self._connections.add(settings.changed, self._on_changed)
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._on_scheme_changed)
-        self._apply_look()
+        self._show_numbers()
         self._apply_editing()
-        self._apply_recent()
 
-    def release(self) -> None:
-        """Keep where the window is, and let go of the settings."""
-        self._window.settings.changed.disconnect(self._on_changed)
+    def close(self) -> None:
+        """Save the position of the window, and disconnect."""
+        super().close()
         QGuiApplication.styleHints().colorSchemeChanged.disconnect(self._on_scheme_changed)
         if not self._window.isMinimized():
-            self._window.settings.geometry = self._window.saveGeometry()
-
-    @property
-    def theme(self) -> str:
-        """The theme to be used now: ``"light"`` or ``"dark"``."""
-        chosen = self._window.settings.theme
-        return system_theme() if chosen == SYSTEM else chosen
+            self._settings.geometry = self._window.saveGeometry()
 
     def restore_place(self) -> None:
-        """Put the window where it was when it was closed last, if that is known."""
-        geometry = self._window.settings.geometry
+        """Restore the position at which the window was closed last, if it is known."""
+        geometry = self._settings.geometry
         if not geometry.isEmpty():
             self._window.restoreGeometry(geometry)
 
     def toggle_theme(self) -> None:
-        """The other theme; from then on the desktop's is not followed."""
-        self._window.settings.theme = "light" if self.theme == "dark" else "dark"
+        """Switch between light and dark; the desktop's theme is no longer followed."""
+        self._settings.theme = "light" if theme_name(self._settings) == "dark" else "dark"
 
     def toggle_auto_smooth(self) -> None:
         """Switch the smoothing after every operation on or off."""
-        settings = self._window.settings
+        settings = self._settings
         settings.auto_smooth = not settings.auto_smooth
-        self._window.say(
-            "Operations are smoothed again."
+        self._status.show_message(
+            "Vertices are smoothed after every operation."
             if settings.auto_smooth
-            else "Operations no longer move the vertices around them."
+            else "Vertices are no longer smoothed after operations."
         )
 
     def show(self) -> None:
-        """Open the dialog."""
+        """Open the preferences dialog."""
         from meshwright.desktop.application.preferences_dialog import PreferencesDialog
 
-        dialog = PreferencesDialog(self._window.settings, self._window)
+        dialog = PreferencesDialog(self._settings, self._window)
         dialog.exec()
         dialog.deleteLater()
 
     def _apply_look(self) -> None:
-        self._window.set_theme(self.theme)
-        self._window.canvas.overlay.markers.numbers = self._window.settings.numbers
+        self._set_window_theme(theme_name(self._settings))
+        self._show_numbers()
+
+    def _show_numbers(self) -> None:
+        self._canvas.overlay.markers.numbers = self._settings.numbers
 
     def _apply_editing(self) -> None:
-        self._window.document.auto_smooth = self._window.settings.auto_smooth
-
-    def _apply_recent(self) -> None:
-        self._window.empty.show_recent(self._window.settings.recent)
+        self._document.auto_smooth = self._settings.auto_smooth
 
     def _on_changed(self, key: str) -> None:
         if key.startswith("look/"):
             self._apply_look()
         elif key.startswith("editing/"):
             self._apply_editing()
-        elif key.startswith("files/recent"):
-            self._apply_recent()
-        self._window.refresh()
 
     def _on_scheme_changed(self, scheme: Qt.ColorScheme) -> None:
-        if self._window.settings.theme == SYSTEM:
+        if self._settings.theme == SYSTEM:
             self._apply_look()
 
 
+def theme_name(settings: Settings) -> str:
+    """``"light"`` or ``"dark"``: the theme chosen in ``settings``, or else the desktop's."""
+    return system_theme() if settings.theme == SYSTEM else settings.theme
+
+
 def system_theme() -> str:
-    """The desktop's theme; light where it does not say."""
+    """The desktop's theme; light where it is unknown."""
     dark = QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
     return "dark" if dark else "light"

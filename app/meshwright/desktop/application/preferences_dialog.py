@@ -1,4 +1,4 @@
-"""The dialog of preferences; every change takes effect, and is kept, at once."""
+"""The preferences dialog; every change is applied and saved at once."""
 
 from collections.abc import Callable
 
@@ -20,21 +20,21 @@ from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import COLOURS, GRID
 
 _THEMES = (
-    (SYSTEM, "System", "Light or dark as the desktop is"),
-    ("light", "Light", "Dark lines on an off-white ground"),
-    ("dark", "Dark", "Light lines on a near-black ground"),
+    (SYSTEM, "System", "The theme of the desktop"),
+    ("light", "Light", "Dark lines on an off-white background"),
+    ("dark", "Dark", "Light lines on a near-black background"),
 )
 _SWITCHES = (
     (
         "auto_smooth",
         "Smooth around every operation",
-        "Vertices near an operation move so that the picture stays readable; corners and locked "
-        "vertices stay, boundary vertices keep to their side.",
+        "The vertices near an operation are smoothed. Corners and locked vertices are fixed, "
+        "boundary vertices stay on their side.",
     ),
     (
         "autosave",
-        "Keep every step at once",
-        "After a crash the next start offers the work again; at most the last step is missing.",
+        "Autosave every step",
+        "After a crash the work can be recovered at the next start; at most the last step is lost.",
     ),
 )
 
@@ -57,7 +57,9 @@ class PreferencesDialog(QDialog):
         layout.addLayout(self._look())
         layout.addWidget(
             self._switch(
-                "numbers", "Numbers on irregular vertices", "The signed number inside each disc."
+                "numbers",
+                "Numbers on irregular vertices",
+                "Degree minus desired degree, in each disc.",
             )
         )
         layout.addSpacing(GRID)
@@ -88,7 +90,9 @@ class PreferencesDialog(QDialog):
             self.themes[name] = button
             line.addWidget(button)
         line.addStretch(1)
-        self.colours.setToolTip("Colours of degrees above and below; colour-blind people can tell")
+        self.colours.setToolTip(
+            "Colours of too high and too low degrees; safe for colour-blind users"
+        )
         self.colours.setAccessibleName("Colours of irregular vertices")
         for name, (title, *_) in COLOURS.items():
             self.colours.addItem(title, name)
@@ -118,11 +122,11 @@ class PreferencesDialog(QDialog):
 
     def _buttons(self) -> QHBoxLayout:
         reset = QPushButton("Defaults")
-        reset.setToolTip("Go back to the defaults of everything on this page")
+        reset.setToolTip("Reset all settings on this page")
         reset.setAutoDefault(False)
         reset.clicked.connect(lambda checked=False: self._reset())
         close = QPushButton("Close")
-        close.setToolTip("Close; everything has been kept already")
+        close.setToolTip("Close; changes take effect at once")
         close.setDefault(True)
         close.clicked.connect(self.accept)
         line = QHBoxLayout()

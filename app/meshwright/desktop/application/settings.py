@@ -1,7 +1,7 @@
-"""Preferences that outlive the window, kept by Qt where the platform keeps such things.
+"""Persistent settings, stored by Qt where the platform stores settings.
 
-What is kept has a property here when more than one place asks for it; panels keep what is theirs
-alone by :meth:`Settings.flag` and its like, under a key that begins with the panel's name.
+Settings that several modules use are properties; a panel stores its own by :meth:`Settings.flag`
+and the like, under a key that begins with the panel's name.
 """
 
 from qtpy.QtCore import QByteArray, QSettings
@@ -11,16 +11,16 @@ from meshwright.signals import Signal
 
 ORGANISATION, NAME = "meshwright", "meshwright"
 SYSTEM = "system"
-"""The theme that follows the desktop's."""
+"""The theme setting that follows the desktop."""
 RECENT = 10
-"""Files that are remembered."""
+"""Length of the list of recent files."""
 
 
 class Settings:
     """Typed access to one store; ``path`` names an INI file instead of the user's own store.
 
-    ``changed(key)`` is emitted when something is kept that was not so before. A store that holds
-    nonsense, from another version or another program, gives the defaults.
+    ``changed(key)`` is emitted when a value has changed. Invalid values, for example from another
+    version, read as the defaults.
     """
 
     def __init__(self, path: str | None = None) -> None:
@@ -33,7 +33,7 @@ class Settings:
             )
         )
 
-    # What is kept
+    # Properties
 
     @property
     def theme(self) -> str:
@@ -57,7 +57,7 @@ class Settings:
 
     @property
     def numbers(self) -> bool:
-        """Whether irregular vertices carry their number."""
+        """Whether irregular vertices show their irregularity as a number."""
         return self.flag("look/numbers", True)
 
     @numbers.setter
@@ -75,7 +75,7 @@ class Settings:
 
     @property
     def autosave(self) -> bool:
-        """Whether every step is written down at once, to be found again after a crash."""
+        """Whether every step is saved at once, so that it can be recovered after a crash."""
         return self.flag("files/autosave", True)
 
     @autosave.setter
@@ -84,7 +84,7 @@ class Settings:
 
     @property
     def recent(self) -> list[str]:
-        """Paths of files opened or saved lately, the last one first."""
+        """Paths of recently opened or saved files, the latest first."""
         return self.texts("files/recent")[:RECENT]
 
     @recent.setter
@@ -102,7 +102,9 @@ class Settings:
 
     @property
     def geometry(self) -> QByteArray:
-        """Where the window was, as ``QWidget.saveGeometry`` says it; empty if unknown."""
+        """Position and size of the window as returned by ``QWidget.saveGeometry``; empty if
+        unknown.
+        """
         return self.raw("window/geometry")
 
     @geometry.setter
@@ -121,15 +123,15 @@ class Settings:
         return str(self._store.value(key, default))
 
     def choice(self, key: str, choices: tuple[str, ...]) -> str:
-        """One of ``choices``, the first where the store holds something else."""
+        """One of ``choices``; the first one if the stored value is invalid."""
         found = self.text(key, choices[0])
         return found if found in choices else choices[0]
 
     def number(self, key: str, default: float) -> float:
-        """A number; the default where the store holds something else."""
+        """A number; the default if the stored value is invalid."""
         try:
-            return float(self._store.value(key, default))
-        except (TypeError, ValueError):
+            return float(self.text(key, str(default)))
+        except ValueError:
             return default
 
     def texts(self, key: str) -> list[str]:
@@ -139,19 +141,19 @@ class Settings:
         return [str(one) for one in found] if isinstance(found, list) else []
 
     def raw(self, key: str) -> QByteArray:
-        """Bytes as Qt gives them for geometries; empty where there are none."""
+        """Bytes, such as a window's geometry; empty if there are none."""
         found = self._store.value(key)
         return found if isinstance(found, QByteArray) else QByteArray()
 
     def put(self, key: str, value: object) -> None:
-        """Keep ``value``."""
+        """Store ``value``, and emit ``changed`` if it is another one."""
         before = self._store.value(key)
         self._store.setValue(key, value)
         if before is None or self._store.value(key) != before:
             self.changed.emit(key)
 
     def clear(self, group: str = "") -> None:
-        """Forget what is kept under keys that begin with ``group/``, or everything."""
+        """Remove the values whose keys begin with ``group/``, or all values."""
         for key in self._store.allKeys():
             if not group or key.startswith(f"{group}/"):
                 self._store.remove(key)

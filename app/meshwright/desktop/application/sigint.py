@@ -1,7 +1,7 @@
-"""Ctrl-C in the terminal that the window was started from.
+"""Closing the window by Ctrl-C in the terminal.
 
-While Qt waits for events Python gets no turn to notice the signal. So the signal is written to a
-socket that Qt listens to, and the window is closed as if by its button.
+While Qt waits for events, Python does not run and cannot handle the signal. Therefore the signal is
+written to a socket that Qt monitors, and the window is closed from there.
 """
 
 import signal
@@ -15,9 +15,9 @@ from qtpy.QtCore import QSocketNotifier
 
 @contextmanager
 def on_interrupt(close: Callable[[], object]) -> Iterator[None]:
-    """Call ``close`` when Ctrl-C comes while the block runs; raise KeyboardInterrupt after it.
+    """Call ``close`` on Ctrl-C while the block runs, and raise KeyboardInterrupt after it.
 
-    Outside the main thread, where Python takes no signals, this does nothing.
+    Does nothing outside the main thread, where Python handles no signals.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

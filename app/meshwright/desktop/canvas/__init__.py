@@ -1,1 +1,1 @@
-"""The canvas: mouse, gestures, and the overlay painted on the picture."""
+"""The canvas: view of the mesh, overlay, mouse input and drag gestures."""

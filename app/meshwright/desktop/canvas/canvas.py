@@ -1,4 +1,4 @@
-"""The canvas: the mesh on the screen, the camera over it, and what lies under the mouse."""
+"""The canvas: the mesh on the screen, the camera, and the half-edge under the mouse."""
 
 from collections.abc import Callable
 
@@ -8,34 +8,36 @@ from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QVBoxLayout, QWidget
 
 from meshwright.desktop.canvas.gestures import Gesture
-from meshwright.desktop.canvas.mouse import Mouse
+from meshwright.desktop.canvas.mesh_view import CanvasView, VtkView
+from meshwright.desktop.canvas.mouse import MouseInput
 from meshwright.desktop.canvas.overlay import Overlay
+from meshwright.desktop.controller import Connections
 from meshwright.document.document import Document
-from meshwright.graphics.markers import label
+from meshwright.graphics.markers import Markers, label
 from meshwright.graphics.picking import Picker
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
-from meshwright.graphics.vtk_scene import CROWD, Scene
+from meshwright.graphics.vtk_scene import CROWD
 
 VERTEX_REACH = 12
-"""Pixels around a vertex that count as on it."""
+"""Distance in pixels at which a vertex counts as under the mouse."""
 QUICK = 5000
-"""Elements up to which it is found at once, after a change, what lies under the mouse."""
+"""Up to this many elements the hovered half-edge is found again before the frame after a change."""
 
 
 class Canvas(QWidget):
     """Shows ``document`` and follows the mouse; it never writes the mesh.
 
-    The plotter is made by :meth:`build`, after the window has been shown, because its import takes
-    longer than all the rest. ``clicked(click)`` carries a
-    :class:`~meshwright.desktop.canvas.mouse.Click`,
-    ``pointed(at)`` where the mouse is now, None when it is gone; ``escaped()`` says that Escape has
-    been pressed and nothing was under way; ``drawn()`` follows every frame. What a drag with the
-    left button does is asked of :attr:`gesture_at`: None moves the picture.
+    The view draws nothing until :meth:`build`, which is called after the window has been shown,
+    because the import of VTK takes longer than everything else. ``clicked(click)`` carries a
+    :class:`~meshwright.desktop.canvas.mouse.Click`; ``hovered(at)`` the position of the mouse in
+    pixels, None when it has left; ``escaped()``: Escape was pressed while no drag was under way;
+    ``drawn()`` follows every update of the mesh. :attr:`gesture_at` returns what a drag with the
+    left button does; where it returns None the drag moves the camera.
     """
 
     clicked = Signal(object)
-    pointed = Signal(object)
+    hovered = Signal(object)
     escaped = Signal()
     drawn = Signal()
     _refresh = Signal()
@@ -44,76 +46,83 @@ class Canvas(QWidget):
         super().__init__()
         self.document = document
         self.viewport = Viewport()
-        self.scene: Scene | None = None
-        self.plotter: QWidget | None = None
+        self.view = CanvasView(self)
         self.overlay = Overlay(self, theme)
         self._theme = theme
         self._picker: Picker | None = None
-        self._delta = np.empty(0, dtype=int)  # of the mesh that the picker was made for
+        self._delta = np.empty(0, dtype=int)  # irregularities of the picker's mesh
         self._fitted = True
         self._stale = False
-        self._at: QPointF | None = None  # where the mouse is
-        self._pinned = -1  # the half-edge that the keyboard points at
-        self.mouse = Mouse(self)
+        self._at: QPointF | None = None  # the position of the mouse
+        self._pinned = -1  # the half-edge hovered by keyboard
+        self.mouse = MouseInput(self)
         self.gesture_at: Callable[[QPointF, Qt.KeyboardModifier], Gesture | None]
         self.gesture_at = lambda at, modifiers: None
         self._frozen = False
-        # a posted call comes before Qt paints what else has changed: one picture, not two
+        # a queued call runs before Qt paints other changes: one frame, not two
         self._refresh.connect(self._on_refresh, Qt.ConnectionType.QueuedConnection)
         self._point_again = QTimer(self)
         self._point_again.setSingleShot(True)
         self._point_again.setInterval(0)
         self._point_again.timeout.connect(self._on_point_again)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        document.replaced.connect(self._on_replaced)
-        document.changed.connect(self._on_changed)
-        document.hover_changed.connect(self._on_hover_changed)
+        self._layout = QVBoxLayout(self)
+        self._layout.setContentsMargins(0, 0, 0, 0)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._on_replaced)
+        self._connections.add(document.changed, self._on_changed)
+        self._connections.add(document.hover_changed, self._on_hover_changed)
 
-    # Making and ending
+    # Construction and release
+
+    @property
+    def built(self) -> bool:
+        """Whether the mesh is drawn: :meth:`build` has been called and the canvas is open."""
+        return self.view.built
+
+    @property
+    def plotter(self) -> QWidget:
+        """The widget that receives mouse and key events: the plotter, before :meth:`build` the
+        canvas.
+        """
+        return self.view.widget
+
+    @property
+    def markers(self) -> Markers | None:
+        """The markers that are drawn; None without a mesh and before :meth:`build`."""
+        return self.view.markers
 
     def build(self) -> None:
-        """Make the plotter; needs a display and takes about a second."""
-        from pyvistaqt import QtInteractor
-
-        # the default re-renders five times a second, and multisampling is dear in software
-        self.plotter = QtInteractor(self, auto_update=False, multi_samples=0)
-        self.plotter.setAcceptDrops(False)
-        self.plotter.setMouseTracking(True)
-        self.plotter.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.plotter.installEventFilter(self)
-        self.layout().addWidget(self.plotter)
-        self.plotter.show()  # at once, so that it can take the keyboard
-        ratio = self.devicePixelRatioF()  # VTK counts the pixels of the screen
-        self.scene = Scene(self.plotter, self._theme, width=ratio, short_outlines=True)
+        """Import VTK and show the mesh; needs a display and takes about a second."""
+        self.view = VtkView(self, self._theme, self)
+        self._layout.addWidget(self.plotter)
+        self.plotter.show()  # at once, so that it can take the keyboard focus
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())
         self._on_replaced()
 
     def release(self) -> None:
-        """Let go of VTK's resources and of the document; called when the window closes."""
-        self.document.replaced.disconnect(self._on_replaced)
-        self.document.changed.disconnect(self._on_changed)
-        self.document.hover_changed.disconnect(self._on_hover_changed)
+        """Disconnect from the document and free VTK's resources; called when the window closes."""
+        self._connections.close()
         self._point_again.stop()
         self.overlay.card.hide()
-        if self.plotter is not None:
-            self.plotter.removeEventFilter(self)
-            self.plotter.close()
-            self.plotter = self.scene = None
+        self.view.close()
+        self.view = CanvasView(self)
+
+    def focus(self) -> None:
+        """Give the canvas the keyboard focus."""
+        self.plotter.setFocus()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.overlay.set_theme(theme)
-        if self.scene is not None:
-            self.scene.set_theme(theme, self.document.mesh)
-            self._look()
+        self.view.set_theme(theme, self.document.mesh)
+        self._look()
 
     # Camera
 
     def fit(self) -> None:
-        """Show the whole mesh, and keep doing so while the window changes its size."""
+        """Fit the view to the mesh, and refit it when the canvas is resized."""
         mesh = self.document.mesh
         self._fitted = True
         if mesh is not None:
@@ -121,22 +130,22 @@ class Canvas(QWidget):
             self._look()
 
     def see(self, viewport: Viewport) -> None:
-        """Look elsewhere; the mesh is not fitted into the window any more."""
+        """Change the view; it is no longer refitted when the canvas is resized."""
         self._fitted = False
         self.viewport = viewport
         self._look()
 
     def _look(self) -> None:
-        mesh = self.document.mesh
-        if self.scene is None:
+        if not self.built:
             return
-        self.scene.look(self.viewport)
-        marks = self.scene.markers
+        mesh, view = self.document.mesh, self.view
+        view.look(self.viewport)
+        marks = view.markers
         if marks is not None and mesh is not None:
             at = self.viewport.to_screen(marks.places)
             seen = ((at > 0) & (at < self.viewport.size)).all(axis=1).sum() if len(at) else 0
-            self.scene.show_crowd(mesh, bool(seen > CROWD))
-        self.overlay.show_markers(marks, self.viewport, self.scene.crowd, self.scene.outlined)
+            view.show_crowd(mesh, bool(seen > CROWD))
+        self.overlay.show_markers(marks, self.viewport, view.crowd, view.outlined)
         self._show_hover()
         self.plotter.update()
 
@@ -147,8 +156,8 @@ class Canvas(QWidget):
         self._pinned = -1
         self._picker = None
         self._stale = False
-        if self.scene is not None:
-            self.scene.show(self.document.mesh)
+        if self.built:
+            self.view.show(self.document.mesh)
             self.fit()
             self._look()
 
@@ -156,25 +165,25 @@ class Canvas(QWidget):
         self.mouse.interrupt()
         self._picker = None
         self.overlay.card.hide()
-        if not self._stale:  # many changes in one turn of the event loop are one frame
+        if not self._stale:  # all changes in one turn of the event loop are drawn in one frame
             self._stale = True
             self._refresh.emit()
 
     def _on_refresh(self) -> None:
         mesh = self.document.mesh
-        if not self._stale or self.scene is None or mesh is None:
+        if not self._stale or not self.built or mesh is None:
             return
         self._stale = False
-        self.scene.update(mesh)
+        self.view.update(mesh)
         if mesh.n_elements <= QUICK:
             self._on_point_again()
         else:
-            self._point_again.start()  # after the frame: the search tree takes longer
+            self._point_again.start()  # after the frame: building the search tree takes longer
         self._look()
         self.drawn.emit()
 
     def _on_point_again(self) -> None:
-        """Another half-edge may lie under the mouse than before the mesh changed."""
+        """Find the half-edge under the mouse again after a change of the mesh."""
         if self._frozen or self.mouse.dragging:
             return
         if self._at is not None:
@@ -186,8 +195,8 @@ class Canvas(QWidget):
 
     @property
     def under_mouse(self) -> int:
-        """The half-edge under the mouse now, or the one that the keyboard points at, -1 for none;
-        looks at the mesh as it is now.
+        """The half-edge under the mouse, or the one pinned by keyboard, in the current mesh; -1 for
+        none.
         """
         if self._at is None:
             mesh = self.document.mesh
@@ -195,23 +204,23 @@ class Canvas(QWidget):
         return self._halfedge_at(self._at)
 
     def pin(self, halfedge: int) -> None:
-        """Point at a half-edge by keyboard, until the mouse moves; -1: at none."""
+        """Hover ``halfedge`` until the mouse moves, for navigation by keyboard; -1 for none."""
         mesh = self.document.mesh
         self._at = None
         self._pinned = halfedge if mesh is not None and mesh.live(halfedge) else -1
         self.overlay.card.hide()
         self.document.hover = self._pinned
-        self.pointed.emit(None)
+        self.hovered.emit(None)
 
     def freeze(self, frozen: bool) -> None:
-        """Keep the half-edge that is shown while a menu is open."""
+        """Keep the hovered half-edge, whatever the mouse does, while a menu is open."""
         self._frozen = frozen
         if not frozen:
             self._at = None
             self.point_at(QPointF(self.mapFromGlobal(self.cursor().pos())), check=True)
 
     def refuse(self, reason: str) -> None:
-        """Show beside the mouse why something is not allowed."""
+        """Show a reason for refusal beside the mouse."""
         at = self._at.toPoint() if self._at is not None else self.rect().center()
         self.overlay.card.show(reason, at, warns=True, fades=True)
 
@@ -227,7 +236,7 @@ class Canvas(QWidget):
         return picker.halfedge(*self.viewport.to_plane(at.x(), at.y())) if picker else -1
 
     def vertex_at(self, at: QPointF) -> int:
-        """The vertex within reach of pixel ``at``, -1 for none."""
+        """The vertex near pixel ``at``, -1 for none."""
         picker = self._pick()
         if picker is None:
             return -1
@@ -235,26 +244,26 @@ class Canvas(QWidget):
         return picker.vertex(*self.viewport.to_plane(at.x(), at.y()), reach)
 
     def point_at(self, at: QPointF, check: bool = False) -> None:
-        """The mouse is at ``at``; ``check`` that this is on the canvas at all."""
+        """Hover what is at pixel ``at``; with ``check`` nothing if that is outside the canvas."""
         if check and not self.rect().contains(at.toPoint()):
             self.leave()
             return
         self._at, self._pinned = at, -1
         self.document.hover = self._halfedge_at(at)
-        self._tell_vertex(at)
-        self.pointed.emit(at)
+        self._show_vertex_card(at)
+        self.hovered.emit(at)
 
     def leave(self) -> None:
-        """The mouse is gone; while a menu is open that says nothing."""
+        """Hover nothing; ignored while the hover is frozen."""
         if self._frozen:
             return
         self._at = None
         self.overlay.card.hide()
         if self._pinned < 0:
             self.document.hover = -1
-            self.pointed.emit(None)
+            self.hovered.emit(None)
 
-    def _tell_vertex(self, at: QPointF) -> None:
+    def _show_vertex_card(self, at: QPointF) -> None:
         mesh = self.document.mesh
         vertex = self.vertex_at(at)
         if mesh is None or vertex < 0 or self._delta[vertex] == 0:
@@ -281,10 +290,10 @@ class Canvas(QWidget):
             self.viewport.to_screen(mesh.points[np.array(corners)]), halfedge % mesh.k
         )
 
-    # Events of Qt
+    # Qt events
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Keep the overlay over the plotter, and the mesh in view."""
+        """Resize overlay and view."""
         super().resizeEvent(event)
         self.overlay.setGeometry(self.rect())
         self.viewport = self.viewport.resized(self.width(), self.height())
@@ -293,5 +302,5 @@ class Canvas(QWidget):
         self._look()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Take the plotter's mouse and keys: VTK's own 3-D interaction is not wanted."""
+        """Handle the plotter's mouse and key events instead of VTK's 3-D interaction."""
         return self.mouse.handle(event)

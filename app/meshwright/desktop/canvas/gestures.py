@@ -1,4 +1,4 @@
-"""What a drag of the mouse does: moves the picture, draws a box or a lasso, moves vertices."""
+"""Drag gestures: pan, select by box or lasso, move vertices."""
 
 from __future__ import annotations
 
@@ -16,28 +16,30 @@ if TYPE_CHECKING:
     from meshwright.desktop.canvas.canvas import Canvas
 
 NEAR = 3.0
-"""Pixels between the points of a lasso."""
+"""Minimum distance in pixels between the points of a lasso."""
 
 
 class Gesture:
-    """One drag, from the moment when it is no click any more. The base does nothing."""
+    """One drag, from the moment when the mouse has moved too far for a click. The base does
+    nothing.
+    """
 
     cursor = Qt.CursorShape.ArrowCursor
     of_mesh = True
-    """Whether it is about the mesh as it is, and ends when that changes."""
+    """Whether a change of the mesh cancels the gesture."""
 
     def move(self, at: QPointF) -> None:
-        """The mouse is at ``at``, in pixels of the canvas."""
+        """Handle a move to ``at``, in pixels of the canvas."""
 
     def end(self, at: QPointF) -> None:
-        """The button has been released at ``at``."""
+        """Handle the release of the button at ``at``."""
 
     def cancel(self) -> None:
-        """It shall be as if the drag had not been."""
+        """Undo the effects of the drag."""
 
 
 class Pan(Gesture):
-    """Moves the picture."""
+    """Pans the view."""
 
     cursor = Qt.CursorShape.ClosedHandCursor
     of_mesh = False
@@ -47,14 +49,14 @@ class Pan(Gesture):
         self._at = start
 
     def move(self, at: QPointF) -> None:
-        """Move the picture along."""
+        """Pan by the distance since the last event."""
         step = at - self._at
         self._at = at
         self._canvas.see(self._canvas.viewport.panned(step.x(), step.y()))
 
 
 class Band(Gesture):
-    """Draws a box, or a lasso, and hands its outline in pixels (n, 2) to ``choose``."""
+    """Draws a box or a lasso, and calls ``choose`` with its outline (n, 2) in pixels."""
 
     cursor = Qt.CursorShape.CrossCursor
 
@@ -71,7 +73,7 @@ class Band(Gesture):
         self._choose = choose
 
     def move(self, at: QPointF) -> None:
-        """Stretch it to here."""
+        """Extend the outline to ``at``."""
         if not self._lasso:
             a = self._path[0]
             self._layer.show([a, QPointF(at.x(), a.y()), at, QPointF(a.x(), at.y())])
@@ -81,7 +83,7 @@ class Band(Gesture):
         self._layer.show(list(self._path))
 
     def end(self, at: QPointF) -> None:
-        """Choose what lies inside."""
+        """Call ``choose`` with the outline."""
         self.move(at)
         outline = np.array([(point.x(), point.y()) for point in self._layer.outline])
         self._layer.show([])
@@ -89,12 +91,12 @@ class Band(Gesture):
             self._choose(outline)
 
     def cancel(self) -> None:
-        """Take it away."""
+        """Remove the outline."""
         self._layer.show([])
 
 
 class MoveVertices(Gesture):
-    """Drags vertices; ``done(drag)`` at the end writes them to the document."""
+    """Drags vertices, and calls ``done(drag)`` at the end."""
 
     cursor = Qt.CursorShape.SizeAllCursor
 
@@ -109,38 +111,39 @@ class MoveVertices(Gesture):
     ) -> None:
         self._canvas = canvas
         self._layer = layer
-        self._offset = grabbed - start  # the vertex stays under the mouse as it was taken
+        self._offset = grabbed - start  # from the mouse to the vertex, kept during the drag
         self._drag = drag
         self._done = done
         layer.begin(drag.segments, drag.places[:, :2].copy())
 
     def move(self, at: QPointF) -> None:
-        """The vertices follow."""
+        """Move the vertices."""
         drag, place = self._drag, at + self._offset
         drag.to(*self._canvas.viewport.to_plane(place.x(), place.y()))
         self._layer.show(drag.segments, drag.folded, drag.places[:, :2])
 
     def end(self, at: QPointF) -> None:
-        """Leave them here."""
+        """Finish the drag."""
         self.move(at)
         self._layer.clear()
         self._done(self._drag)
 
     def cancel(self) -> None:
-        """They have not moved."""
+        """Discard the drag."""
         self._layer.clear()
 
 
-class Refused(Gesture):
-    """A drag that cannot be: says why once."""
+class RefusedDrag(Gesture):
+    """A drag of a vertex that must not move: calls ``explain`` once."""
 
     cursor = Qt.CursorShape.ForbiddenCursor
 
-    def __init__(self, tell: Callable[[], None]) -> None:
-        self._tell: Callable[[], None] | None = tell
+    def __init__(self, explain: Callable[[], None]) -> None:
+        self._explain = explain
+        self._explained = False
 
     def move(self, at: QPointF) -> None:
-        """Say it the first time."""
-        if self._tell is not None:
-            tell, self._tell = self._tell, None
-            tell()
+        """Explain the refusal at the first move."""
+        if not self._explained:
+            self._explained = True
+            self._explain()

@@ -1,4 +1,4 @@
-"""The mouse on the canvas: what a press, a move, a release and the wheel mean."""
+"""Mouse and key events of the canvas: hover, clicks, drags, wheel and Escape."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ if TYPE_CHECKING:
     from meshwright.desktop.canvas.canvas import Canvas
 
 DRAG = 4
-"""Pixels that the mouse may move between press and release of a click."""
+"""Distance in pixels that the mouse may move during a click."""
 ZOOM_PER_STEP = 1.0015
 
 
 @dataclass(frozen=True)
 class Click:
-    """A click on the canvas: ``at`` in its pixels, ``where`` on the screen; what lies there."""
+    """A click at ``at`` in pixels of the canvas, ``where`` on the screen, with half-edge and vertex
+    there.
+    """
 
     at: QPointF
     where: QPoint
@@ -35,8 +37,8 @@ class Click:
         return bool(self.modifiers & Qt.KeyboardModifier.ShiftModifier)
 
 
-class Mouse:
-    """Turns the plotter's mouse events into the canvas's calls and signals."""
+class MouseInput:
+    """Translates events of the plotter into calls and signals of the canvas."""
 
     def __init__(self, canvas: Canvas) -> None:
         self._canvas = canvas
@@ -51,7 +53,7 @@ class Mouse:
         return self._gesture is not None
 
     def cancel(self) -> bool:
-        """Call off the drag that is under way; True if there was one."""
+        """Cancel the current drag; True if there was one."""
         gesture, self._gesture, self._pressed = self._gesture, None, None
         if gesture is None:
             return False
@@ -60,22 +62,23 @@ class Mouse:
         return True
 
     def interrupt(self) -> None:
-        """The mesh is another one: a drag that was about the former one is called off."""
+        """Cancel a drag that depends on the mesh, which has changed."""
         if self._gesture is not None and self._gesture.of_mesh:
             self.cancel()
 
     def handle(self, event: QEvent) -> bool:
-        """Act on an event of the plotter; True if VTK shall not see it."""
+        """Handle an event of the plotter; True if VTK must not receive it."""
         kind = event.type()
-        if kind == QEvent.Type.MouseMove:
-            self._move(event)
-        elif kind in (QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick):
-            self._press(event)
-        elif kind == QEvent.Type.MouseButtonRelease:
-            self._release(event)
-        elif kind == QEvent.Type.Wheel:
+        if isinstance(event, QMouseEvent):
+            if kind == QEvent.Type.MouseMove:
+                self._move(event)
+            elif kind == QEvent.Type.MouseButtonRelease:
+                self._release(event)
+            else:  # also the second press of a double click
+                self._press(event)
+        elif isinstance(event, QWheelEvent):
             self._wheel(event)
-        elif kind == QEvent.Type.KeyPress:
+        elif isinstance(event, QKeyEvent) and kind == QEvent.Type.KeyPress:
             self._key(event)
         elif kind == QEvent.Type.Leave:
             self._canvas.leave()
@@ -123,7 +126,7 @@ class Mouse:
         pressed, self._pressed = self._pressed, None
         canvas.point_at(at)
         if event.button() == Qt.MouseButton.LeftButton and pressed is None:
-            return  # the press was called off, or was not ours
+            return  # the press was cancelled, or did not reach the canvas
         if event.button() != Qt.MouseButton.MiddleButton:
             where = canvas.plotter.mapToGlobal(at.toPoint())
             modifiers = event.modifiers()

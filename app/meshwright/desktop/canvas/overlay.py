@@ -1,8 +1,10 @@
-"""The overlay: what is drawn over the mesh without a frame of VTK's.
+"""The overlay: marks over the mesh that need no new frame of VTK.
 
-A transparent widget whose layers are painted by QPainter: a hover repaints a few hundred pixels, at
-any size of mesh.
+It is a transparent widget whose layers are painted by QPainter: a hover repaints a few hundred
+pixels, whatever the size of the mesh.
 """
+
+from typing import TypeVar
 
 import numpy as np
 from qtpy.QtCore import QRectF, Qt
@@ -17,9 +19,11 @@ from meshwright.graphics.markers import Markers
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
 
+AnyLayer = TypeVar("AnyLayer", bound=Layer)
+
 
 class Overlay(QWidget):
-    """Paints its ``layers`` from the lowest to the highest; mouse events fall through it."""
+    """Paints its ``layers`` from the lowest to the highest; it receives no mouse events."""
 
     def __init__(self, parent: QWidget, theme: Theme) -> None:
         super().__init__(parent)
@@ -36,21 +40,21 @@ class Overlay(QWidget):
         self.arrow = self.add(ArrowLayer(theme))
         self.card = self.add(CardLayer(theme, self.font(), self))
 
-    def add(self, layer: Layer, below: Layer | None = None) -> Layer:
-        """Paint ``layer`` too: just below another one, or above all; returned for keeping."""
+    def add(self, layer: AnyLayer, below: Layer | None = None) -> AnyLayer:
+        """Add ``layer`` just below another one, or on top, and return it."""
         place = len(self.layers) if below is None else self.layers.index(below)
         self.layers.insert(place, layer)
         layer.repaint = self._repaint
         return layer
 
     def set_theme(self, theme: Theme) -> None:
-        """Paint in other colours."""
+        """Paint in the colours of ``theme``."""
         for layer in self.layers:
             layer.set_theme(theme)
         self.update()
 
     def look(self, viewport: Viewport) -> None:
-        """The view has moved: every layer is painted again."""
+        """Follow a change of the view, and repaint all layers."""
         for layer in self.layers:
             layer.look(viewport)
         self.update()
@@ -69,10 +73,10 @@ class Overlay(QWidget):
         self.arrow.show(element, side)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint what touches the region that Qt asks for."""
+        """Paint the part inside the region that Qt requests."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        try:  # a painter that is left open takes the whole process down at the next paint
+        try:  # an unfinished painter crashes the process at the next paint
             for layer in self.layers:
                 if layer.visible:
                     painter.save()

@@ -1,1 +1,1 @@
-"""Editing by mouse, keys and menus."""
+"""Operations, selection and vertex drags by mouse, keys and menus."""

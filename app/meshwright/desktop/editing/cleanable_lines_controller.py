@@ -1,6 +1,4 @@
-"""The global lines that can be cleaned up: they glow while a switch is on, and a click deletes
-one.
-"""
+"""Removable global lines: highlighted while the switch is on, removed by a click."""
 
 from __future__ import annotations
 
@@ -9,78 +7,92 @@ from typing import TYPE_CHECKING
 import numpy as np
 from qtpy.QtCore import QPointF, Qt, QTimer
 
+from meshwright.desktop.application.readiness import Readiness
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.canvas.layers.cleanable_lines import LinesLayer
 from meshwright.desktop.canvas.mouse import Click
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.editing.edit_controller import EditController
+from meshwright.desktop.editing.hover_controller import HoverController
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
+from meshwright.graphics.theme import Theme
 from meshwright_core.operations.catalogue import Operation
 
 if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
-    from meshwright_core.analysis.cleanable_lines import Line
+    from meshwright_core.analysis.cleanable_lines import CleanableLine
 
 LINES = "editing/lines"
-"""The setting that makes lines glow."""
+"""The setting that shows removable lines."""
 PAUSE = 60
-"""Milliseconds from a change to the search for lines."""
+"""Milliseconds between a change and the search for lines."""
 REACH = 7.0
-"""Pixels beside a line that count as on it."""
+"""Distance in pixels at which a line counts as under the mouse."""
 
 
-class Lines:
-    """Finds the lines after a pause of edits, so that no operation waits for them."""
+class CleanableLinesController(Controller):
+    """Finds the lines shortly after an edit, so that operations do not wait for the search."""
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
-        self._lines: list[Line] = []
+    def __init__(
+        self,
+        document: Document,
+        canvas: Canvas,
+        settings: Settings,
+        readiness: Readiness,
+        hover: HoverController,
+        editing: EditController,
+        status: StatusBar,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._canvas, self._settings = document, canvas, settings
+        self._readiness, self._hover, self._editing = readiness, hover, editing
+        self._status = status
+        self._lines: list[CleanableLine] = []
         self._edges = np.zeros(0, np.int64)  # sorted: ends of every edge on a line as one number
         self._line_of = np.zeros(0, np.int64)
-        self._pause = QTimer(window)
+        self._pause = QTimer(canvas)
         self._pause.setSingleShot(True)
         self._pause.setInterval(PAUSE)
         self._pause.timeout.connect(self.find)
-        self.layer = LinesLayer(window.theme)
-
-    def connect(self) -> None:
-        """Follow document and mouse."""
-        window = self._window
-        overlay = window.canvas.overlay
-        overlay.add(self.layer, below=overlay.markers)
-        window.document.replaced.connect(self._on_changed)
-        window.document.changed.connect(self._on_changed)
-        window.settings.changed.connect(self._on_settings_changed)
-        window.canvas.pointed.connect(self._on_pointed)
+        self.layer = LinesLayer(theme)
+        canvas.overlay.add(self.layer, below=canvas.overlay.markers)
+        canvas.hovered.connect(self._on_hovered)
+        self._connections.add(document.replaced, self._on_changed)
+        self._connections.add(document.changed, self._on_changed)
+        self._connections.add(settings.changed, self._on_settings_changed)
+        self._connections.add(readiness.changed, self.find)
         self._on_changed()
 
-    def release(self) -> None:
-        """Let go of the document."""
-        window = self._window
+    def close(self) -> None:
+        """Disconnect, and stop the timer."""
+        super().close()
         self._pause.stop()
-        window.document.replaced.disconnect(self._on_changed)
-        window.document.changed.disconnect(self._on_changed)
-        window.settings.changed.disconnect(self._on_settings_changed)
 
     @property
     def shown(self) -> bool:
-        """Whether lines glow."""
-        return self._window.settings.flag(LINES, False)
+        """Whether removable lines are shown."""
+        return self._settings.flag(LINES, False)
 
     def toggle(self) -> None:
-        """Let them glow, or not."""
-        self._window.settings.put(LINES, not self.shown)
+        """Show or hide the removable lines."""
+        self._settings.put(LINES, not self.shown)
         if not self.shown:
-            self._window.say("Lines glow no more.")
+            self._status.show_message("Removable lines hidden.")
             return
         self.find()
-        if self._window.document.kind == "quad" and not self._lines:
-            self._window.say("No line can be removed here.")
+        if self._document.kind == "quad" and not self._lines:
+            self._status.show_message("No line of this mesh can be removed.")
         elif self._lines:
-            self._window.say("Click a glowing line to remove it, or Clean all.")
+            self._status.show_message("Click a highlighted line to remove it, or use Clean all.")
 
     def find(self) -> None:
-        """Look for lines now."""
+        """Find and show the lines of the current mesh."""
         self._pause.stop()
-        mesh = self._window.document.mesh
+        mesh = self._document.mesh
         self._lines = []
-        if mesh is not None and mesh.k == 4 and self.shown and self._window.ready:
+        if mesh is not None and mesh.k == 4 and self.shown and self._readiness.editing:
             from meshwright_core.analysis.cleanable_lines import cleanable_lines
 
             self._lines = cleanable_lines(mesh)
@@ -100,31 +112,31 @@ class Lines:
         order = np.argsort(keys)
         self._edges, self._line_of = keys[order], rows[order, 2]
 
-    def take(self, click: Click) -> bool:
-        """Delete the glowing line under a click; False if there is none."""
+    def click(self, click: Click) -> bool:
+        """Remove the highlighted line under a click; False if there is none."""
         current = self.layer.current
         if current < 0 or click.button != Qt.MouseButton.LeftButton:
             return False
-        self._window.editing.submit(Operation.CLEANUP, self._lines[current].halfedge)
+        self._editing.submit(Operation.CLEANUP, self._lines[current].halfedge)
         return True
 
-    def _on_pointed(self, at: QPointF | None) -> None:
+    def _on_hovered(self, at: QPointF | None) -> None:
         if self._lines:
-            self.layer.point(self._line_at(at))
+            self.layer.highlight(self._line_at(at))
 
     def _line_at(self, at: QPointF | None) -> int:
-        """The line within reach of pixel ``at``: of it is the edge that is pointed at."""
-        mesh, halfedge = self._window.document.mesh, self._window.document.hover
+        """The line near pixel ``at`` that contains the hovered edge; -1 for none."""
+        mesh, halfedge = self._document.mesh, self._document.hover
         if mesh is None or at is None or halfedge < 0 or self._pause.isActive():
             return -1
-        if self._window.pointing.armed is not None:
+        if self._hover.armed is not None:
             return -1
         a, b = mesh.origin(halfedge), mesh.target(halfedge)
         key = int(_key(np.array([a]), np.array([b]))[0])
         place = int(np.searchsorted(self._edges, key))
         if place == len(self._edges) or self._edges[place] != key:
             return -1
-        ends = self._window.canvas.viewport.to_screen(mesh.points[[a, b]])
+        ends = self._canvas.viewport.to_screen(mesh.points[[a, b]])
         along, to = ends[1] - ends[0], np.array((at.x(), at.y())) - ends[0]
         length = max(float(np.hypot(*along)), 1e-9)
         away = abs(float(along[0] * to[1] - along[1] * to[0])) / length
@@ -140,7 +152,6 @@ class Lines:
     def _on_settings_changed(self, key: str) -> None:
         if key == LINES:
             self.find()
-            self._window.refresh()
 
 
 def _key(a: np.ndarray, b: np.ndarray) -> np.ndarray:

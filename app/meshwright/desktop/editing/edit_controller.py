@@ -1,213 +1,197 @@
-"""Editing by hand: operations at the mouse, their menu, and what concerns the whole mesh."""
+"""Edits by the user: operations on the hovered half-edge, their menu, edits of the whole mesh."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
-
 from qtpy.QtCore import QPoint, Qt
+from qtpy.QtWidgets import QWidget
 
+from meshwright.desktop.application.readiness import PREPARING, Readiness
+from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.canvas.mouse import Click
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.operation_menu import OperationMenu
-from meshwright.desktop.widgets.basic import sentence
-from meshwright.document.history import YOU, HistoryStep
+from meshwright.desktop.levels.level_controller import LevelController
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.desktop.widgets.wording import plural, step_message
+from meshwright.document.document import Document
 from meshwright.document.operation_preview import choices
-from meshwright.graphics.markers import label
+from meshwright.graphics.theme import Theme
 from meshwright_core import Operation
+from meshwright_core.errors import sentence
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
-
-PREPARING = "Still preparing the operations: a moment, please."
 POINT_FIRST = "Point at a half-edge first, then press the key."
 
 
-class Editing:
-    """What a person's hand does in one window."""
+class EditController(Controller):
+    """Applies operations to the half-edge under the mouse, and edits the whole mesh."""
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self,
+        document: Document,
+        canvas: Canvas,
+        hover: HoverController,
+        levels: LevelController,
+        readiness: Readiness,
+        status: StatusBar,
+        parent: QWidget,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._canvas, self._hover = document, canvas, hover
+        self._levels, self._readiness, self._status = levels, readiness, status
+        self._parent = parent
         self.menu: OperationMenu | None = None
-        self.takers: list[Callable[[Click], bool]] = []
-        """Asked first, in order, whether they have a use for a click on the canvas."""
+        """The menu of operations while it is open."""
+        self._connections.add(document.hover_changed, self._on_hover_changed)
 
-    def connect(self) -> None:
-        """Follow canvas and document."""
-        self._window.canvas.clicked.connect(self._on_clicked)
-        self._window.canvas.escaped.connect(self._on_escaped)
-        self._window.document.hover_changed.connect(self._on_hover_changed)
-
-    def release(self) -> None:
-        """Let go of the document, and close what is open."""
+    def close(self) -> None:
+        """Disconnect, and close the menu."""
+        super().close()
         if self.menu is not None:
             self.menu.close()
-        self._window.document.hover_changed.disconnect(self._on_hover_changed)
 
-    # The mouse
+    # Clicks
 
-    def _on_clicked(self, click: Click) -> None:
-        """The first that has a use for the click takes it."""
-        window = self._window
-        takers = (*self.takers, window.selecting.take, self._take_armed, window.lines.take)
-        if not any(take(click) for take in takers) and click.halfedge >= 0:
-            self.offer(click.halfedge, click.where)
-
-    def _take_armed(self, click: Click) -> bool:
-        """Do the armed operation where a click says."""
-        armed = self._window.pointing.armed
+    def click_armed(self, click: Click) -> bool:
+        """Apply the armed operation to the clicked half-edge; False if none is armed."""
+        armed = self._hover.armed
         if armed is None or click.button != Qt.MouseButton.LeftButton or click.halfedge < 0:
             return False
         if self.is_ready():
             self.submit(armed, click.halfedge)
         return True
 
-    def _on_escaped(self) -> None:
-        """Put down what is in hand, one thing at a time."""
-        window = self._window
-        if window.pointing.armed is not None:
-            window.pointing.disarm()
-        elif not window.selecting.put_down():
-            window.canvas.pin(-1)
+    def click_menu(self, click: Click) -> bool:
+        """Open the menu of the clicked half-edge; False if there is none."""
+        if click.halfedge < 0:
+            return False
+        self.offer(click.halfedge, click.where)
+        return True
 
     # Operations
 
     def operate(self, operation: Operation) -> None:
-        """Do ``operation`` on the half-edge under the mouse, or say why not."""
-        halfedge = self._window.canvas.under_mouse
+        """Apply ``operation`` to the half-edge under the mouse, or show why that is impossible."""
+        halfedge = self._canvas.under_mouse
         if halfedge < 0:
-            self._window.say(POINT_FIRST)
+            self._status.show_message(POINT_FIRST)
         elif self.is_ready():
             self.submit(operation, halfedge)
 
     def operate_current(self) -> None:
-        """Do the operation whose ghost is shown."""
-        halfedge = self._window.canvas.under_mouse
+        """Apply the operation that is previewed."""
+        halfedge = self._canvas.under_mouse
         if halfedge < 0:
-            self._window.say(POINT_FIRST)
+            self._status.show_message(POINT_FIRST)
         elif self.is_ready():
-            self._window.pointing.refresh()
-            meant = self._window.pointing.current
+            self._hover.refresh()
+            meant = self._hover.current
             if meant is None:
-                self._window.say("No operation is allowed here.")
+                self._status.show_message("No operation is allowed here.")
             else:
                 self.submit(meant.operation, halfedge)
 
     def offer(self, halfedge: int, where: QPoint) -> None:
-        """Open the menu of operations of ``halfedge`` at ``where`` on the screen."""
-        document = self._window.document
+        """Open the menu of operations of ``halfedge`` at the point ``where`` of the screen."""
+        document = self._document
         mesh = document.mesh
         if mesh is None or not self.is_ready():
             return
         ends = f"{mesh.origin(halfedge)} \u2192 {mesh.target(halfedge)}"
         revision = document.revision
         offers = choices(mesh, halfedge, document.bar)
-        self.menu = OperationMenu(f"Half-edge {ends}", offers, self._window.theme, self._window)
+        self.menu = OperationMenu(f"Half-edge {ends}", offers, self._theme, self._parent)
         self.menu.chosen.connect(lambda operation: self._take(operation, halfedge, revision))
-        self.menu.pointed.connect(self._window.pointing.preview)
+        self.menu.hovered.connect(self._hover.preview)
         self.menu.closed.connect(self._on_menu_closed)
-        self._window.canvas.freeze(True)
+        self._canvas.freeze(True)
         self.menu.popup(where)
 
     def is_ready(self) -> bool:
-        """True if operations can be done; else it says so."""
-        if not self._window.ready:
-            self._window.say(PREPARING)
-            self._window.canvas.refuse(PREPARING)
-        return self._window.ready
+        """Whether operations can be applied; if not, a message is shown."""
+        if not self._readiness.editing:
+            self._status.show_message(PREPARING)
+            self._canvas.refuse(PREPARING)
+        return self._readiness.editing
 
     def _take(self, operation: Operation, halfedge: int, revision: int) -> None:
-        if revision == self._window.document.revision:  # an agent may have gone on behind the menu
+        # the agent may have changed the mesh while the menu was open
+        if revision == self._document.revision:
             self.submit(operation, halfedge)
 
     def submit(self, operation: Operation, halfedge: int) -> None:
-        """Do an operation, or say why it is refused."""
-        document = self._window.document
-        if self._window.levels.refuses(operation):
+        """Apply an operation, or show why it is refused."""
+        document = self._document
+        if self._levels.refuses(operation):
             return
         verdict = document.check(operation, halfedge)
         if not verdict:
-            self._window.say(sentence(verdict.reason))
-            self._window.canvas.refuse(sentence(verdict.reason))
+            self._status.show_message(sentence(verdict.reason))
+            self._canvas.refuse(sentence(verdict.reason))
             return
         document.submit(operation, halfedge)
-        self._window.say(told(document.history.last))
+        self._status.show_message(step_message(document.history.last))
 
     def _on_menu_closed(self) -> None:
         self.menu = None
-        self._window.pointing.preview(None)
-        self._window.canvas.freeze(False)
+        self._hover.preview(None)
+        self._canvas.freeze(False)
 
     def _on_hover_changed(self, halfedge: int) -> None:
-        mesh = self._window.document.mesh
+        mesh = self._document.mesh
         if mesh is None or halfedge < 0:
-            self._window.pointed.setText("")
+            self._status.show_halfedge("")
             return
         ends = f"{mesh.origin(halfedge)} \u2192 {mesh.target(halfedge)}"
-        self._window.pointed.setText(f"Half-edge {halfedge}:  {ends}")
+        self._status.show_halfedge(f"Half-edge {halfedge}:  {ends}")
 
     def clean_all(self) -> None:
         """Remove all global lines that can be removed."""
-        if not self.is_ready() or self._window.levels.refuses("clean_all"):
+        if not self.is_ready() or self._levels.refuses("clean_all"):
             return
-        count = self._window.document.clean_all()
+        count = self._document.clean_all()
         removed = f"Removed {plural(count, 'line')}."
-        self._window.say(removed if count else "There is no line that can be removed.")
+        self._status.show_message(removed if count else "No line can be removed.")
 
     def smooth(self) -> None:
         """Smooth the whole mesh."""
         if self.is_ready():
-            self._window.document.smooth()
-            self._window.say("Smoothed.")
+            self._document.smooth()
+            self._status.show_message("Mesh smoothed.")
 
     def smooth_here(self) -> None:
-        """Smooth the selected vertices, and no others."""
-        vertices = self._window.document.selection.vertices
+        """Smooth the selected vertices only."""
+        vertices = self._document.selection.vertices
         if not len(vertices):
-            self._window.say("Select vertices first: Shift+click, or Shift+drag a box.")
+            self._status.show_message("Select vertices first: Shift+click, or Shift+drag a box.")
         elif self.is_ready():
-            self._window.document.smooth(vertices=vertices)
-            self._window.say(f"Smoothed {plural(len(vertices), 'vertex', 'vertices')}.")
+            self._document.smooth(vertices=vertices)
+            self._status.show_message(f"Smoothed {plural(len(vertices), 'vertex', 'vertices')}.")
 
     def untangle(self) -> None:
-        """Mend the inverted elements, and say how many there were."""
+        """Repair inverted elements, and show how many there were."""
         if not self.is_ready():
             return
-        found, left = self._window.document.untangle()
+        found, left = self._document.untangle()
         if not found:
-            self._window.say("No element is inverted.")
+            self._status.show_message("No element is inverted.")
         elif not left:
-            self._window.say(
-                f"Untangled: {plural(found, 'element')} was inverted, none is now."
-                if found == 1
-                else f"Untangled: {found:,} elements were inverted, none is now."
-            )
+            self._status.show_message(f"Repaired {plural(found, 'inverted element')}.")
         else:
-            self._window.say(
-                f"{left:,} of {plural(found, 'element')} stay inverted: "
-                "no position of the free vertices was found that mends them."
+            self._status.show_message(
+                f"{left:,} of {plural(found, 'inverted element')} could not be repaired: "
+                "no valid positions of the free vertices were found."
             )
 
     def undo(self) -> None:
-        """Take back one step."""
-        row = self._window.document.undo()
+        """Undo one step."""
+        row = self._document.undo()
         if row is not None:
-            self._window.say(f"Undone: {row.title}.")
+            self._status.show_message(f"Undone: {row.title}.")
 
     def redo(self) -> None:
-        """Do one step again."""
-        row = self._window.document.redo()
+        """Redo one step."""
+        row = self._document.redo()
         if row is not None:
-            self._window.say(f"Done again: {row.title}.")
-
-
-def plural(count: int, one: str, many: str = "") -> str:
-    """``1 element``, ``1,200 elements``."""
-    return f"{count:,} {one if count == 1 else many or one + 's'}"
-
-
-def told(row: HistoryStep | None) -> str:
-    """``Flip left: s 8 to 6 (-2)``, for the status line."""
-    if row is None:
-        return ""
-    who = "" if row.by == YOU else f" by {row.by}"
-    return f"{row.title}{who}:  s {row.before} \u2192 {row.after}  ({label(row.change)})"
+            self._status.show_message(f"Redone: {row.title}.")

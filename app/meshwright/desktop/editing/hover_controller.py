@@ -1,109 +1,132 @@
-"""Pointing: what operations would do at the half-edge under the mouse, and which one is meant."""
+"""The operations possible at the hovered half-edge, and the preview of the current one."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 from qtpy.QtCore import QTimer
 
+from meshwright.assistant.assistant import Assistant
+from meshwright.desktop.application.readiness import Readiness
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.canvas.layers.ghost import GhostLayer
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.editing.operations_panel import OperationsPanel
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.document.operation_preview import OperationOffer, best, choices, following, ghost
+from meshwright.graphics.theme import Theme
 from meshwright_core import HalfEdgeMesh, Operation
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
-
 GHOSTS = "editing/ghosts"
-"""The setting that shows ghosts."""
+"""The setting that shows previews."""
 LARGE = 5000
-"""In meshes of more elements ghosts from boundary to boundary wait until the mouse rests: they
-would flicker.
+"""In meshes of more elements, previews of global operations wait until the mouse rests, to avoid
+flicker.
 """
 REST = 60
-"""Milliseconds that count as rest."""
+"""Milliseconds without a move after which the mouse rests."""
 FEW = 2000
-"""The tag of a ghost keeps off irregular vertices while there are no more than this."""
+"""The tag of a preview avoids irregular vertices only up to this many."""
 
 
-class Pointing:
-    """The operation that is meant is, in this order: the one that a menu's row is pointed at, the
-    one chosen with Tab at this half-edge, the armed one, the best of the local ones (see
+class HoverController(Controller):
+    """Determines the current operation, previews it, and owns the panel of operations.
+
+    The current operation is, in this order: the one of the hovered row of a menu, the one chosen
+    with Tab at this half-edge, the armed one, the best of the local ones (see
     :func:`meshwright.document.operation_preview.best`).
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self,
+        document: Document,
+        assistant: Assistant,
+        canvas: Canvas,
+        settings: Settings,
+        readiness: Readiness,
+        status: StatusBar,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._assistant, self._canvas = document, assistant, canvas
+        self._settings, self._readiness, self._status = settings, readiness, status
+        self.panel = OperationsPanel(document, theme)
         self.choices: tuple[OperationOffer, ...] = ()
         self.armed: Operation | None = None
         self._at = (-1, -1)  # revision and half-edge that the choices are of
         self._picked: Operation | None = None
         self._previewed: Operation | None = None
         self._shown: tuple[int, int, Operation | None] = (-1, -1, None)
-        self.layer = GhostLayer(window.theme, window.font())
-        self._rest = QTimer(window)
+        self.layer = GhostLayer(theme, canvas.font())
+        self._rest = QTimer(canvas)
         self._rest.setSingleShot(True)
         self._rest.setInterval(REST)
         self._rest.timeout.connect(self._draw_ghost)
-
-    def connect(self) -> None:
-        """Follow the mouse and the document."""
-        window = self._window
-        overlay = window.canvas.overlay
+        overlay = canvas.overlay
         overlay.add(self.layer, below=overlay.markers)
         overlay.add(self.layer.numbers, below=overlay.card)
-        window.canvas.pointed.connect(self.refresh)
-        window.document.hover_changed.connect(self._on_hover_changed)
-        window.document.changed.connect(self._on_changed)
-        window.document.replaced.connect(self.disarm)
-        window.assistant.changed.connect(self.refresh)
-        window.settings.changed.connect(self._on_settings_changed)
-        window.operations_panel.chosen.connect(self.arm)
+        canvas.hovered.connect(self.refresh)
+        self._connections.add(document.hover_changed, self._on_hover_changed)
+        self._connections.add(document.changed, self._on_changed)
+        self._connections.add(document.replaced, self.disarm)
+        self._connections.add(assistant.changed, self.refresh)
+        self._connections.add(settings.changed, self._on_settings_changed)
+        self._connections.add(readiness.changed, self.refresh)
+        self.panel.chosen.connect(self.arm)
 
-    def release(self) -> None:
-        """Let go of the document."""
-        window = self._window
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        super().set_theme(theme)
+        self.panel.set_theme(theme)
+
+    def close(self) -> None:
+        """Disconnect, and stop the timer."""
+        super().close()
         self._rest.stop()
-        window.document.hover_changed.disconnect(self._on_hover_changed)
-        window.document.changed.disconnect(self._on_changed)
-        window.document.replaced.disconnect(self.disarm)
-        window.assistant.changed.disconnect(self.refresh)
-        window.settings.changed.disconnect(self._on_settings_changed)
+        self.panel.release()
 
-    # Which one
+    # The current operation
 
     @property
     def ghosts(self) -> bool:
-        """Whether ghosts are shown."""
-        return self._window.settings.flag(GHOSTS, True)
+        """Whether operations are previewed."""
+        return self._settings.flag(GHOSTS, True)
 
     def toggle_ghosts(self) -> None:
-        """Show ghosts, or none."""
-        self._window.settings.put(GHOSTS, not self.ghosts)
+        """Switch the previews on or off."""
+        self._settings.put(GHOSTS, not self.ghosts)
 
     @property
     def current(self) -> OperationOffer | None:
-        """The operation that is meant where one points, None where there is none allowed."""
+        """The current operation at the hovered half-edge; None if none is allowed."""
         wanted = self._previewed or self._picked or self.armed
         if wanted is None:
             return best(self.choices)
         return next((c for c in self.choices if c.operation == wanted and c.allowed), None)
 
     def arm(self, operation: Operation) -> None:
-        """From now on a click does this operation; the armed one again: a click opens the menu."""
+        """Apply this operation at every click from now on; arming the armed one disarms it."""
         self._set_armed(None if operation == self.armed else operation)
 
     def disarm(self) -> None:
-        """A click opens the menu again."""
+        """Let clicks open the menu again."""
         self._set_armed(None)
 
+    def put_down(self) -> bool:
+        """Disarm; False if no operation is armed."""
+        armed = self.armed is not None
+        if armed:
+            self.disarm()
+        return armed
+
     def cycle(self, step: int) -> None:
-        """Mean the next operation that is allowed here, or the one before for -1."""
+        """Make the next operation that is allowed here the current one; the previous one for -1."""
         self.refresh()
         meant = self.current
         chosen = following(self.choices, meant.operation if meant else None, step)
         if chosen is None:
-            self._window.say("Point at a half-edge first.")
+            self._status.show_message("Point at a half-edge first.")
         elif self.armed is not None:
             self._set_armed(chosen.operation)
         else:
@@ -111,39 +134,39 @@ class Pointing:
             self.refresh()
 
     def preview(self, operation: Operation | None) -> None:
-        """Show the ghost of this one while a menu points at it; None: as before."""
+        """Preview ``operation`` while its row in a menu is current; None ends this."""
         self._previewed = operation
         self.refresh()
 
     def _set_armed(self, operation: Operation | None) -> None:
         self.armed, self._picked = operation, None
-        self._window.operations_panel.arm(operation)
+        self.panel.arm(operation)
         self.refresh()
 
     # Following
 
     def refresh(self, *_: object) -> None:
-        """Show what is meant now; costs nothing where nothing has changed."""
-        window, mesh = self._window, self._window.document.mesh
-        halfedge = window.document.hover
-        if mesh is None or not window.ready or halfedge < 0 or not mesh.live(halfedge):
+        """Update choices and preview; returns at once if nothing has changed."""
+        mesh = self._document.mesh
+        halfedge = self._document.hover
+        if mesh is None or not self._readiness.editing or halfedge < 0 or not mesh.live(halfedge):
             self._clear()
             return
-        at = (window.document.revision, halfedge)
+        at = (self._document.revision, halfedge)
         if at != self._at:
             if halfedge != self._at[1]:
                 self._picked = None
-            self._at, self.choices = at, choices(mesh, halfedge, window.document.bar)
+            self._at, self.choices = at, choices(mesh, halfedge, self._document.bar)
         meant = self.current
         operation = meant.operation if meant is not None else None
         if (*at, operation) != self._shown:
             self._shown = (*at, operation)
-            window.operations_panel.offer(self.choices, operation)
+            self.panel.offer(self.choices, operation)
             self._show_ghost(mesh, meant, halfedge)
 
     def _show_ghost(self, mesh: HalfEdgeMesh, meant: OperationOffer | None, halfedge: int) -> None:
         self._rest.stop()
-        if meant is None or not self.ghosts or self._window.assistant.running:
+        if meant is None or not self.ghosts or self._assistant.running:
             self.layer.show(None)
         elif not meant.info.is_local and mesh.n_elements > LARGE:
             self.layer.show(None)
@@ -152,13 +175,12 @@ class Pointing:
             self._draw_ghost()
 
     def _draw_ghost(self) -> None:
-        """Show the ghost of what is meant now."""
-        mesh, meant, halfedge = self._window.document.mesh, self.current, self._at[1]
-        if mesh is None or meant is None or self._at[0] != self._window.document.revision:
+        """Show the preview of the current operation."""
+        mesh, meant, halfedge = self._document.mesh, self.current, self._at[1]
+        if mesh is None or meant is None or self._at[0] != self._document.revision:
             return
         seen = ghost(mesh, meant.operation, halfedge)
-        scene = self._window.canvas.scene
-        marks = scene.markers.places if scene is not None and scene.markers is not None else None
+        marks = self._canvas.markers.places if self._canvas.markers is not None else None
         if marks is not None and len(marks) > FEW:
             marks = None
         self.layer.show(seen, meant.info.title, _corners(mesh, halfedge), marks)
@@ -167,7 +189,7 @@ class Pointing:
         self._at, self.choices, self._picked = (-1, -1), (), None
         if self._shown != (-1, -1, None):
             self._shown = (-1, -1, None)
-            self._window.operations_panel.offer((), None)
+            self.panel.offer((), None)
             self._rest.stop()
             self.layer.show(None)
 
@@ -176,7 +198,7 @@ class Pointing:
             self._clear()
 
     def _on_changed(self) -> None:
-        self._rest.stop()  # what was a ghost is there now, or can be no more
+        self._rest.stop()  # the previewed operation is applied now, or outdated
         self.layer.show(None)
         self._shown = (-1, -1, None)
 
@@ -184,7 +206,6 @@ class Pointing:
         if key == GHOSTS:
             self._shown = (-1, -1, None)
             self.refresh()
-            self._window.refresh()
 
 
 def _corners(mesh: HalfEdgeMesh, halfedge: int) -> np.ndarray:

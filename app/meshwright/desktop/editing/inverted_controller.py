@@ -1,42 +1,38 @@
-"""Inverted elements in plain sight: hatched on the canvas."""
+"""Hatching of inverted elements on the canvas."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.canvas.layers.inverted_elements import HatchLayer
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.quality.quality_job import QualityMonitor
+from meshwright.document.document import Document
+from meshwright.graphics.theme import Theme
 from meshwright_core.core.arrays import ORIGIN
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
+class InvertedController(Controller):
+    """Hatches the elements that ``monitor`` has found inverted.
 
-class Inverted:
-    """Shows what the dashboard's gauge has found; until it has measured again, what is left of
-    that.
+    While it measures a changed mesh, those that it found before stay hatched.
     """
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self, document: Document, canvas: Canvas, monitor: QualityMonitor, theme: Theme
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._monitor = document, monitor
         self._elements = np.zeros(0, np.int64)
-        self.layer = HatchLayer(window.theme)
-
-    def connect(self) -> None:
-        """Follow gauge and canvas."""
-        window = self._window
-        window.canvas.overlay.add(self.layer, below=window.canvas.overlay.markers)
-        window.dashboard.gauge.measured.connect(self._on_measured)
-        window.document.replaced.connect(self._on_replaced)
-        window.canvas.drawn.connect(self._show)
-
-    def release(self) -> None:
-        """Let go of the document."""
-        self._window.document.replaced.disconnect(self._on_replaced)
+        self.layer = HatchLayer(theme)
+        canvas.overlay.add(self.layer, below=canvas.overlay.markers)
+        monitor.measured.connect(self._on_measured)
+        canvas.drawn.connect(self._show)
+        self._connections.add(document.replaced, self._on_replaced)
 
     def _on_measured(self) -> None:
-        summary = self._window.dashboard.gauge.summary
+        summary = self._monitor.summary
         self._elements = np.zeros(0, np.int64) if summary is None else summary.inverted
         self._show()
 
@@ -45,7 +41,7 @@ class Inverted:
         self._show()
 
     def _show(self) -> None:
-        mesh = self._window.document.mesh
+        mesh = self._document.mesh
         if mesh is None or not len(self._elements):
             self.layer.show(np.zeros((0, 3, 2)))
             return

@@ -1,38 +1,41 @@
-"""Going about by keyboard: the view, the irregular vertices, and from half-edge to half-edge."""
+"""Navigation by keyboard: view, irregular vertices, and from half-edge to half-edge."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from meshwright.desktop.canvas.canvas import Canvas
+from meshwright.desktop.canvas.layers.highlight import SpotLayer
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.graphics.markers import label
-
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
+from meshwright.graphics.theme import Theme
 
 STRIDE = 64.0
-"""Pixels that an arrow key moves the picture."""
+"""Pixels by which an arrow key pans."""
 ZOOM = 1.25
 SIZE = 120.0
-"""Pixels that the elements around a vertex are wide at least when it has been walked to."""
+"""Minimum size in pixels of the elements around a vertex that the view moves to."""
 _BITS = 16
 
 
-class Walking:
-    """What the keys do that move the view or the half-edge that is pointed at."""
+class KeyboardNavigation(Controller):
+    """Moves the view and the hovered half-edge by keyboard."""
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self,
+        document: Document,
+        canvas: Canvas,
+        highlight: SpotLayer,
+        status: StatusBar,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._canvas = document, canvas
+        self._highlight, self._status = highlight, status
         self._vertex = -1
-
-    def connect(self) -> None:
-        """Follow the document."""
-        self._window.document.replaced.connect(self._on_replaced)
-
-    def release(self) -> None:
-        """Let go of the document."""
-        self._window.document.replaced.disconnect(self._on_replaced)
+        self._connections.add(document.replaced, self._on_replaced)
 
     def _on_replaced(self) -> None:
         self._vertex = -1
@@ -40,13 +43,13 @@ class Walking:
     # The view
 
     def pan(self, right: float, up: float) -> None:
-        """Look further right or up by so many strides."""
-        canvas = self._window.canvas
+        """Pan to the right and up by multiples of :data:`STRIDE`."""
+        canvas = self._canvas
         canvas.see(canvas.viewport.panned(-STRIDE * right, STRIDE * up))
 
     def zoom(self, closer: bool) -> None:
-        """Look from closer by, or from farther away, at the middle of the view."""
-        canvas = self._window.canvas
+        """Zoom in or out at the centre of the view."""
+        canvas = self._canvas
         width, height = canvas.viewport.size
         factor = ZOOM if closer else 1.0 / ZOOM
         canvas.see(canvas.viewport.zoomed(factor, width / 2.0, height / 2.0))
@@ -54,30 +57,30 @@ class Walking:
     # Irregular vertices
 
     def to_irregular(self, step: int) -> None:
-        """Look at the next irregular vertex (1) or the one before (-1) and point at an edge of it.
+        """Go to the next (1) or previous (-1) irregular vertex, and hover one of its half-edges.
 
-        They come in an order in which those near each other follow one another.
+        The order is such that neighbours in it are close to each other in the plane.
         """
-        mesh = self._window.document.mesh
+        mesh = self._document.mesh
         if mesh is None:
             return
         delta = mesh.irregularity()
         found = np.flatnonzero(delta)
         if not len(found):
-            self._window.say("Every vertex is regular.")
+            self._status.show_message("Every vertex is regular.")
             return
         found = found[np.argsort(_curve(mesh.points[found, :2]), kind="stable")]
         at = np.flatnonzero(found == self._vertex)
         place = (int(at[0]) + step) % len(found) if len(at) else (0 if step > 0 else -1)
         self._vertex = vertex = int(found[place])
-        canvas = self._window.canvas
+        canvas = self._canvas
         around = mesh.points[[vertex, *mesh.neighbours(vertex)]]
         reach = float(np.abs(around - mesh.points[vertex])[:, :2].max())
         box = mesh.points[vertex] + reach * np.array([(-1.0, -1.0, 0.0), (1.0, 1.0, 0.0)])
         canvas.see(canvas.viewport.around(box, SIZE))
         canvas.pin(mesh.outgoing(vertex)[0])
-        self._window.dashboard.spot.show(mesh.points[[vertex]])
-        self._window.say(
+        self._highlight.show(mesh.points[[vertex]])
+        self._status.show_message(
             f"Vertex {vertex}: \u0394 {label(int(delta[vertex]))}, "
             f"{place % len(found) + 1:,} of {len(found):,}."
         )
@@ -85,38 +88,38 @@ class Walking:
     # Half-edges
 
     def turn(self, step: int) -> None:
-        """Point at the next half-edge around the vertex where this one starts (1), or back (-1)."""
-        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        """Hover the next (1) or previous (-1) half-edge around the origin of this one."""
+        mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
             return
         fan = mesh.outgoing(mesh.origin(halfedge))
-        self._window.canvas.pin(fan[(fan.index(halfedge) + step) % len(fan)])
+        self._canvas.pin(fan[(fan.index(halfedge) + step) % len(fan)])
         self._keep_in_view()
 
     def along(self) -> None:
-        """Point at the half-edge that follows in the element."""
-        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        """Hover the next half-edge of the element."""
+        mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
             return
-        self._window.canvas.pin(mesh.next(halfedge))
+        self._canvas.pin(mesh.next(halfedge))
         self._keep_in_view()
 
     def across(self) -> None:
-        """Point at the other half-edge of the edge."""
-        mesh, halfedge = self._window.document.mesh, self._window.canvas.under_mouse
+        """Hover the twin half-edge."""
+        mesh, halfedge = self._document.mesh, self._canvas.under_mouse
         if mesh is None or halfedge < 0:
             self._begin()
         elif mesh.twin(halfedge) < 0:
-            self._window.say("The boundary has no other side.")
+            self._status.show_message("A half-edge on the boundary has no twin.")
         else:
-            self._window.canvas.pin(mesh.twin(halfedge))
+            self._canvas.pin(mesh.twin(halfedge))
             self._keep_in_view()
 
     def _begin(self) -> None:
-        """Point at the half-edge nearest to the middle of the view."""
-        mesh, canvas = self._window.document.mesh, self._window.canvas
+        """Hover a half-edge of the element nearest to the centre of the view."""
+        mesh, canvas = self._document.mesh, self._canvas
         if mesh is None:
             return
         elements = mesh.elements()
@@ -127,8 +130,8 @@ class Walking:
         self._keep_in_view()
 
     def _keep_in_view(self) -> None:
-        """Move the picture where what is pointed at lies beside it."""
-        mesh, canvas = self._window.document.mesh, self._window.canvas
+        """Pan so that the hovered half-edge is in view."""
+        mesh, canvas = self._document.mesh, self._canvas
         halfedge = canvas.under_mouse
         if mesh is None or halfedge < 0:
             return
@@ -142,11 +145,11 @@ class Walking:
 
 
 def _curve(places: np.ndarray) -> np.ndarray:
-    """(n,) places (n, 2) as numbers along a curve that fills the plane, in Morton's order."""
+    """(n,) Morton codes of ``places`` (n, 2): positions along a space-filling curve."""
     low = places.min(axis=0)
     size = max(float((places.max(axis=0) - low).max()), 1e-300)
     cells = ((places - low) / size * (2**_BITS - 1)).astype(np.int64)
-    cells[:, 1] = 2**_BITS - 1 - cells[:, 1]  # from the top down, as one reads
+    cells[:, 1] = 2**_BITS - 1 - cells[:, 1]  # from top to bottom, as in reading
     code = np.zeros(len(places), np.int64)
     for bit in range(_BITS):
         code |= (cells[:, 0] >> bit & 1) << 2 * bit | (cells[:, 1] >> bit & 1) << 2 * bit + 1

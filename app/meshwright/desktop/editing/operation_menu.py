@@ -1,30 +1,32 @@
-"""The menu at the cursor: the operations of one half-edge, and why some are not allowed."""
+"""The context menu of a half-edge: its operations, and why some are not allowed."""
 
 from qtpy.QtCore import QPoint, Qt, Signal
 from qtpy.QtGui import QCloseEvent, QKeyEvent, QMouseEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from meshwright.desktop.canvas.layers.ghost import change_colour
-from meshwright.desktop.widgets.basic import sentence, tabular
+from meshwright.desktop.widgets.basic import tabular
 from meshwright.desktop.widgets.event_filters import OwnKeys
 from meshwright.document.operation_preview import OperationOffer
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import GRID, Theme
 from meshwright_core import Operation
+from meshwright_core.errors import sentence
 
 WIDTH = 296
 
 
 class OperationMenu(QFrame):
-    """A popup with a row for each operation; a refused one is grey and tells its reason.
+    """A popup with a row for each operation; rows of refused operations are grey and show the
+    reason.
 
-    ``chosen(operation)`` comes with an allowed operation, by mouse, arrows and Return, or its key;
-    ``pointed(operation)`` with the allowed one that is pointed at, None for none; ``closed()`` when
-    the menu goes away.
+    ``chosen(operation)``: an allowed operation was chosen by mouse, arrows and Return, or its key;
+    ``hovered(operation)``: the row of an allowed operation is current, None for any other row;
+    ``closed()``: the menu has closed.
     """
 
     chosen = Signal(object)
-    pointed = Signal(object)
+    hovered = Signal(object)
     closed = Signal()
 
     def __init__(
@@ -35,6 +37,7 @@ class OperationMenu(QFrame):
         parent: QWidget,
     ) -> None:
         super().__init__(parent, Qt.WindowType.Popup | Qt.WindowType.FramelessWindowHint)
+        self._frame = parent.window()
         OwnKeys(self)
         self.setObjectName("OperationMenu")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -58,14 +61,14 @@ class OperationMenu(QFrame):
     def popup(self, at: QPoint) -> None:
         """Show the menu beside the point ``at`` of the screen, within the window if it can be."""
         self.adjustSize()
-        room = self.parentWidget().window().geometry()
+        room = self._frame.geometry()
         x = min(at.x() + 3 * GRID, room.right() - self.width())
         y = min(at.y() - GRID, room.bottom() - self.height())
         self.move(max(x, room.left()), max(y, room.top()))
         self.show()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Arrows and Return walk and choose; a key of an operation chooses it."""
+        """Arrows and Return select and apply a row; the key of an operation applies it."""
         if event.key() in (Qt.Key.Key_Down, Qt.Key.Key_Up):
             self._walk(1 if event.key() == Qt.Key.Key_Down else -1)
         elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self._current:
@@ -79,7 +82,7 @@ class OperationMenu(QFrame):
             super().keyPressEvent(event)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Say that the menu is gone."""
+        """Emit ``closed``."""
         super().closeEvent(event)
         self.closed.emit()
 
@@ -95,7 +98,7 @@ class OperationMenu(QFrame):
             self._current.set_current(False)
         self._current = row
         row.set_current(True)
-        self.pointed.emit(row.info.operation if row.allowed else None)
+        self.hovered.emit(row.info.operation if row.allowed else None)
 
     def _take(self, operation: Operation) -> None:
         row = next(row for row in self.rows if row.info.operation == operation)
@@ -105,7 +108,7 @@ class OperationMenu(QFrame):
 
 
 class OperationRow(QFrame):
-    """One operation: title, change of s and key, below them the reason where it is not allowed."""
+    """One operation: title, change of s, key, and the reason if it is not allowed."""
 
     taken = Signal(object)
     entered = Signal(object)
@@ -147,7 +150,7 @@ class OperationRow(QFrame):
             self.setToolTip(sentence(info.summary))
 
     def set_current(self, current: bool) -> None:
-        """Mark the row that Return would take."""
+        """Mark the row that Return would apply."""
         self.setProperty("current", current and self.allowed)
         self.style().unpolish(self)
         self.style().polish(self)
@@ -157,6 +160,6 @@ class OperationRow(QFrame):
         self.entered.emit(self)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """A click takes the row."""
+        """A click applies the row's operation."""
         if self.rect().contains(event.position().toPoint()):
             self.taken.emit(self.info.operation)

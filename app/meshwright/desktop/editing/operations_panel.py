@@ -1,25 +1,31 @@
-"""The operations of the mesh's kind: keys, what each would change here, and which is armed."""
+"""The panel of operations for the kind of mesh: keys, change of s, armed operation."""
+
+from __future__ import annotations
+
+from functools import partial
 
 from qtpy.QtCore import QRectF, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QAbstractButton, QVBoxLayout, QWidget
 
 from meshwright.desktop.canvas.layers.ghost import change_colour
-from meshwright.desktop.widgets.basic import named, sentence, tabular
+from meshwright.desktop.controller import Connections
+from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.document.document import Document
 from meshwright.document.operation_preview import OperationOffer
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import GRID, Theme
+from meshwright_core.errors import sentence
 from meshwright_core.operations.catalogue import Operation, OperationInfo, of_kind
 
 HEIGHT = 26
-POINT = "Point at a half-edge: its operations and how each would change s."
-ARMED = "{}: a click on a half-edge does it. Esc puts it down."
-EMPTY = "Operations appear here when there is a mesh."
+POINT = "Point at a half-edge to see its operations and how each changes s."
+ARMED = "{}: click half-edges to apply it; Esc cancels."
+EMPTY = "Operations are listed here when there is a mesh."
 
 
 class OperationsPanel(QWidget):
-    """A row for each operation; ``chosen(operation)`` when one is clicked on."""
+    """A row for each operation; ``chosen(operation)`` when one is clicked."""
 
     chosen = Signal(object)
 
@@ -30,35 +36,36 @@ class OperationsPanel(QWidget):
         self._kind = ""
         self._armed: Operation | None = None
         self.rows: list[OperationButton] = []
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(GRID)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(GRID)
         self._hint = named(EMPTY, "Hint")
         self._hint.setWordWrap(True)
-        layout.addWidget(self._hint)
+        self._column.addWidget(self._hint)
         self._body = QWidget()
-        layout.addWidget(self._body)
-        document.replaced.connect(self._on_replaced)
+        self._column.addWidget(self._body)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._on_replaced)
         self._on_replaced()
 
     def release(self) -> None:
-        """Let go of the document."""
-        self._document.replaced.disconnect(self._on_replaced)
+        """Disconnect from the document."""
+        self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         for row in self.rows:
             row.set_theme(theme)
 
     def offer(self, choices: tuple[OperationOffer, ...], current: Operation | None) -> None:
-        """Show what is allowed at the half-edge that is pointed at; (): nothing is."""
+        """Show what is allowed at the hovered half-edge; an empty tuple without one."""
         by_operation = {choice.operation: choice for choice in choices}
         for row in self.rows:
             row.offer(by_operation.get(row.info.operation), row.info.operation == current)
 
     def arm(self, operation: Operation | None) -> None:
-        """Mark the operation that a click would do, if any."""
+        """Mark the armed operation; None for none."""
         self._armed = operation
         for row in self.rows:
             row.setChecked(row.info.operation == operation)
@@ -85,20 +92,19 @@ class OperationsPanel(QWidget):
         column.setSpacing(0)
         self.rows = [OperationButton(info, self._theme) for info in of_kind(self._kind)]
         for row in self.rows:
-            row.clicked.connect(self._on_clicked)
+            row.clicked.connect(partial(self._on_clicked, row))
             column.addWidget(row)
-        self.layout().replaceWidget(self._body, body)
+        self._column.replaceWidget(self._body, body)
         self._body.deleteLater()
         self._body = body
 
-    def _on_clicked(self) -> None:
-        row = self.sender()
-        row.setChecked(row.info.operation == self._armed)  # whether it is armed is told by arm()
+    def _on_clicked(self, row: OperationButton, checked: bool = False) -> None:
+        row.setChecked(row.info.operation == self._armed)  # arm() decides whether it is armed
         self.chosen.emit(row.info.operation)
 
 
 class OperationButton(QAbstractButton):
-    """One row: key, title, and how s would change at the half-edge that is pointed at."""
+    """One row: key, title, and the change of s at the hovered half-edge."""
 
     def __init__(self, info: OperationInfo, theme: Theme) -> None:
         super().__init__()
@@ -115,24 +121,24 @@ class OperationButton(QAbstractButton):
 
     @property
     def change(self) -> str:
-        """What the row says of s: a signed number, empty where nothing can be said."""
+        """The change of s as a signed number; empty if it is unknown."""
         change = self._choice.change if self._choice is not None else None
         return "" if change is None else label(change)
 
     @property
     def allowed(self) -> bool:
-        """False where the half-edge that is pointed at refuses it."""
+        """False if the operation is not allowed at the hovered half-edge."""
         return self._choice is None or self._choice.allowed
 
     def offer(self, choice: OperationOffer | None, current: bool) -> None:
-        """What is known of it where one points; ``current`` is the one whose ghost is shown."""
+        """Set the choice at the hovered half-edge; ``current``: this operation is previewed."""
         if choice != self._choice or current != self._current:
             self._choice, self._current = choice, current
             self._describe()
             self.update()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 
@@ -145,7 +151,7 @@ class OperationButton(QAbstractButton):
         if not self.allowed and self._choice is not None:
             text = f"{text}\nNot here: {self._choice.verdict.reason}."
         else:
-            text += "\nClick to arm it: then each click on the mesh does it."
+            text += "\nClick to arm it; each click on the mesh then applies it."
         self.setToolTip(text)
         self.setAccessibleDescription(text)
 

@@ -1,83 +1,98 @@
-"""Files dropped on the window."""
+"""Opening files that are dropped on the window."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QEvent, QMimeData, QObject, QRectF, Qt
-from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen
+from qtpy.QtGui import (
+    QColor,
+    QDragEnterEvent,
+    QDragMoveEvent,
+    QDropEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+)
 from qtpy.QtWidgets import QWidget
 
 from meshwright.graphics.theme import GRID, Theme
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
+class DropTarget(QObject):
+    """Accepts files dropped on ``window``, and calls ``open_file(path)`` with the first of them."""
 
-class Dropping(QObject):
-    """Lets files be dropped on ``window``; ``open_file(path)`` gets the first of them."""
-
-    def __init__(self, window: MainWindow, open_file: Callable[[str], object]) -> None:
+    def __init__(self, window: QWidget, open_file: Callable[[str], object], theme: Theme) -> None:
         super().__init__(window)
         self._window = window
         self._open = open_file
-        self.veil = Veil(window)
+        self.veil = DropVeil(window, theme)
         window.setAcceptDrops(True)
         window.installEventFilter(self)
 
     def release(self) -> None:
-        """Take no more files."""
+        """Stop accepting files."""
         self._window.removeEventFilter(self)
         self._window.setAcceptDrops(False)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Show what would happen while a file is over the window; open it when it is let go."""
-        kind = event.type()
-        if kind == QEvent.Type.DragEnter:
+        """Show the veil while a file is dragged over the window, and open it when it is dropped."""
+        if isinstance(event, QDragEnterEvent):
             path = dropped(event.mimeData())
             if path:
                 event.acceptProposedAction()
-                self.veil.show_for(path, self._window.theme)
+                self.veil.show_for(path)
             return True
-        if kind == QEvent.Type.DragLeave:
-            self.veil.hide()
-            return True
-        if kind == QEvent.Type.Drop:
+        if isinstance(event, QDragMoveEvent):
+            return False
+        if isinstance(event, QDropEvent):
             self.veil.hide()
             path = dropped(event.mimeData())
             if path:
                 event.acceptProposedAction()
                 self._open(path)
             return True
+        if event.type() == QEvent.Type.DragLeave:
+            self.veil.hide()
+            return True
         return False
 
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        self.veil.set_theme(theme)
 
-class Veil(QWidget):
-    """Over the whole window: the name of what would be opened."""
 
-    def __init__(self, window: MainWindow) -> None:
+class DropVeil(QWidget):
+    """A veil over the whole window with the name of the file that would be opened."""
+
+    def __init__(self, window: QWidget, theme: Theme) -> None:
         super().__init__(window)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._theme = window.theme
+        self._window = window
+        self._theme = theme
         self._name = ""
         self.hide()
 
     @property
     def text(self) -> str:
-        """What it says."""
+        """The text on the veil."""
         return f"Drop to open {self._name}"
 
-    def show_for(self, path: str, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        self._theme = theme
+        self.update()
+
+    def show_for(self, path: str) -> None:
         """Cover the window with the name of this file."""
-        self._name, self._theme = Path(path).name, theme
-        self.setGeometry(self.parentWidget().rect())
+        self._name = Path(path).name
+        self.setGeometry(self._window.rect())
         self.raise_()
         self.show()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """A dashed frame with words in its middle."""
+        """Paint a dashed frame with the text in its middle."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         ground = QColor(self._theme.background)
@@ -99,5 +114,5 @@ class Veil(QWidget):
 
 
 def dropped(data: QMimeData) -> str:
-    """Path of the first file in what is dragged, empty if there is none."""
+    """The path of the first dragged file; empty if there is none."""
     return next((url.toLocalFile() for url in data.urls() if url.isLocalFile()), "")

@@ -1,4 +1,4 @@
-"""Meshes that come and go: what the window does about files and shapes."""
+"""New, open, save and recover."""
 
 from __future__ import annotations
 
@@ -7,105 +7,123 @@ from contextlib import contextmanager
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from qtpy.QtCore import QPoint, Qt, QTimer
-from qtpy.QtWidgets import QApplication, QFileDialog
+from qtpy.QtCore import QPoint, Qt
+from qtpy.QtWidgets import QApplication, QFileDialog, QWidget
 
+from meshwright.assistant.assistant import Assistant
 from meshwright.assistant.policy_catalogue import shipped
-from meshwright.desktop.files.drop_target import Dropping
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.canvas.canvas import Canvas
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.files.drop_target import DropTarget
 from meshwright.desktop.files.recent_menu import RecentMenu
-from meshwright.desktop.files.unsaved_work import Guard
-from meshwright.desktop.widgets.basic import sentence
+from meshwright.desktop.files.unsaved_work import Guard, NoGuard, UnsavedWorkGuard
+from meshwright.desktop.widgets.action_set import ActionSet
+from meshwright.desktop.widgets.basic import NoticeBar
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.document.storage.project_file import ENDING, is_project
+from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import FARTHEST, NEAREST
+from meshwright_core.errors import sentence
 from meshwright_core.io import formats, mesh_files
-
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
 MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"
 USUAL = ".vtk"
-"""The ending of a mesh file whose name is typed without one."""
+"""The suffix of a mesh file whose name is typed without one."""
 
 
-class Files:
-    """New, open and save for one window; what goes wrong is one sentence in its notice bar."""
+class FileController(Controller):
+    """Makes, opens and saves meshes; errors are one sentence in the notice bar.
 
-    def __init__(self, window: MainWindow) -> None:
+    ``guard`` decides whether the mesh may be dropped: see :meth:`watch`.
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        assistant: Assistant,
+        canvas: Canvas,
+        settings: Settings,
+        actions: ActionSet,
+        status: StatusBar,
+        notice: NoticeBar,
+        window: QWidget,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._assistant, self._canvas = document, assistant, canvas
+        self._settings, self._status, self._notice = settings, status, notice
         self._window = window
-        self.dropping: Dropping | None = None
-        self.recent: RecentMenu | None = None
-        self.guard: Guard | None = None
-
-    def connect(self) -> None:
-        """Follow the document; take files that are dropped."""
-        window = self._window
-        window.document.saved_changed.connect(self._on_saved_changed)
-        window.opened.connect(self._on_opened)
-        self.dropping = Dropping(window, self.open)
-        self.recent = RecentMenu(window.settings, self.open, window)
-        window.actions_by_id["recent"].setMenu(self.recent)
+        self.guard: Guard = NoGuard(window)
+        self.dropping = DropTarget(window, self.open, theme)
+        self.recent = RecentMenu(settings, self.open, window)
+        actions["recent"].setMenu(self.recent)
+        self._connections.add(document.saved_changed, self._on_saved_changed)
         self._on_saved_changed()
 
-    def release(self) -> None:
-        """Let go of the document."""
-        self._window.document.saved_changed.disconnect(self._on_saved_changed)
-        if self.dropping is not None:
-            self.dropping.release()
-        if self.guard is not None:
-            self.guard.release()
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        super().set_theme(theme)
+        self.dropping.set_theme(theme)
+
+    def close(self) -> None:
+        """Disconnect, and end autosave."""
+        super().close()
+        self.dropping.release()
+        self.guard.release()
 
     def watch(self, folder: Path | None = None) -> None:
-        """From now on keep every step, and ask before unsaved work is dropped; what was lost when a
-        process died is offered once the window is there.
+        """From now on save every step in ``folder`` (None: the user's own), and ask before unsaved
+        work is dropped.
         """
-        self.guard = Guard(self._window, folder)
-        self._window.opened.connect(self._on_watched_opened)
+        self.guard = UnsavedWorkGuard(
+            self._document,
+            self._settings,
+            self._status,
+            self._notice,
+            self._window,
+            self.save,
+            self.show_all,
+            folder,
+        )
 
     def may_drop(self) -> bool:
-        """Whether the mesh may give way to another one, or to nothing."""
-        return self.guard is None or self.guard.may_drop()
+        """Whether the mesh may be replaced or closed; asks the user where work is unsaved."""
+        return self.guard.may_drop()
 
     def leave(self) -> None:
-        """Close the window at once, without a question; nothing is lost by that."""
-        if self.guard is not None:
-            self.guard.leave()
-        else:
-            self._window.close()
+        """Close the window at once, without a question; unsaved work can be recovered."""
+        self.guard.leave()
+
+    def offer_lost(self) -> None:
+        """Offer work that was not saved, if there is any."""
+        self.guard.offer()
 
     def ask_for_lost(self) -> None:
-        """Offer work that was lost when a process died."""
-        if self.guard is not None:
-            self.guard.ask_for_lost()
-
-    def _on_opened(self) -> None:
-        # it would read dropped files on its own, past the document
-        self._window.canvas.plotter.setAcceptDrops(False)
-
-    def _on_watched_opened(self) -> None:
-        if self.guard is not None:
-            QTimer.singleShot(0, self.guard.offer)  # what else begins with the window goes first
+        """Offer work that was not saved when the program ended unexpectedly."""
+        self.guard.ask_for_lost()
 
     def _on_saved_changed(self) -> None:
-        document = self._window.document
+        document = self._document
         self._window.setWindowTitle(f"{document.name or 'No mesh'}[*] \u2013 Meshwright")
         self._window.setWindowModified(document.modified)
 
     # Another mesh
 
     def new(self, file: str = "") -> None:
-        """Ask for a shape and how it is meshed, beginning with ``file`` if one is given."""
+        """Show the dialog for new meshes, on ``file`` if one is given."""
         from meshwright.desktop.files.new_mesh import NewMeshDialog
 
-        window = self._window
         if not self.may_drop():
             return
-        dialog = NewMeshDialog(window.document.kind, window.theme, window, file)
+        dialog = NewMeshDialog(self._document.kind, self._theme, self._window, file)
         if dialog.exec() and dialog.made is not None:
             made = dialog.made
             with waiting():
-                window.document.replace(made.mesh(), made.name, made.path or None)
+                self._document.replace(made.mesh(), made.name, made.path or None)
             if made.path:
                 self._remember(Path(made.path))
         dialog.deleteLater()
@@ -117,14 +135,14 @@ class Files:
         try:
             mesh = meshing.mesh_domain(gallery.shape(shape), kind)
         except ValueError as error:
-            self._window.notice.tell(one_line(error))
+            self._notice.show_message(one_line(error))
         else:
             if self.may_drop():
-                self._window.document.replace(mesh, shape)
+                self._document.replace(mesh, shape)
 
     def choose(self) -> None:
         """Ask for a file and open it."""
-        path = self._window.document.path
+        path = self._document.path
         folder = str(path.parent) if path else ""
         chosen, _ = QFileDialog.getOpenFileName(self._window, "Open", folder, to_open())
         if chosen:
@@ -132,53 +150,49 @@ class Files:
 
     def open(self, path: str | Path) -> None:
         """Open a mesh file, a project, or the shape in a geometry file."""
-        window, place = self._window, Path(path).absolute()
+        place = Path(path).absolute()
         if not self.may_drop():
             return
         try:
             with waiting():
-                window.document.open(place)
+                self._document.open(place)
         except (ValueError, OSError) as error:
             if not place.exists():
-                window.settings.recent = [
-                    one for one in window.settings.recent if one != str(place)
-                ]
-            window.notice.tell(one_line(error))
+                self._forget(place)
+            self._notice.show_message(one_line(error))
             return
         self._remember(place)
         self.show_all()
 
     def show_all(self) -> None:
-        """Look at the mesh as a project says, else at all of it."""
-        window = self._window
-        window.canvas.fit()
-        kept = window.document.settings
+        """Restore view and policy saved in a project; else fit the view to the mesh."""
+        self._canvas.fit()
+        kept = self._document.settings
         view = kept.get("view")
         if isinstance(view, list) and len(view) == 3 and all(map(_is_length, view)) and view[2] > 0:
             x, y, width = view
-            seen = window.canvas.viewport
+            seen = self._canvas.viewport
             pixels = min(max(seen.size[0] / width, NEAREST), FARTHEST)
-            window.canvas.see(replace(seen, centre=(x, y), pixels=pixels))
-        if kept.get("policy") in shipped(window.document.kind):
-            window.assistant.policy = kept["policy"]
+            self._canvas.see(replace(seen, centre=(x, y), pixels=pixels))
+        if kept.get("policy") in shipped(self._document.kind):
+            self._assistant.policy = kept["policy"]
 
     def show_recent(self) -> None:
         """Open the menu of recent files in the middle of the window."""
-        if self.recent is not None:
-            middle = self._window.mapToGlobal(self._window.rect().center())
-            self.recent.popup(middle - self.recent.sizeHint().width() * QPoint(1, 0) / 2)
+        middle = self._window.mapToGlobal(self._window.rect().center())
+        self.recent.popup(middle - QPoint(self.recent.sizeHint().width() // 2, 0))
 
     # Saving
 
     def save(self) -> bool:
-        """Write the mesh to its file, or ask for one; whether it is written."""
-        if self._window.document.path is None:
+        """Save the mesh to its file, or ask for one; returns whether it was saved."""
+        if self._document.path is None:
             return self.save_as()
         return self._save(None)
 
     def save_as(self) -> bool:
-        """Ask for a file and write the mesh to it, or all of the work to a project."""
-        document = self._window.document
+        """Ask for a file and save the mesh to it, or mesh and history to a project."""
+        document = self._document
         start = str(document.path or f"{document.name or 'mesh'}{USUAL}")
         chosen = PROJECTS if document.path and is_project(document.path) else MESHES
         filters = {one.partition(" (")[0]: one for one in to_save().split(";;")}
@@ -190,34 +204,31 @@ class Files:
         return bool(path) and self._save(path)
 
     def _save(self, path: str | None) -> bool:
-        window = self._window
-        viewport = window.canvas.viewport
-        window.document.settings.update(
-            policy=window.assistant.policy,
+        viewport = self._canvas.viewport
+        self._document.settings.update(
+            policy=self._assistant.policy,
             view=[*viewport.centre, viewport.size[0] / viewport.pixels],
         )
         try:
             with waiting():
-                written = window.document.save(path)
+                written = self._document.save(path)
         except (ValueError, OSError) as error:
-            window.notice.tell(one_line(error))
+            self._notice.show_message(one_line(error))
             return False
         self._remember(written)
-        window.say(f"Saved {written.name}.{left_out(written)}")
+        self._status.show_message(f"Saved {written.name}.{left_out(written)}")
         return True
 
     def _forget(self, path: Path) -> None:
-        settings = self._window.settings
-        settings.recent = [one for one in settings.recent if one != str(path)]
+        self._settings.recent = [one for one in self._settings.recent if one != str(path)]
 
     def _remember(self, path: Path) -> None:
-        settings = self._window.settings
-        settings.recent = [str(path.absolute()), *settings.recent]
+        self._settings.recent = [str(path.absolute()), *self._settings.recent]
 
 
 @contextmanager
 def waiting() -> Iterator[None]:
-    """The mouse pointer says that it takes a moment."""
+    """Show the wait cursor while the block runs."""
     QApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
     try:
         yield
@@ -226,13 +237,13 @@ def waiting() -> Iterator[None]:
 
 
 def to_open() -> str:
-    """The groups of files that can be opened."""
+    """The filters of the Open dialog."""
     groups = {MESHES: mesh_files.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
-    return _filters({"All that can be opened": sum(groups.values(), ()), **groups})
+    return _filters({"All supported files": sum(groups.values(), ()), **groups})
 
 
 def to_save() -> str:
-    """The groups of files that can be written."""
+    """The filters of the Save dialog."""
     return _filters({MESHES: mesh_files.endings(), PROJECTS: (ENDING,)})
 
 
@@ -242,11 +253,11 @@ def _filters(groups: dict[str, tuple[str, ...]]) -> str:
 
 
 def left_out(path: Path) -> str:
-    """What a mesh file of this kind does not keep, as a sentence; empty if nothing."""
+    """What this mesh format does not store, as a sentence; empty if it stores everything."""
     if is_project(path) or formats.of(path).data:
         return ""
     title = formats.of(path).title
-    return f" {title} files keep no corners, desired degrees or history; a project does."
+    return f" {title} files store no corners, desired degrees or history; projects do."
 
 
 def _is_length(value: Any) -> bool:
@@ -254,7 +265,7 @@ def _is_length(value: Any) -> bool:
 
 
 def one_line(error: Exception) -> str:
-    """What went wrong with a file, as one sentence."""
+    """The error as one sentence."""
     if isinstance(error, OSError) and error.strerror:
         name = Path(error.filename).name if error.filename else "The file"
         return f"{name}: {error.strerror}."

@@ -1,4 +1,4 @@
-"""The menu of files that were opened or saved lately."""
+"""The menu of recent files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from meshwright.desktop.application.settings import Settings
 
 
 class RecentMenu(QMenu):
-    """Filled from ``settings`` whenever it opens; ``open_file(path)`` gets what is chosen."""
+    """Lists the recent files of ``settings`` when it opens; calls ``open_file(path)`` for the
+    chosen one.
+    """
 
     def __init__(
         self, settings: Settings, open_file: Callable[[str], object], parent: QWidget
@@ -24,7 +26,7 @@ class RecentMenu(QMenu):
         self.aboutToShow.connect(self.fill)
 
     def fill(self) -> None:
-        """List the files, the last one first, each with its folder beside it."""
+        """List the files, the latest first, each with its folder."""
         self.clear()
         for number, path in enumerate(self._settings.recent, start=1):
             place = Path(path)
@@ -45,7 +47,7 @@ class RecentMenu(QMenu):
 
 
 def short(folder: Path) -> str:
-    """The folder as a person writes it, its middle left out where it is long."""
+    """The folder with ``~`` for home, shortened in the middle if it is long."""
     text = str(folder)
     home = str(Path.home())
     if text == home or text.startswith(home + "/"):
@@ -54,5 +56,5 @@ def short(folder: Path) -> str:
 
 
 def _plain(text: str) -> str:
-    """Without what menus take for a mnemonic or a key."""
+    """``text`` with mnemonic and tab characters escaped."""
     return text.replace("&", "&&").replace("\t", " ")

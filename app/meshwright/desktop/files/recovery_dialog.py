@@ -1,4 +1,4 @@
-"""The dialog that offers what a process left behind when it died."""
+"""The dialog that offers work of a process that ended without saving."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -22,16 +22,16 @@ from meshwright.graphics.theme import GRID
 from meshwright_core.core.kinds import KIND_NOUN
 
 STORY = (
-    "Meshwright ended before this was saved. Every step up to then has been kept: it can be taken"
-    " up where it stopped, with its whole history."
+    "Meshwright ended before this work was saved. Every step until then was recorded and can be"
+    " recovered, with the whole history."
 )
 SHOWN = 4
-"""Works that are seen at once; with more of them the list scrolls."""
+"""Number of works that are visible at once; the list scrolls if there are more."""
 CARD = 92
 """Height of one work in pixels."""
 
 
-class LostWork(QDialog):
+class RecoveryDialog(QDialog):
     """Offers ``works``; :attr:`chosen` is the one to recover, None for later.
 
     What is discarded here is deleted at once, after a second click.
@@ -41,13 +41,13 @@ class LostWork(QDialog):
         super().__init__(parent)
         self.chosen: LostWork | None = None
         self.works = list(works)
-        self.cards: list[Card] = []
+        self.cards: list[LostWorkCard] = []
         self.setWindowTitle("Recover work")
         self.setMinimumWidth(560)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
         layout.setSpacing(GRID)
-        layout.addWidget(named("There is work that was not saved", "Question"))
+        layout.addWidget(named("Unsaved work was found", "Question"))
         story = named(STORY, "Label")
         story.setWordWrap(True)
         layout.addWidget(story)
@@ -55,7 +55,7 @@ class LostWork(QDialog):
         layout.addWidget(self._list())
         layout.addSpacing(GRID)
         self.later = QPushButton("Decide later")
-        self.later.setToolTip("It is offered again at the next start")
+        self.later.setToolTip("Ask again at the next start")
         self.later.setAutoDefault(False)
         self.later.clicked.connect(self.reject)
         line = QHBoxLayout()
@@ -71,7 +71,7 @@ class LostWork(QDialog):
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(GRID)
         for number, work in enumerate(self.works):
-            card = Card(work)
+            card = LostWorkCard(work)
             card.recover.clicked.connect(partial(self._on_recover, work))
             card.discard.clicked.connect(partial(self._on_discard, card))
             if not number:
@@ -92,7 +92,7 @@ class LostWork(QDialog):
         self.chosen = work
         self.accept()
 
-    def _on_discard(self, card: "Card", checked: bool = False) -> None:
+    def _on_discard(self, card: "LostWorkCard", checked: bool = False) -> None:
         if not card.sure:
             card.make_sure()
             return
@@ -105,8 +105,8 @@ class LostWork(QDialog):
             self.reject()
 
 
-class Card(QFrame):
-    """One work: what it was called, when its last step was, how far it had come."""
+class LostWorkCard(QFrame):
+    """One work: name, progress, time of the last step."""
 
     def __init__(self, work: LostWork) -> None:
         super().__init__()
@@ -120,7 +120,7 @@ class Card(QFrame):
         words = QVBoxLayout()
         words.setSpacing(2)
         words.addStretch(1)
-        self.title = named(work.name or "Mesh without a name", "CardTitle")
+        self.title = named(work.name or "Untitled mesh", "CardTitle")
         self.story = named(progress(work), "Label")
         self.place = named(f"{moment(work.when)}, {origin(work)}", "Hint")
         for part in (self.title, self.story, self.place):
@@ -129,7 +129,7 @@ class Card(QFrame):
         words.addStretch(1)
         self.discard = QPushButton("Discard")
         self.discard.setObjectName("Link")
-        self.discard.setToolTip("Delete this work for good")
+        self.discard.setToolTip("Delete this work permanently")
         self.recover = QPushButton("Recover")
         for button in (self.discard, self.recover):
             button.setAutoDefault(False)
@@ -140,13 +140,13 @@ class Card(QFrame):
             self.setToolTip(str(work.file))
 
     def make_sure(self) -> None:
-        """The next click on *Discard* means it."""
+        """Ask for a second click on *Discard*."""
         self.sure = True
-        self.discard.setText("Delete for good?")
+        self.discard.setText("Delete permanently?")
 
 
 def progress(work: LostWork) -> str:
-    """``12 steps, s 8 (optimum 4), 1,024 quads``, as far as it is known."""
+    """``12 steps, s 8 (optimum 4), 1,024 quads``, as far as known."""
     now = {key: value for key, value in work.now.items() if isinstance(value, int | str)}
     parts = []
     if "steps" in now:
@@ -168,8 +168,8 @@ def moment(when: float) -> str:
 
 
 def origin(work: LostWork) -> str:
-    """Where it was saved last."""
+    """The file of the work, or that it was never saved."""
     if work.file is None:
         return "never saved to a file"
-    there = "" if Path(work.file).exists() else ", which is gone"
+    there = "" if Path(work.file).exists() else ", which no longer exists"
     return f"from {work.file.name}{there}"

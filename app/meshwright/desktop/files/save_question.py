@@ -1,4 +1,4 @@
-"""A question with its answers as buttons, in the window's look."""
+"""A dialog that asks a question, with the answers as buttons."""
 
 from collections.abc import Sequence
 
@@ -9,11 +9,11 @@ from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
 
-class Question(QDialog):
-    """Asks ``title``, with ``text`` below it; :attr:`answer` is the id of the button pressed.
+class QuestionDialog(QDialog):
+    """Asks ``title``, with ``text`` below it; :attr:`answer` is the id of the clicked button.
 
-    ``answers`` are (id, word), the recommended one last; ``aside`` stands apart at the left, for
-    the one that loses something. Escape gives the empty answer.
+    ``answers`` are (id, text), the recommended one last; ``aside`` is placed apart at the left, for
+    an answer that discards something. Escape gives the empty answer.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Question(QDialog):
         self.accept()
 
     def ask(self) -> str:
-        """Wait for the answer."""
+        """Show the dialog and return the answer."""
         self.exec()
         self.deleteLater()
         return self.answer

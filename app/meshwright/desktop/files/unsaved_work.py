@@ -1,65 +1,134 @@
-"""The guard of a person's work: autosave, recovery, and the question before something is lost."""
+"""Protection of unsaved work: autosave, recovery, and the question before work is discarded."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from meshwright.desktop.files.save_question import Question
+from qtpy.QtWidgets import QWidget
+
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.controller import Connections
+from meshwright.desktop.files.save_question import QuestionDialog
+from meshwright.desktop.widgets.basic import NoticeBar
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.document.storage import recovery
 from meshwright.document.storage.autosave import Autosave
 from meshwright_core import MeshError
 
 if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
     from meshwright.document.storage.recovery import LostWork
 
 
-class Guard:
-    """Keeps every step of one window's document, and asks before unsaved work is dropped.
+class Guard(Protocol):
+    """Decides whether the mesh may be dropped."""
 
-    ``folder`` is where autosave writes; None for the person's own.
-    """
+    def may_drop(self) -> bool:
+        """Whether the mesh may be replaced or closed."""
+        ...
 
-    def __init__(self, window: MainWindow, folder: Path | None = None) -> None:
-        self._window = window
-        self._folder = folder
-        self._question: Question | None = None
-        self._leaving = False
-        self.autosave = Autosave(window.document, folder)
-        self.autosave.enabled = window.settings.autosave
-        self.autosave.failed.connect(window.notice.tell)
-        self.autosave.resumed.connect(window.say)
-        window.settings.changed.connect(self._on_setting_changed)
+    def leave(self) -> None:
+        """Close the window without a question."""
+        ...
+
+    def offer(self) -> None:
+        """Offer work that was lost, if there is any."""
+        ...
+
+    def ask_for_lost(self) -> None:
+        """As :meth:`offer`; shows a message if there is none."""
+        ...
 
     def release(self) -> None:
-        """The window closes: what is dropped has been agreed on, or is left for the next start."""
-        self._window.settings.changed.disconnect(self._on_setting_changed)
+        """End autosave; called when the window closes."""
+        ...
+
+
+class NoGuard:
+    """Saves nothing and asks nothing: for windows that a program opens."""
+
+    def __init__(self, window: QWidget) -> None:
+        self._window = window
+
+    def may_drop(self) -> bool:
+        """Always."""
+        return True
+
+    def leave(self) -> None:
+        """Close the window."""
+        self._window.close()
+
+    def offer(self) -> None:
+        """There is nothing to offer."""
+
+    def ask_for_lost(self) -> None:
+        """There is nothing to offer."""
+
+    def release(self) -> None:
+        """There is nothing to end."""
+
+
+class UnsavedWorkGuard:
+    """Saves every step of ``document``, and asks before unsaved work is dropped.
+
+    ``save()`` saves the document and returns whether it is saved, ``show_all()`` fits the view to
+    a recovered mesh. Autosave writes to ``folder``; None for the user's own.
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        settings: Settings,
+        status: StatusBar,
+        notice: NoticeBar,
+        window: QWidget,
+        save: Callable[[], bool],
+        show_all: Callable[[], None],
+        folder: Path | None = None,
+    ) -> None:
+        self._document, self._settings = document, settings
+        self._status, self._notice, self._window = status, notice, window
+        self._save, self._show_all = save, show_all
+        self._folder = folder
+        self._question: QuestionDialog | None = None
+        self._leaving = False
+        self.autosave = Autosave(document, folder)
+        self.autosave.enabled = settings.autosave
+        self.autosave.failed.connect(notice.show_message)
+        self.autosave.resumed.connect(status.show_message)
+        self._connections = Connections()
+        self._connections.add(settings.changed, self._on_setting_changed)
+
+    def release(self) -> None:
+        """End autosave; unsaved work is kept for the next start if no question was asked."""
+        self._connections.close()
         if self._leaving:
             self.autosave.leave()
         else:
             self.autosave.close()
 
     def leave(self) -> None:
-        """Close the window without a question; the next start offers what was not saved."""
+        """Close the window without a question; unsaved work is offered at the next start."""
         self._leaving = True
         if self._question is not None:
             self._question.reject()
         self._window.close()
 
     def may_drop(self) -> bool:
-        """Whether the mesh may give way: nothing is unsaved, or the person has decided."""
-        document = self._window.document
+        """Whether the mesh may be discarded: nothing is unsaved, or the user has agreed."""
+        document = self._document
         if self._leaving or document.empty or not document.modified:
             return True
         if self._question is not None:
             return False
         name = document.name or "this mesh"
-        self._question = Question(
+        self._question = QuestionDialog(
             f"Save the changes to {name}?",
-            f"What has changed since {document.path.name} was saved is lost otherwise."
+            f"Otherwise the changes since {document.path.name} was saved are lost."
             if document.path is not None
-            else "It has not been saved to a file yet, and is lost otherwise.",
+            else "It has not been saved to a file yet, and would be lost.",
             (("cancel", "Cancel"), ("save", "Save")),
             ("drop", "Don\u2019t save"),
             self._window,
@@ -67,27 +136,27 @@ class Guard:
         answer = self._question.ask()
         self._question = None
         if answer == "save":
-            return self._window.files.save()
+            return self._save()
         return answer == "drop" or self._leaving
 
     def offer(self) -> None:
-        """Offer what was lost, if anything was."""
+        """Offer unsaved work of ended processes, if there is any."""
         works = recovery.lost(self._folder) if self._window.isVisible() else []
         if works:
             self._offer(works)
 
     def ask_for_lost(self) -> None:
-        """As :meth:`offer`, for a person who asks."""
+        """As :meth:`offer`; shows a message if there is none."""
         works = recovery.lost(self._folder)
         if works:
             self._offer(works)
         else:
-            self._window.say("There is no lost work: everything was saved or dropped.")
+            self._status.show_message("There is no unsaved work to recover.")
 
     def _offer(self, works: list[LostWork]) -> None:
-        from meshwright.desktop.files.recovery_dialog import LostWork
+        from meshwright.desktop.files.recovery_dialog import RecoveryDialog
 
-        dialog = LostWork(works, self._window)
+        dialog = RecoveryDialog(works, self._window)
         dialog.exec()
         chosen = dialog.chosen
         for work in dialog.works:
@@ -98,7 +167,6 @@ class Guard:
             self._recover(chosen)
 
     def _recover(self, work: LostWork) -> None:
-        window = self._window
         if not self.may_drop():
             work.release()
             return
@@ -106,17 +174,17 @@ class Guard:
             kept = work.read()
         except MeshError as error:
             work.release()
-            window.notice.tell(str(error))
+            self._notice.show_message(str(error))
             return
-        window.document.adopt(kept)
-        window.files.show_all()
+        self._document.adopt(kept)
+        self._show_all()
         if self.autosave.begin():
             work.discard()
         else:
             work.release()
         steps = kept.history.cursor
-        window.say(f"Recovered {kept.name or 'the mesh'}, {steps:,} steps.")
+        self._status.show_message(f"Recovered {kept.name or 'the mesh'}, {steps:,} steps.")
 
     def _on_setting_changed(self, key: str) -> None:
         if key == "files/autosave":
-            self.autosave.enabled = self._window.settings.autosave
+            self.autosave.enabled = self._settings.autosave

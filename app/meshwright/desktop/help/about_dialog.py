@@ -1,4 +1,4 @@
-"""About Meshwright: what it is, its version, and the licences of all that it is made of."""
+"""The About dialog: version, citation and licences."""
 
 import platform
 from importlib.metadata import PackageNotFoundError, version
@@ -66,7 +66,7 @@ class AboutDialog(QDialog):
         layout.addLayout(self._buttons())
 
     def details(self) -> str:
-        """What a report of a problem should tell: versions, one a line."""
+        """Versions for a bug report, one per line."""
         lines = [f"Meshwright {own_version()}", f"Python {platform.python_version()}"]
         lines += [platform.platform(), f"{API_NAME} with Qt {QT_VERSION}"]
         telling = ("numpy", "numba", "torch", "vtk", "pyvista", "pyside6-essentials")
@@ -111,7 +111,7 @@ class AboutDialog(QDialog):
 
     def _buttons(self) -> QHBoxLayout:
         copy = QPushButton("Copy versions")
-        copy.setToolTip("Copy the versions of Meshwright and what it runs on, for a report")
+        copy.setToolTip("Copy the versions of Meshwright and its libraries, for a bug report")
         copy.clicked.connect(lambda checked=False: self._copy())
         close = QPushButton("Close")
         close.setToolTip("Close this page")
@@ -141,7 +141,7 @@ def own_version() -> str:
 
 
 def _told(one: Licence) -> str:
-    text = one.text() or "Its text was not installed with the package."
+    text = one.text() or "The licence text was not installed with the package."
     home = f"\n{one.url}" if one.url else ""
     return f"{one.package} {one.version}: {one.licence}{home}\n\n{text}"
 

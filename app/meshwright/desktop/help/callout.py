@@ -1,4 +1,4 @@
-"""A callout: a small card beside a place of the window, with an arrow to it."""
+"""A callout: a small card with an arrow to a place in the window."""
 
 from collections.abc import Sequence
 
@@ -11,24 +11,26 @@ from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 320
 _TIP = 12
-"""Pixels that the arrow stands out, and half of its width."""
+"""Length and half width of the arrow in pixels."""
 _GAP = 6
 """Pixels between the arrow's tip and what it points at."""
 _SHADE = 3
 
 
 class Callout(QWidget):
-    """Heading, text and the buttons of a tour. It never takes the keyboard by itself.
+    """Heading, text and the buttons of a tour. It does not take the keyboard focus.
 
-    ``went(step)`` with -1 for *Back* and 1 for *Next*; ``ended()`` for *Skip* and the last *Done*.
+    ``step_requested(step)`` with -1 for *Back* and 1 for *Next*; ``ended()`` for *Skip* and the
+    last *Done*.
     """
 
-    went = Signal(int)
+    step_requested = Signal(int)
     ended = Signal()
 
     def __init__(self, theme: Theme, parent: QWidget) -> None:
         super().__init__(parent)
         self._theme = theme
+        self._window = parent
         self._side = "left"
         self._tip = QPointF()
         self.setObjectName("Callout")
@@ -40,11 +42,11 @@ class Callout(QWidget):
         self.done = named("", "CalloutDone")
         self.done.setWordWrap(True)
         self.skip = self._button("Skip", "Chip", "End the tour; Help shows it again")
-        self.back = self._button("Back", "", "The step before")
+        self.back = self._button("Back", "", "The previous step")
         self.next = self._button("Next", "Primary", "The next step")
         self.skip.clicked.connect(lambda checked=False: self.ended.emit())
-        self.back.clicked.connect(lambda checked=False: self.went.emit(-1))
-        self.next.clicked.connect(lambda checked=False: self.went.emit(1))
+        self.back.clicked.connect(lambda checked=False: self.step_requested.emit(-1))
+        self.next.clicked.connect(lambda checked=False: self.step_requested.emit(1))
         self._card = QWidget(self)
         self._card.setFixedWidth(WIDTH)
         layout = QVBoxLayout(self._card)
@@ -70,16 +72,16 @@ class Callout(QWidget):
         made = QPushButton(text)
         made.setObjectName(name)
         made.setToolTip(tooltip)
-        made.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keyboard to the canvas
+        made.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the focus with the canvas
         return made
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 
-    def tell(self, number: int, total: int, heading: str, text: str, done: str = "") -> None:
-        """Show step ``number`` of ``total``, from 1; ``done`` says that it has been done."""
+    def show_step(self, number: int, total: int, heading: str, text: str, done: str = "") -> None:
+        """Show step ``number`` of ``total``, from 1; ``done`` confirms that it was done."""
         self.count.setText(f"{number} of {total}")
         self.heading.setText(heading)
         self.text.setText(text)
@@ -91,13 +93,13 @@ class Callout(QWidget):
         self.setAccessibleDescription(text)
 
     def point_at(self, target: QRect, sides: Sequence[str]) -> None:
-        """Stand beside ``target``, in the parent's pixels: at the first of ``sides`` that has the
-        room ("left", "right", "above", "below"), else where there is most of it.
+        """Move beside ``target``, a rectangle in the parent's pixels: to the first of ``sides``
+        ("left", "right", "above", "below") with enough room, else to the one with most room.
         """
         self._card.adjustSize()
         width, height = self._card.width() + 2 * _TIP, self._card.height() + 2 * _TIP
         self.resize(width, height)
-        room = self.parentWidget().rect()
+        room = self._window.rect()
         rooms = {
             "left": target.left() - room.left() - width,
             "right": room.right() - target.right() - width,
@@ -125,7 +127,7 @@ class Callout(QWidget):
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """The card, its arrow and a soft shade."""
+        """Paint the card, its arrow and a soft shadow."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         card = QRectF(self._card.geometry())

@@ -4,8 +4,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from qtpy.QtCore import QEvent, QObject, QRect, QSize, Qt, Signal
-from qtpy.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPen
+from qtpy.QtCore import (
+    QEvent,
+    QModelIndex,
+    QObject,
+    QPersistentModelIndex,
+    QRect,
+    QSize,
+    Qt,
+    Signal,
+)
+from qtpy.QtGui import (
+    QColor,
+    QFocusEvent,
+    QFont,
+    QFontMetrics,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPen,
+)
 from qtpy.QtWidgets import (
     QApplication,
     QFrame,
@@ -26,16 +44,16 @@ from meshwright.graphics.theme import GRID, Theme
 WIDTH = 560
 ROW = 34
 ROWS = 10
-"""Rows that are seen at once."""
+"""Number of rows that are visible at once."""
 _ELSEWHERE = 12.0
-"""What a match in menu and title together is worth less than one in the title."""
+"""How much lower a match of menu and title is ranked than one of the title alone."""
 _ENTRY = int(Qt.ItemDataRole.UserRole)
 _PLACES = _ENTRY + 1
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One row: an action's id, what it is called and where, its key, and why it is not possible."""
+class PaletteEntry:
+    """One row: an action's id, title, menu, shortcut, and the reason if it is disabled."""
 
     id: str
     title: str
@@ -45,11 +63,11 @@ class Entry:
     tooltip: str = ""
 
 
-def rank(query: str, entries: Sequence[Entry]) -> list[tuple[Entry, tuple[int, ...]]]:
-    """The entries that ``query`` finds, best first, each with the letters of its title that were
-    meant. Those that are not possible now come after equals.
+def rank(query: str, entries: Sequence[PaletteEntry]) -> list[tuple[PaletteEntry, tuple[int, ...]]]:
+    """The entries that match ``query``, best first, each with the matched positions in its title.
+    Disabled ones come after equally good ones.
     """
-    found: list[tuple[float, int, Entry, tuple[int, ...]]] = []
+    found: list[tuple[float, int, PaletteEntry, tuple[int, ...]]] = []
     for number, entry in enumerate(entries):
         here = match(query, entry.title)
         there = match(query, f"{entry.menu} {entry.title}")
@@ -68,24 +86,25 @@ def rank(query: str, entries: Sequence[Entry]) -> list[tuple[Entry, tuple[int, .
     return [(entry, places) for _, _, entry, places in found]
 
 
-class Palette(QFrame):
-    """A box over the window, with the keyboard until it is closed.
+class CommandPalette(QFrame):
+    """A box over the window that has the keyboard focus until it is closed.
 
-    ``chosen(id)`` comes with an entry that is possible, ``closed()`` when the box goes away. It is
-    a part of the window, not a window itself: nothing depends on a window manager.
+    ``chosen(id)`` for an entry that is enabled; ``closed()``. It is a child widget, not a window,
+    so that it does not depend on a window manager.
     """
 
     chosen = Signal(str)
     closed = Signal()
 
-    def __init__(self, entries: Sequence[Entry], theme: Theme, parent: QWidget) -> None:
+    def __init__(self, entries: Sequence[PaletteEntry], theme: Theme, parent: QWidget) -> None:
         super().__init__(parent)
         self._entries = list(entries)
+        self._window = parent
         self._before = QApplication.focusWidget()
         self.setObjectName("Palette")
         self.field = QLineEdit()
         self.field.setObjectName("PaletteField")
-        self.field.setPlaceholderText("What do you want to do?")
+        self.field.setPlaceholderText("Search commands")
         self.field.setAccessibleName("Search for a command")
         self.list = QListWidget()
         self.list.setObjectName("PaletteList")
@@ -95,7 +114,7 @@ class Palette(QFrame):
         self.list.setItemDelegate(_Row(theme, self.list))
         self.list.setMouseTracking(True)
         self.list.setUniformItemSizes(True)
-        self.nothing = named("No command is called so.", "Hint")
+        self.nothing = named("No matching command.", "Hint")
         self.nothing.setContentsMargins(GRID, GRID, GRID, GRID)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(GRID, GRID, GRID, GRID)
@@ -111,23 +130,23 @@ class Palette(QFrame):
         self._fill("")
 
     @property
-    def shown(self) -> list[Entry]:
+    def shown(self) -> list[PaletteEntry]:
         """The entries in the list, from the top."""
         return [self.list.item(row).data(_ENTRY) for row in range(self.list.count())]
 
     def popup(self) -> None:
-        """Show the box and take the keyboard."""
+        """Show the box and give it the keyboard focus."""
         self._place()
         self.show()
         self.raise_()
         self.field.setFocus(Qt.FocusReason.PopupFocusReason)
 
     def dismiss(self) -> None:
-        """Close the box and give the keyboard back."""
+        """Close the box and give the keyboard focus back."""
         if self.isHidden():
             return
         self.field.removeEventFilter(self)
-        self.parentWidget().removeEventFilter(self)
+        self._window.removeEventFilter(self)
         self.hide()
         if self._before is not None:
             self._before.setFocus(Qt.FocusReason.PopupFocusReason)
@@ -135,26 +154,39 @@ class Palette(QFrame):
         self.deleteLater()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Keys that walk and choose; the box stays in the middle, and goes when left."""
-        if watched is self.parentWidget():
+        """Handle keys that select and choose; follow the window's size; close when the focus is
+        lost.
+        """
+        if watched is self._window:
             if event.type() == QEvent.Type.Resize:
                 self._place()
             return False
         kind = event.type()
         if watched is self.list.viewport():
-            if kind == QEvent.Type.MouseMove:  # rows that scroll past a resting mouse are not meant
-                self.list.setCurrentItem(self.list.itemAt(event.position().toPoint()))
+            # rows that scroll past a resting mouse are not chosen
+            if isinstance(event, QMouseEvent) and kind == QEvent.Type.MouseMove:
+                self._on_hovered(event)
             return False
-        if kind == QEvent.Type.ShortcutOverride and _is_ours(event):
-            event.accept()  # else a shortcut of the window would take it
-            return True
-        if kind == QEvent.Type.KeyPress and _is_ours(event):
-            self._on_key(event.key())
-            return True
-        if kind == QEvent.Type.FocusOut and event.reason() not in _ELSEWHERE_FOR_NOW:
-            self._before = None  # the keyboard has gone where the person put it
+        if isinstance(event, QKeyEvent) and _is_ours(event):
+            if kind == QEvent.Type.ShortcutOverride:
+                event.accept()  # else a shortcut of the window would take it
+                return True
+            if kind == QEvent.Type.KeyPress:
+                self._on_key(event.key())
+                return True
+        if (
+            isinstance(event, QFocusEvent)
+            and kind == QEvent.Type.FocusOut
+            and event.reason() not in _ELSEWHERE_FOR_NOW
+        ):
+            self._before = None  # the user has moved the focus
             self.dismiss()
         return False
+
+    def _on_hovered(self, event: QMouseEvent) -> None:
+        item = self.list.itemAt(event.position().toPoint())
+        if item is not None:
+            self.list.setCurrentItem(item)
 
     def _on_key(self, key: int) -> None:
         step = _STEPS.get(key, 0)
@@ -192,8 +224,8 @@ class Palette(QFrame):
         self._place()
 
     def _place(self) -> None:
-        """In the middle, near the top."""
-        room = self.parentWidget().rect()
+        """Place the box in the middle, near the top."""
+        room = self._window.rect()
         self.setFixedWidth(min(WIDTH, room.width() - 4 * GRID))
         self.adjustSize()
         self.move((room.width() - self.width()) // 2, min(12 * GRID, room.height() // 6))
@@ -214,14 +246,19 @@ def _is_ours(event: QKeyEvent) -> bool:
 
 
 class _Row(QStyledItemDelegate):
-    """Title with the letters that were meant, menu, and at the right the key or the reason."""
+    """Title with the matched letters, menu, and at the right the shortcut or the reason."""
 
     def __init__(self, theme: Theme, parent: QObject) -> None:
         super().__init__(parent)
         self._theme = theme
 
-    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: object) -> None:
-        """One row."""
+    def paint(
+        self,
+        painter: QPainter,
+        option: QStyleOptionViewItem,
+        index: QModelIndex | QPersistentModelIndex,
+    ) -> None:
+        """Paint one row."""
         entry, places = index.data(_ENTRY), index.data(_PLACES)
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -255,7 +292,7 @@ class _Row(QStyledItemDelegate):
         ink: QColor,
         font: QFont,
     ) -> int:
-        """Paint the title, letters that were meant bold; returns where it ends."""
+        """Paint the title with matched letters in bold; returns the x coordinate of its end."""
         bold = QFont(font)
         bold.setWeight(QFont.Weight.Bold)
         x = box.x()

@@ -1,4 +1,4 @@
-"""Finding an entry of a list from a few typed letters."""
+"""Fuzzy matching of a few typed letters."""
 
 from dataclasses import dataclass
 
@@ -7,18 +7,18 @@ _START, _RUN, _LETTER, _GAP = 8.0, 9.0, 1.0, 0.08
 
 @dataclass(frozen=True)
 class Match:
-    """How well it fits (higher is better), and which letters of the text were meant."""
+    """The score of a match (higher is better), and the matched positions in the text."""
 
     score: float
     places: tuple[int, ...]
 
 
 def match(query: str, text: str) -> Match | None:
-    """The best way to find the letters of ``query`` in ``text`` in their order; None if there is
-    none. Spaces and capitals of the query do not matter.
+    """The best match of the letters of ``query`` in ``text``, in their order; None if there is
+    none.
 
-    Letters in a row and letters at the start of words count most, so ``st`` means "Step", then
-    "Show the tour", and "Best" last.
+    Spaces and capitals of the query are ignored. Consecutive letters and letters at the start of
+    words count most, so ``st`` finds "Step" first, then "Show the tour", and "Best" last.
     """
     wanted = "".join(query.lower().split())
     lower = text.lower()

@@ -1,73 +1,85 @@
-"""Guidance: the tour, the palette, the page of keys, and what this program is."""
+"""Tour, command palette, shortcuts and About."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from meshwright.desktop.actions import registry
-from meshwright.desktop.actions.action import key_text, needs
-from meshwright.desktop.help.command_palette import Entry, Palette
-from meshwright.desktop.help.shortcuts_dialog import KeysDialog
-from meshwright.desktop.help.tour import Tour
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.canvas.canvas import Canvas
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.help.command_palette import CommandPalette, PaletteEntry
+from meshwright.desktop.help.shortcuts_dialog import ShortcutsDialog
+from meshwright.desktop.help.tour import Tour, TourPlaces
+from meshwright.desktop.widgets.action_set import ActionSet, key_text
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.graphics.theme import Theme
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
+class HelpController(Controller):
+    """Opens the tour, the command palette, the page of shortcuts and the About dialog."""
 
-class Guide:
-    """Help for one window."""
-
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self,
+        document: Document,
+        canvas: Canvas,
+        settings: Settings,
+        actions: ActionSet,
+        status: StatusBar,
+        places: TourPlaces,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._canvas, self._settings = document, canvas, settings
+        self._actions, self._status = actions, status
+        self.places, self._window = places, places.window
         self._awaits_mesh = False
         self.tour: Tour | None = None
-        self.palette: Palette | None = None
-        self.keys: KeysDialog | None = None
+        """The tour while it is shown; likewise the palette and the page of shortcuts."""
+        self.palette: CommandPalette | None = None
+        self.keys: ShortcutsDialog | None = None
+        self._connections.add(document.replaced, self._on_replaced)
 
-    def connect(self) -> None:
-        """Follow the document."""
-        self._window.document.replaced.connect(self._on_replaced)
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        super().set_theme(theme)
+        if self.tour is not None:
+            self.tour.set_theme(theme)
 
-    def release(self) -> None:
-        """Close what is open."""
-        self._window.document.replaced.disconnect(self._on_replaced)
+    def close(self) -> None:
+        """Disconnect, and close what is open."""
+        super().close()
         if self.palette is not None:
             self.palette.dismiss()
         self.end_tour()
         if self.keys is not None:
             self.keys.close()
 
-    def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
-        if self.tour is not None:
-            self.tour.set_theme(theme)
-
     # The tour
 
     def welcome(self) -> None:
-        """Show whoever has not seen it the tour, as soon as there is a mesh to show it on."""
-        if self._window.settings.toured:
+        """Start the tour as soon as there is a mesh, unless it has been shown before."""
+        if self._settings.toured:
             return
-        if self._window.document.empty:
+        if self._document.empty:
             self._awaits_mesh = True
         else:
             self.show_tour()
 
     def show_tour(self) -> None:
-        """Begin the tour, again if it is under way; without a mesh, once there is one."""
+        """Start or restart the tour; without a mesh it starts when there is one."""
         self.end_tour()
-        if self._window.document.empty:
+        if self._document.empty:
             self._awaits_mesh = True
-            self._window.say("The tour begins with the first mesh: make one, or open a file.")
+            self._status.show_message(
+                "The tour starts with the first mesh: make one or open a file."
+            )
             return
         self._awaits_mesh = False
-        self._window.settings.toured = True
-        self.tour = Tour(self._window)
+        self._settings.toured = True
+        self.tour = Tour(self._document, self.places, self._theme)
         self.tour.ended.connect(self._on_tour_ended)
 
     def end_tour(self) -> None:
-        """Take the tour away, if it is there."""
+        """End the tour, if it is shown."""
         if self.tour is not None:
             self.tour.end()
 
@@ -75,7 +87,7 @@ class Guide:
         self.tour = None
 
     def _on_replaced(self) -> None:
-        if self._awaits_mesh and not self._window.document.empty:
+        if self._awaits_mesh and not self._document.empty:
             self.show_tour()
 
     # The palette
@@ -85,45 +97,43 @@ class Guide:
         if self.palette is not None:
             self.palette.dismiss()
             return
-        window = self._window
-        self.palette = Palette(self.entries(), window.theme, window)
+        self.palette = CommandPalette(self.entries(), self._theme, self._window)
         self.palette.chosen.connect(self._on_chosen)
         self.palette.closed.connect(self._on_palette_closed)
-        window.canvas.freeze(True)  # an operation is meant for the half-edge pointed at before
+        self._canvas.freeze(True)  # an operation is for the half-edge hovered before
         self.palette.popup()
 
-    def entries(self) -> list[Entry]:
-        """All actions of the menus as rows of the palette, as possible as they are now."""
+    def entries(self) -> list[PaletteEntry]:
+        """The actions of all menus as rows of the palette, with their current state."""
         made = []
-        for menu, members in registry.groups(self._window):
-            for action in members:
-                possible = action.enabled(self._window)
+        for menu, members in self._actions.menus(self._document.kind):
+            for entry in members:
                 made.append(
-                    Entry(
-                        action.id,
-                        action.title.rstrip("\u2026"),
+                    PaletteEntry(
+                        entry.id,
+                        entry.title.rstrip("\u2026"),
                         menu,
-                        key_text(action.shortcuts[0]) if action.shortcuts else "",
-                        "" if possible else needs(action),
-                        action.tooltip,
+                        key_text(entry.shortcuts[0]) if entry.shortcuts else "",
+                        "" if self._actions[entry.id].isEnabled() else entry.requirement,
+                        entry.tooltip,
                     )
                 )
         return made
 
     def _on_chosen(self, action_id: str) -> None:
-        self._window.actions_by_id[action_id].trigger()
+        self._actions[action_id].trigger()
 
     def _on_palette_closed(self) -> None:
         self.palette = None
-        self._window.canvas.freeze(False)
+        self._canvas.freeze(False)
 
     # Pages
 
     def show_keys(self) -> None:
-        """All keys, and what the mouse does, beside the window."""
+        """Show the page of shortcuts and mouse gestures."""
         if self.keys is not None:
             self.keys.close()
-        self.keys = KeysDialog(registry.groups(self._window), self._window)
+        self.keys = ShortcutsDialog(self._actions.menus(self._document.kind), self._window)
         self.keys.finished.connect(self._on_keys_closed)
         self.keys.show()
 
@@ -133,7 +143,7 @@ class Guide:
             self.keys = None
 
     def show_about(self) -> None:
-        """Version and licences."""
+        """Show the About dialog."""
         from meshwright.desktop.help.about_dialog import (
             AboutDialog,  # looks through the installed packages
         )

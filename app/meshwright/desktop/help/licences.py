@@ -1,4 +1,4 @@
-"""The licences of everything that is installed because Meshwright needs it."""
+"""The licences of all installed packages that Meshwright depends on."""
 
 import re
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Licence:
 
 
 def licences() -> list[Licence]:
-    """All packages that Meshwright needs, directly or through others, by name; itself not."""
+    """The packages that Meshwright depends on, directly or indirectly, sorted by name."""
     seen: dict[str, Licence] = {}
     waiting = [NAME]
     while waiting:
@@ -50,7 +50,7 @@ def licences() -> list[Licence]:
 
 
 def licence_name(found: Distribution) -> str:
-    """What a package's metadata call its licence."""
+    """The name of a package's licence in its metadata."""
     metadata = found.metadata
     expression = metadata["License-Expression"]
     if expression:
@@ -64,7 +64,7 @@ def licence_name(found: Distribution) -> str:
 
 
 def licence_text(package: str) -> str:
-    """The texts of a package's licence as they were installed; empty if there are none."""
+    """The texts of a package's licence, as installed; empty if there are none."""
     found = _distribution(package)
     texts = []
     for path in (found.files or []) if found is not None else []:
@@ -72,7 +72,7 @@ def licence_text(package: str) -> str:
             try:
                 texts.append(path.read_text(encoding="utf-8"))
             except (OSError, UnicodeDecodeError):
-                continue  # listed but not there, or not a text: its name is still told
+                continue  # listed but missing, or not text; the name is shown anyway
     return "\n\n".join(dict.fromkeys(text.strip() for text in texts if text.strip()))
 
 
@@ -88,7 +88,7 @@ def _key(name: str) -> str:
 
 
 def _url(found: Distribution) -> str:
-    """The address of a package's home; empty if it tells none."""
+    """The address of a package's home page; empty if none is stated."""
     home = found.metadata["Home-page"]
     if home and str(home).startswith("http"):
         return str(home)

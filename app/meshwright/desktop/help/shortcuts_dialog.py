@@ -1,4 +1,4 @@
-"""The page of keys: all that the table of actions binds, and what the mouse does."""
+"""The page of shortcuts: all keys of the action table, and the mouse gestures."""
 
 from collections.abc import Sequence
 
@@ -14,37 +14,39 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from meshwright.desktop.actions.action import Action, key_text
+from meshwright.desktop.widgets.action_set import ActionEntry, key_text
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
 WIDE = 1240
-"""Pixels of a window that has room for four columns; others get three."""
+"""Width in pixels from which there are four columns; otherwise there are three."""
 Block = tuple[str, list[tuple[str, str, str]]]
-"""A heading, and for each line the keys, what they do, and the whole story as a tooltip."""
+"""A heading, and for each line the keys, the title of the action, and its tooltip."""
 
 MOUSE = (
     ("Move", "Point at a half-edge"),
-    ("Click", "Operations of the half-edge"),
+    ("Click", "Menu of operations"),
     ("Right click", "Desired degree, corner, lock"),
-    ("Drag", "Move a vertex, or the picture"),
-    ("Wheel", "Zoom at the mouse"),
-    ("Shift click", "Select a vertex too"),
+    ("Drag", "Move a vertex, or pan"),
+    ("Wheel", "Zoom"),
+    ("Shift click", "Add to the selection"),
     ("Shift drag", "Box; with Alt a lasso"),
 )
 
 
-class KeysDialog(QDialog):
+class ShortcutsDialog(QDialog):
     """All keys in columns; stays open beside the window."""
 
-    def __init__(self, groups: Sequence[tuple[str, Sequence[Action]]], parent: QWidget) -> None:
+    def __init__(
+        self, groups: Sequence[tuple[str, Sequence[ActionEntry]]], parent: QWidget
+    ) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Keys and mouse")
+        self.setWindowTitle("Keyboard and mouse")
         body = QWidget()
         body.setObjectName("SidebarBody")
         columns = QHBoxLayout(body)
         columns.setContentsMargins(4 * GRID, 3 * GRID, 4 * GRID, 2 * GRID)
-        columns.setSpacing(4 * GRID)
+        columns.setSpacing(3 * GRID)
         room = parent.window().size()
         for blocks in spread(key_blocks(groups), 4 if room.width() >= WIDE else 3):
             column = QVBoxLayout()
@@ -58,7 +60,7 @@ class KeysDialog(QDialog):
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         area.setWidget(body)
-        area.setAccessibleName("Keys and mouse")
+        area.setAccessibleName("Keyboard and mouse")
         close = QPushButton("Close")
         close.setToolTip("Close this page")
         close.setDefault(True)
@@ -77,8 +79,8 @@ class KeysDialog(QDialog):
         self.resize(width, min(wanted.height() + 10 * GRID, room.height() - 8 * GRID))
 
 
-def key_blocks(groups: Sequence[tuple[str, Sequence[Action]]]) -> list[Block]:
-    """What the page shows: a block for each menu with keys, then the mouse."""
+def key_blocks(groups: Sequence[tuple[str, Sequence[ActionEntry]]]) -> list[Block]:
+    """The blocks of the page: one for each menu that has shortcuts, then the mouse."""
     blocks: list[Block] = []
     for menu, members in groups:
         lines = [
@@ -93,7 +95,7 @@ def key_blocks(groups: Sequence[tuple[str, Sequence[Action]]]) -> list[Block]:
 
 
 def spread(blocks: Sequence[Block], columns: int) -> list[list[Block]]:
-    """The blocks in their order in ``columns`` columns, the highest as low as can be."""
+    """The blocks, in order, in ``columns`` columns of which the highest is as low as possible."""
     heights = [len(lines) + 2 for _, lines in blocks]
     low, high = max(heights), sum(heights)
     while low < high:

@@ -1,4 +1,4 @@
-"""Exporting: the dialog, then a thread that writes, with a bar that tells how far it is."""
+"""Export of videos and images: dialog, writing thread, progress bar."""
 
 from __future__ import annotations
 
@@ -10,24 +10,27 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import Signal
-from qtpy.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QProgressBar, QPushButton
+from qtpy.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QProgressBar, QPushButton, QWidget
 
 from meshwright.desktop.application.main_thread import Dispatcher
-from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.widgets.basic import NoticeBar, named
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.graphics.export.export_job import ExportOptions, write_export
 from meshwright.graphics.theme import GRID, Theme
 from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
     from meshwright.graphics.export.film import Film
 
 
 _log = logging.getLogger(__name__)
 
 
-class Stopped(Exception):
-    """A person does not want the file any more."""
+class ExportCancelled(Exception):
+    """Raised in the thread when the export was cancelled."""
 
 
 class ExportBar(QFrame):
@@ -55,27 +58,33 @@ class ExportBar(QFrame):
 
     @property
     def words(self) -> str:
-        """What the bar says."""
+        """The text of the bar."""
         return str(self._words.text())
 
-    def tell(self, name: str, done: int, total: int) -> None:
-        """Say how many frames are written."""
-        noun = "frame" if total > 1 else "picture"
-        count = f", {noun} {done:,} of {total:,}" if total > 1 else ""
+    def show_progress(self, name: str, done: int, total: int) -> None:
+        """Show how many frames of the file ``name`` are written."""
+        count = f", frame {done:,} of {total:,}" if total > 1 else ""
         self._words.setText(f"Writing {name}{count}")
         self.progress.setMaximum(total)
         self.progress.setValue(done)
         self.show()
 
-    def set_theme(self, theme: Theme) -> None:
-        """The style sheet has all colours."""
 
+class ExportController(Controller):
+    """Asks what to export and writes it in a thread, one file at a time."""
 
-class Exporting:
-    """Asks for an order and carries it out, one at a time, off the main thread."""
-
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self,
+        document: Document,
+        settings: Settings,
+        status: StatusBar,
+        notice: NoticeBar,
+        parent: QWidget,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._settings = document, settings
+        self._status, self._notice, self._parent = status, notice, parent
         self._dispatch = Dispatcher()
         self._thread: threading.Thread | None = None
         self._stop = threading.Event()
@@ -89,18 +98,18 @@ class Exporting:
         return self._thread is not None
 
     def ask(self) -> None:
-        """Show the dialog, ask for a file, begin."""
+        """Show the dialog, ask for a file, and start."""
         from meshwright.desktop.history.export_dialog import ExportDialog
         from meshwright.graphics.export.film import Film
 
         if self.running:
-            self._window.say("A film is being written already: wait, or cancel it.")
+            self._status.show_message("An export is already running: wait, or cancel it.")
             return
-        document = self._window.document
+        document = self._document
         film = Film(document)
-        colours = self._window.settings.colours
-        order = replace(self._order, theme=self._window.theme.name, colours=colours)
-        dialog = ExportDialog(film, order, self._window)
+        colours = self._settings.colours
+        order = replace(self._order, theme=self._theme.name, colours=colours)
+        dialog = ExportDialog(film, order, self._parent)
         accepted = bool(dialog.exec())
         self._order = dialog.order
         dialog.deleteLater()
@@ -111,53 +120,54 @@ class Exporting:
             self.start(film, self._order, path)
 
     def _ask_path(self, order: ExportOptions) -> str:
-        document = self._window.document
+        document = self._document
         folder = document.path.parent if document.path else Path()
         name = folder / f"{document.name or 'mesh'}{order.ending}"
         kind = order.ending[1:].upper()
         path, _ = QFileDialog.getSaveFileName(
-            self._window, f"Export as {kind}", str(name), f"{kind} (*{order.ending})"
+            self._parent, f"Export as {kind}", str(name), f"{kind} (*{order.ending})"
         )
         if path and not path.lower().endswith(order.ending):
             path += order.ending
         return str(path)
 
     def start(self, film: Film, order: ExportOptions, path: str) -> None:
-        """Write ``order`` to ``path`` in the background; ends in one sentence."""
+        """Write ``order`` to ``path`` in the background; a message is shown at the end."""
         self._stop.clear()
-        self.bar.tell(Path(path).name, 0, 1)
+        self.bar.show_progress(Path(path).name, 0, 1)
         self._thread = threading.Thread(
             target=self._work, args=(film, order, path), name="film-export", daemon=True
         )
         self._thread.start()
 
     def cancel(self) -> None:
-        """Write no further; nothing is left of the file."""
+        """Cancel the export; the incomplete file is removed."""
         self._stop.set()
 
     def close(self) -> None:
         """Cancel, and wait for the frame that is being drawn."""
+        super().close()
         self.cancel()
         if self._thread is not None:
             self._thread.join(10.0)
             self._thread = None
 
     def _work(self, film: Film, order: ExportOptions, path: str) -> None:
-        """In the thread: everything that is said goes through the dispatcher."""
+        """Write the file; runs in the thread and reports through the dispatcher."""
         name = Path(path).name
 
         def progress(done: int, total: int) -> None:
             if self._stop.is_set():
-                raise Stopped
+                raise ExportCancelled
             self._dispatch(partial(self._on_progress, name, done, total))
 
         try:
             frames = write_export(film, order, path, progress)
-        except Stopped:
+        except ExportCancelled:
             self._dispatch(partial(self._finish, f"Cancelled: {name} was not written.", False))
         except MeshError as error:
             self._dispatch(partial(self._finish, str(error), True))
-        except Exception as error:  # whatever it is, the bar must not stay for ever
+        except Exception as error:  # a thread boundary: the bar must disappear in any case
             _log.exception("an export broke off")
             words = f"{name} was not written: {type(error).__name__}: {error}"
             self._dispatch(partial(self._finish, words, True))
@@ -169,7 +179,7 @@ class Exporting:
 
     def _on_progress(self, name: str, done: int, total: int) -> None:
         if self.running and not self._stop.is_set():
-            self.bar.tell(name, done, total)
+            self.bar.show_progress(name, done, total)
 
     def _finish(self, words: str, failed: bool) -> None:
         if self._thread is None:
@@ -178,6 +188,6 @@ class Exporting:
         self._thread = None
         self.bar.hide()
         if failed:
-            self._window.notice.tell(words)
+            self._notice.show_message(words)
         else:
-            self._window.say(words)
+            self._status.show_message(words)

@@ -1,4 +1,4 @@
-"""The dialog that asks what to export: film or picture, its size, its pace, what is in it."""
+"""The export dialog: format, size, frame rate and content."""
 
 from dataclasses import replace
 
@@ -26,22 +26,22 @@ from meshwright.graphics.mesh_figure import figure
 from meshwright.graphics.theme import GRID, THEMES
 
 FORMATS = (
-    (".gif", "Film, GIF", "Plays anywhere, also inside a README or a slide"),
-    (".mp4", "Film, MP4", "Smaller and sharper; for talks and web pages"),
-    (".png", "Picture, PNG", "The present state as pixels"),
-    (".svg", "Picture, SVG", "The present state as lines and letters that stay sharp in print"),
+    (".gif", "Animation, GIF", "Plays anywhere, also inside a README or a slide"),
+    (".mp4", "Video, MP4", "Smaller and sharper; for talks and web pages"),
+    (".png", "Image, PNG", "The current state as pixels"),
+    (".svg", "Image, SVG", "The current state as vector graphics, which stay sharp in print"),
 )
 PARTS = (
     ("score", "Score and step above the mesh"),
     ("curve", "Score curve below the mesh"),
     ("numbers", "Numbers in the discs"),
-    ("changes", "What each step changes"),
+    ("changes", "Changes of each step"),
 )
 PREVIEW = (480, 360)
 LARGE = 20_000
-"""Elements beyond which a preview would make one wait."""
+"""There is no preview of meshes with more elements than this."""
 LATER = 80
-"""Milliseconds after a change until the preview follows."""
+"""Milliseconds between a change and the update of the preview."""
 
 
 class ExportDialog(QDialog):
@@ -51,14 +51,15 @@ class ExportDialog(QDialog):
 
     def __init__(self, film: Film, order: ExportOptions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Export film or picture")
+        self.setWindowTitle("Export video or image")
         self._film = film
         self._state = film.state
         self._moment = film.moment(film.state)
         if len(film.rows) == 0 and order.moving:
-            order = replace(order, ending=".png")  # there is nothing that moves
+            order = replace(order, ending=".png")  # there is nothing to animate
         self.order = order
-        self.formats = QButtonGroup(self)
+        self._group = QButtonGroup(self)
+        self.formats: dict[str, QPushButton] = {}
         self.size_box = QComboBox()
         self.theme_box = QComboBox()
         self.seconds = DecimalBox()
@@ -82,9 +83,9 @@ class ExportDialog(QDialog):
             button.setCheckable(True)
             button.setAutoDefault(False)
             button.setToolTip(hint)
-            button.setProperty("ending", ending)
             button.setChecked(ending == order.ending)
-            self.formats.addButton(button)
+            self._group.addButton(button)
+            self.formats[ending] = button
         for width, height in SIZES:
             self.size_box.addItem(f"{width} \u00d7 {height}", (width, height))
         self.size_box.setCurrentIndex(SIZES.index(order.size) if order.size in SIZES else 1)
@@ -101,7 +102,7 @@ class ExportDialog(QDialog):
             self.parts[name] = QCheckBox(title)
             self.parts[name].setChecked(getattr(order, name))
             self.parts[name].toggled.connect(self._on_changed)
-        self.formats.buttonClicked.connect(self._on_changed)
+        self._group.buttonClicked.connect(self._on_changed)
         for box in (self.size_box, self.theme_box):
             box.currentIndexChanged.connect(self._on_changed)
         for spin in (self.seconds, self.every):
@@ -110,12 +111,12 @@ class ExportDialog(QDialog):
     def _arrange(self) -> None:
         formats = QHBoxLayout()
         formats.setSpacing(0)
-        for button in self.formats.buttons():
+        for button in self.formats.values():
             formats.addWidget(button, 1)
         grid = QGridLayout()
         grid.setHorizontalSpacing(2 * GRID)
         grid.setVerticalSpacing(GRID)
-        self._pace = [named("Each frame stays", "Label"), named("One frame for every", "Label")]
+        self._pace = [named("Time per frame", "Label"), named("One frame for every", "Label")]
         rows = (
             (named("Size", "Label"), self.size_box),
             (named("Theme", "Label"), self.theme_box),
@@ -166,39 +167,42 @@ class ExportDialog(QDialog):
         layout.addLayout(buttons)
 
     def _on_changed(self) -> None:
-        """Take over what the fields say."""
-        chosen = self.formats.checkedButton()
+        """Update the order from the fields."""
+        ending = next(e for e, button in self.formats.items() if button.isChecked())
         self.order = replace(
             self.order,
-            ending=str(chosen.property("ending")),
+            ending=ending,
             size=tuple(self.size_box.currentData()),
             theme=str(self.theme_box.currentData()),
             seconds=round(self.seconds.value(), 2),
             every=self.every.value(),
-            **{name: box.isChecked() for name, box in self.parts.items()},
+            score=self.parts["score"].isChecked(),
+            curve=self.parts["curve"].isChecked(),
+            numbers=self.parts["numbers"].isChecked(),
+            changes=self.parts["changes"].isChecked(),
         )
         moving = self.order.moving
         for part in (*self._pace, self.seconds, self.every):
             part.setVisible(moving)
         self.every.setSuffix(" step" if self.every.value() == 1 else " steps")
-        self.note.setText(str(chosen.toolTip()) + ".")
+        self.note.setText(f"{self.formats[ending].toolTip()}.")
         self.length.setText(self._words())
         self.export.setEnabled(not moving or len(self._film.rows) > 0)
         self._later.start()
 
     def _words(self) -> str:
-        """How long a film will be."""
+        """Number of frames and duration of the video, or the state of the image."""
         if not self.order.moving:
             return f"The state after step {self._state:,}." if self._state else "The start."
         if len(self._film.rows) == 0:
-            return "There are no steps yet: nothing would move."
+            return "The history is empty: there is nothing to animate."
         frames = len(self._film.stops(self.order.every))
         inside = max(frames - 2, 0) * self.order.seconds
         ends = max(FIRST, self.order.seconds) + max(LAST, self.order.seconds)
         return f"{frames:,} frames, {inside + ends:.0f} seconds."
 
     def _draw(self) -> None:
-        """Show the present state as the export will."""
+        """Draw the preview: the current state as exported."""
         if self._film.mesh.n_elements > LARGE:
             self.preview.setText("No preview of so many elements.")
             return

@@ -1,17 +1,17 @@
-"""The history as a list of lines: the start, every step, and the branches where they fork."""
+"""The history as a Qt list model: the start, every step, and branches where they fork."""
 
 from bisect import bisect_left
 from dataclasses import dataclass
 
-from qtpy.QtCore import QAbstractListModel, QModelIndex, Qt
+from qtpy.QtCore import QAbstractListModel, QModelIndex, QPersistentModelIndex, Qt
 
-from meshwright.desktop.history.score_curve import branch_words, row_words
+from meshwright.desktop.widgets.wording import branch_words, step_words
 from meshwright.document.branches import Branches
 from meshwright.document.history import History, HistoryStep
 
 
 @dataclass(frozen=True)
-class Line:
+class HistoryLine:
     """One line of the list: a state, or with ``branch`` >= 0 a branch that forks at ``state``."""
 
     state: int
@@ -20,7 +20,9 @@ class Line:
 
 
 class HistoryModel(QAbstractListModel):
-    """Follows a history; a line is found by arithmetic, so that 10,000 cost as much as ten."""
+    """A list model of a history; lines are computed, so that the cost does not grow with their
+    number.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -33,28 +35,28 @@ class HistoryModel(QAbstractListModel):
         self.highest = 0
         """The highest score in the list."""
 
-    def rowCount(self, parent: QModelIndex | None = None) -> int:  # noqa: N802
-        """Lines there are; a line has none below it."""
+    def rowCount(self, parent: QModelIndex | QPersistentModelIndex | None = None) -> int:  # noqa: N802
+        """The number of lines."""
         if self._empty or (parent is not None and parent.isValid()):
             return 0
         return len(self._rows) + 1 + len(self._places)
 
-    def line(self, place: int) -> Line:
-        """What stands at a place of the list."""
+    def line(self, place: int) -> HistoryLine:
+        """The line at a position in the list."""
         before = bisect_left(self._places, place)
         if before < len(self._places) and self._places[before] == place:
             branch = self._order[before]
-            return Line(self._branches[branch].at, None, branch)
+            return HistoryLine(self._branches[branch].at, None, branch)
         state = place - before
-        return Line(state, self._rows[state - 1] if state else None)
+        return HistoryLine(state, self._rows[state - 1] if state else None)
 
     def place(self, state: int) -> int:
-        """Where in the list a state stands."""
+        """The position of a state in the list."""
         return state + sum(1 for branch in self._branches if branch.at < state)
 
     @property
     def history(self) -> History:
-        """What is shown."""
+        """The history that is shown."""
         return self._history
 
     @property
@@ -64,11 +66,13 @@ class HistoryModel(QAbstractListModel):
 
     @property
     def current(self) -> bool:
-        """False while the history has other branches than those that are shown."""
+        """Whether the branches that are shown are those of the history."""
         return self._branches is self._history.branches
 
-    def data(self, index: QModelIndex, role: int = Qt.ItemDataRole.DisplayRole) -> object:
-        """Words for people who hear the list, or point at it; the delegate paints from lines."""
+    def data(
+        self, index: QModelIndex | QPersistentModelIndex, role: int = Qt.ItemDataRole.DisplayRole
+    ) -> object:
+        """Text for screen readers and tooltips; the delegate paints from lines."""
         if role not in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
             return None
         if not 0 <= index.row() < self.rowCount():
@@ -81,14 +85,16 @@ class HistoryModel(QAbstractListModel):
             return f"{branch_words(branch.rows)}, from step {branch.at:,}{more}"
         if line.row is None:
             return f"Start, s {self._history.first[0]:,}"
-        return f"Step {line.state:,}: {row_words(line.row)}, s {line.row.after:,}"
+        return f"Step {line.state:,}: {step_words(line.row)}, s {line.row.after:,}"
 
     def follow(self, history: History, empty: bool) -> None:
-        """Take over what ``history`` holds now, with no more fuss than it needs."""
+        """Update the list from ``history``; appends lines where that is enough, else resets the
+        model.
+        """
         known, count = len(self._rows), len(history)
         same = history is self._history and empty == self._empty
         same = same and self._branches is history.branches
-        # a row always comes after the same rows: see meshwright.document.score_series.Track
+        # a row always comes after the same rows: see meshwright.document.score_series.ScoreSeries
         kept = same and (
             known == 0 or (known <= count and history[known - 1] is self._rows[known - 1])
         )

@@ -1,4 +1,4 @@
-"""The history panel: every step as a line; a click goes there, or takes a branch."""
+"""The history panel: the list of steps; a click goes to a state or branch."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ from qtpy.QtWidgets import (
     QVBoxLayout,
 )
 
-from meshwright.desktop.history.history_model import HistoryModel, Line
+from meshwright.desktop.history.history_model import HistoryLine, HistoryModel
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.desktop.widgets.event_filters import OwnKeys
 from meshwright.document.history import YOU, History
@@ -45,11 +45,11 @@ WALKING = (
     Qt.Key.Key_Enter,
 )
 GLYPH, CHANGE = 18, 26
-"""Pixels of two columns; numbers take what they need, the title has the rest."""
+"""Widths of two columns in pixels; numbers take what they need, the title has the rest."""
 
 
-class Lines(QStyledItemDelegate):
-    """Paints one line: number, who, what, change of the score, score."""
+class HistoryDelegate(QStyledItemDelegate):
+    """Paints one line: number, author, title, change of the score, score."""
 
     def __init__(self, model: HistoryModel, theme: Theme) -> None:
         super().__init__()
@@ -59,14 +59,14 @@ class Lines(QStyledItemDelegate):
         self._number = self._score = 0.0
 
     def measure(self, font: QFont) -> None:
-        """Make the columns of step and score as wide as the longest numbers in them."""
+        """Fit the widths of the columns of step and score to their longest numbers."""
         highest = max(self._model.highest, 10)
         metrics = QFontMetricsF(_font(font, 12))
         self._number = metrics.horizontalAdvance(_widest(self._model.rowCount())) + 4.0
         self._score = metrics.horizontalAdvance(_widest(highest)) + GRID + 2.0
 
     def sizeHint(self, option: QStyleOptionViewItem, index: Any) -> QSize:  # noqa: N802
-        """All lines are of one height."""
+        """The size of a line; all have the same height."""
         return QSize(WIDTH - 2 * GRID, ROW)
 
     def paint(
@@ -75,15 +75,17 @@ class Lines(QStyledItemDelegate):
         option: QStyleOptionViewItem,
         index: QModelIndex | QPersistentModelIndex,
     ) -> None:
-        """Current on the soft accent, undone ones pale, branches indented behind a fork."""
+        """Paint a line: the current one highlighted, undone ones pale, branches indented behind a
+        fork.
+        """
         line = self._model.line(index.row())
         box = QRectF(option.rect)
         current = line.branch < 0 and line.state == self.cursor
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        pointed = bool(option.state & QStyle.StateFlag.State_MouseOver)
+        hovered = bool(option.state & QStyle.StateFlag.State_MouseOver)
         focused = bool(option.state & QStyle.StateFlag.State_HasFocus)
-        if current or pointed:
+        if current or hovered:
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(self.theme.accent_soft if current else self.theme.hover))
             painter.drawRoundedRect(box.adjusted(0, 1, 0, -1), 4, 4)
@@ -97,7 +99,7 @@ class Lines(QStyledItemDelegate):
             self._paint_state(painter, box, line, option.font)
         painter.restore()
 
-    def _paint_state(self, painter: QPainter, box: QRectF, line: Line, font: QFont) -> None:
+    def _paint_state(self, painter: QPainter, box: QRectF, line: HistoryLine, font: QFont) -> None:
         theme, row = self.theme, line.row
         undone = line.state > self.cursor
         ink = QColor(theme.faint if undone else theme.text)
@@ -135,7 +137,7 @@ class Lines(QStyledItemDelegate):
         place = QRectF(begin, box.top(), edge - begin, box.height())
         painter.drawText(place, left, _elided(painter, title, place.width()))
 
-    def _paint_branch(self, painter: QPainter, box: QRectF, line: Line, font: QFont) -> None:
+    def _paint_branch(self, painter: QPainter, box: QRectF, line: HistoryLine, font: QFont) -> None:
         branch = self._model.branches[line.branch]
         ink = QColor(self.theme.accent)
         x, y = box.left() + self._number + GLYPH / 2, box.center().y()
@@ -159,9 +161,9 @@ class Lines(QStyledItemDelegate):
 
 
 class HistoryList(QTableView):
-    """A list whose Return key and clicks ask to go somewhere.
+    """The list; ``activated_at(row)`` when a row is clicked or Return is pressed.
 
-    It is a table of one column: Qt's list asks the model for every line whenever one is added.
+    It is a QTableView of one column, because QListView queries every line whenever one is added.
     """
 
     activated_at = Signal(int)
@@ -190,14 +192,14 @@ class HistoryList(QTableView):
         self.clicked.connect(self._on_clicked)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Return goes to the line that has the focus; the rest is Qt's."""
+        """Return activates the focused line; other keys are handled by Qt."""
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.currentIndex().isValid():
             self.activated_at.emit(self.currentIndex().row())
         else:
             super().keyPressEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Keep the present state in view."""
+        """Keep the current state visible."""
         super().resizeEvent(event)
         self.scrollTo(self.currentIndex())
 
@@ -206,10 +208,12 @@ class HistoryList(QTableView):
 
 
 class HistoryPanel(QFrame):
-    """The list with its heading; ``asked(state)`` and ``branch_asked(index)``."""
+    """The list with its heading; a click emits ``state_requested(state)`` or
+    ``branch_requested(index)``.
+    """
 
-    asked = Signal(int)
-    branch_asked = Signal(int)
+    state_requested = Signal(int)
+    branch_requested = Signal(int)
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -217,8 +221,8 @@ class HistoryPanel(QFrame):
         self.model = HistoryModel()
         self.list = HistoryList()
         self.list.setModel(self.model)
-        self._lines = Lines(self.model, theme)
-        self.list.setItemDelegate(self._lines)
+        self._delegate = HistoryDelegate(self.model, theme)
+        self.list.setItemDelegate(self._delegate)
         self.list.activated_at.connect(self._on_activated)
         self.count = named("", "Label")
         head = QHBoxLayout()
@@ -235,18 +239,18 @@ class HistoryPanel(QFrame):
         layout.addLayout(body, 1)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
-        self._lines.theme = theme
+        """Draw in the colours of ``theme``."""
+        self._delegate.theme = theme
         self.list.viewport().update()
 
     def show_history(self, history: History, empty: bool) -> None:
-        """Show what ``history`` holds now, with the present state in view."""
+        """Update the list from ``history``, and scroll to the current state."""
         self.model.follow(history, empty)
         count = len(history)
         self.count.setText(f"{history.cursor:,} of {count:,}" if count else "")
-        moved = self._lines.cursor != history.cursor
-        self._lines.cursor = history.cursor
-        self._lines.measure(self.list.font())
+        moved = self._delegate.cursor != history.cursor
+        self._delegate.cursor = history.cursor
+        self._delegate.measure(self.list.font())
         if not empty:
             place = self.model.index(self.model.place(history.cursor))
             self.list.setCurrentIndex(place)
@@ -257,13 +261,13 @@ class HistoryPanel(QFrame):
     def _on_activated(self, place: int) -> None:
         line = self.model.line(place)
         if line.branch >= 0 and self.model.current:
-            self.branch_asked.emit(line.branch)
+            self.branch_requested.emit(line.branch)
         elif line.branch < 0:
-            self.asked.emit(line.state)
+            self.state_requested.emit(line.state)
 
 
 def _draw_author(painter: QPainter, middle: QPointF, by: str, ink: QColor) -> None:
-    """A ring for a person, a filled diamond for a policy."""
+    """Paint the author of a step: a ring for a person, a filled diamond for a policy."""
     if by == YOU:
         painter.setPen(QPen(ink, 1.3))
         painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -278,7 +282,7 @@ def _draw_author(painter: QPainter, middle: QPointF, by: str, ink: QColor) -> No
 
 
 def _widest(number: int) -> str:
-    """A number as long as ``number`` in the widest digits."""
+    """The widest number with as many digits as ``number``."""
     return f"{10 ** len(str(number)) - 1:,}".replace("9", "0")
 
 

@@ -1,4 +1,4 @@
-"""The score curve: s of every state, where one stands, and where branches fork."""
+"""The score curve: s of every state, the current state, and the branches."""
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
@@ -20,11 +20,11 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from meshwright.desktop.widgets.basic import tabular
 from meshwright.desktop.widgets.event_filters import OwnKeys
+from meshwright.desktop.widgets.wording import branch_words, step_words
 from meshwright.document import score_series
 from meshwright.document.branches import Branches
-from meshwright.document.history import YOU, History, HistoryStep
+from meshwright.document.history import History
 from meshwright.document.score_series import ScoreSeries
-from meshwright.graphics.markers import label
 from meshwright.graphics.theme import GRID, Theme
 
 HEIGHT = 96
@@ -37,22 +37,22 @@ WALKING = (
     Qt.Key.Key_Home,
     Qt.Key.Key_End,
 )
-"""Keys: one step back and forward, many, all."""
+"""Keys that go back and forward by one step, by many, and to the ends."""
 FORK_REACH = 7
-"""Pixels beside the mark of a branch that count as on it."""
+"""Distance in pixels at which the mark of a branch counts as under the mouse."""
 
 
 class ScoreCurve(QWidget):
-    """Paints a history; what a person asks for it says by ``asked(state)``, ``walked(steps)`` and
-    ``branch_asked(index)``.
+    """Paints a history. A click or drag emits ``state_requested(state)``, a wheel turn or key
+    ``step_requested(steps)``, a click on the mark of a branch ``branch_requested(index)``.
 
-    The curve lies in a pixmap that is made anew only when the history, the size or the colours
-    change: the cursor and what is under the mouse are painted over it.
+    The curve is kept in a pixmap that is drawn again only when the history, the size or the colours
+    change; the cursor and what is under the mouse are painted over it.
     """
 
-    asked = Signal(int)
-    walked = Signal(int)
-    branch_asked = Signal(int)
+    state_requested = Signal(int)
+    step_requested = Signal(int)
+    branch_requested = Signal(int)
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -66,7 +66,7 @@ class ScoreCurve(QWidget):
         self.cursor_state = 0
         self.hovered = -1
         self.builds = 0
-        """How often the pixmap has been made."""
+        """How often the pixmap has been drawn."""
         self._theme = theme
         self._history = History(0, 0)
         self._branches: Branches = ()
@@ -80,29 +80,29 @@ class ScoreCurve(QWidget):
         self._font = tabular(QFont(self.font()))
         self._font.setPixelSize(11)
 
-    # What is shown
+    # Content
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self._redraw()
 
     def show_history(self, history: History, empty: bool) -> None:
-        """Show what ``history`` holds now; ``empty`` where there is no mesh."""
+        """Update the curve from ``history``; ``empty``: there is no mesh."""
         fresh = self._track.follow(history)
         branches = history.branches
         same = history is self._history and empty == self._empty and branches is self._branches
         self._history, self._branches, self._empty = history, branches, empty
         if self.hovered >= len(self._track.scores):
-            self.hovered = -1  # there are fewer states under the mouse than there were
+            self.hovered = -1  # the hovered state no longer exists
         if not same:
-            self._fork = -1  # the marks of branches lie elsewhere now
+            self._fork = -1  # the marks of branches have moved
         if not same or fresh < len(self._track.scores):
             self._redraw()
         self.set_cursor(history.cursor)
 
     def set_cursor(self, state: int) -> None:
-        """Show that one stands at ``state``."""
+        """Mark ``state`` as the current one."""
         self.cursor_state = state
         self.setAccessibleDescription(self._words(state))
         self.update()
@@ -112,7 +112,7 @@ class ScoreCurve(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:  # noqa: N802
-        """As wide as there is room."""
+        """The preferred size."""
         return QSize(640, HEIGHT)
 
     # Mouse and keys
@@ -124,12 +124,12 @@ class ScoreCurve(QWidget):
         self.setFocus(Qt.FocusReason.MouseFocusReason)
         fork = self._fork_at(event.position())
         if fork >= 0 and self._branches is self._history.branches:
-            self.branch_asked.emit(fork)
+            self.branch_requested.emit(fork)
         elif fork < 0:
             self._ask(event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """Tell what is under the mouse; with the button down go there."""
+        """Show what is under the mouse; with the button down go there."""
         at = event.position()
         pressed = bool(event.buttons() & Qt.MouseButton.LeftButton)
         fork = -1 if pressed else self._fork_at(at)
@@ -143,7 +143,7 @@ class ScoreCurve(QWidget):
             self._ask(at)
 
     def leaveEvent(self, event: object) -> None:  # noqa: N802
-        """Nothing is under the mouse."""
+        """Hover nothing."""
         self.hovered = self._fork = -1
         self.update()
 
@@ -151,7 +151,7 @@ class ScoreCurve(QWidget):
         """One step back or forward for each notch."""
         turn = event.angleDelta().y() or event.angleDelta().x()
         if turn and not self._empty:
-            self.walked.emit(1 if turn < 0 else -1)
+            self.step_requested.emit(1 if turn < 0 else -1)
         event.accept()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
@@ -161,13 +161,13 @@ class ScoreCurve(QWidget):
             return
         page = max(1, len(self._history) // 20)
         whole = len(self._history)
-        self.walked.emit((-1, 1, -page, page, -whole, whole)[WALKING.index(event.key())])
+        self.step_requested.emit((-1, 1, -page, page, -whole, whole)[WALKING.index(event.key())])
 
     def _ask(self, at: QPointF) -> None:
         state = min(self._frame.state(at.x()), len(self._history))
         if state != self.cursor_state:
-            self.set_cursor(state)  # the line follows the mouse at once, the mesh comes after
-            self.asked.emit(state)
+            self.set_cursor(state)  # the cursor follows the mouse at once, the mesh later
+            self.state_requested.emit(state)
 
     def _fork_at(self, at: QPointF) -> int:
         """The branch whose mark is at this place, -1 for none."""
@@ -180,11 +180,13 @@ class ScoreCurve(QWidget):
     # Painting
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Another width: another curve."""
+        """Drop the pixmap."""
         self._still = None
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """The pixmap, and over it what is yet to be done again, the cursor and the mouse."""
+        """Paint the pixmap, and over it the veil on undone steps, the cursor and the
+        hovered state.
+        """
         if self._still is None or self._still.devicePixelRatio() != self.devicePixelRatioF():
             self._still = self._draw()
         painter = QPainter(self)
@@ -226,7 +228,7 @@ class ScoreCurve(QWidget):
         painter.drawEllipse(QPointF(x, y), radius, radius)
 
     def _paint_words(self, painter: QPainter, x: float, words: str) -> None:
-        """A small card with ``words`` at the upper edge, near ``x``, inside the widget."""
+        """Paint a small card with ``words`` at the upper edge near ``x``, inside the widget."""
         width = QFontMetricsF(self._font).horizontalAdvance(words) + 2 * GRID
         left = min(max(x - width / 2, 2.0), max(self.width() - width - 2.0, 2.0))
         box = QRectF(left, 1.5, width, 18)
@@ -237,7 +239,7 @@ class ScoreCurve(QWidget):
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)
 
     def _draw(self) -> QPixmap:
-        """All that does not change while the mouse or the cursor moves."""
+        """Draw everything that does not depend on mouse and cursor."""
         self.builds += 1
         ratio = self.devicePixelRatioF()
         made = QPixmap(self.size() * ratio)
@@ -258,7 +260,7 @@ class ScoreCurve(QWidget):
             QPen(QColor(self._theme.muted), 1.2, Qt.PenStyle.DashLine, Qt.PenCapStyle.FlatCap)
         )
         painter.drawPolyline(_polygon(score_series.steps(optima, self._frame)))
-        # a wider pen takes fifty times as long, and would fill what lies between many steps
+        # a wider pen is fifty times slower, and would fill the space between many steps
         thin = len(scores) > self._frame.width
         painter.setPen(QPen(QColor(self._theme.accent), 1.0 if thin else 1.8))
         painter.drawPolyline(_polygon(score_series.steps(scores, self._frame)))
@@ -272,7 +274,7 @@ class ScoreCurve(QWidget):
         return made
 
     def _draw_levels(self, painter: QPainter) -> None:
-        """The highest score and the optimum beside the curve, the steps below it."""
+        """Draw the highest score and the optimum beside the curve, the number of steps below it."""
         high, low = int(self._frame.high), int(self._track.optima[-1])
         painter.setPen(QPen(QColor(self._theme.line), 1.0))
         top = float(self._frame.y(high))
@@ -292,7 +294,7 @@ class ScoreCurve(QWidget):
         )
 
     def _draw_best(self, painter: QPainter) -> None:
-        """A diamond around the best state so far, where there is anything to tell."""
+        """Draw a diamond around the best state, if there are steps."""
         if len(self._history) == 0:
             return
         x = float(self._frame.x(self._best))
@@ -305,7 +307,7 @@ class ScoreCurve(QWidget):
         )
 
     def _draw_forks(self, painter: QPainter) -> None:
-        """A small fork below the curve where each branch begins."""
+        """Draw a small fork below the curve where each branch begins."""
         painter.setPen(QPen(QColor(self._theme.text), 1.4))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         self._forks = [float(self._frame.x(branch.at)) for branch in self._branches]
@@ -326,19 +328,7 @@ class ScoreCurve(QWidget):
             return ""
         row = self._history[state - 1]
         best = "  (best)" if state == self._best else ""
-        return f"{state:,}  {row_words(row)}:  s {row.after:,}{best}"
-
-
-def row_words(row: HistoryStep) -> str:
-    """``Flip left by quad-paper, -2``: what was done, by whom, and what came of it."""
-    who = "" if row.by == YOU else f" by {row.by}"
-    return f"{row.title}{who}, {label(row.change)}"
-
-
-def branch_words(rows: tuple[HistoryStep, ...]) -> str:
-    """``Branch: 12 steps to s 6``."""
-    count = len(rows)
-    return f"Branch: {count:,} step{'' if count == 1 else 's'} to s {rows[-1].after:,}"
+        return f"{state:,}  {step_words(row)}:  s {row.after:,}{best}"
 
 
 def _polygon(points: np.ndarray) -> QPolygonF:

@@ -1,15 +1,15 @@
-"""The timeline under the canvas: buttons that walk through the history, and the score curve."""
+"""The timeline under the canvas: playback buttons and the score curve."""
 
 from qtpy.QtCore import QSignalBlocker, QSize, Qt, Signal
 from qtpy.QtWidgets import QComboBox, QFrame, QHBoxLayout, QToolButton, QVBoxLayout
 
-from meshwright.desktop.actions.registry import ActionSet
 from meshwright.desktop.history.score_curve import HEIGHT, ScoreCurve
 from meshwright.desktop.widgets import icons
+from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.graphics.theme import GRID, Theme
 
 SPEEDS = (1, 2, 4, 8, 15, 30, 60)
-"""Steps per second that a film can be played at."""
+"""Playback speeds in steps per second."""
 BUTTONS = (
     ("history.first", "first"),
     ("history.back", "back"),
@@ -19,7 +19,7 @@ BUTTONS = (
 )
 
 
-class Timeline(QFrame):
+class TimelineBar(QFrame):
     """Buttons, speed and curve; ``speed_chosen(steps per second)``."""
 
     speed_chosen = Signal(int)
@@ -34,8 +34,8 @@ class Timeline(QFrame):
         self.curve = ScoreCurve(theme)
         self.buttons: dict[str, QToolButton] = {}
         self.speed = QComboBox()
-        self.speed.setToolTip("Speed of the film")
-        self.speed.setAccessibleName("Speed of the film")
+        self.speed.setToolTip("Playback speed")
+        self.speed.setAccessibleName("Playback speed")
         self.speed.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         for speed in SPEEDS:
             self.speed.addItem(f"{speed} step{'' if speed == 1 else 's'} / s", speed)
@@ -73,6 +73,8 @@ class Timeline(QFrame):
         made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         made.setAutoRepeat(action_id in ("history.back", "history.forward"))
         made.clicked.connect(action.trigger)
+        made.setEnabled(action.isEnabled())
+        action.enabledChanged.connect(made.setEnabled)
         self.buttons[action_id] = made
         return made
 
@@ -85,20 +87,15 @@ class Timeline(QFrame):
         self.show_playing(self._playing)
 
     def show_playing(self, playing: bool) -> None:
-        """The button in the middle holds the film while it plays."""
+        """Show the pause icon while playing, else the play icon."""
         self._playing = playing
         icon = icons.icon("pause" if playing else "play", self._theme)
         self.buttons["history.play"].setIcon(icon)
 
     def show_speed(self, speed: int) -> None:
-        """Say which speed is chosen."""
+        """Select a speed."""
         with QSignalBlocker(self.speed):
             self.speed.setCurrentIndex(SPEEDS.index(speed))
-
-    def refresh(self) -> None:
-        """Enable what makes sense now."""
-        for action_id, button in self.buttons.items():
-            button.setEnabled(self._actions[action_id].isEnabled())
 
     def _on_speed_chosen(self, index: int) -> None:
         self.speed_chosen.emit(SPEEDS[index])

@@ -1,1 +1,1 @@
-"""Levels in the window."""
+"""Levels: dialog, bar and stars."""

@@ -1,4 +1,4 @@
-"""The level bar over the canvas: what is to be done, with how many operations, and what is won."""
+"""The level bar over the canvas: goal, operations used, and stars."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QPushButton, QToolButton, QVBoxLayout, QWidget
 
-from meshwright.desktop.levels.star_rating import Stars
+from meshwright.desktop.levels.star_rating import StarRating
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.graphics.theme import GRID, Theme
@@ -15,11 +15,11 @@ from meshwright.puzzles.agent_opponent import OpponentState
 from meshwright.puzzles.play import LevelPlay
 
 WIDE = 1120
-"""Pixels from which on two lines of text are enough; else there are three."""
+"""Width in pixels from which two lines of text are enough; otherwise there are three."""
 
 
-class Figure(QWidget):
-    """A number after its name."""
+class LevelFigure(QWidget):
+    """A name and a number."""
 
     def __init__(self, title: str, tooltip: str) -> None:
         super().__init__()
@@ -35,24 +35,24 @@ class Figure(QWidget):
 
     @property
     def text(self) -> str:
-        """What the number says."""
+        """The number as text."""
         return str(self._value.text())
 
     def show_value(self, text: str) -> None:
         """Show another number."""
         self._value.setText(text)
         self._value.ensurePolished()
-        self._value.setMinimumWidth(0)  # else the hint is as wide as the widest text so far
+        self._value.setMinimumWidth(0)  # else the size hint is that of the widest text so far
         self._value.setMinimumWidth(self._value.sizeHint().width())
         self.setAccessibleName(f"{self._title}: {text}")
 
 
 class LevelBar(QFrame):
-    """Shows a :class:`LevelPlay`; ``asked(action)`` is one of "again", "answer", "next", "leave"
-    and "choose".
+    """Shows a :class:`LevelPlay`; ``action_requested(action)`` when a button is clicked: "again",
+    "answer", "next" or "leave".
     """
 
-    asked = Signal(str)
+    action_requested = Signal(str)
 
     def __init__(self, play: LevelPlay, theme: Theme) -> None:
         super().__init__()
@@ -69,23 +69,23 @@ class LevelBar(QFrame):
     def _make_head(self, theme: Theme) -> QHBoxLayout:
         self.title = named("", "LevelTitle")
         self.place = named("", "Hint")
-        self.stars = Stars(theme, 18)
-        self.goal = Figure("Goal", "The score to reach: the lowest that is possible")
-        self.par = Figure("Par", "The fewest operations known")
-        self.used = Figure("You", "Your operations from the start to here; Undo takes them back")
-        self.agent = Figure("Agent", "Operations that the agent took, on a mesh of its own")
+        self.stars = StarRating(theme, 18)
+        self.goal = LevelFigure("Goal", "The score to reach: the lowest that is possible")
+        self.par = LevelFigure("Par", "The fewest operations known")
+        self.used = LevelFigure("You", "Your operations since the start; Undo takes them back")
+        self.agent = LevelFigure("Agent", "Operations of the agent on a copy of the level")
         self.leave = QToolButton()
-        self.leave.setToolTip("Leave the level; the mesh stays")
+        self.leave.setToolTip("Leave the level and keep the mesh")
         self.leave.setAccessibleName("Leave the level")
         self.leave.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.leave.clicked.connect(lambda checked=False: self.asked.emit("leave"))
+        self.leave.clicked.connect(lambda checked=False: self.action_requested.emit("leave"))
         line = QHBoxLayout()
         line.setSpacing(GRID)
         for part in (self.title, self.place, self.stars):
             line.addWidget(part)
         line.addStretch(1)
-        for part in (self.goal, self.par, self.used, self.agent):
-            line.addWidget(part)
+        for figure in (self.goal, self.par, self.used, self.agent):
+            line.addWidget(figure)
             line.addSpacing(GRID)
         line.addWidget(self.leave)
         return line
@@ -94,9 +94,9 @@ class LevelBar(QFrame):
         self.text = named("", "LevelText")
         self.text.setWordWrap(True)
         self.text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        self.again = self._button("Again", "again", "Begin the level again")
+        self.again = self._button("Again", "again", "Restart the level")
         self.answer = self._button("Ask the agent", "answer", "")
-        self.next = self._button("Next", "next", "Go on to the next level")
+        self.next = self._button("Next", "next", "Start the next level")
         line = QHBoxLayout()
         line.setContentsMargins(0, 0, GRID, 0)
         line.setSpacing(GRID)
@@ -109,16 +109,16 @@ class LevelBar(QFrame):
     def _button(self, title: str, action: str, tooltip: str) -> QPushButton:
         made = QPushButton(title)
         made.setToolTip(tooltip)
-        made.clicked.connect(lambda checked=False: self.asked.emit(action))
+        made.clicked.connect(lambda checked=False: self.action_requested.emit(action))
         return made
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.stars.set_theme(theme)
         self.leave.setIcon(icons.icon("close", theme))
 
     def refresh(self) -> None:
-        """Show what is true now."""
+        """Update the bar from the state of the game."""
         play, level = self._play, self._play.level
         self.setVisible(level is not None)
         if level is None:
@@ -129,9 +129,9 @@ class LevelBar(QFrame):
         self.goal.show_value(level.aim)
         self.par.show_value(str(level.par))
         self.par.setToolTip(
-            "No fewer operations will do: all ways were tried"
+            "Proven minimum: all shorter sequences were tried"
             if level.proved
-            else "The fewest operations known; perhaps you find fewer"
+            else "The fewest operations known; fewer may be possible"
         )
         self.used.show_value(str(play.used))
         self.stars.count = play.stars if play.done else play.best
@@ -140,12 +140,12 @@ class LevelBar(QFrame):
         self._keep_height()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """A narrow bar has more lines."""
+        """Adapt the number of lines to the width."""
         super().resizeEvent(event)
         self._keep_height()
 
     def _keep_height(self) -> None:
-        """As high in every state, so that the mesh stays where it is."""
+        """Keep the height the same in all states, so that the mesh does not move."""
         lines = 2 if self.width() > WIDE else 3
         self.text.setFixedHeight(lines * self.text.fontMetrics().lineSpacing())
 
@@ -161,16 +161,16 @@ class LevelBar(QFrame):
             shown = str(len(rival.operations)) if standing is OpponentState.DONE else "\u2013"
             self.agent.show_value(shown if reached else f"{shown} (s {rival.score})")
         knows = standing is OpponentState.DONE or (level is not None and bool(level.most))
-        self.answer.setText("Show a way" if knows else "Ask the agent")
+        self.answer.setText("Show a solution" if knows else "Ask the agent")
         self.answer.setEnabled(standing is not OpponentState.ASKED)
         self.answer.setToolTip(
-            "Begin again with this way ahead: Redo goes along it"
+            "Restart with this solution: Redo steps through it"
             if knows
-            else "Let the agent solve this level on a mesh of its own, and compare"
+            else "Let the agent solve a copy of this level, and compare"
         )
 
     def _refresh_looks(self, name: str) -> None:
-        """The colours of a level that is done, and of one that is not."""
+        """Update the colours, which depend on whether the level is won."""
         won = self._play.done and self._play.stars > 0
         last = levels.after(name) is None
         self.next.setEnabled(not last)

@@ -1,13 +1,20 @@
-"""Levels in the window: chosen in a dialog, played on the document, told of in a bar."""
+"""Levels: chosen in a dialog, played on the document, shown in a bar."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+
+from qtpy.QtWidgets import QWidget
 
 from meshwright.assistant.assistant import Assistant
 from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.desktop.canvas.canvas import Canvas
+from meshwright.desktop.controller import Controller
+from meshwright.desktop.files.file_controller import FileController
+from meshwright.desktop.history.playback_controller import PlaybackController
 from meshwright.desktop.levels.level_bar import LevelBar
+from meshwright.desktop.widgets.basic import NoticeBar
+from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import Theme
 from meshwright.puzzles import level as levels
@@ -16,55 +23,58 @@ from meshwright.puzzles.level import Level
 from meshwright.puzzles.play import LevelPlay
 from meshwright_core import MeshError
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
+class LevelController(Controller):
+    """Plays levels on the document: ``play`` is the state of the game, ``bar`` shows it."""
 
-class Levels:
-    """The levels of one window; ``play`` is what is played."""
-
-    bar: LevelBar
-
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    def __init__(
+        self,
+        document: Document,
+        assistant: Assistant,
+        canvas: Canvas,
+        files: FileController,
+        playback: PlaybackController,
+        status: StatusBar,
+        notice: NoticeBar,
+        parent: QWidget,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._canvas, self._files, self._playback = canvas, files, playback
+        self._status, self._notice, self._parent = status, notice, parent
         self.make_rival = _assistant
         self.play = LevelPlay(
-            window.document, window.assistant.hinting, lambda document: self.make_rival(document)
+            document, assistant.hinting, lambda document: self.make_rival(document)
         )
-
-    def connect(self) -> None:
-        """Take a place over canvas and panels, and follow the play."""
-        window = self._window
-        self.bar = LevelBar(self.play, window.theme)
-        window.head.insertWidget(0, self.bar)
-        self.bar.asked.connect(self._on_asked)
-        self.play.changed.connect(self._on_changed)
-
-    def release(self) -> None:
-        """Let go of the document, end the agent's answer."""
-        self.play.changed.disconnect(self._on_changed)
-        self.play.release()
+        self.bar = LevelBar(self.play, theme)
+        self.bar.action_requested.connect(self._on_action_requested)
+        self._connections.add(self.play.changed, self._on_changed)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
+        super().set_theme(theme)
         self.bar.set_theme(theme)
+
+    def close(self) -> None:
+        """Disconnect, and end the agent's run on the level."""
+        super().close()
+        self.play.release()
 
     @property
     def level(self) -> Level | None:
         """The level that is being played."""
         return self.play.level
 
-    # What a person asks for
+    # Commands
 
     def choose(self) -> None:
-        """Show all levels, and play the one that is chosen."""
+        """Show the dialog of levels, and start the chosen one."""
         from meshwright.desktop.levels.level_dialog import LevelDialog
 
-        window = self._window
         try:
-            dialog = LevelDialog(self.play.progress, window.theme, window)
+            dialog = LevelDialog(self.play.progress, self._theme, self._parent)
         except MeshError as error:
-            window.notice.tell(str(error))
+            self._notice.show_message(str(error))
             return
         chosen = dialog.chosen if dialog.exec() else None
         dialog.deleteLater()
@@ -72,23 +82,22 @@ class Levels:
             self.open(chosen)
 
     def open(self, level: str | Level) -> None:
-        """Play a level, unless the mesh that is here must not be dropped."""
-        window = self._window
-        if window.files.may_drop():
+        """Start a level, unless the user keeps the current mesh."""
+        if self._files.may_drop():
             self._try(lambda: self.play.open(level))
-            window.canvas.fit()
+            self._canvas.fit()
 
     def again(self) -> None:
-        """Begin the level again."""
+        """Restart the level."""
         self._try(self.play.again)
 
     def next(self) -> None:
-        """Go on to the next level."""
+        """Start the next level."""
         self._try(self.play.next)
-        self._window.canvas.fit()
+        self._canvas.fit()
 
     def answer(self) -> None:
-        """Ask the agent; once it has answered show its way."""
+        """Let the agent solve the level; once it has, show its solution."""
         play = self.play
         asked = play.rival is not None and play.rival.standing is OpponentState.DONE
         if asked or (play.level is not None and play.level.most):
@@ -97,56 +106,54 @@ class Levels:
             self._try(play.ask_agent)
 
     def show_way(self) -> None:
-        """Begin again with the way ahead, and play it."""
+        """Restart the level with a solution as steps to redo, and play them."""
         try:
             said = self.play.show_answer()
         except MeshError as error:
-            self._window.notice.tell(str(error))
+            self._notice.show_message(str(error))
             return
-        self._window.say(said)
-        self._window.film.play_or_hold()
+        self._status.show_message(said)
+        self._playback.play_or_hold()
 
     def leave(self) -> None:
-        """Go on without the level."""
+        """Leave the level and keep the mesh."""
         self.play.leave()
 
     def refuses(self, action: str) -> bool:
-        """Whether a step is not played in the level; if so it says why."""
+        """Whether the level forbids an action; if so a message says why."""
         why = self.play.refusal(action)
         if why:
-            self._window.say(why)
-            self._window.canvas.refuse(why)
+            self._status.show_message(why)
+            self._canvas.refuse(why)
         return bool(why)
 
     def _try(self, call: Callable[[], object]) -> None:
         try:
             call()
         except MeshError as error:
-            self._window.notice.tell(str(error))
+            self._notice.show_message(str(error))
 
-    # What the play says
+    # Following the game
 
-    def _on_asked(self, action: str) -> None:
-        asked = {
+    def _on_action_requested(self, action: str) -> None:
+        requests = {
             "again": self.again,
             "answer": self.answer,
             "next": self.next,
             "leave": self.leave,
         }
-        asked[action]()
-        if self._window.canvas.plotter is not None:
-            self._window.canvas.plotter.setFocus()
+        requests[action]()
+        self._canvas.focus()
 
     def _on_changed(self) -> None:
         self.bar.refresh()
-        self._window.actions_by_id.refresh()
         if self.play.notice:
-            self._window.notice.tell(self.play.notice)
+            self._notice.show_message(self.play.notice)
             self.play.notice = ""
 
 
 def _assistant(document: Document) -> Assistant:
-    """The agent on a mesh of its own."""
+    """An assistant on another document."""
     return Assistant(document, Dispatcher())
 
 

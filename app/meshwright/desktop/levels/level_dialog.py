@@ -17,7 +17,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from meshwright.desktop.levels.star_rating import Stars
+from meshwright.desktop.levels.star_rating import StarRating
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.puzzles import level as levels
@@ -28,8 +28,9 @@ COLUMNS = 4
 CARD = QSize(184, 200)
 PICTURE = QSize(168, 120)
 STORY = (
-    "Each level is a mesh with a goal and a par: reach the lowest score, with as few operations as"
-    " you can. Stars count operations only; Undo takes them back, and smoothing is free."
+    "Each level is a mesh with a goal and a par: reach the lowest score with as few operations as"
+    " you can. Stars depend on the number of operations; undone operations and smoothing do not"
+    " count."
 )
 
 
@@ -41,7 +42,7 @@ class LevelDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.chosen: Level | None = None
-        self.cards: list[Card] = []
+        self.cards: list[LevelCard] = []
         self.setWindowTitle("Levels")
         column = QVBoxLayout(self)
         column.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
@@ -81,7 +82,7 @@ class LevelDialog(QDialog):
         grid.setSpacing(GRID)
         self._area = QScrollArea()
         for place, level in enumerate(levels.all()):
-            card = Card(level, progress, theme, self._area.ensureWidgetVisible)
+            card = LevelCard(level, progress, theme, self._area.ensureWidgetVisible)
             card.clicked.connect(partial(self._on_chosen, level))
             self.cards.append(card)
             grid.addWidget(card, place // COLUMNS, place % COLUMNS)
@@ -105,7 +106,7 @@ class LevelDialog(QDialog):
         return line
 
     def _focus_next(self, progress: LevelProgress) -> None:
-        """The first level without a star has the keyboard."""
+        """Give the first level without a star the keyboard focus."""
         fresh = [card for card in self.cards if not progress.best(card.level.name).stars]
         for card in (fresh or self.cards)[:1]:
             card.setFocus()
@@ -115,8 +116,8 @@ class LevelDialog(QDialog):
         self.accept()
 
 
-class Card(QPushButton):
-    """One level; a click plays it. ``focused(card)`` is called when it gets the keyboard."""
+class LevelCard(QPushButton):
+    """One level; a click starts it. ``focused(card)`` is called when it gets the keyboard focus."""
 
     def __init__(
         self,
@@ -144,7 +145,7 @@ class Card(QPushButton):
         self.picture = named("", "Picture")
         self.picture.setPixmap(picture(level.name, theme, self.devicePixelRatioF()))
         self.title = named(f"{level.number}  {level.title}", "CardTitle")
-        self.stars = Stars(theme, 14)
+        self.stars = StarRating(theme, 14)
         self.stars.count = best.stars
         column.addWidget(self.picture)
         column.addStretch(1)
@@ -155,14 +156,14 @@ class Card(QPushButton):
             part.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
 
     def focusInEvent(self, event: QFocusEvent) -> None:  # noqa: N802
-        """Scroll to it."""
+        """Scroll to the card."""
         super().focusInEvent(event)
         self._focused(self)
 
 
 @cache
 def picture(name: str, theme: Theme, ratio: float) -> QPixmap:
-    """The start of a level."""
+    """A picture of the start of a level."""
     from meshwright.graphics.drawing import raster
     from meshwright.graphics.mesh_figure import FigureOptions, figure
 

@@ -1,4 +1,4 @@
-"""Stars: how well a level was done, as three stars, filled or hollow."""
+"""A rating of up to three stars."""
 
 import math
 
@@ -13,7 +13,7 @@ INNER = 0.45
 """Radius of the notches, relative to that of the tips."""
 
 
-class Stars(QWidget):
+class StarRating(QWidget):
     """Three stars of ``size`` pixels, the first :attr:`count` of them filled."""
 
     def __init__(self, theme: Theme, size: int = 16) -> None:
@@ -36,16 +36,16 @@ class Stars(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:  # noqa: N802
-        """Three stars with a little room between."""
+        """The preferred size."""
         return QSize(MOST_STARS * (self._size + 2), self._size + 2)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint them side by side."""
+        """Paint the stars side by side."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for number in range(MOST_STARS):

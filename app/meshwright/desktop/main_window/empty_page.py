@@ -1,25 +1,27 @@
-"""What is shown in the place of a mesh while there is none."""
+"""The page shown while there is no mesh."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.controller import Connections
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
 MOST = 5
-"""Recent files that are offered."""
+"""Number of recent files that are listed."""
 
 
 class EmptyPage(QWidget):
-    """Shown in the canvas's place while there is no mesh.
+    """Shown in place of the canvas while there is no mesh.
 
-    ``new()`` and ``open_file()`` do what the buttons say, ``open_recent(path)`` what a click on a
-    recent file means.
+    The buttons call ``new()`` and ``open_file()``; a click on one of the recent files, which it
+    reads from ``settings``, calls ``open_recent(path)``.
     """
 
     def __init__(
@@ -27,24 +29,26 @@ class EmptyPage(QWidget):
         new: Callable[[], None],
         open_file: Callable[[], None],
         open_recent: Callable[[str], None],
+        settings: Settings,
     ) -> None:
         super().__init__()
+        self._settings = settings
         self._open_recent = open_recent
         self.setObjectName("Empty")
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         picture = named("", "Picture")
         picture.setPixmap(icons.app_icon().pixmap(56, 56))
         title = named("No mesh yet", "EmptyTitle")
-        text = named("Make one from a shape, or open a triangle or quad mesh.", "EmptyText")
+        text = named("Mesh a shape, or open a triangle or quad mesh.", "EmptyText")
         text.setWordWrap(True)
         self.new = QPushButton("New mesh\u2026")
         self.new.setObjectName("Primary")
-        self.new.setToolTip("Make a mesh of a shape  (Ctrl+N)")
+        self.new.setToolTip("Mesh a shape  (Ctrl+N)")
         self.open = QPushButton("Open a file\u2026")
         self.open.setToolTip("Open a mesh file  (Ctrl+O)")
         self.new.clicked.connect(lambda checked=False: new())
         self.open.clicked.connect(lambda checked=False: open_file())
-        drop = named("A file can also be dropped here.", "Hint")
+        drop = named("Or drop a file here.", "Hint")
         buttons = QHBoxLayout()
         buttons.setSpacing(GRID)
         buttons.addStretch(1)
@@ -70,13 +74,26 @@ class EmptyPage(QWidget):
         layout.addWidget(self._recent, 0, Qt.AlignmentFlag.AlignHCenter)
         layout.addStretch(4)
         self.recent: list[QPushButton] = []
+        self._connections = Connections()
+        self._connections.add(settings.changed, self._on_settings_changed)
+        self._show_recent()
 
-    def show_recent(self, paths: Sequence[str]) -> None:
-        """Offer these files, as far as they are still there."""
+    def release(self) -> None:
+        """Disconnect from the settings."""
+        self._connections.close()
+
+    def _on_settings_changed(self, key: str) -> None:
+        if key == "files/recent":
+            self._show_recent()
+
+    def _show_recent(self) -> None:
+        """List the recent files that still exist."""
         while (item := self._column.takeAt(0)) is not None:
-            item.widget().deleteLater()
+            widget = item.widget()
+            if widget is not None:
+                widget.deleteLater()
         self.recent = []
-        there = [path for path in paths if Path(path).is_file()][:MOST]
+        there = [path for path in self._settings.recent if Path(path).is_file()][:MOST]
         if not there:
             return
         heading = named("RECENT", "Heading")

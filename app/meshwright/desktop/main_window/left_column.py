@@ -1,4 +1,4 @@
-"""What stands left of the canvas: the operations, and below them the history."""
+"""The column left of the canvas: operations, and below them the history."""
 
 from qtpy.QtWidgets import QFrame, QVBoxLayout, QWidget
 
@@ -10,9 +10,9 @@ WIDTH = 232
 
 
 class LeftColumn(QFrame):
-    """A section at the top; :meth:`fill` puts what takes the rest of the height below it."""
+    """A section at the top; ``rest`` takes the remaining height."""
 
-    def __init__(self, section: Section) -> None:
+    def __init__(self, section: Section, rest: QWidget) -> None:
         super().__init__()
         self.setObjectName("LeftColumn")
         self.setFixedWidth(WIDTH)
@@ -21,19 +21,16 @@ class LeftColumn(QFrame):
         inner = QVBoxLayout(head)
         inner.setContentsMargins(2 * GRID, 12, 2 * GRID, 12)
         inner.addWidget(section)
-        self._layout = QVBoxLayout(self)
-        self._layout.setContentsMargins(0, 0, 0, 0)
-        self._layout.setSpacing(0)
-        self._layout.addWidget(head)
-        self._layout.addWidget(rule())
-        self._layout.addStretch(1)  # where nothing else takes the room
-
-    def fill(self, widget: QWidget) -> None:
-        """Give ``widget`` the rest of the height."""
-        self._layout.insertWidget(self._layout.count() - 1, widget, 100)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addWidget(head)
+        layout.addWidget(rule())
+        layout.addWidget(rest, 100)
+        layout.addStretch(1)  # takes the height while ``rest`` is hidden
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.section.set_theme(theme)
 
     def reveal(self) -> None:

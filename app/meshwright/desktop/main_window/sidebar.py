@@ -1,4 +1,4 @@
-"""The panels at the right, one above the other, each under a heading that folds it away."""
+"""The sidebar: panels one above the other, each under a heading that folds it."""
 
 from collections.abc import Sequence
 
@@ -14,9 +14,10 @@ WIDTH = 312
 
 
 class Section(QWidget):
-    """A heading and ``panel`` below it; a click on the heading folds the panel, and that is kept.
+    """A heading with ``panel`` below it; a click on the heading folds the panel, and the setting is
+    saved.
 
-    ``beside`` stands at the right of the heading, and is folded away with the panel.
+    ``beside`` is placed at the right of the heading, and is folded with the panel.
     """
 
     def __init__(
@@ -36,7 +37,7 @@ class Section(QWidget):
         self.heading.setObjectName("Fold")
         self.heading.setCheckable(True)
         self.heading.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.heading.setToolTip(f"Show or fold away: {title}")
+        self.heading.setToolTip(f"Show or hide: {title}")
         self.heading.setAccessibleName(title)
         line = QHBoxLayout()
         line.addWidget(self.heading)
@@ -55,11 +56,11 @@ class Section(QWidget):
 
     @property
     def panel(self) -> QWidget:
-        """What is under the heading."""
+        """The panel under the heading."""
         return self._panel
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw the mark of the fold again."""
+        """Draw the fold icon in the colours of ``theme``."""
         self.heading.setIcon(icons.fold(theme))
 
     def _on_toggled(self, shown: bool) -> None:
@@ -71,14 +72,14 @@ class Section(QWidget):
 
 
 class Sidebar(QFrame):
-    """A column of sections with a thin line between them; it scrolls in a low window."""
+    """A column of sections with thin lines between them, which scrolls if it does not fit."""
 
     def __init__(self, sections: Sequence[Section]) -> None:
         super().__init__()
         self.sections = {section.panel: section for section in sections}
         body = QWidget()
         body.setObjectName("SidebarBody")
-        column = QVBoxLayout(body)
+        self._column = column = QVBoxLayout(body)
         column.setContentsMargins(3 * GRID, 12, 3 * GRID, 2 * GRID)
         column.setSpacing(12)
         for number, section in enumerate(sections):
@@ -100,7 +101,7 @@ class Sidebar(QFrame):
         layout.addWidget(self._area)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         for section in self.sections.values():
             section.set_theme(theme)
 
@@ -108,5 +109,5 @@ class Sidebar(QFrame):
         """Unfold ``panel`` and scroll to it."""
         section = self.sections[panel]
         section.heading.setChecked(True)
-        self._area.widget().layout().activate()
+        self._column.activate()
         self._area.ensureWidgetVisible(section, 0, GRID)

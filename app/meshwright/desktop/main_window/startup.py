@@ -1,4 +1,4 @@
-"""The application: what Qt needs to know before the first window, and that window's opening."""
+"""Set-up of the QApplication, and opening of the window."""
 
 import sys
 from pathlib import Path
@@ -17,9 +17,9 @@ DEMO_SHAPE = "star"
 
 
 def application() -> QApplication:
-    """The QApplication, made if there is none yet."""
+    """The QApplication, constructed if there is none yet."""
     app = QApplication.instance()
-    if app is None:
+    if not isinstance(app, QApplication):
         QSurfaceFormat.setDefaultFormat(surface_format())
         app = QApplication(sys.argv[:1])
     app.setApplicationName("Meshwright")
@@ -31,7 +31,7 @@ def application() -> QApplication:
 
 
 def surface_format() -> QSurfaceFormat:
-    """What the plotter asks for too, but before any window exists, as some systems need it."""
+    """The OpenGL format of the plotter; some systems need it set before the first window."""
     made = QSurfaceFormat()
     made.setRenderableType(QSurfaceFormat.RenderableType.OpenGL)
     made.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
@@ -62,10 +62,9 @@ def open_window(
     guided: bool = False,
     level: Level | None = None,
 ) -> MainWindow:
-    """Make and show the window on ``source``, as in :func:`meshwright.desktop.run`.
+    """Construct and show the window on ``source``, as in :func:`meshwright.desktop.run`.
 
-    ``guided`` for a person's own window: it comes where it was last, keeps every step, asks before
-    unsaved work is dropped, offers what was lost, and who has not seen the tour is shown it.
+    ``guided`` is for a window that a user has started: see :meth:`MainWindow.start_session`.
     """
     if source is None and demo:
         source = DEMO_SHAPE
@@ -74,13 +73,11 @@ def open_window(
     if source is not None and not isinstance(source, Document):
         load(document, source, kind)
     if level is not None:
-        window.levels.play.open(level)
+        window.play_level(level)
     if demo:
-        window.warmup.ready.connect(window.assistant.prepare)
+        window.prepare_agent()
     if guided:
-        window.preferences.restore_place()
-        window.files.watch()
-        window.opened.connect(window.guide.welcome)
+        window.start_session()
     window.show()
     window.activateWindow()
     return window

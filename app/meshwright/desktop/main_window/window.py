@@ -1,54 +1,64 @@
-"""The window: its parts and their wiring. What actions do is in its controllers."""
+"""The main window: constructs the controllers and lays out their widgets."""
 
 from qtpy.QtCore import QSize, Qt, QTimer, Signal
 from qtpy.QtGui import QCloseEvent, QShowEvent
 from qtpy.QtWidgets import (
     QApplication,
     QHBoxLayout,
-    QLabel,
     QMainWindow,
     QMenu,
     QSizePolicy,
     QStackedWidget,
     QToolBar,
+    QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
 from meshwright.assistant.assistant import Assistant
 from meshwright.desktop.actions import registry
-from meshwright.desktop.agent.agent_controller import AgentControl
+from meshwright.desktop.actions.context import ActionContext
+from meshwright.desktop.actions.dispatcher import ActionDispatcher
+from meshwright.desktop.agent.agent_controller import AgentController
 from meshwright.desktop.agent.agent_panel import AgentPanel
-from meshwright.desktop.application.kernel_warmup import Warmup
+from meshwright.desktop.agent.hints_controller import HintsController
+from meshwright.desktop.application.kernel_warmup import KernelWarmup
 from meshwright.desktop.application.main_thread import Dispatcher
-from meshwright.desktop.application.preferences_controller import Preferences
+from meshwright.desktop.application.preferences_controller import PreferencesController, theme_name
+from meshwright.desktop.application.readiness import Readiness
 from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.canvas.canvas import Canvas
-from meshwright.desktop.editing.cleanable_lines_controller import Lines
-from meshwright.desktop.editing.edit_controller import Editing
-from meshwright.desktop.editing.hover_controller import Pointing
-from meshwright.desktop.editing.inverted_controller import Inverted
-from meshwright.desktop.editing.keyboard_navigation import Walking
-from meshwright.desktop.editing.operations_panel import OperationsPanel
-from meshwright.desktop.editing.selection_controller import Selecting
-from meshwright.desktop.files.file_controller import Files
-from meshwright.desktop.help.help_controller import Guide
-from meshwright.desktop.history.playback_controller import Film
-from meshwright.desktop.levels.level_controller import Levels
-from meshwright.desktop.main_window import empty_page
+from meshwright.desktop.controller import Connections, Controller
+from meshwright.desktop.editing.cleanable_lines_controller import CleanableLinesController
+from meshwright.desktop.editing.click_dispatch import ClickDispatch
+from meshwright.desktop.editing.edit_controller import EditController
+from meshwright.desktop.editing.hover_controller import HoverController
+from meshwright.desktop.editing.inverted_controller import InvertedController
+from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
+from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.files.file_controller import FileController
+from meshwright.desktop.help.help_controller import HelpController
+from meshwright.desktop.help.tour import TourPlaces
+from meshwright.desktop.history.playback_controller import PlaybackController
+from meshwright.desktop.levels.level_controller import LevelController
+from meshwright.desktop.main_window.empty_page import EmptyPage
 from meshwright.desktop.main_window.left_column import LeftColumn
 from meshwright.desktop.main_window.sidebar import Section, Sidebar
-from meshwright.desktop.quality.quality_controller import Dashboard
-from meshwright.desktop.widgets.basic import Notice
+from meshwright.desktop.quality.quality_controller import QualityController
+from meshwright.desktop.widgets.action_set import ActionSet
+from meshwright.desktop.widgets.basic import NoticeBar
+from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import style_sheet, theme
+from meshwright.puzzles.level import Level
 
 
 class MainWindow(QMainWindow):
-    """A view on ``document``; the mesh is changed by the document only.
+    """The main window on ``document``.
 
-    Controllers say what happens: ``files``, ``editing``, ``film``, ``agent``, ``guide``.
-    ``opened()`` comes when the canvas is there too, shortly after the window itself.
+    The window is the composition root: no other module imports it, and each controller needs only
+    objects that are constructed before it. ``ready``: the kernels are loaded already. ``opened()``
+    is emitted when the mesh is drawn, shortly after the window itself has appeared.
     """
 
     opened = Signal()
@@ -63,93 +73,197 @@ class MainWindow(QMainWindow):
         super().__init__()
         self.document = document
         self.settings = settings or Settings()
-        self.theme = theme("light", self.settings.colours)
         self.assistant = assistant or Assistant(document, Dispatcher())
-        self.ready = self.agent_ready = ready
-        self.files, self.editing, self.film = Files(self), Editing(self), Film(self)
-        self.agent, self.guide = AgentControl(self), Guide(self)
-        self.dashboard, self.preferences = Dashboard(self), Preferences(self)
-        self.pointing, self.selecting = Pointing(self), Selecting(self)
-        self.lines, self.walking = Lines(self), Walking(self)
-        self.inverted, self.levels = Inverted(self), Levels(self)
-        self.controllers = (
-            self.files,
-            self.editing,
-            self.pointing,
-            self.selecting,
-            self.lines,
-            self.walking,
-            self.inverted,
-            self.levels,
-            self.film,
-            self.agent,
-            self.guide,
-            self.dashboard,
-            self.preferences,
-        )
+        self.readiness = Readiness(editing=ready, agent=ready)
+        self.theme = theme(theme_name(self.settings), self.settings.colours)
         self.canvas = Canvas(document, self.theme)
-        self.actions_by_id = registry.ActionSet(self)
-        self.score_panel = self.dashboard.score
-        self.agent_panel = AgentPanel(document, self.assistant, self.actions_by_id, self.theme)
-        self.operations_panel = OperationsPanel(document, self.theme)
-        self.notice = Notice(self.theme)
-        self.warmup = Warmup(self)
+        self.status = StatusBar()
+        self.notice = NoticeBar(self.theme)
+        self.actions_by_id = ActionSet(
+            registry.ACTIONS, registry.MENUS, self, self.canvas, self.theme
+        )
+        self.warmup = KernelWarmup(self.readiness, self.status, self.notice, self.theme)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._clear_messages)
+        self.controllers: list[Controller] = [self.warmup]
+        self._make_controllers()
         self._arrange()
-        self._connect()
+        self._make_help()
+        self.dispatcher = ActionDispatcher(self.actions_by_id, self._action_context(), self.theme)
+        self.controllers.append(self.dispatcher)
+        self.setStyleSheet(style_sheet(self.theme))
+        self._connections.add(document.replaced, self._on_replaced)
         self._on_replaced()
 
-    # Putting it together
+    # Composition
+
+    def _make_controllers(self) -> None:
+        document, assistant, settings = self.document, self.assistant, self.settings
+        canvas, readiness, actions = self.canvas, self.readiness, self.actions_by_id
+        status, notice, colours = self.status, self.notice, self.theme
+        self.files = FileController(
+            document, assistant, canvas, settings, actions, status, notice, self, colours
+        )
+        self.playback = PlaybackController(
+            document, settings, readiness, actions, status, notice, self, colours
+        )
+        self.levels = LevelController(
+            document, assistant, canvas, self.files, self.playback, status, notice, self, colours
+        )
+        self.quality = QualityController(document, canvas, settings, status, colours)
+        self.inverted = InvertedController(document, canvas, self.quality.monitor, colours)
+        self.hover = HoverController(
+            document, assistant, canvas, settings, readiness, status, colours
+        )
+        self.editing = EditController(
+            document, canvas, self.hover, self.levels, readiness, status, self, colours
+        )
+        self.lines = CleanableLinesController(
+            document, canvas, settings, readiness, self.hover, self.editing, status, colours
+        )
+        self.selection_tools = SelectionController(
+            document, canvas, self.levels, readiness, actions, status, self, colours
+        )
+        self.navigation = KeyboardNavigation(
+            document, canvas, self.quality.highlight, status, colours
+        )
+        self.agent_panel = AgentPanel(document, assistant, settings, actions, colours)
+        self.hints = HintsController(
+            document, assistant, canvas, self.agent_panel, status, notice, colours
+        )
+        self.agent = AgentController(
+            document,
+            assistant,
+            canvas,
+            settings,
+            self.agent_panel,
+            self.hints,
+            status,
+            notice,
+            self,
+            colours,
+        )
+        self.clicks = ClickDispatch(
+            canvas,
+            (
+                self.hints.click,
+                self.selection_tools.click,
+                self.editing.click_armed,
+                self.lines.click,
+                self.editing.click_menu,
+            ),
+            (self.hover.put_down, self.selection_tools.put_down),
+            colours,
+        )
+        self.preferences = PreferencesController(
+            document, canvas, settings, status, self, self.set_theme, colours
+        )
+        self.controllers += [
+            self.files,
+            self.playback,
+            self.levels,
+            self.quality,
+            self.inverted,
+            self.hover,
+            self.editing,
+            self.lines,
+            self.selection_tools,
+            self.navigation,
+            self.hints,
+            self.agent,
+            self.clicks,
+            self.preferences,
+        ]
+
+    def _make_help(self) -> None:
+        places = TourPlaces(
+            window=self,
+            canvas=self.canvas,
+            pages=self.pages,
+            columns=(self.left, self.sidebar),
+            operations=self.hover.panel,
+            score=self.quality.score,
+            agent=self.agent_panel,
+            history=(
+                self.playback.timeline,
+                self.playback.panel,
+                self.toolbar.widgetForAction(self.actions_by_id["undo"]),
+            ),
+            reveal=self.reveal,
+        )
+        self.help = HelpController(
+            self.document,
+            self.canvas,
+            self.settings,
+            self.actions_by_id,
+            self.status,
+            places,
+            self.theme,
+        )
+        self.controllers.append(self.help)
+
+    def _action_context(self) -> ActionContext:
+        return ActionContext(
+            document=self.document,
+            assistant=self.assistant,
+            settings=self.settings,
+            readiness=self.readiness,
+            canvas=self.canvas,
+            files=self.files,
+            playback=self.playback,
+            levels=self.levels,
+            hover=self.hover,
+            editing=self.editing,
+            lines=self.lines,
+            selection_tools=self.selection_tools,
+            navigation=self.navigation,
+            hints=self.hints,
+            agent=self.agent,
+            preferences=self.preferences,
+            help=self.help,
+            close=self.close,
+        )
+
+    # Layout
 
     def _arrange(self) -> None:
         self.resize(1280, 800)
         self.setMinimumSize(880, 560)
         self.toolbar = self._make_toolbar()
         self.addToolBar(self.toolbar)
-        self._fill_menus()
-        self.empty = empty_page.EmptyPage(
+        self.setStatusBar(self.status)
+        self.empty = EmptyPage(
             self.actions_by_id["new"].trigger,
             self.actions_by_id["open"].trigger,
             self.files.open,
+            self.settings,
         )
         self.pages = QStackedWidget()
         self.pages.addWidget(self.canvas)
         self.pages.addWidget(self.empty)
         middle = QWidget()
-        self.column = QVBoxLayout(middle)  # the canvas and what stands above and below it
-        self.column.setContentsMargins(0, 0, 0, 0)
-        self.column.setSpacing(0)
-        self.column.addWidget(self.notice)
-        self.column.addWidget(self.pages, 1)
-        whole, below = QWidget(), QWidget()
-        self.head = QVBoxLayout(whole)  # what stands over all of it
-        self.head.setContentsMargins(0, 0, 0, 0)
-        self.head.setSpacing(0)
-        self.head.addWidget(below, 1)
-        self.row = QHBoxLayout(below)  # what stands left of the canvas, the canvas, the sidebar
-        self.row.setContentsMargins(0, 0, 0, 0)
-        self.row.setSpacing(0)
+        _column(
+            middle, self.notice, self.pages, self.playback.exporting.bar, self.playback.timeline
+        ).setStretchFactor(self.pages, 1)
         self.left = LeftColumn(
-            Section("Operations", self.operations_panel, self.settings, self.theme)
+            Section("Operations", self.hover.panel, self.settings, self.theme), self.playback.panel
         )
-        self.row.addWidget(self.left)
-        self.row.addWidget(middle, 1)
         self.sidebar = self._make_sidebar()
-        self.row.addWidget(self.sidebar)
+        below, whole = QWidget(), QWidget()
+        row = QHBoxLayout(below)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(0)
+        row.addWidget(self.left)
+        row.addWidget(middle, 1)
+        row.addWidget(self.sidebar)
+        _column(whole, self.levels.bar, below).setStretchFactor(below, 1)
         self.setCentralWidget(whole)
-        self.said = QLabel()
-        self.pointed = QLabel()
-        self.preparing = QLabel()
-        bar = self.statusBar()
-        bar.setSizeGripEnabled(False)
-        bar.addWidget(self.said, 1)
-        bar.addPermanentWidget(self.preparing)
-        bar.addPermanentWidget(self.pointed)
 
     def _make_sidebar(self) -> Sidebar:
-        settings, quality = self.settings, self.dashboard.quality
+        settings, quality = self.settings, self.quality.quality
         return Sidebar(
             (
-                Section("Score", self.score_panel, settings, self.theme),
+                Section("Score", self.quality.score, settings, self.theme),
                 Section("Agent", self.agent_panel, settings, self.theme),
                 Section("Quality", quality, settings, self.theme, quality.measures),
             )
@@ -160,7 +274,6 @@ class MainWindow(QMainWindow):
         bar.setMovable(False)
         bar.setIconSize(QSize(20, 20))
         bar.setContextMenuPolicy(Qt.ContextMenuPolicy.PreventContextMenu)
-        words = {action.id: action.word for action in registry.ACTIONS}
         for number, group in enumerate(registry.TOOLBAR):
             if not group:
                 space = QWidget()
@@ -172,125 +285,116 @@ class MainWindow(QMainWindow):
                 bar.addAction(self.actions_by_id[action_id])
                 button = bar.widgetForAction(self.actions_by_id[action_id])
                 button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-                if words[action_id]:
+                if self.actions_by_id.entry(action_id).word and isinstance(button, QToolButton):
                     button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         return bar
 
     def _fill_menus(self) -> None:
         bar = self.menuBar()
         bar.clear()
-        for title, members in registry.groups(self):
+        for title, members in self.actions_by_id.menus(self.document.kind):
             menu = bar.addMenu(title)
-            for action in members:
-                menu.addAction(self.actions_by_id[action.id])
+            for entry in members:
+                menu.addAction(self.actions_by_id[entry.id])
 
-    def _connect(self) -> None:
-        self.document.replaced.connect(self._on_replaced)
-        self.document.history_changed.connect(self.refresh)
-        for controller in self.controllers:
-            controller.connect()
-        self.warmup.noted.connect(self.preparing.setText)
-        self.warmup.ready.connect(self._on_ready)
-        self.warmup.agent_ready.connect(self._on_agent_ready)
-        self.warmup.failed.connect(self._on_warmup_failed)
+    # Session
 
-    def _release(self) -> None:
-        self.document.replaced.disconnect(self._on_replaced)
-        self.document.history_changed.disconnect(self.refresh)
-        for part in (
-            *self.controllers,
-            self.canvas,
-            self.agent_panel,
-            self.operations_panel,
-        ):
-            part.release()
+    def start_session(self) -> None:
+        """Restore the position, save every step, offer unsaved work, and show the tour at the first
+        start: for a window that a user has started.
+        """
+        self.preferences.restore_place()
+        self.files.watch()
+        self.opened.connect(self.help.welcome)
+        # after everything else that starts with the window
+        self.opened.connect(lambda: QTimer.singleShot(0, self.files.offer_lost))
+
+    def prepare_agent(self) -> None:
+        """Load the policy as soon as the kernels of the editor are loaded."""
+        self._connections.add(self.readiness.changed, self._on_readiness_changed)
+
+    def play_level(self, level: Level) -> None:
+        """Start a level; no question is asked about the mesh that it replaces."""
+        self.levels.play.open(level)
+
+    def leave(self) -> None:
+        """Close the window at once, without a question; unsaved work can be recovered."""
+        self.files.leave()
+
+    def stop_preparing(self) -> None:
+        """End the processes and threads that compile or load kernels."""
+        self.warmup.close()
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
-        """The canvas is built once the window has been painted."""
+        """Build the canvas once the window has been painted."""
         super().showEvent(event)
-        if self.canvas.plotter is None:
+        if not self.canvas.built:
             QTimer.singleShot(0, self._build)
 
     def _build(self) -> None:
-        QApplication.processEvents()  # let the frame be seen before the slow imports
-        if self.canvas.plotter is not None or not self.isVisible():
+        QApplication.processEvents()  # let the frame be painted before the slow imports
+        if self.canvas.built or not self.isVisible():
             return
         self.canvas.build()
-        self.canvas.plotter.setFocus()
+        self.canvas.focus()
         self.opened.emit()
-        if not self.ready:
+        if not self.readiness.editing:
             QTimer.singleShot(0, self.warmup.start)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Ask for what is not saved; then end runs and threads, free VTK's resources."""
+        """Ask about unsaved work; then end runs and threads, and free VTK's resources."""
         if not self.files.may_drop():
             event.ignore()
             return
-        self.warmup.stop()
-        self._release()
+        self._connections.close()
+        for controller in self.controllers:
+            controller.close()
+        self.empty.release()
+        self.canvas.release()
         super().closeEvent(event)
 
-    # Words and looks
+    def createPopupMenu(self) -> QMenu | None:  # noqa: N802
+        """Disable Qt's menu that hides the toolbar."""
+        return None
 
-    def say(self, sentence: str) -> None:
-        """One sentence in the status line."""
-        self.said.setText(sentence)
+    # Appearance
 
     def set_theme(self, name: str) -> None:
-        """``"light"`` or ``"dark"``, in the colours that the settings say."""
+        """Use the theme ``"light"`` or ``"dark"``, with the colours of the settings."""
         self.theme = theme(name, self.settings.colours)
         self.setStyleSheet(style_sheet(self.theme))
-        self.actions_by_id.set_theme(self.theme)
-        for part in (
-            self.canvas,
-            self.dashboard,
-            self.film,
-            self.guide,
-            self.levels,
-            self.left,
-            self.sidebar,
-            self.agent_panel,
-            self.operations_panel,
-            self.notice,
-        ):
-            part.set_theme(self.theme)
+        for widget in (self.canvas, self.notice, self.left, self.sidebar):
+            widget.set_theme(self.theme)
+        for controller in self.controllers:
+            controller.set_theme(self.theme)
 
     def reveal(self, panel: QWidget) -> None:
         """Unfold ``panel``, and scroll to it."""
-        if panel is self.left.section.panel:
+        if panel is self.hover.panel:
             self.left.reveal()
         else:
             self.sidebar.reveal(panel)
 
-    def refresh(self) -> None:
-        """Enable what makes sense now."""
-        self.actions_by_id.refresh()
-        self.agent_panel.refresh()
+    # Following the document and the kernels
 
-    def createPopupMenu(self) -> QMenu | None:  # noqa: N802
-        """No menu that hides the toolbar."""
-        return None
-
-    # What document and warm-up say
+    def _clear_messages(self) -> None:
+        self.notice.hide()
+        self.status.show_message("")
 
     def _on_replaced(self) -> None:
         self._fill_menus()
         self.pages.setCurrentWidget(self.empty if self.document.empty else self.canvas)
-        self.notice.hide()
-        self.say("")
-        self.refresh()
 
-    def _on_ready(self) -> None:
-        self.ready = True
-        self.refresh()
-        self.pointing.refresh()
-        self.lines.find()
+    def _on_readiness_changed(self) -> None:
+        if self.readiness.editing and not self.assistant.loading:
+            self.assistant.prepare()
 
-    def _on_agent_ready(self) -> None:
-        self.agent_ready = True
-        self.preparing.setText("")
-        self.refresh()
 
-    def _on_warmup_failed(self, sentence: str) -> None:
-        self.preparing.setText("")
-        self.notice.tell(sentence)
+def _column(owner: QWidget, *members: QWidget) -> QVBoxLayout:
+    """Lay out ``members`` one below the other, without gaps."""
+    column = QVBoxLayout(owner)
+    column.setContentsMargins(0, 0, 0, 0)
+    column.setSpacing(0)
+    for member in members:
+        column.addWidget(member)
+    return column

@@ -1,4 +1,4 @@
-"""The histogram of one measure over the elements, with the inverted ones beside it."""
+"""The histogram of a quality measure over the elements, with the inverted ones apart."""
 
 from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import QBrush, QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF
@@ -12,7 +12,7 @@ from meshwright.graphics.theme import Theme
 
 HEIGHT = 72
 _AXIS = 18
-"""Pixels below the columns: the mark of the worst element, and the numbers."""
+"""Pixels below the columns for the mark of the worst element and the numbers."""
 _ASIDE = 22
 """Pixels at the left for the column of inverted elements."""
 
@@ -40,13 +40,13 @@ class Histogram(QWidget):
         self.setAccessibleName("Quality histogram")
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 
     @property
     def stale(self) -> bool:
-        """True while what is shown is not of the mesh as it is."""
+        """Whether the values are those of an earlier state of the mesh."""
         return self._stale
 
     @stale.setter
@@ -61,7 +61,7 @@ class Histogram(QWidget):
         self.update()
 
     def words(self, x: float) -> str:
-        """What the column at pixel ``x`` stands for."""
+        """The description of the column at pixel ``x``."""
         if self._spread is None:
             return ""
         if x < _ASIDE:

@@ -1,4 +1,4 @@
-"""The tally: how many vertices there are of each irregularity, as columns with sign and number."""
+"""The chart of irregularities: number of vertices for each irregularity."""
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRectF, Qt, Signal
@@ -11,14 +11,14 @@ from meshwright.graphics.markers import label
 from meshwright.graphics.theme import Theme
 
 FEWEST, MOST = 2, 4
-"""Columns on either side of zero; vertices further away from it are counted in the outermost."""
+"""Columns on either side of zero; the outermost ones include all vertices beyond."""
 HEIGHT = 72
 _LINE = 15
 """Pixels of the numbers above the columns and of the labels below them."""
 _WIDEST = 28
 
 
-class Tally(QWidget):
+class IrregularityChart(QWidget):
     """Columns for vertices below their desired degree at the left, above it at the right.
 
     ``chosen(delta)`` when a column of some vertices is clicked; the outermost column stands for
@@ -41,7 +41,7 @@ class Tally(QWidget):
         self.setAccessibleName("Irregular vertices by irregularity")
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 
@@ -56,7 +56,7 @@ class Tally(QWidget):
         return [d for d in range(-self._span, self._span + 1) if d]
 
     def show_deltas(self, deltas: np.ndarray) -> None:
-        """Show the irregularities (n,) of all vertices; zeros are passed over."""
+        """Show the irregularities (n,) of all vertices; zeros are ignored."""
         found, numbers = np.unique(deltas[deltas != 0], return_counts=True)
         furthest = int(np.abs(found).max(initial=0))
         self._span = min(max(furthest, FEWEST), MOST)
@@ -70,11 +70,11 @@ class Tally(QWidget):
         self.update()
 
     def clear(self) -> None:
-        """No mesh."""
+        """Show no columns."""
         self.show_deltas(np.empty(0, dtype=int))
 
     def column(self, delta: int) -> QRectF:
-        """Where the whole column of ``delta`` is, its number and label included."""
+        """The area of the column of ``delta``, with its number and label."""
         columns = self.columns
         width = self.width() / len(columns)
         return QRectF(columns.index(delta) * width, 0.0, width, self.height())
@@ -116,7 +116,7 @@ class Tally(QWidget):
         return f"{words}; click to go from one to the next" if number else words
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """A hand over what can be clicked."""
+        """Show the hand cursor over columns that can be clicked."""
         clickable = self._counts.get(self._at(event.position().x()), 0) > 0
         shape = Qt.CursorShape.PointingHandCursor if clickable else Qt.CursorShape.ArrowCursor
         self.setCursor(shape)
@@ -133,7 +133,7 @@ class Tally(QWidget):
         return columns[min(max(place, 0), len(columns) - 1)]
 
     def _name(self, delta: int) -> str:
-        """The column's label; the outermost ones say that there is more in them."""
+        """The column's label; those of the outermost ones mark that they include more."""
         if abs(delta) < MOST:
             return label(delta)
         return f"\u2264{label(delta)}" if delta < 0 else f"\u2265{label(delta)}"

@@ -1,58 +1,66 @@
-"""The dashboard: score and quality of one window, and the ways from a number to its place."""
+"""Panels of score and quality, and navigation from their numbers to vertices and elements."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.canvas.layers.highlight import SpotLayer
+from meshwright.desktop.controller import Controller
 from meshwright.desktop.quality.irregularity_chart import MOST
-from meshwright.desktop.quality.quality_job import Gauge
+from meshwright.desktop.quality.quality_job import QualityMonitor
 from meshwright.desktop.quality.quality_panel import QualityPanel
 from meshwright.desktop.quality.score_panel import ScorePanel
+from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.document.document import Document
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import Theme
 
-if TYPE_CHECKING:
-    from meshwright.desktop.main_window.window import MainWindow
 
+class QualityController(Controller):
+    """Owns the panels ``score`` and ``quality``, and the ``monitor`` that measures for them.
 
-class Dashboard:
-    """Owns ``score`` and ``quality``, the panels, and ``gauge`` behind them."""
+    ``highlight`` marks the vertex or element that a click on a number leads to.
+    """
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
-        self.gauge = Gauge(window.document, window)
-        self.score = ScorePanel(window.document, self.gauge, window.theme)
-        self.quality = QualityPanel(self.gauge, window.settings, window.theme)
-        self.spot = SpotLayer(window.theme, window)
+    def __init__(
+        self,
+        document: Document,
+        canvas: Canvas,
+        settings: Settings,
+        status: StatusBar,
+        theme: Theme,
+    ) -> None:
+        super().__init__(theme)
+        self._document, self._canvas, self._status = document, canvas, status
+        self.monitor = QualityMonitor(document, canvas)
+        self.score = ScorePanel(document, self.monitor, theme)
+        self.quality = QualityPanel(self.monitor, settings, theme)
+        self.highlight = SpotLayer(theme, canvas)
         self._vertex = self._element = -1
-
-    def connect(self) -> None:
-        """Follow panels and document."""
-        overlay = self._window.canvas.overlay
-        overlay.add(self.spot, below=overlay.card)
+        canvas.overlay.add(self.highlight, below=canvas.overlay.card)
         self.score.delta_chosen.connect(self.go_to_next)
         self.score.inverted_chosen.connect(self.go_to_inverted)
         self.quality.worst_chosen.connect(self.go_to_element)
-        self._window.document.changed.connect(self.spot.clear)
-
-    def release(self) -> None:
-        """Let go of the document."""
-        self._window.document.changed.disconnect(self.spot.clear)
-        self.spot.clear()
-        self.score.release()
-        self.gauge.release()
+        self._connections.add(document.changed, self.highlight.clear)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
+        super().set_theme(theme)
         self.score.set_theme(theme)
         self.quality.set_theme(theme)
 
+    def close(self) -> None:
+        """Disconnect, and end the measuring thread."""
+        super().close()
+        self.highlight.clear()
+        self.score.release()
+        self.monitor.release()
+
     def go_to_next(self, delta: int) -> None:
-        """Look at the next vertex of irregularity ``delta``, or beyond it at the tally's end."""
-        mesh = self._window.document.mesh
+        """Go to the next vertex of irregularity ``delta``, or beyond it for an outermost column."""
+        mesh = self._document.mesh
         if mesh is None:
             return
         deltas = mesh.irregularity()
@@ -67,36 +75,36 @@ class Dashboard:
         around = mesh.points[[vertex, *mesh.neighbours(vertex)]]
         reach = float(np.abs(around - place).max())
         self._look_at(place + reach * np.array([(-1.0, -1.0, 0.0), (1.0, 1.0, 0.0)]))
-        self.spot.show(place[None])
+        self.highlight.show(place[None])
         at = int(np.searchsorted(found, vertex)) + 1
-        self._window.say(
+        self._status.show_message(
             f"Vertex {vertex}: \u0394 {label(int(deltas[vertex]))}, {at:,} of {len(found):,}."
         )
 
     def go_to_inverted(self) -> None:
-        """Look at the next inverted element."""
-        summary = self.gauge.summary
+        """Go to the next inverted element."""
+        summary = self.monitor.summary
         if summary is not None and len(summary.inverted):
             self.go_to_element(_after(summary.inverted, self._element))
 
     def go_to_element(self, element: int) -> None:
-        """Look at an element."""
-        mesh = self._window.document.mesh
+        """Go to an element."""
+        mesh = self._document.mesh
         if mesh is None or not mesh.live(element * mesh.k):
             return
         self._element = element
         first = element * mesh.k
         corners = mesh.points[[mesh.origin(first + side) for side in range(mesh.k)]]
         self._look_at(corners)
-        self.spot.show(corners)
-        self._window.say(f"Element {element}.")
+        self.highlight.show(corners)
+        self._status.show_message(f"Element {element}.")
 
     def _look_at(self, places: np.ndarray) -> None:
-        canvas = self._window.canvas
+        canvas = self._canvas
         canvas.see(canvas.viewport.around(places))
 
 
 def _after(ids: np.ndarray, last: int) -> int:
-    """The first of ``ids``, ascending, that is larger than ``last``; round to the first."""
+    """The first of the ascending ``ids`` that is larger than ``last``, or else the first."""
     place = int(np.searchsorted(ids, last, side="right"))
     return int(ids[place % len(ids)])

@@ -1,4 +1,4 @@
-"""Quality measured beside the editing: after a pause, on a copy of the mesh, in a thread."""
+"""Measures quality in the background: after a pause, in a thread, on a copy of the mesh."""
 
 import threading
 import time
@@ -7,23 +7,25 @@ from functools import partial
 from qtpy.QtCore import QObject, QTimer, Signal
 
 from meshwright.desktop.application.main_thread import Dispatcher
+from meshwright.desktop.controller import Connections
 from meshwright.document.document import Document
 from meshwright.document.quality_summary import QualitySummary, summarise
 from meshwright_core import HalfEdgeMesh
 
 PAUSE = 120
-"""Milliseconds from a change to the measuring; more changes meanwhile do not put it off."""
+"""Milliseconds between a change and the measurement; further changes do not delay it."""
 LATE = 400
-"""Milliseconds without a new measure after which the old one is called stale, so that a played run
-does not make the panels flicker."""
+"""Milliseconds after a change until old values are marked as stale; avoids flicker during
+playback.
+"""
 
 
-class Gauge(QObject):
-    """Follows ``document``. ``measured()`` when :attr:`summary` is new or none, ``aged()`` when it
-    has been of an earlier state of the mesh for a while.
+class QualityMonitor(QObject):
+    """Measures the quality of the mesh of ``document`` after changes.
 
-    A change costs the editing a timer's start and nothing else; the copy of the mesh is made in
-    the pause. One thread at a time: a change while it works calls it off.
+    ``measured()`` when :attr:`summary` is new or None; ``aged()`` when it has become stale. A
+    change only starts a timer; the mesh is copied when that has elapsed. There is one thread at a
+    time; a change cancels it.
     """
 
     aged = Signal()
@@ -34,9 +36,9 @@ class Gauge(QObject):
         self._document = document
         self.summary: QualitySummary | None = None
         self.fresh = False
-        """True while :attr:`summary` is that of the mesh as it is."""
+        """Whether :attr:`summary` is that of the current mesh."""
         self.stale = True
-        """True while it is not, and has not been for a while."""
+        """Whether :attr:`summary` has been out of date for a while."""
         self._dispatch = Dispatcher()
         self._thread: threading.Thread | None = None
         self._cancel = threading.Event()
@@ -48,14 +50,14 @@ class Gauge(QObject):
         self._late.setSingleShot(True)
         self._late.setInterval(LATE)
         self._late.timeout.connect(self._on_late)
-        document.replaced.connect(self._on_replaced)
-        document.changed.connect(self._on_changed)
+        self._connections = Connections()
+        self._connections.add(document.replaced, self._on_replaced)
+        self._connections.add(document.changed, self._on_changed)
         self._on_replaced()
 
     def release(self) -> None:
-        """Let go of the document and end the thread."""
-        self._document.replaced.disconnect(self._on_replaced)
-        self._document.changed.disconnect(self._on_changed)
+        """Disconnect from the document and end the thread."""
+        self._connections.close()
         self._pause.stop()
         self._late.stop()
         self._cancel.set()
@@ -86,7 +88,7 @@ class Gauge(QObject):
     def _on_pause(self) -> None:
         mesh = self._document.mesh
         if self._thread is not None or mesh is None:
-            return  # the thread that is being called off starts the next one when it is done
+            return  # _finish of the cancelled thread starts the next one
         self._cancel = threading.Event()
         self._thread = threading.Thread(
             target=self._measure, args=(mesh.copy(), self._cancel), name="quality", daemon=True
@@ -102,7 +104,7 @@ class Gauge(QObject):
 
     def _finish(self, summary: QualitySummary | None, cancel: threading.Event) -> None:
         if self._thread is None:
-            return  # released meanwhile
+            return  # released in the meantime
         self._thread.join()
         self._thread = None
         if cancel.is_set():
@@ -115,6 +117,6 @@ class Gauge(QObject):
 
 
 def _give_way(cancel: threading.Event) -> bool:
-    """Whether to stop; lets the window have the interpreter between two parts of the work."""
+    """Whether to stop; releases the interpreter for the window between two parts of the work."""
     time.sleep(0.001)
     return cancel.is_set()

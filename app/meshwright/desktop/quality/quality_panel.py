@@ -1,4 +1,4 @@
-"""The quality panel: how the elements spread over a measure of shape, and which is the worst."""
+"""The quality panel: histogram of a quality measure, and the worst element."""
 
 import math
 
@@ -7,8 +7,8 @@ from qtpy.QtWidgets import QButtonGroup, QHBoxLayout, QPushButton, QVBoxLayout, 
 
 from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.quality.histogram import Histogram
-from meshwright.desktop.quality.quality_job import Gauge
-from meshwright.desktop.widgets.basic import Link
+from meshwright.desktop.quality.quality_job import QualityMonitor
+from meshwright.desktop.widgets.basic import ValueLink
 from meshwright.document.quality_summary import QualitySummary, Spread
 from meshwright.graphics.theme import Theme
 
@@ -21,17 +21,17 @@ _KEY = "quality/measure"
 
 
 class QualityPanel(QWidget):
-    """Shows what ``gauge`` has measured. ``worst_chosen(element)`` when the worst is clicked."""
+    """Shows what ``monitor`` has measured. ``worst_chosen(element)`` when the worst is clicked."""
 
     worst_chosen = Signal(int)
 
-    def __init__(self, gauge: Gauge, settings: Settings, theme: Theme) -> None:
+    def __init__(self, monitor: QualityMonitor, settings: Settings, theme: Theme) -> None:
         super().__init__()
-        self._gauge = gauge
+        self._monitor = monitor
         self._settings = settings
         self.histogram = Histogram(theme)
-        self.worst = Link("Worst element", "The lowest value; click to go to the element")
-        self.measures = QWidget()  # stands beside the heading
+        self.worst = ValueLink("Worst element", "The lowest value; click to go to the element")
+        self.measures = QWidget()  # placed beside the heading
         self.switches: dict[str, QPushButton] = {}
         self._group = QButtonGroup(self)
         for name, word, tooltip, _ in _MEASURES:
@@ -46,12 +46,12 @@ class QualityPanel(QWidget):
         self.switches[settings.choice(_KEY, (JACOBIAN, ANGLE))].setChecked(True)
         self._group.buttonClicked.connect(self._on_switched)
         self.worst.clicked.connect(self._on_worst_clicked)
-        gauge.aged.connect(self.show_measured)
-        gauge.measured.connect(self.show_measured)
+        monitor.aged.connect(self.show_measured)
+        monitor.measured.connect(self.show_measured)
         self.show_measured()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.histogram.set_theme(theme)
 
     @property
@@ -60,9 +60,9 @@ class QualityPanel(QWidget):
         return next(name for name, switch in self.switches.items() if switch.isChecked())
 
     def show_measured(self) -> None:
-        """Show what the gauge knows, pale while it is of an earlier state of the mesh."""
-        summary = self._gauge.summary
-        self.histogram.stale = self._gauge.stale
+        """Show the latest measurement, pale while it is stale."""
+        summary = self._monitor.summary
+        self.histogram.stale = self._monitor.stale
         if summary is None:
             self.histogram.show_spread(None)
             self.worst.show_value("\u2013")
@@ -70,7 +70,7 @@ class QualityPanel(QWidget):
         unit = self._unit()
         spread = self._spread(summary)
         self.histogram.show_spread(spread, len(summary.inverted), unit)
-        if self._gauge.stale:
+        if self._monitor.stale:
             self.worst.show_value("\u2026")
         elif math.isnan(spread.worst):
             self.worst.show_value("\u2013")
@@ -101,5 +101,5 @@ class QualityPanel(QWidget):
         self.show_measured()
 
     def _on_worst_clicked(self) -> None:
-        if self._gauge.summary is not None:
-            self.worst_chosen.emit(self._spread(self._gauge.summary).worst_element)
+        if self._monitor.summary is not None:
+            self.worst_chosen.emit(self._spread(self._monitor.summary).worst_element)

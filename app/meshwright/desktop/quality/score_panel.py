@@ -1,11 +1,19 @@
-"""The dashboard: s, s*, the gap between them, irregular vertices, and the counts of the mesh."""
+"""The score panel: s, s*, their difference, irregular vertices, and counts of the mesh."""
 
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from meshwright.desktop.quality.irregularity_chart import Tally
-from meshwright.desktop.quality.quality_job import Gauge
-from meshwright.desktop.widgets.basic import Bar, Fact, Link, Optimal, named, tabular
+from meshwright.desktop.controller import Connections
+from meshwright.desktop.quality.irregularity_chart import IrregularityChart
+from meshwright.desktop.quality.quality_job import QualityMonitor
+from meshwright.desktop.widgets.basic import (
+    OptimumBadge,
+    ShareBar,
+    ValueLine,
+    ValueLink,
+    named,
+    tabular,
+)
 from meshwright.document.document import Document
 from meshwright.graphics.theme import GRID, Theme
 
@@ -14,48 +22,52 @@ _STALE = "\u2026"
 
 
 class ScorePanel(QWidget):
-    """Follows the document's score at once, and what ``gauge`` measures when it is there.
+    """Shows the score of ``document`` at once, and measurements of ``monitor`` when they are
+    available.
 
-    ``delta_chosen(delta)`` when a column of the tally is clicked, ``inverted_chosen()`` when the
-    count of inverted elements is.
+    ``delta_chosen(delta)`` when a column of the chart is clicked, ``inverted_chosen()`` when the
+    number of inverted elements is.
     """
 
     delta_chosen = Signal(int)
     inverted_chosen = Signal()
 
-    def __init__(self, document: Document, gauge: Gauge, theme: Theme) -> None:
+    def __init__(self, document: Document, monitor: QualityMonitor, theme: Theme) -> None:
         super().__init__()
         self._document = document
-        self._gauge = gauge
+        self._monitor = monitor
         self.score = named("", "Big")
         self.score.setFont(tabular(self.score.font()))
         self.score.setToolTip("s: the sum of |degree \u2212 desired degree| over all vertices")
         self.goal = named("", "Value")
         self.goal.setToolTip("s*: no connectivity can have a lower score")
         self.gap = named("", "Label")
-        self.bar = Bar(theme)
-        self.bar.setToolTip("How much of the way from the start to the optimum is done")
-        self.optimal = Optimal(theme)
-        self.irregular = Fact("Irregular vertices", "Vertices whose degree is not the desired one")
-        self.tally = Tally(theme)
-        self.gained = Fact("Normalised return", "(start \u2212 best) / (start \u2212 optimum)")
-        self.way = Fact("Start and best", "Score at the start, and the lowest one since")
-        self.elements = Fact("Elements", "Elements; quads fall into blocks, each a regular grid")
-        self.inverted = Link("Inverted elements", "Elements folded over; click to go to them")
+        self.bar = ShareBar(theme)
+        self.bar.setToolTip("Progress from the start score to the optimum")
+        self.optimal = OptimumBadge(theme)
+        self.irregular = ValueLine(
+            "Irregular vertices", "Vertices whose degree is not the desired one"
+        )
+        self.tally = IrregularityChart(theme)
+        self.gained = ValueLine("Normalised return", "(start \u2212 best) / (start \u2212 optimum)")
+        self.way = ValueLine("Start and best", "Score at the start, and the lowest score since")
+        self.elements = ValueLine("Elements", "Elements; quads form blocks, each a regular grid")
+        self.inverted = ValueLink("Inverted elements", "Reversed orientation; click to go to them")
         self._arrange()
         self.tally.chosen.connect(self.delta_chosen)
         self.inverted.clicked.connect(self.inverted_chosen)
-        document.score_changed.connect(self._on_score_changed)
-        gauge.aged.connect(self._on_measured)
-        gauge.measured.connect(self._on_measured)
+        self._connections = Connections()
+        self._connections.add(document.score_changed, self._on_score_changed)
+        monitor.aged.connect(self._on_measured)
+        monitor.measured.connect(self._on_measured)
         self._on_score_changed()
 
     def release(self) -> None:
-        """Let go of the document."""
-        self._document.score_changed.disconnect(self._on_score_changed)
+        """Disconnect from the document."""
+        self._connections.close()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         for part in (self.bar, self.optimal, self.tally):
             part.set_theme(theme)
 
@@ -112,8 +124,8 @@ class ScorePanel(QWidget):
         self.tally.show_deltas(mesh.irregularity())
 
     def _on_measured(self) -> None:
-        """Blocks and inverted elements; an ellipsis while they are not yet of this mesh."""
-        mesh, summary = self._document.mesh, self._gauge.summary
+        """Show blocks and inverted elements; an ellipsis while they are being measured."""
+        mesh, summary = self._document.mesh, self._monitor.summary
         if mesh is None:
             self.elements.text = _NONE
             self.inverted.show_value(_NONE)
@@ -121,13 +133,13 @@ class ScorePanel(QWidget):
         if mesh.k == 4:
             blocks = "blocks"
             number = _STALE
-            if not self._gauge.stale and summary is not None and summary.blocks is not None:
+            if not self._monitor.stale and summary is not None and summary.blocks is not None:
                 number = f"{summary.blocks:,}"
                 blocks = "block" if summary.blocks == 1 else blocks
             self.elements.text = f"{mesh.n_elements:,} quads in {number} {blocks}"
         else:
             self.elements.text = f"{mesh.n_elements:,} triangles"
-        if summary is None or self._gauge.stale:
+        if summary is None or self._monitor.stale:
             self.inverted.show_value(_STALE)
             return
         count = len(summary.inverted)

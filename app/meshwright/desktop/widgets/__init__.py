@@ -1,1 +1,1 @@
-"""Small widgets that several rooms use."""
+"""Widgets and texts that several packages of the window use."""

@@ -1,4 +1,4 @@
-"""Small widgets that the panels are made of."""
+"""Small widgets of the panels."""
 
 from qtpy.QtCore import QRectF, Qt, Signal
 from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent
@@ -14,18 +14,17 @@ from qtpy.QtWidgets import (
 
 from meshwright.desktop.widgets import icons
 from meshwright.graphics.theme import GRID, Theme
-from meshwright_core.errors import sentence as sentence
 
 
 def tabular(font: QFont) -> QFont:
-    """``font`` with digits of one width, where Qt can ask for them."""
+    """``font`` with digits of equal width, if Qt supports font features."""
     if hasattr(font, "setFeature") and hasattr(QFont, "Tag"):
         font.setFeature(QFont.Tag("tnum"), 1)
     return font
 
 
 def named(text: str, name: str) -> QLabel:
-    """A label that the style sheet knows as ``name``."""
+    """A label with object name ``name``, by which the style sheet selects it."""
     made = QLabel(text)
     made.setObjectName(name)
     return made
@@ -39,8 +38,8 @@ def rule() -> QFrame:
     return made
 
 
-class Fact(QWidget):
-    """One line: what it is at the left, its value at the right."""
+class ValueLine(QWidget):
+    """One line with a title at the left and a value at the right."""
 
     def __init__(self, title: str, tooltip: str = "") -> None:
         super().__init__()
@@ -55,7 +54,7 @@ class Fact(QWidget):
 
     @property
     def text(self) -> str:
-        """What the value says."""
+        """The text of the value."""
         return str(self._value.text())
 
     @text.setter
@@ -63,7 +62,7 @@ class Fact(QWidget):
         self._value.setText(text)
 
 
-class Bar(QWidget):
+class ShareBar(QWidget):
     """A thin bar that is filled to ``share``, from 0 to 1."""
 
     def __init__(self, theme: Theme) -> None:
@@ -83,12 +82,12 @@ class Bar(QWidget):
         self.update()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint the groove and what is filled."""
+        """Paint the groove and the filled part."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(Qt.PenStyle.NoPen)
@@ -102,10 +101,10 @@ class Bar(QWidget):
         painter.end()
 
 
-class Link(QWidget):
-    """One line like :class:`Fact` whose value can be clicked to be taken there.
+class ValueLink(QWidget):
+    """One line like :class:`ValueLine` with a clickable value.
 
-    ``clicked()`` comes only while there is somewhere to go.
+    ``clicked()`` only while the value leads somewhere.
     """
 
     clicked = Signal()
@@ -129,16 +128,16 @@ class Link(QWidget):
 
     @property
     def text(self) -> str:
-        """What the value says."""
+        """The text of the value."""
         return str(self._value.text())
 
     @property
     def button(self) -> QPushButton:
-        """What is clicked."""
+        """The button that shows the value."""
         return self._value
 
     def show_value(self, text: str, leads: bool = False, warns: bool = False) -> None:
-        """Show ``text``; ``leads`` somewhere when clicked; ``warns`` in the colour of warnings."""
+        """Show ``text``; ``leads``: it can be clicked; ``warns``: in the warning colour."""
         self._value.setText(f"\u26a0 {text}" if warns else text)
         self._value.setEnabled(leads)
         shape = Qt.CursorShape.PointingHandCursor if leads else Qt.CursorShape.ArrowCursor
@@ -149,7 +148,7 @@ class Link(QWidget):
             self._value.style().polish(self._value)
 
 
-class Notice(QFrame):
+class NoticeBar(QFrame):
     """A bar over the canvas with one sentence and a button that closes it."""
 
     def __init__(self, theme: Theme) -> None:
@@ -175,18 +174,18 @@ class Notice(QFrame):
         """The sentence, empty while the bar is hidden."""
         return str(self._text.text()) if not self.isHidden() else ""
 
-    def tell(self, sentence: str) -> None:
-        """Show the sentence until it is closed or another one comes."""
+    def show_message(self, sentence: str) -> None:
+        """Show the sentence until it is closed or replaced."""
         self._text.setText(sentence)
         self.show()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._close.setIcon(icons.icon("close", theme))
 
 
-class Optimal(QFrame):
-    """What the score panel says when s = s*."""
+class OptimumBadge(QFrame):
+    """The badge in the score panel at s = s*."""
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -208,5 +207,5 @@ class Optimal(QFrame):
         self.set_theme(theme)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._mark.setPixmap(icons.pixmap("check", theme.accent, 16, self.devicePixelRatioF()))

@@ -1,20 +1,20 @@
-"""Small event filters: keys that are a widget's own, tooltips that depend on the place.
+"""Event filters: keys that override shortcuts, tooltips that depend on the position.
 
-Filters rather than overridden ``event`` methods: where Qt calls back into Python through an
-overridden one, PySide 6.11 answers an exception in, say, a ``paintEvent`` with the end of the
-process.
+They replace overridden ``event`` methods: after an exception in an overridden method such as
+``paintEvent``, PySide 6.11 ends the process if ``event`` is overridden, too.
 """
 
 from collections.abc import Callable, Collection
 
 from qtpy.QtCore import QEvent, QObject, QPoint, Qt
+from qtpy.QtGui import QHelpEvent, QKeyEvent
 from qtpy.QtWidgets import QToolTip, QWidget
 
 
 class OwnKeys(QObject):
-    """While ``widget`` has the focus these keys are its own, and no shortcuts of the window.
+    """Sends ``keys`` to ``widget``, not to shortcuts of the window, while it has the focus.
 
-    ``keys`` count without modifiers; None stands for all keys, with any modifiers.
+    The keys apply without modifiers; None stands for all keys with any modifiers.
     """
 
     def __init__(self, widget: QWidget, keys: Collection[Qt.Key] | None = None) -> None:
@@ -23,17 +23,17 @@ class OwnKeys(QObject):
         widget.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Claim the keys; everything else goes its way."""
-        if event.type() != QEvent.Type.ShortcutOverride:
+        """Accept the shortcut override for the keys."""
+        if not isinstance(event, QKeyEvent) or event.type() != QEvent.Type.ShortcutOverride:
             return False
-        own = self._keys is None or (event.key() in self._keys and not event.modifiers())
+        own = self._keys is None or (Qt.Key(event.key()) in self._keys and not event.modifiers())
         if own:
             event.accept()
         return own
 
 
 class OwnTooltips(QObject):
-    """``words(place)`` says what the tooltip of ``widget`` says at a place in it."""
+    """Shows ``words(place)`` as the tooltip of ``widget`` at a place in it."""
 
     def __init__(self, widget: QWidget, words: Callable[[QPoint], str]) -> None:
         super().__init__(widget)
@@ -41,8 +41,8 @@ class OwnTooltips(QObject):
         widget.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Show the words of the place."""
-        if event.type() != QEvent.Type.ToolTip:
+        """Show the tooltip."""
+        if not isinstance(event, QHelpEvent) or event.type() != QEvent.Type.ToolTip:
             return False
         QToolTip.showText(event.globalPos(), self._words(event.pos()), self._widget)
         return True

@@ -1,4 +1,4 @@
-"""The icons: strokes on a grid of 20, drawn in the colour of the theme."""
+"""Icons as SVG strokes on a grid of 20, drawn in the colours of the theme."""
 
 from qtpy.QtCore import QByteArray, QSize, Qt
 from qtpy.QtGui import QIcon, QPainter, QPixmap
@@ -37,7 +37,7 @@ def icon(name: str, theme: Theme) -> QIcon:
 
 
 def fold(theme: Theme) -> QIcon:
-    """The mark of a heading: down while what is under it is shown, right while it is folded."""
+    """The fold icon of a heading: pointing down while unfolded, right while folded."""
     made = QIcon()
     for ratio in (1.0, 2.0):
         for name, state in (("down", QIcon.State.On), ("right", QIcon.State.Off)):

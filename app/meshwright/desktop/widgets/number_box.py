@@ -1,21 +1,21 @@
-"""Fields for numbers, as the window has them everywhere."""
+"""Fields for whole and decimal numbers."""
 
 from qtpy.QtGui import QWheelEvent
 from qtpy.QtWidgets import QDoubleSpinBox, QSpinBox
 
 _INSET = 6
-"""Pixels between frame and text; style sheets cannot say it for these fields."""
+"""Pixels between frame and text; style sheets cannot set them for these fields."""
 
 
 class IntegerBox(QSpinBox):
-    """A whole number. The wheel changes it while it has the keyboard, else the page scrolls."""
+    """A whole number. The wheel changes it only while it has the keyboard focus."""
 
     def __init__(self) -> None:
         super().__init__()
         self.lineEdit().setTextMargins(_INSET, 0, 0, 0)
 
     def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
-        """Leave the wheel to the page unless the field is being used."""
+        """Let the page scroll unless the field has the keyboard focus."""
         if self.hasFocus():
             super().wheelEvent(event)
         else:
@@ -30,7 +30,7 @@ class DecimalBox(QDoubleSpinBox):
         self.lineEdit().setTextMargins(_INSET, 0, 0, 0)
 
     def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
-        """Leave the wheel to the page unless the field is being used."""
+        """Let the page scroll unless the field has the keyboard focus."""
         if self.hasFocus():
             super().wheelEvent(event)
         else:

@@ -1,1 +1,1 @@
-"""What the overlay paints over the mesh, one layer a module."""
+"""Layers of the overlay, one kind of mark per module."""

@@ -1,4 +1,4 @@
-"""What all layers of the overlay have in common."""
+"""The base class of the overlay's layers, and helpers for painting."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from meshwright.graphics.viewport import Viewport
 
 
 class Layer:
-    """Something painted over the mesh in pixels of the canvas, without a frame of VTK's.
+    """Paints over the mesh in pixels of the canvas, without a new frame of VTK.
 
-    ``repaint(rect)`` is put in by the overlay: it asks for a part of the canvas, or all of it for
-    None, to be painted again.
+    The overlay sets ``repaint(rect)``, which requests that a part of the canvas, or all of it for
+    None, be painted again.
     """
 
     def __init__(self, theme: Theme) -> None:
@@ -37,20 +37,20 @@ class Layer:
             self.repaint(None)
 
     def changed(self, rect: QRectF | QRect | None = None) -> None:
-        """Paint ``rect`` again soon, or everything."""
+        """Request that ``rect`` be painted again; None: everything."""
         if self._visible:
             self.repaint(None if rect is None else QRectF(rect))
 
     def set_theme(self, theme: Theme) -> None:
-        """Paint in other colours."""
+        """Paint in the colours of ``theme``."""
         self.theme = theme
 
     def look(self, viewport: Viewport) -> None:
-        """The view has moved; whoever moved it repaints everything."""
+        """Follow a change of the view; the caller repaints everything."""
         self.viewport = viewport
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """Paint what touches ``rect``; the painter's state is restored afterwards."""
+        """Paint the part inside ``rect``; the caller restores the painter's state."""
         raise NotImplementedError
 
 
@@ -61,7 +61,9 @@ def pen(colour: str, width: float, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -
 
 
 def inside(rows: np.ndarray, viewport: Viewport, slack: float = 24.0) -> np.ndarray:
-    """The rows whose first two columns, pixels, lie in the view or at most ``slack`` beside it."""
+    """The rows of ``rows`` (n, m) whose first two columns, in pixels, lie in the view enlarged by
+    ``slack``.
+    """
     x, y = rows[:, 0], rows[:, 1]
     width, height = viewport.size
     return rows[(x > -slack) & (x < width + slack) & (y > -slack) & (y < height + slack)]

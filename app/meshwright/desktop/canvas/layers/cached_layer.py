@@ -1,4 +1,4 @@
-"""A layer that is painted once for each view of the mesh, so that a hover copies pixels only."""
+"""A layer that is cached as an image, so that a hover only copies pixels."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from meshwright.graphics.viewport import Viewport
 
 
 class PictureLayer(Layer):
-    """Keeps what :meth:`draw` paints until the view, the theme or the subject changes."""
+    """Caches what :meth:`draw` paints until the view, the theme or the content changes."""
 
     def __init__(self, theme: Theme) -> None:
         super().__init__(theme)
@@ -27,22 +27,22 @@ class PictureLayer(Layer):
         raise NotImplementedError
 
     def forget(self) -> None:
-        """What is to be drawn has changed."""
+        """Drop the cached image after a change of the content."""
         self._picture = None
         self.changed()
 
     def set_theme(self, theme: Theme) -> None:
-        """Paint in other colours."""
+        """Paint in the colours of ``theme``."""
         super().set_theme(theme)
         self._picture = None
 
     def look(self, viewport: Viewport) -> None:
-        """The view has moved."""
+        """Follow a change of the view."""
         super().look(viewport)
         self._picture = None
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """Copy from the picture, which is made when it is first asked for."""
+        """Copy from the cached image, which is drawn when it is first needed."""
         if self.empty:
             return
         ratio = painter.device().devicePixelRatioF()

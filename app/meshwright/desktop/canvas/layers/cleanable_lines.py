@@ -1,4 +1,4 @@
-"""The global lines that can be cleaned up, glowing; the one under the mouse more so."""
+"""The layer of removable global lines, highlighted; the one under the mouse more strongly."""
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
@@ -25,7 +25,7 @@ class LinesLayer(PictureLayer):
 
     @property
     def count(self) -> int:
-        """Lines that glow."""
+        """Number of lines that are shown."""
         return len(self._lines)
 
     @property
@@ -39,8 +39,8 @@ class LinesLayer(PictureLayer):
             self._lines, self._current = lines, -1
             self.forget()
 
-    def point(self, current: int) -> None:
-        """Let line ``current`` glow more, or none of them for -1."""
+    def highlight(self, current: int) -> None:
+        """Highlight line ``current`` more strongly; -1 for none."""
         if current != self._current:
             before = self._rect()
             self._current = current
@@ -48,17 +48,17 @@ class LinesLayer(PictureLayer):
 
     @property
     def empty(self) -> bool:
-        """Whether no line glows."""
+        """Whether there are no lines."""
         return not self._lines
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """The picture of all, then the current one once more."""
+        """Paint the cached image of all lines, then the current line once more."""
         super().paint(painter, rect)
         if 0 <= self._current < len(self._lines):
             self._stroke(painter, self._lines[self._current], 110, 11.0, 3.0)
 
     def draw(self, painter: QPainter) -> None:
-        """All lines; thin ones where there are very many, which would be one glow."""
+        """Paint all lines; thin ones if there are very many."""
         if len(self._lines) <= MANY:
             for line in self._lines:
                 self._stroke(painter, line, 56, 8.0, 1.75)

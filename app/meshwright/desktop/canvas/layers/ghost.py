@@ -1,5 +1,5 @@
-"""The ghost of an operation: edges that there would be, dashed; edges that would go, faded; the new
-irregularities; the change of s.
+"""The preview of an operation: new edges dashed, removed edges faded, new irregularities, change of
+s.
 """
 
 import numpy as np
@@ -13,21 +13,21 @@ from meshwright.graphics.theme import Theme
 
 DASHES = [4.0, 2.5]
 SLACK = 48.0
-"""Pixels around a ghost's edges that its numbers may take."""
+"""Pixels around the edges of a preview that its numbers may cover."""
 ROOM = 26.0
 """Numbers are written where the edges at the half-edge are longer than this, in pixels."""
 CROSS = 5.0
-"""Pixels that the cross on a vertex that would go reaches each way."""
+"""Half the size in pixels of the cross on a vertex that would be removed."""
 GAP = 14.0
-"""Pixels between the tag and the element that is pointed at."""
+"""Pixels between the tag and the hovered element."""
 HIDES = 60.0
-"""Pixels that the tag would rather be farther away than hide one more thing."""
+"""Cost of a hidden mark, as a distance in pixels, when the tag is placed."""
 MOST = 24
-"""More numbers than this are not written: a ghost is to be seen through."""
+"""No numbers are written if there are more than this, so that the mesh stays visible."""
 
 
 class GhostLayer(Layer):
-    """Edges of the ghost; lies below the markers. Its numbers are :class:`GhostNumbers`."""
+    """Edges of the previewed operation; lies below the markers, its :class:`GhostNumbers` above."""
 
     def __init__(self, theme: Theme, font: QFont) -> None:
         super().__init__(theme)
@@ -48,11 +48,11 @@ class GhostLayer(Layer):
             return
         before = self.rect().united(self.numbers.rect())
         self.ghost = ghost
-        self.numbers.tell(title if ghost is not None else "", around, marks)
+        self.numbers.show(title if ghost is not None else "", around, marks)
         self.changed(before.united(self.rect()).united(self.numbers.rect()))
 
     def rect(self) -> QRectF:
-        """Where there is anything to paint, in pixels; empty without a ghost."""
+        """The area that is painted, in pixels; empty without a preview."""
         if self.ghost is None:
             return QRectF()
         low_x, low_y, high_x, high_y = self.ghost.bounds
@@ -63,7 +63,7 @@ class GhostLayer(Layer):
         return box.adjusted(-SLACK, -SLACK, SLACK, SLACK).intersected(seen)
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """What would go is painted over as the elements are, what would come is dashed."""
+        """Paint removed edges in the colour of the elements, and new edges dashed."""
         if self.ghost is None or not self.rect().intersects(QRectF(rect)):
             return
         over = QColor(self.theme.fill)
@@ -92,7 +92,9 @@ class GhostLayer(Layer):
 
 
 class GhostNumbers(Layer):
-    """The Delta that vertices would have, and a tag with the operation and the change of s."""
+    """The irregularities that vertices would have, and a tag with the operation and the change of
+    s.
+    """
 
     def __init__(self, theme: Theme, font: QFont, edges: GhostLayer) -> None:
         super().__init__(theme)
@@ -105,18 +107,18 @@ class GhostNumbers(Layer):
 
     @property
     def text(self) -> str:
-        """What the tag says, empty without a ghost."""
+        """The text of the tag, empty without a preview."""
         ghost = self._edges.ghost
         return "" if ghost is None else f"{self._title}  {label(ghost.change)}"
 
-    def tell(self, title: str, around: np.ndarray | None, marks: np.ndarray | None) -> None:
-        """What :meth:`GhostLayer.show` was told."""
+    def show(self, title: str, around: np.ndarray | None, marks: np.ndarray | None) -> None:
+        """Take over the arguments of :meth:`GhostLayer.show`."""
         self._title = title
         self._around = np.zeros((2, 2)) if around is None else around
         self._marks = np.zeros((0, 2)) if marks is None else marks
 
     def rect(self) -> QRectF:
-        """Where the tag is, in pixels."""
+        """The area of the tag, in pixels."""
         return self._tag().adjusted(-2, -2, 2, 2) if self._edges.ghost is not None else QRectF()
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
@@ -131,7 +133,7 @@ class GhostNumbers(Layer):
         self._paint_tag(painter, ghost)
 
     def _paint_gone(self, painter: QPainter, ghost: Ghost) -> None:
-        """A cross on every vertex that would go."""
+        """Paint a cross on every vertex that would be removed."""
         at = self.viewport.to_screen(ghost.gone).tolist() if len(ghost.gone) <= MOST else []
         for colour, width in ((self.theme.background, 6.0), (self.theme.text, 2.25)):
             painter.setPen(pen(colour, width))
@@ -177,7 +179,7 @@ class GhostNumbers(Layer):
         return font
 
     def _tag(self) -> QRectF:
-        """Beside the element that is pointed at, where it hides least of the ghost."""
+        """The area of the tag beside the hovered element, where it hides least of the preview."""
         at = self.viewport.to_screen(self._around)
         size = QSizeF(QFontMetricsF(self._tag_font()).horizontalAdvance(self.text) + 24.0, 24.0)
         width, height = self.viewport.size
@@ -196,7 +198,9 @@ class GhostNumbers(Layer):
         return min(tags, key=lambda tag: self._cost(tag, middle))
 
     def _cost(self, tag: QRectF, middle: QPointF) -> float:
-        """How far from the half-edge a tag would be, and how much more it hides than it should."""
+        """The cost of a position of the tag: distance from the half-edge plus marks that
+        it hides.
+        """
         ghost = self._edges.ghost
         away = tag.center() - middle
         cost = float(np.hypot(away.x(), 2.0 * away.y()))
@@ -221,7 +225,9 @@ def _within(x: float, y: float, room: QRectF) -> QPointF:
 
 
 def change_colour(change: int, theme: Theme) -> str:
-    """The colour of a change of s: the accent for better, that of warnings for worse."""
+    """The colour of a change of s: the accent colour for a decrease, the warning colour for an
+    increase.
+    """
     if change == 0:
         return theme.muted
     return theme.accent if change < 0 else theme.warning

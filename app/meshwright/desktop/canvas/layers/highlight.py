@@ -1,4 +1,4 @@
-"""A frame around what one has been taken to, for a few seconds."""
+"""A highlight around the element or vertex that the view was moved to, for a few seconds."""
 
 import numpy as np
 from qtpy.QtCore import QObject, QPointF, QRect, QRectF, Qt, QTimer
@@ -24,18 +24,18 @@ class SpotLayer(Layer):
 
     @property
     def places(self) -> np.ndarray | None:
-        """(n, 2) in the plane what is framed: one point, or the corners of an element."""
+        """(n, 2) the highlighted point, or the corners of the highlighted element, in the plane."""
         return self._places
 
     def show(self, places: np.ndarray) -> None:
-        """Frame ``places`` (n, 2 or 3) in the plane."""
+        """Highlight ``places`` (n, 2 or 3) in the plane."""
         before = self._rect()
         self._places = np.asarray(places, dtype=float)[:, :2]
         self._timer.start(int(SECONDS * 1000))
         self.changed(before.united(self._rect()))
 
     def clear(self) -> None:
-        """Take the frame away."""
+        """Remove the highlight."""
         self._timer.stop()
         if self._places is not None:
             before = self._rect()
@@ -43,7 +43,7 @@ class SpotLayer(Layer):
             self.changed(before)
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """A line in the accent's colour on a halo."""
+        """Paint a line in the accent colour on a halo."""
         if self._places is None:
             return
         painter.setBrush(Qt.BrushStyle.NoBrush)

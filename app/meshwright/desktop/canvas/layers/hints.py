@@ -1,4 +1,4 @@
-"""Hints: numbered ghosts of what the policy would do, each with a badge that can be clicked."""
+"""The layer of hints: previews of the policy's operations, each with a clickable badge."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from meshwright.graphics.viewport import Viewport
 HEIGHT = 22.0
 GAP = 4.0
 MANY = 300
-"""Of more visible irregular vertices than this badges do not keep clear."""
+"""Badges avoid irregular vertices only up to this many visible ones."""
 PALE = 120
-"""How opaque the edges of the hints are that are not the one meant, of 255."""
+"""Opacity, of 255, of the edges of hints other than the current one."""
 _DISC = np.array([(0, 0), (8, 0), (-8, 0), (0, 8), (0, -8), (4, 4), (-4, -4), (4, -4), (-4, 4)])
 _AROUND = ((1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1))
 
@@ -52,15 +52,15 @@ class HintsLayer(Layer):
         self.badges = HintBadges(theme, font, self)
 
     def show(self, hints: tuple[Hint, ...], marks: np.ndarray | None = None) -> None:
-        """Show these, the first of them in front; badges keep clear of `marks` (n, 2)."""
+        """Show ``hints``, the first one in front; badges avoid covering ``marks`` (n, 2)."""
         if hints or self.hints:
             self.hints, self.meant = hints, 0
             self.badges.marks = np.zeros((0, 2)) if marks is None else marks
             self.badges.place()
             self.changed()
 
-    def mean(self, index: int) -> None:
-        """Bring one of them to the front."""
+    def make_current(self, index: int) -> None:
+        """Make the hint ``index`` the current one, which is painted in front."""
         if index != self.meant and 0 <= index < len(self.hints):
             self.meant = index
             self.changed()
@@ -71,7 +71,7 @@ class HintsLayer(Layer):
         return next((i for i, box in enumerate(boxes) if box.contains(point)), -1)
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """The one that is meant is drawn last, and shows what would go, too."""
+        """Paint the current hint last, with the edges that it removes."""
         if not self.hints:
             return
         for index, hint in enumerate(self.hints):
@@ -109,13 +109,13 @@ class HintBadges(Layer):
         self._font.setPixelSize(12)
         self._font.setWeight(QFont.Weight.DemiBold)
         self.boxes: list[QRectF] = []
-        """Where the badges are, in pixels; empty ones are out of sight."""
+        """Areas of the badges in pixels; empty for hints out of view."""
         self.marks = np.zeros((0, 2))
-        """(n, 2) places that are not to be covered."""
+        """(n, 2) places that badges avoid covering."""
         self._roots: list[QPointF] = []
 
     def look(self, viewport: Viewport) -> None:
-        """The view has moved."""
+        """Follow a change of the view."""
         super().look(viewport)
         self.place()
 
@@ -140,7 +140,7 @@ class HintBadges(Layer):
             self.boxes.append(self._free_box(QPointF(x, y), wide, room, busy))
 
     def _free_box(self, root: QPointF, wide: float, room: QRectF, busy: np.ndarray) -> QRectF:
-        """Of the boxes around `root` the one that covers least; `room` bounds its corner."""
+        """The box around ``root`` that covers least; ``room`` bounds its corner."""
         best, least = QRectF(), np.inf
         for ring in (1.0, 1.7, 2.6):
             for dx, dy in _AROUND:
@@ -204,7 +204,7 @@ def percent(probability: float) -> str:
 
 
 def _points(viewport: Viewport, segments: np.ndarray) -> np.ndarray:
-    """Pixels (n, 2) along line segments (m, 2, 2), close enough together to feel a badge."""
+    """Pixels (n, 2) along line segments (m, 2, 2), closer together than a badge is wide."""
     ends = viewport.to_screen(segments.reshape(-1, 2)).reshape(-1, 2, 2)
     share = np.linspace(0.0, 1.0, 13)[:, None, None]
     return (ends[:, 0] + share * (ends[:, 1] - ends[:, 0])).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""Hatched elements: those that are inverted, in plain sight."""
+"""The layer of inverted elements, which are hatched."""
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, Qt
@@ -9,11 +9,11 @@ from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
 
 SMALLEST = 9.0
-"""Elements narrower than this in pixels get a sign of warning beside the hatching."""
+"""Elements narrower than this in pixels get a warning sign as well."""
 SLACK = 24.0
 """Pixels beside an element that its sign may reach."""
 MOST = 1500
-"""More visible ones than this are not all drawn: there is no overlooking them."""
+"""At most this many visible elements are hatched."""
 
 
 class HatchLayer(Layer):
@@ -38,7 +38,7 @@ class HatchLayer(Layer):
             self.changed()
 
     def look(self, viewport: Viewport) -> None:
-        """The view has moved."""
+        """Follow a change of the view."""
         super().look(viewport)
         corners = viewport.to_screen(self._corners)
         middles = corners.mean(axis=1) if len(corners) else np.zeros((0, 2))

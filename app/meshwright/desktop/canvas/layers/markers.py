@@ -10,7 +10,7 @@ from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
 
 MOST_CORNERS = 5000
-"""More visible corners than this are not drawn: they would be all that is seen."""
+"""Corners are not drawn if more than this are visible."""
 
 
 class MarkersLayer(Layer):
@@ -28,7 +28,7 @@ class MarkersLayer(Layer):
 
     @property
     def numbers(self) -> bool:
-        """Whether discs carry their number, where it can be read."""
+        """Whether discs show their irregularity as a number, where it is legible."""
         return self._numbers
 
     @numbers.setter
@@ -66,7 +66,7 @@ class MarkersLayer(Layer):
                 self._discs = inside(discs, viewport)
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """Boundary first, then what stands on vertices."""
+        """Paint the boundary, then the marks on vertices."""
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(pen(self.theme.boundary, 1.75))
         painter.drawPath(self._outline)

@@ -1,4 +1,4 @@
-"""What the policy sees and wants: its field of view, its template, and its probabilities."""
+"""The layer of the policy's input and output: field of view, template, probabilities."""
 
 from __future__ import annotations
 
@@ -19,33 +19,33 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
 
 READ = 0.05
-"""Probabilities from here on are written beside their half-edge."""
+"""Probabilities of at least this value are written beside their half-edge."""
 ROOM = 34.0
 """Numbers are written where the edges are longer than this, in pixels."""
 NAMED = 7.5
 """Rings of at least this radius carry their slot."""
 SMALL = 90.0
-"""A field of view of less than this, in pixels, is pointed out by a ring around it."""
+"""A field of view smaller than this, in pixels, is marked by a ring around it."""
 FAINT = 0.004
 """Half-edges less likely than this are not drawn."""
 
 
 @dataclass(frozen=True)
-class Sight:
-    """An insight in the plane of the view, as the document's mesh was when it was had."""
+class PolicyLayerContent:
+    """Coordinates and probabilities of an insight, for painting."""
 
     field: np.ndarray
     """(M, k, 2) corners of the elements in the field of view, the nearest first."""
     blocks: np.ndarray
-    """(M,) the block of convolution with which each comes in."""
+    """(M,) the convolution block that first includes each element."""
     elements: np.ndarray
-    """(K, k, 2) corners of the elements of the half-edges that are weighed, the likeliest last."""
+    """(K, k, 2) corners of the elements of the candidate half-edges, the most probable last."""
     sides: np.ndarray
     """(K,) which of its sides the half-edge is."""
     weights: np.ndarray
     """(K,) their probabilities."""
     wanted: int
-    """The row of the half-edge that is taken next."""
+    """The row of the half-edge that is chosen next."""
     places: np.ndarray
     """(T, 2) the vertices of the template."""
     slots: np.ndarray
@@ -53,14 +53,14 @@ class Sight:
     rings: np.ndarray
     """(T,) the ring of each."""
     words: tuple[str, ...]
-    """What there is to say of it."""
+    """The legend, line by line."""
 
 
-def sight(insight: Insight, mesh: HalfEdgeMesh, words: tuple[str, ...] = ()) -> Sight:
-    """The insight as seen on `mesh`, which is in the state that it is about."""
+def sight(insight: Insight, mesh: HalfEdgeMesh, words: tuple[str, ...] = ()) -> PolicyLayerContent:
+    """What to paint for an insight about ``mesh`` in its current state."""
     order = np.argsort(insight.weights, kind="stable")
     halfedges = insight.halfedges[order]
-    return Sight(
+    return PolicyLayerContent(
         field=_corners(mesh, insight.field[:, 0]),
         blocks=insight.field[:, 1],
         elements=_corners(mesh, halfedges // mesh.k),
@@ -83,17 +83,17 @@ class FieldLayer(Layer):
 
     def __init__(self, theme: Theme, font: QFont) -> None:
         super().__init__(theme)
-        self.sight: Sight | None = None
+        self.sight: PolicyLayerContent | None = None
         self.above = InsightLayer(theme, font, self)
 
-    def show(self, sight: Sight | None) -> None:
+    def show(self, sight: PolicyLayerContent | None) -> None:
         """Show what the policy sees, or nothing."""
         if sight is not None or self.sight is not None:
             self.sight = sight
             self.changed()
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """The later an element comes in, the paler it is."""
+        """Paint elements paler the later the convolution includes them."""
         if self.sight is None:
             return
         painter.setPen(Qt.PenStyle.NoPen)
@@ -117,7 +117,7 @@ class InsightLayer(Layer):
         self._font.setWeight(QFont.Weight.DemiBold)
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """From the least to the most important."""
+        """Paint the marks in the order of their importance."""
         seen = self._below.sight
         if seen is None:
             return
@@ -146,7 +146,9 @@ class InsightLayer(Layer):
         heaviest: float,
         wanted: bool = False,
     ) -> None:
-        """An arrow as thick as the half-edge is likely, and its probability."""
+        """Paint an arrow whose width shows the probability of the half-edge, and the
+        probability.
+        """
         tail, head = arrow(polygon(element), side)
         along = head - tail
         length = float(np.hypot(along.x(), along.y()))
@@ -194,8 +196,8 @@ class InsightLayer(Layer):
         painter.setPen(QColor(self.theme.text))
         painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, text)
 
-    def _paint_template(self, painter: QPainter, seen: Sight) -> None:
-        """A ring around each vertex, full for the element's own, dotted further out."""
+    def _paint_template(self, painter: QPainter, seen: PolicyLayerContent) -> None:
+        """Paint a ring around each vertex: solid on the element itself, dotted further out."""
         font = QFont(self._font)
         font.setPixelSize(10)
         painter.setFont(font)
@@ -220,8 +222,8 @@ class InsightLayer(Layer):
             painter.setPen(QColor(self.theme.arrow))
             painter.drawText(tag, Qt.AlignmentFlag.AlignCenter, text)
 
-    def _paint_place(self, painter: QPainter, seen: Sight) -> None:
-        """Where to look, in a mesh of small elements."""
+    def _paint_place(self, painter: QPainter, seen: PolicyLayerContent) -> None:
+        """Paint a ring around the field of view if its elements are small."""
         corners = self.viewport.to_screen(seen.field.reshape(-1, 2))
         low, high = corners.min(axis=0), corners.max(axis=0)
         size = float((high - low).max())
@@ -232,14 +234,14 @@ class InsightLayer(Layer):
                 painter.setPen(pen(colour, width))
                 painter.drawEllipse(QPointF(x, y), radius, radius)
 
-    def _radius(self, seen: Sight) -> float:
-        """Of the rings: smaller where the elements are small, too."""
+    def _radius(self, seen: PolicyLayerContent) -> float:
+        """The radius of the rings, which is smaller for small elements."""
         corners = self.viewport.to_screen(seen.elements[seen.wanted])
         edges = np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)
         return float(np.clip(0.3 * np.median(edges), 5.0, 12.5))
 
     def _paint_words(self, painter: QPainter, words: tuple[str, ...]) -> None:
-        """A card in the lower left corner: the numbers, and what the marks mean."""
+        """Paint a card in the lower left corner with the numbers and the meaning of the marks."""
         if not words:
             return
         font = QFont(self._font)

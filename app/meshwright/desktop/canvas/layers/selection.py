@@ -14,7 +14,7 @@ from meshwright.graphics.viewport import Viewport
 MANY = 1500
 """More visible vertices than this are dots of three pixels; fewer are rings."""
 RADIUS = 7.5
-"""Pixels of the ring around a vertex that carries no disc."""
+"""Radius in pixels of the ring around a vertex without a disc."""
 
 Radii = Callable[[Viewport], np.ndarray]
 

@@ -11,7 +11,7 @@ WIDEST = 300
 
 
 class CardLayer(Layer):
-    """One card at a time; a refusal is in the colour of warnings and fades."""
+    """One card at a time; refusals have the warning colour and disappear after a while."""
 
     def __init__(self, theme: Theme, font: QFont, parent: QObject) -> None:
         super().__init__(theme)
@@ -31,7 +31,7 @@ class CardLayer(Layer):
 
     @property
     def warning(self) -> bool:
-        """True while the card tells a refusal."""
+        """True while the card shows a refusal."""
         return bool(self._text) and self._warns
 
     def show(self, text: str, at: QPoint, warns: bool = False, fades: bool = False) -> None:
@@ -46,7 +46,7 @@ class CardLayer(Layer):
         self.changed(before.united(self._rect()))
 
     def hide(self) -> None:
-        """Take the card away."""
+        """Hide the card."""
         self._fade.stop()
         if self._text:
             before = self._rect()

@@ -1,4 +1,4 @@
-"""Vertices that are being dragged: their edges as they would be, folded elements hatched."""
+"""The layer of dragged vertices: their edges at the new places, inverted elements hatched."""
 
 import numpy as np
 from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, Qt
@@ -10,7 +10,7 @@ from meshwright.graphics.theme import Theme
 
 SLACK = 24.0
 COVER = 13.0
-"""Pixels around a vertex that is away that are covered: its disc stands there."""
+"""Radius in pixels of the cover over the disc at the original place of a vertex."""
 
 
 class RubberLayer(Layer):
@@ -36,7 +36,7 @@ class RubberLayer(Layer):
         return self._places
 
     def begin(self, segments: np.ndarray, places: np.ndarray) -> None:
-        """These edges (m, 2, 2) and vertices (n, 2) are going to move."""
+        """Begin a drag of vertices (n, 2) with their edges (m, 2, 2)."""
         self._before, self._from = segments, places
         self.show(segments, np.zeros((0, 3, 2)), np.zeros((0, 2)))
 
@@ -47,7 +47,7 @@ class RubberLayer(Layer):
         self.changed(before.united(self._rect()))
 
     def clear(self) -> None:
-        """The drag is over."""
+        """End the drag."""
         before = self._rect()
         self._before = self._segments = np.zeros((0, 2, 2))
         self._folded = np.zeros((0, 3, 2))
@@ -55,7 +55,7 @@ class RubberLayer(Layer):
         self.changed(before)
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """The edges as they were fade; then the new ones."""
+        """Paint the original edges faded, then the new ones."""
         if not len(self._segments):
             return
         painter.setPen(pen(self.theme.fill, 4.0))
@@ -65,7 +65,7 @@ class RubberLayer(Layer):
         painter.drawLines(self._lines(self._segments))
 
     def paint_vertices(self, painter: QPainter) -> None:
-        """Cover what stands where the vertices were, and show them where they are."""
+        """Cover the marks at the original places, and paint the vertices at the new ones."""
         painter.setPen(QPen(QColor(self.theme.faint), 1.25, Qt.PenStyle.DotLine))
         painter.setBrush(QColor(self.theme.fill))
         for x, y in self.viewport.to_screen(self._from).tolist():
@@ -96,5 +96,5 @@ class RubberVertices(Layer):
         self._edges = edges
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
-        """Where they were, and where they are."""
+        """Paint the vertices at the original and at the new places."""
         self._edges.paint_vertices(painter)

@@ -1,4 +1,4 @@
-"""Small controls that the pages and the options of the dialog are made of."""
+"""Controls of the dialog for new meshes."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from meshwright.desktop.widgets.number_box import DecimalBox
 from meshwright.graphics.theme import GRID
 
 _SMALLEST, _LARGEST = 1e-9, 1e9
-"""Lengths that can be typed."""
+"""Lower and upper bound of lengths that can be typed."""
 STEPS = 200
-"""Positions of a slider."""
+"""Number of positions of a slider."""
 
 
-class Choice(QWidget):
-    """Buttons side by side of which one is down. ``changed(key)``."""
+class SegmentedButtons(QWidget):
+    """Buttons side by side of which one is checked. ``changed(key)`` when another one is."""
 
     changed = Signal(str)
 
@@ -47,7 +47,6 @@ class Choice(QWidget):
             button.setCheckable(True)
             button.setAutoDefault(False)
             button.setAccessibleName(f"{name}: {title}")
-            button.setProperty("key", key)
             button.setMinimumWidth(_width(button, title))
             button.clicked.connect(self._on_clicked)
             self._group.addButton(button)
@@ -58,8 +57,8 @@ class Choice(QWidget):
 
     @property
     def key(self) -> str:
-        """Which one is down."""
-        return str(self._group.checkedButton().property("key"))
+        """The key of the checked button."""
+        return next(key for key, button in self.buttons.items() if button.isChecked())
 
     @key.setter
     def key(self, key: str) -> None:
@@ -69,11 +68,11 @@ class Choice(QWidget):
         self.changed.emit(self.key)
 
 
-class Measure(QWidget):
-    """A number that may be left to the shape: a tick, a slider, and a field to type in.
+class OptionalNumber(QWidget):
+    """An optional number: a check box, a slider, and a field to type in.
 
-    ``value`` is None while the tick is off. ``changed()``. A ``geometric`` slider runs by factors,
-    from the largest value at the left to the smallest at the right.
+    ``value`` is None while the box is unchecked. ``changed()``. A ``geometric`` slider has a
+    logarithmic scale, from the largest value at the left to the smallest at the right.
     """
 
     changed = Signal()
@@ -126,13 +125,11 @@ class Measure(QWidget):
 
     @property
     def value(self) -> float | None:
-        """The number, None where the shape decides."""
+        """The number, None while the box is unchecked."""
         return float(self.field.value()) if self.tick.isChecked() else None
 
     def set_range(self, low: float, high: float, value: float) -> None:
-        """Other bounds of the slider, and the number to begin with unless the user has set one
-        within them.
-        """
+        """Set the bounds of the slider, and a default that replaces a value outside of them."""
         self._low, self._high = low, high
         decimals = max(0, 3 - math.floor(math.log10(high)))
         inside = self.tick.isChecked() and low <= self.field.value() <= high
@@ -177,7 +174,7 @@ class Measure(QWidget):
 
 
 def _width(button: QPushButton, title: str) -> int:
-    """Pixels that a button needs for its title in bold, as it has it while it is down."""
+    """The width in pixels of a button with its title in bold, as it is while checked."""
     font = QFont(button.font())
     font.setPixelSize(13)
     font.setWeight(QFont.Weight.DemiBold)

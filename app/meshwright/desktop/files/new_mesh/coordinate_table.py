@@ -1,4 +1,4 @@
-"""The table of a sketch's coordinates, typed and in step with the drawing."""
+"""The table of a sketch's coordinates, which can be edited and follows the drawing."""
 
 from __future__ import annotations
 
@@ -10,40 +10,38 @@ from meshwright.graphics.theme import GRID
 from meshwright.sources.polygon_checks import Place
 from meshwright.sources.polygon_sketch import Sketch
 
-WIDTH = 27 * GRID
+WIDTH = 29 * GRID
 NEW = "New"
 NOT_A_NUMBER = "{text!r} is not a number."
 
 
-class Coordinates(QTableWidget):
-    """A view on a :class:`meshwright.sources.polygon_sketch.Sketch`: one row for each corner, one
-    more while a loop is
-    open, to type the next corner in. ``picked(loop, corner)``; ``told(sentence)``.
+class CoordinateTable(QTableWidget):
+    """The corners of a :class:`meshwright.sources.polygon_sketch.Sketch`, one per row, and an empty
+    row for the next corner while a loop is open.
+
+    ``picked(loop, corner)`` when a row is selected; ``message(sentence)`` for the status line.
     """
 
     picked = Signal(int, int)
-    told = Signal(str)
+    message = Signal(str)
 
     def __init__(self, sketch: Sketch, parent: QWidget | None = None) -> None:
         super().__init__(0, 3, parent)
         self.setObjectName("Table")
         self.setAccessibleName("Coordinates of the corners")
-        self.setHorizontalHeaderLabels(["Corner", "x", "y"])
         self.setFixedWidth(WIDTH)
         self.verticalHeader().hide()
         self.verticalHeader().setDefaultSectionSize(28)
         header = self.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
-        header.resizeSection(0, 9 * GRID)
+        header.resizeSection(0, 11 * GRID)
         header.setHighlightSections(False)
-        for axis in (1, 2):
-            self.horizontalHeaderItem(axis).setTextAlignment(
-                Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-            )
-        self.horizontalHeaderItem(0).setTextAlignment(
-            Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-        )
+        left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
+        for column, (title, side) in enumerate((("Corner", left), ("x", right), ("y", right))):
+            item = QTableWidgetItem(title)
+            item.setTextAlignment(side | Qt.AlignmentFlag.AlignVCenter)
+            self.setHorizontalHeaderItem(column, item)
         self.setShowGrid(False)
         self.setFont(tabular(self.font()))
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
@@ -58,17 +56,17 @@ class Coordinates(QTableWidget):
         self._rows: list[tuple[int, int]] = []
         self._began: list[float | None] = [None, None]
         sketch.changed.connect(self._fill)
-        # later: while a cell is being edited its table must not change
+        # later: the table must not change while a cell is being edited
         self.cellChanged.connect(self._on_typed, Qt.ConnectionType.QueuedConnection)
         self.currentCellChanged.connect(self._on_current_changed)
         self._fill()
 
     def release(self) -> None:
-        """Let go of the sketch."""
+        """Disconnect from the sketch."""
         self.sketch.changed.disconnect(self._fill)
 
     def select(self, loop: int, corner: int) -> None:
-        """Mark a corner's row."""
+        """Select the row of a corner."""
         if (loop, corner) in self._rows:
             with QSignalBlocker(self):
                 self.setCurrentCell(self._rows.index((loop, corner)), 1)
@@ -106,10 +104,10 @@ class Coordinates(QTableWidget):
         number = _number(text)
         if number is None:
             if text:
-                self.told.emit(NOT_A_NUMBER.format(text=text[:20]))
+                self.message.emit(NOT_A_NUMBER.format(text=text[:20]))
             self._fill()
             return
-        self.told.emit("")
+        self.message.emit("")
         if row < len(self._rows):
             loop, corner = self._rows[row]
             self.sketch.set(loop, corner, _with(self._place(loop, corner), axis, number))
@@ -145,7 +143,7 @@ def _text(number: float) -> str:
 
 
 def _number(text: str) -> float | None:
-    """A number, written with a point or a comma; None if it is none."""
+    """The number in ``text``, with decimal point or comma; None if it is not a number."""
     try:
         number = float(text.replace("\u2212", "-").replace(",", "."))
     except ValueError:

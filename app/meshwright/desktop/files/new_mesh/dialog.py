@@ -1,4 +1,4 @@
-"""The dialog that makes a new mesh: where the shape comes from, how it is meshed, how it looks."""
+"""The dialog for new meshes: source of the shape, meshing options, preview."""
 
 from __future__ import annotations
 
@@ -19,18 +19,19 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from meshwright.desktop.files.new_mesh.controls import Choice
+from meshwright.desktop.files.new_mesh.controls import SegmentedButtons
 from meshwright.desktop.files.new_mesh.draw_page import DrawPage
 from meshwright.desktop.files.new_mesh.file_page import FilePage
 from meshwright.desktop.files.new_mesh.gallery_page import GalleryPage
-from meshwright.desktop.files.new_mesh.mesh_process import Maker
+from meshwright.desktop.files.new_mesh.mesh_process import MeshProcess
 from meshwright.desktop.files.new_mesh.options import Options
 from meshwright.desktop.files.new_mesh.page_base import Page
 from meshwright.desktop.files.new_mesh.random_page import RandomPage
 from meshwright.desktop.widgets import icons
-from meshwright.desktop.widgets.basic import named, sentence
+from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.sources.mesh_worker import NewMesh
+from meshwright_core.errors import sentence
 
 PAGES = (("gallery", "Gallery"), ("random", "Random"), ("draw", "Draw"), ("file", "File"))
 WOULD_BE_LOST = "The drawing would be lost: press Cancel to close without it."
@@ -57,7 +58,7 @@ class NewMeshDialog(QDialog):
         self.setWindowTitle("New mesh")
         self.resize(1120, 720)
         self.made: NewMesh | None = None
-        self.maker = Maker(self)
+        self.maker = MeshProcess(self)
         self.maker.start()
         self.options = Options(kind, theme)
         self.gallery, self.random = GalleryPage(theme), RandomPage(theme)
@@ -80,13 +81,13 @@ class NewMeshDialog(QDialog):
             self.file.take(file)
 
     def _arrange(self) -> None:
-        self.tabs = Choice(PAGES, "Where the shape comes from")
+        self.tabs = SegmentedButtons(PAGES, "Source of the shape")
         self.stack = QStackedWidget()
         for page in self._pages.values():
             self.stack.addWidget(page)
         self.status = named("", "Status")
         self.status.setWordWrap(True)
-        self.status.setAccessibleName("What is wrong or to be done")
+        self.status.setAccessibleName("Status")
         self.cancel, self.make = QPushButton("Cancel"), QPushButton(MAKE)
         self.make.setObjectName("Primary")
         self.make.setDefault(True)
@@ -120,7 +121,7 @@ class NewMeshDialog(QDialog):
         self.options.changed.connect(self._on_changed)
         for page in self._pages.values():
             page.changed.connect(self._on_changed)
-            page.told.connect(self._on_told)
+            page.message.connect(self._on_message)
         for pictures in (self.gallery.shapes, self.random.pictures):
             pictures.itemDoubleClicked.connect(self.accept)
         self.maker.made.connect(self._on_made)
@@ -130,18 +131,18 @@ class NewMeshDialog(QDialog):
 
     @property
     def page(self) -> Page:
-        """The page in sight."""
+        """The current page."""
         return self._pages[self.tabs.key]
 
     def show_page(self, key: str) -> None:
-        """Turn to a page: "gallery", "random", "draw" or "file"."""
+        """Switch to a page: "gallery", "random", "draw" or "file"."""
         self.tabs.key = key
         self.stack.setCurrentWidget(self._pages[key])
         self.page.fill()
         self._on_changed()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.setStyleSheet(_style(theme))
         self.options.set_theme(theme)
@@ -149,7 +150,7 @@ class NewMeshDialog(QDialog):
             page.set_theme(theme)
 
     def accept(self) -> None:
-        """Take the mesh, or wait until it is made."""
+        """Accept the mesh, once it is made."""
         if self.made is not None:
             super().accept()
         elif self.maker.busy:
@@ -157,14 +158,14 @@ class NewMeshDialog(QDialog):
             self._refresh()
 
     def done(self, result: int) -> None:
-        """Close: end the process and let go of everything."""
+        """Close the dialog and end the process."""
         self.maker.close()
         for page in self._pages.values():
             page.release()
         super().done(result)
 
     def keyPressEvent(self, event: Any) -> None:  # noqa: N802
-        """Return in a field ends its editing; Escape does not throw a drawing away."""
+        """Let Return in a field end its editing only, and keep Escape from discarding a drawing."""
         typing = isinstance(self.focusWidget(), QAbstractSpinBox | QLineEdit | QTableWidget)
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and typing:
             event.accept()
@@ -173,7 +174,7 @@ class NewMeshDialog(QDialog):
             and self.page is self.draw
             and not self.draw.sketch.empty
         ):
-            self._on_told(WOULD_BE_LOST)
+            self._on_message(WOULD_BE_LOST)
         else:
             super().keyPressEvent(event)
 
@@ -185,7 +186,7 @@ class NewMeshDialog(QDialog):
         path = source.get("file", "") if source else ""
         if path and path != self._path:
             self._path = path
-            self.options.size_of.tick.setChecked(False)  # what suits it is not known yet
+            self.options.size_of.tick.setChecked(False)  # its suitable options are not known yet
         if source is None:
             self._asked = self.made = None
             self.maker.cancel()
@@ -212,7 +213,7 @@ class NewMeshDialog(QDialog):
         self.options.show_words(NO_MESH, stale=False)
         self._refresh(sentence(words))
 
-    def _on_told(self, words: str) -> None:
+    def _on_message(self, words: str) -> None:
         self._told = words
         self._refresh()
 

@@ -8,7 +8,7 @@ from qtpy.QtCore import Qt
 from qtpy.QtGui import QKeySequence, QShortcut
 from qtpy.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QVBoxLayout
 
-from meshwright.desktop.files.new_mesh.coordinate_table import Coordinates
+from meshwright.desktop.files.new_mesh.coordinate_table import CoordinateTable
 from meshwright.desktop.files.new_mesh.drawing_area import DrawingArea
 from meshwright.desktop.files.new_mesh.page_base import Page
 from meshwright.desktop.widgets import icons
@@ -26,13 +26,13 @@ class DrawPage(Page):
         super().__init__()
         self.sketch = Sketch()
         self.area = DrawingArea(self.sketch, theme)
-        self.table = Coordinates(self.sketch)
-        self.hole = _button("Add hole", "Begin a hole: click its corners inside the outline")
-        self.undo = _button("", "Take back the last change (Ctrl+Z)")
-        self.redo = _button("", "Do again what was taken back (Ctrl+Shift+Z)")
-        self.clear = _button("Clear", "Begin anew; can be taken back")
-        self.fit = _button("Fit", "Show all that is drawn")
-        self.to_grid = _tick("Grid", "Corners go to points of the grid")
+        self.table = CoordinateTable(self.sketch)
+        self.hole = _button("Add hole", "Start a hole: click its corners inside the outline")
+        self.undo = _button("", "Undo the last change (Ctrl+Z)")
+        self.redo = _button("", "Redo the change that was undone last (Ctrl+Shift+Z)")
+        self.clear = _button("Clear", "Clear the drawing; this can be undone")
+        self.fit = _button("Fit", "Fit the view to the drawing")
+        self.to_grid = _tick("Grid", "Corners snap to grid points")
         self.step = DecimalBox()
         self.step.setDecimals(3)
         self.step.setRange(0.001, 1000.0)
@@ -40,9 +40,9 @@ class DrawPage(Page):
         self.step.setValue(0.1)
         self.step.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.step.setFixedWidth(10 * GRID)
-        self.step.setAccessibleName("Step of the grid")
-        self.to_points = _tick("Points", "The mouse is drawn to corners that are there")
-        self.to_angles = _tick("Right angles", "Edges go to the axes and to right angles")
+        self.step.setAccessibleName("Grid spacing")
+        self.to_points = _tick("Points", "The mouse snaps to existing corners")
+        self.to_angles = _tick("Right angles", "Edges snap to the axes and to right angles")
         self._arrange()
         self._connect()
         self.set_theme(theme)
@@ -63,8 +63,8 @@ class DrawPage(Page):
         both.addWidget(self.area, 1)
         both.addWidget(self.table)
         hint = named(
-            "Click to add a corner, or type it in the table. Drag to move one, click an edge to "
-            "put one on it. Right click or Backspace takes back.",
+            "Click to add a corner, or type it in the table. Drag a corner to move it, click an "
+            "edge to insert one. Right click or Backspace undoes.",
             "Hint",
         )
         hint.setWordWrap(True)
@@ -77,8 +77,8 @@ class DrawPage(Page):
 
     def _connect(self) -> None:
         self.sketch.changed.connect(self._on_sketch_changed)
-        self.area.told.connect(self.told.emit)
-        self.table.told.connect(self.told.emit)
+        self.area.message.connect(self.message.emit)
+        self.table.message.connect(self.message.emit)
         self.area.picked.connect(self.table.select)
         self.table.picked.connect(self._on_row_picked)
         self.hole.clicked.connect(self._on_hole)
@@ -105,26 +105,26 @@ class DrawPage(Page):
 
     @property
     def words(self) -> str:
-        """What is wrong, or what comes next."""
+        """What is wrong with the polygon, or what to do next."""
         return self.sketch.words
 
     @property
     def is_wrong(self) -> bool:
-        """Whether something is crossed, outside, or without area."""
+        """Whether loops cross, lie outside or have no area."""
         return self.sketch.problem is not None
 
     def fill(self) -> None:
-        """Take the keys."""
+        """Give the drawing area the keyboard focus."""
         self.area.setFocus()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.area.set_theme(theme)
         self.undo.setIcon(icons.icon("undo", theme))
         self.redo.setIcon(icons.icon("redo", theme))
 
     def release(self) -> None:
-        """Let go of the sketch."""
+        """Disconnect from the sketch."""
         self.sketch.changed.disconnect(self._on_sketch_changed)
         self.area.release()
         self.table.release()

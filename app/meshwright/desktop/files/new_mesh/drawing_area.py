@@ -1,4 +1,4 @@
-"""The drawing area: a polygon drawn with the mouse, with grid, snapping and guide lines."""
+"""The drawing area: polygons drawn with the mouse, with grid, snapping and guide lines."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ from meshwright.sources.polygon_sketch import Sketch
 from meshwright.sources.snapping import Snap, Snapper
 
 REACH = 9.0
-"""Pixels within which corners and lines attract the mouse."""
+"""Distance in pixels at which the mouse snaps to corners and lines."""
 CORNER = 8.0
-CLOSED = "Everything is closed: click an edge to put a corner on it, or press Add hole."
+CLOSED = "All loops are closed: click an edge to insert a corner, or press Add hole."
 _CLOSEST_GRID = 7.0
 """Pixels between grid lines below which only every fifth or tenth is drawn."""
 _DRAG = 4.0
@@ -40,13 +40,14 @@ _DRAG = 4.0
 
 
 class DrawingArea(QWidget):
-    """A view on a :class:`meshwright.sources.polygon_sketch.Sketch`. ``pointed(x, y)`` where the
-    mouse is, snapped;
-    ``told(sentence)`` what is in the way of what the mouse would do; ``picked(loop, corner)``.
+    """Draws and edits a :class:`meshwright.sources.polygon_sketch.Sketch`.
+
+    ``hovered(x, y)``: the snapped position of the mouse; ``message(sentence)``: why a click would
+    be refused; ``picked(loop, corner)`` when a corner is selected.
     """
 
-    pointed = Signal(float, float)
-    told = Signal(str)
+    hovered = Signal(float, float)
+    message = Signal(str)
     picked = Signal(int, int)
 
     def __init__(self, sketch: Sketch, theme: Theme, parent: QWidget | None = None) -> None:
@@ -73,26 +74,26 @@ class DrawingArea(QWidget):
         sketch.changed.connect(self._on_changed)
 
     def release(self) -> None:
-        """Let go of the sketch."""
+        """Disconnect from the sketch."""
         self.sketch.changed.disconnect(self._on_changed)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.update()
 
     def set_snapping(self, grid: float, snapper: Snapper) -> None:
-        """Show a grid of this step; snap as ``snapper`` does."""
+        """Show a grid of this spacing, and snap by ``snapper``."""
         self.grid, self.snapper = grid, snapper
         self.update()
 
     def select(self, corner: tuple[int, int] | None) -> None:
-        """Mark a corner: (loop, corner)."""
+        """Select a corner: (loop, corner)."""
         self.selected = corner
         self.update()
 
     def fit(self) -> None:
-        """Show all that is drawn, or the square from -1 to 1."""
+        """Fit the view to the drawing, or the square from -1 to 1."""
         places = [place for _, _, place in self.sketch.corners()]
         points = np.array(places if len(places) > 1 else [(-1.0, -1.0), (1.0, 1.0)])
         self.view = self.view.resized(self.width(), self.height()).fitted(points, 6 * GRID)
@@ -109,7 +110,7 @@ class DrawingArea(QWidget):
     # Mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """Left: take hold of a corner, or get ready to add one. Right: take back."""
+        """Left: grab a corner, or prepare to add one. Right: undo."""
         self.setFocus(Qt.FocusReason.MouseFocusReason)
         place = event.position()
         if event.button() == Qt.MouseButton.MiddleButton:
@@ -126,7 +127,7 @@ class DrawingArea(QWidget):
                 self.picked.emit(*self._moving)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """Move the picture or a corner, or show where the next corner would go."""
+        """Pan, move a corner, or show where the next corner would be added."""
         place = event.position()
         self._mouse = place
         if self._panning is not None:
@@ -139,7 +140,7 @@ class DrawingArea(QWidget):
         else:
             self._snap = self._snapped(place)
         if self._snap is not None:
-            self.pointed.emit(*self._snap.place)
+            self.hovered.emit(*self._snap.place)
         self._tell()
         self.update()
 
@@ -157,17 +158,17 @@ class DrawingArea(QWidget):
         self._snap = self._snapped(event.position())
         self._tell()
         if held is None and not was_open:
-            self.told.emit(CLOSED)
+            self.message.emit(CLOSED)
         self.update()
 
     def leaveEvent(self, event: object) -> None:  # noqa: N802
-        """Nothing is pointed at any more."""
+        """Hover nothing."""
         self._mouse = self._snap = None
-        self.told.emit("")
+        self.message.emit("")
         self.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
-        """Zoom about the mouse."""
+        """Zoom at the mouse."""
         place = event.position()
         self._touched = True
         self.view = self.view.zoomed(1.0015 ** event.angleDelta().y(), place.x(), place.y())
@@ -181,7 +182,7 @@ class DrawingArea(QWidget):
             self.sketch.add(self._snapped(place).place)
 
     def _insert_at(self, place: QPointF) -> tuple[int, int] | None:
-        """Put a corner on the edge under the mouse, if there is one; it is held then."""
+        """Insert a corner on the edge under the mouse, if there is one, and grab it."""
         for i, loop in enumerate(self.sketch.loops):
             p = self.view.to_screen(np.array(loop.corners))
             q = np.roll(p, -1, axis=0)
@@ -195,7 +196,7 @@ class DrawingArea(QWidget):
                 a, b = np.array(loop.corners[j]), np.array(loop.corners[(j + 1) % len(p)])
                 x, y = (a + share[j] * (b - a)).tolist()
                 self.sketch.insert(i, j + 1, self._rounded((x, y)))
-                self._recorded = True  # the insertion and the drag are one edit
+                self._recorded = True  # insertion and drag are one edit
                 return i, j + 1
         return None
 
@@ -235,7 +236,7 @@ class DrawingArea(QWidget):
         return Snap(self._rounded(snap.place), snap.met, snap.guides)
 
     def _rounded(self, place: Place) -> Place:
-        """No more digits than a pixel is worth, so that the table stays readable."""
+        """The place rounded to about a pixel, so that the table stays readable."""
         digits = max(2, math.ceil(math.log10(self.view.pixels)) + 1)
         x, y = (round(n, digits) + 0.0 for n in place)
         return x, y
@@ -257,16 +258,16 @@ class DrawingArea(QWidget):
         if self._snap is not None and self._moving is None and self.sketch.open:
             trial = self.sketch.trial(self._snap.place)
             words = trial.words if trial is not None else ""
-        self.told.emit(words)
+        self.message.emit(words)
 
     # Keys
 
     def take_back(self) -> None:
-        """Take back the last corner, or open the last loop."""
+        """Remove the last corner, or reopen the last loop."""
         self.sketch.take_back()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Backspace takes back, Return closes, Delete removes the marked corner."""
+        """Backspace undoes, Return closes the loop, Delete removes the selected corner."""
         if event.key() == Qt.Key.Key_Backspace:
             self.take_back()
         elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.sketch.close():
@@ -279,14 +280,14 @@ class DrawingArea(QWidget):
     # Drawing
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Show all until the user has looked closer."""
+        """Refit the view until the user has changed it."""
         if self._touched:
             self.view = self.view.resized(self.width(), self.height())
         else:
             self.fit()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint grid, polygon, what is wrong, guides and the corner to come."""
+        """Paint grid, polygon, errors, guide lines and the next corner."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         frame = QPainterPath()
@@ -395,7 +396,7 @@ class DrawingArea(QWidget):
             self._paint_label(painter, place, snap.place)
 
     def _paint_guide(self, painter: QPainter, start: Place, end: Place) -> None:
-        """A line through both places, across the whole area."""
+        """Paint a line through both places, across the whole area."""
         p, q = self.view.to_screen(np.array([start, end]))
         along = q - p
         length = float(np.hypot(*along))

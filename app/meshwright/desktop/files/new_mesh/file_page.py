@@ -1,4 +1,4 @@
-"""The page that takes a mesh file or the file of a shape."""
+"""The page that opens a mesh file or a geometry file."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from meshwright_core.io import drawings, mesh_files
 from meshwright_core.io.drawings.curves import CURVE_STEP
 
 NO_FILE = "Choose a file, or drop one here."
-MESH_WORDS = "A mesh is opened as it is: its elements are neither made anew nor moved."
+MESH_WORDS = "A mesh is opened unchanged."
 SHAPE_WORDS = "The shape in the file is meshed."
 
 
 class FilePage(Page):
-    """A file, and how its corners and curves are read."""
+    """A file, and options for reading its corners and curves."""
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -73,8 +73,8 @@ class FilePage(Page):
         layout.setSpacing(3 * GRID)
         layout.addWidget(self.zone)
         layout.addWidget(self._readings())
-        layout.addWidget(_kinds("Shapes, which are meshed", shapes))
-        layout.addWidget(_kinds("Meshes, which are opened as they are", meshes))
+        layout.addWidget(_kinds("Shapes, to be meshed", shapes))
+        layout.addWidget(_kinds("Meshes, opened unchanged", meshes))
         layout.addStretch(1)
 
     def _readings(self) -> QWidget:
@@ -87,12 +87,12 @@ class FilePage(Page):
             (
                 "Corners turn by more than",
                 self.corner_angle,
-                "Raise it where curved sides are drawn as short straight pieces.",
+                "Increase it if curved sides are drawn as short straight pieces.",
             ),
             (
                 "Curves turn at each point by",
                 self.curve_step,
-                "Lower it to follow arcs and splines more closely.",
+                "Decrease it to follow arcs and splines more closely.",
             ),
         )
         for row, (title, field, hint) in enumerate(rows):
@@ -106,7 +106,7 @@ class FilePage(Page):
 
     @property
     def source(self) -> dict[str, Any] | None:
-        """The file, and how to read it."""
+        """The file and the options for reading it."""
         if not self._asked:
             return None
         return {
@@ -117,12 +117,12 @@ class FilePage(Page):
 
     @property
     def words(self) -> str:
-        """What there is to do."""
+        """A request to choose a file; empty once there is one."""
         return "" if self._asked else NO_FILE
 
     @property
     def takes_settings(self) -> bool:
-        """A mesh file has its elements already."""
+        """False for mesh files, which are opened unchanged."""
         return not self._asked or drawings.is_geometry(self._asked)
 
     def take(self, path: str) -> None:
@@ -159,18 +159,18 @@ class FilePage(Page):
             self.take(path)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
-        """Take one file."""
+        """Accept the drag of one file."""
         urls = event.mimeData().urls()
         if len(urls) == 1 and urls[0].isLocalFile():
             event.acceptProposedAction()
             self._light(True)
 
     def dragLeaveEvent(self, event: QDragLeaveEvent) -> None:  # noqa: N802
-        """It went elsewhere."""
+        """Reset the look of the drop zone."""
         self._light(False)
 
     def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802
-        """Read what was dropped."""
+        """Read the dropped file."""
         self._light(False)
         self.take(event.mimeData().urls()[0].toLocalFile())
 

@@ -1,4 +1,4 @@
-"""The page of the gallery's shapes."""
+"""The page with the shapes of the gallery."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from meshwright_core.domains import gallery
 
 
 class GalleryPage(Page):
-    """One of the named shapes."""
+    """Offers the named shapes of the gallery."""
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()

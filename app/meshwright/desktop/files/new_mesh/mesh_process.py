@@ -1,4 +1,4 @@
-"""The process that makes the meshes of the dialog, and what there is to ask it."""
+"""The worker process that makes the meshes of the dialog, and the requests to it."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from meshwright.sources import mesh_worker
 PAUSE = 120
 """Milliseconds without a further change after which a request is sent."""
 PATIENCE = 300
-"""Milliseconds that work no longer wanted may take before the process is replaced."""
+"""Milliseconds that an outdated request may take before the process is replaced."""
 
-GONE = "The mesh could not be made: the process at work ended, perhaps for want of memory."
+GONE = "Meshing failed: the process ended unexpectedly, perhaps for lack of memory."
 
 
-class Maker(QObject):
-    """Answers the last request only: ``made(Made)`` or ``failed(sentence)``.
+class MeshProcess(QObject):
+    """Sends requests to the process, and emits ``made(NewMesh)`` or ``failed(sentence)``.
 
-    Requests are as :func:`meshwright.sources.mesh_worker.make` takes them. A new one drops the one
-    before.
+    Requests are as :func:`meshwright.sources.mesh_worker.make` takes them. A new one replaces the
+    previous one.
     """
 
     made = Signal(object)
@@ -45,7 +45,7 @@ class Maker(QObject):
 
     @property
     def busy(self) -> bool:
-        """True while an answer is to come."""
+        """True while an answer is pending."""
         return self._wanted is not None
 
     def start(self) -> None:
@@ -64,12 +64,12 @@ class Maker(QObject):
         process.start(sys.executable, ["-m", mesh_worker.__name__])
 
     def ask(self, request: Mapping[str, Any], at_once: bool = False) -> None:
-        """Ask for a mesh; what was asked before is no longer wanted."""
+        """Request a mesh, in place of the previous request."""
         self._wanted = request
         self._pause.start(0 if at_once else PAUSE)
 
     def cancel(self) -> None:
-        """Want nothing any more."""
+        """Drop the request."""
         self._wanted = None
         self._pause.stop()
         self._give_up_soon()
@@ -134,7 +134,7 @@ class Maker(QObject):
             self.made.emit(result)
 
     def _on_ended(self) -> None:
-        """The process is gone without being told to."""
+        """Handle an unexpected end of the process."""
         self._end()
         asked, self._asked = self._asked, None
         if asked is not None and asked is self._wanted:

@@ -1,4 +1,4 @@
-"""The right side of the dialog: the preview, its numbers, and kind, size and quality."""
+"""The right side of the dialog: preview, counts, and the options kind, size and quality."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
-from meshwright.desktop.files.new_mesh.controls import Choice, Measure, heading
+from meshwright.desktop.files.new_mesh.controls import OptionalNumber, SegmentedButtons, heading
 from meshwright.desktop.files.new_mesh.preview import Preview
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.graphics.theme import GRID, Theme
@@ -21,11 +21,11 @@ RULE_TIPS = {
     "pairing": "Triangles are joined in pairs: more regular elements of one size",
 }
 _COARSEST, _FINEST = 0.5, 1 / 1000
-"""Longest edges that the slider offers, as shares of the shape's size."""
+"""Range of the slider for the longest edge, as fractions of the shape's size."""
 
 
 class Options(QWidget):
-    """``changed()`` when another mesh is asked for."""
+    """Preview and options; ``changed()`` when an option has changed."""
 
     changed = Signal()
 
@@ -33,14 +33,18 @@ class Options(QWidget):
         super().__init__()
         self.setFixedWidth(WIDTH)
         self.preview = Preview(theme)
-        self.kind = Choice(KINDS, "Elements", kind or "quad")
-        self.rule = Choice(RULES, "Quads by")
+        self.kind = SegmentedButtons(KINDS, "Elements", kind or "quad")
+        self.rule = SegmentedButtons(RULES, "Quads by")
         for key, button in self.rule.buttons.items():
             button.setToolTip(RULE_TIPS[key])
-        self.size_of = Measure("Longest edge", "automatic", 0.001, 1.0, 0.2, 4, geometric=True)
-        self.quality = Measure("Least angle of triangles", "automatic", 0.0, 34.0, 28.0, 1, "°")
+        self.size_of = OptionalNumber(
+            "Longest edge", "automatic", 0.001, 1.0, 0.2, 4, geometric=True
+        )
+        self.quality = OptionalNumber(
+            "Minimum angle of triangles", "automatic", 0.0, 34.0, 28.0, 1, "°"
+        )
         self.quality.setToolTip(
-            "Degrees that no angle of the triangles should be below; small angles of the shape stay"
+            "Lower bound of all angles in degrees; smaller angles of the shape itself remain"
         )
         self._values: dict[str, QLabel] = {}
         self._size = 0.0
@@ -76,10 +80,10 @@ class Options(QWidget):
         grid.setHorizontalSpacing(GRID)
         grid.setVerticalSpacing(2)
         titles = (
-            ("elements", "Elements", "How many elements the mesh has"),
-            ("vertices", "Vertices", "How many vertices the mesh has"),
-            ("score", "s", "The sum over all vertices of how far their degree is off"),
-            ("optimum", "s*", "The lowest score that any connectivity can have here"),
+            ("elements", "Elements", "Number of elements of the mesh"),
+            ("vertices", "Vertices", "Number of vertices of the mesh"),
+            ("score", "s", "s: the sum of |degree \u2212 desired degree| over all vertices"),
+            ("optimum", "s*", "s*: no connectivity can have a lower score"),
         )
         for i, (key, title, tip) in enumerate(titles):
             value = named("\u2013", "Value")
@@ -100,9 +104,7 @@ class Options(QWidget):
 
     @property
     def request(self) -> dict[str, Any]:
-        """What there is to ask for besides the source; see
-        :func:`meshwright.sources.mesh_worker.make`.
-        """
+        """The request without its source; see :func:`meshwright.sources.mesh_worker.make`."""
         return {
             "kind": self.kind.key,
             "max_edge": self.size_of.value,
@@ -112,30 +114,30 @@ class Options(QWidget):
 
     @property
     def numbers(self) -> dict[str, str]:
-        """What is said about the mesh: elements, vertices, score, optimum."""
+        """The counts that are shown: elements, vertices, score, optimum."""
         return {key: str(label.text()) for key, label in self._values.items()}
 
     def show_made(self, made: NewMesh) -> None:
-        """Draw the mesh and say how large it is."""
+        """Show the mesh and its counts."""
         self.preview.show_made(made)
         counts = {"elements": len(made.elements), "vertices": len(made.points)}
         for key, number in {**counts, "score": made.score, "optimum": made.optimum}.items():
             self._values[key].setText(f"{number:,}")
 
     def show_words(self, words: str, stale: bool) -> None:
-        """Say why there is no mesh (yet)."""
+        """Show why there is no mesh (yet)."""
         self.preview.show_words(words, stale)
         for label in self._values.values():
             label.setText("\u2026" if stale else "\u2013")
 
     def set_extent(self, size: float) -> None:
-        """Offer edges that suit a shape of this size."""
+        """Adapt the range of edge lengths to the size of the shape."""
         if size > 0 and not 0.99 < size / (self._size or 1e-300) < 1.01:
             self._size = size
             self.size_of.set_range(_FINEST * size, _COARSEST * size, 0.1 * size)
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self.preview.set_theme(theme)
 
     def _on_kind_changed(self) -> None:

@@ -1,4 +1,4 @@
-"""What the pages of the dialog have in common."""
+"""The base class of the dialog's pages, and lists of pictures."""
 
 from __future__ import annotations
 
@@ -17,16 +17,19 @@ PICTURE = QSize(112, 88)
 
 
 class Page(QWidget):
-    """One way to say what is to be meshed. ``changed()``; ``told(sentence)`` in passing.
+    """One source of shapes. ``changed()`` when another shape is chosen; ``message(sentence)`` for
+    the status line.
 
-    A page fills itself when it is shown first.
+    A page fills itself when it is first shown.
     """
 
     changed = Signal()
-    told = Signal(str)
+    message = Signal(str)
 
-    takes_settings = True
-    """Whether kind, size and quality have a meaning for what is chosen here."""
+    @property
+    def takes_settings(self) -> bool:
+        """Whether kind, size and quality apply to what is chosen here."""
+        return True
 
     @property
     def source(self) -> dict[str, Any] | None:
@@ -42,21 +45,21 @@ class Page(QWidget):
 
     @property
     def is_wrong(self) -> bool:
-        """Whether `words` say what is wrong rather than what comes next."""
+        """Whether :attr:`words` describe an error rather than the next step."""
         return False
 
     def fill(self) -> None:
-        """Show what takes a while to be made."""
+        """Fill the page with what takes time to compute."""
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
 
     def release(self) -> None:
-        """Let go of everything."""
+        """Disconnect, and end processes."""
 
 
 class Pictures(QListWidget):
-    """Shapes as small pictures of which one is chosen."""
+    """A list of shapes as small pictures."""
 
     def __init__(self, name: str) -> None:
         super().__init__()
@@ -80,7 +83,7 @@ class Pictures(QListWidget):
 
     @property
     def key(self) -> Any:
-        """What stands for the chosen shape, None if there is none."""
+        """The key of the chosen shape, None if there is none."""
         item = self.currentItem()
         return None if item is None else item.data(Qt.ItemDataRole.UserRole)
 
@@ -104,6 +107,6 @@ def picture(domain: Domain, theme: Theme, ratio: float = 1.0) -> QIcon:
 
 
 def words_of(name: str) -> str:
-    """A shape's name as it is read."""
+    """A shape's name as a title."""
     words = name.replace("_", " ").replace("-", " ")
     return words[:1].upper() + words[1:]

@@ -1,4 +1,4 @@
-"""How shapes and meshes are drawn outside of the canvas: as on it, by QPainter."""
+"""Painting of shapes and meshes with QPainter, in the style of the canvas."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from meshwright.graphics.viewport import Viewport
 from meshwright.sources.mesh_worker import NewMesh
 
 LINES = 40_000
-"""Edges that are drawn as lines; where more are in sight the area is tinted instead."""
+"""The area is tinted instead if more edges than this are visible."""
 DISCS = 2_000
 CORNER = 5.0
-"""Pixels: side of the square of a corner."""
+"""Side in pixels of the square of a corner."""
 _SMALLER = 0.8
-"""Discs beside those of the canvas: there is less room."""
+"""Size of the discs relative to those of the canvas."""
 _TINT = 0.35
 """Share of the edges' colour in the tint of a mesh too fine to be drawn."""
 
@@ -70,7 +70,7 @@ def paint_mesh(painter: QPainter, view: Viewport, made: NewMesh, theme: Theme) -
 
 
 def _in_sight(made: NewMesh, view: Viewport) -> np.ndarray:
-    """The inner edges (e, 2) that may be seen; of a large mesh quickly all, if all may."""
+    """(e, 2) the inner edges that may be visible; all of a large mesh, if all may be."""
     box = view.to_screen(np.array([made.low, made.high]))
     if len(made.edges) > LINES and (box >= 0).all() and (box <= view.size).all():
         return made.edges
@@ -90,7 +90,7 @@ def squares(painter: QPainter, places: np.ndarray, theme: Theme, side: float = C
 
 
 def polygon(places: np.ndarray) -> QPolygonF:
-    """Pixels (n, 2) as Qt takes them."""
+    """Pixels (n, 2) as a QPolygonF."""
     return QPolygonF([QPointF(x, y) for x, y in places.tolist()])
 
 
@@ -124,8 +124,12 @@ def _discs(painter: QPainter, made: NewMesh, view: Viewport, theme: Theme) -> No
 def blend(one: str, other: str, share: float) -> QColor:
     """A colour between two, ``share`` of the way from the first."""
     a, b = QColor(one), QColor(other)
-    parts = [(1 - share) * p + share * q for p, q in zip(a.getRgbF(), b.getRgbF(), strict=True)]
-    return QColor.fromRgbF(*parts)
+    return QColor.fromRgbF(
+        (1 - share) * a.redF() + share * b.redF(),
+        (1 - share) * a.greenF() + share * b.greenF(),
+        (1 - share) * a.blueF() + share * b.blueF(),
+        (1 - share) * a.alphaF() + share * b.alphaF(),
+    )
 
 
 def _pen(colour: str, width: float) -> QPen:

@@ -1,4 +1,4 @@
-"""The preview: the mesh as it will be, to zoom and to drag."""
+"""The preview of the mesh, which can be zoomed and panned."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ TOO_FINE = "Too fine to draw: zoom in to see it"
 
 
 class Preview(QWidget):
-    """Shows a :class:`meshwright.sources.mesh_worker.NewMesh`, or nothing; an old one is paler
-    while a new one is made.
+    """Shows a :class:`meshwright.sources.mesh_worker.NewMesh`; an old one is paler while a new one
+    is made.
     """
 
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setAccessibleName("Preview of the mesh")
-        self.setToolTip("Wheel: zoom. Drag: move. Double click: all of it.")
+        self.setToolTip("Wheel: zoom. Drag: pan. Double click: fit.")
         self.setMinimumSize(240, 200)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._theme = theme
@@ -48,7 +48,7 @@ class Preview(QWidget):
         self._dragged: QPointF | None = None
 
     def show_made(self, made: NewMesh) -> None:
-        """Draw this mesh, all of it unless it is the same shape as before."""
+        """Show a mesh; the view is refitted if the shape is another one."""
         before, self._made = self._made, made
         self._words, self._stale = "", False
         if before is None or not _same_extent(before, made):
@@ -56,7 +56,7 @@ class Preview(QWidget):
         self._redraw()
 
     def show_words(self, words: str, stale: bool) -> None:
-        """Say that there is nothing (yet); a mesh that is ``stale`` stays in sight, paler."""
+        """Show a message in place of the mesh; a ``stale`` mesh stays visible, paler."""
         self._words = words
         self._stale = stale and self._made is not None
         if not stale:
@@ -64,7 +64,7 @@ class Preview(QWidget):
         self.update()
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self._redraw()
 
@@ -91,7 +91,7 @@ class Preview(QWidget):
         return picture
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint the picture, which is kept until something changes, and what there is to say."""
+        """Paint the cached picture, and the message."""
         if self._picture is None:
             self._picture = self._drawn()
         painter = QPainter(self)
@@ -131,7 +131,7 @@ class Preview(QWidget):
         painter.drawText(room, int(flags), words)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Keep all of the mesh in sight."""
+        """Refit the view."""
         self._fit()
         self._redraw()
 
@@ -142,11 +142,11 @@ class Preview(QWidget):
         self._redraw()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """Take hold of the picture."""
+        """Begin to pan."""
         self._dragged = event.position()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """Move it."""
+        """Pan."""
         if self._dragged is not None:
             step = event.position() - self._dragged
             self._dragged = event.position()
@@ -154,11 +154,11 @@ class Preview(QWidget):
             self._redraw()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """Let go."""
+        """End panning."""
         self._dragged = None
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """Show all of it."""
+        """Fit the view to the mesh."""
         self._fit()
         self._redraw()
 

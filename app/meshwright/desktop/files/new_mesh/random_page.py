@@ -1,4 +1,4 @@
-"""The page of random shapes: pictures of several seeds, of which one is taken."""
+"""The page of random shapes: pictures of several seeds to choose from."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from qtpy.QtCore import QSignalBlocker, Qt, QTimer
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
-from meshwright.desktop.files.new_mesh.controls import Choice
+from meshwright.desktop.files.new_mesh.controls import SegmentedButtons
 from meshwright.desktop.files.new_mesh.page_base import Page, Pictures
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named
@@ -18,7 +18,7 @@ from meshwright_core.domains import gallery, random_parts
 from meshwright_core.domains.domain import Domain
 
 SHOWN = 20
-"""Seeds that are shown at a time."""
+"""Number of seeds that are shown at a time."""
 FEWEST, MOST = 3, 60
 FEWEST_OF_PART = 4
 LAST_SEED = 999_999_999
@@ -31,7 +31,7 @@ class RandomPage(Page):
     def __init__(self, theme: Theme) -> None:
         super().__init__()
         self._theme = theme
-        self.kind = Choice(KINDS, "Kind of shape")
+        self.kind = SegmentedButtons(KINDS, "Kind of shape")
         self.sides = IntegerBox()
         self.sides.setRange(FEWEST, MOST)
         self.sides.setValue(10)
@@ -39,7 +39,7 @@ class RandomPage(Page):
         self.seed = IntegerBox()
         self.seed.setRange(0, LAST_SEED)
         self.seed.setAccessibleName("Seed")
-        self.seed.setToolTip("The same sides and seed make the same shape, always")
+        self.seed.setToolTip("The same number of sides and seed always give the same shape")
         self.seed.setMinimumWidth(12 * GRID)
         for field in (self.sides, self.seed):
             field.setAlignment(Qt.AlignmentFlag.AlignRight)
@@ -89,19 +89,19 @@ class RandomPage(Page):
             self._draw()
 
     def roll(self) -> None:
-        """Show other seeds, and take the first of them."""
+        """Show other seeds, and choose the first of them."""
         self._draw_from((self.seed.value() // SHOWN + 1) * SHOWN % LAST_SEED)
         self.seed.setValue(int(self.pictures.key))
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw in other colours."""
+        """Draw in the colours of ``theme``."""
         self._theme = theme
         self.dice.setIcon(icons.icon("dice", theme))
         if self.pictures.count():
             self._draw()
 
     def release(self) -> None:
-        """Draw nothing more."""
+        """Stop drawing pictures."""
         self._pause.stop()
 
     def _draw(self) -> None:
@@ -115,7 +115,7 @@ class RandomPage(Page):
             self._mark()
 
     def _mark(self) -> None:
-        """Mark the picture of the seed, or the first."""
+        """Select the picture of the seed, or the first one."""
         self.pictures.setCurrentRow(max(0, self.seed.value() - self._first()))
 
     def _first(self) -> int:

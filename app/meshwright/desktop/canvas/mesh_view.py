@@ -1,0 +1,120 @@
+"""The view of the mesh by VTK, and the empty view before VTK is imported."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import QObject, Qt
+from qtpy.QtWidgets import QWidget
+
+from meshwright.graphics.markers import Markers
+from meshwright.graphics.theme import Theme
+from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh
+
+
+class CanvasView:
+    """The empty view, used before VTK is imported. ``widget`` receives mouse and key events."""
+
+    built = False
+    """Whether the mesh is drawn."""
+
+    def __init__(self, widget: QWidget) -> None:
+        self.widget = widget
+
+    @property
+    def markers(self) -> Markers | None:
+        """Irregular vertices, corners, locks and boundary of the mesh; None without a mesh."""
+        return None
+
+    @property
+    def crowd(self) -> bool:
+        """Whether the view draws the discs of irregular vertices, because there are many."""
+        return False
+
+    @property
+    def outlined(self) -> bool:
+        """Whether the view draws the boundary."""
+        return True
+
+    def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None) -> None:
+        """Draw in the colours of ``theme``."""
+
+    def show(self, mesh: HalfEdgeMesh | None) -> None:
+        """Show another mesh."""
+
+    def update(self, mesh: HalfEdgeMesh) -> None:
+        """Show the same mesh after a change."""
+
+    def look(self, viewport: Viewport) -> None:
+        """Move the camera."""
+
+    def show_crowd(self, mesh: HalfEdgeMesh, crowd: bool) -> None:
+        """Draw the discs of irregular vertices, or leave them to the overlay."""
+
+    def close(self) -> None:
+        """Free the resources of VTK."""
+
+
+class VtkView(CanvasView):
+    """A plotter inside ``canvas``, complete when the constructor returns.
+
+    The constructor imports VTK, needs a display and takes about a second. ``input_filter``
+    receives the events of the plotter's widget.
+    """
+
+    built = True
+
+    def __init__(self, canvas: QWidget, theme: Theme, input_filter: QObject) -> None:
+        from pyvistaqt import QtInteractor
+
+        from meshwright.graphics.vtk_scene import Scene
+
+        # by default it renders five times a second; multisampling is slow in software
+        self._plotter = QtInteractor(canvas, auto_update=False, multi_samples=0)
+        super().__init__(self._plotter)
+        self._filter = input_filter
+        self._plotter.setAcceptDrops(False)  # dropped files are opened through the document
+        self._plotter.setMouseTracking(True)
+        self._plotter.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self._plotter.installEventFilter(input_filter)
+        ratio = canvas.devicePixelRatioF()  # VTK counts physical pixels
+        self._scene = Scene(self._plotter, theme, width=ratio, short_outlines=True)
+
+    @property
+    def markers(self) -> Markers | None:
+        """Irregular vertices, corners, locks and boundary of the mesh; None without a mesh."""
+        return self._scene.markers
+
+    @property
+    def crowd(self) -> bool:
+        """Whether VTK draws the discs of irregular vertices, because there are many."""
+        return self._scene.crowd
+
+    @property
+    def outlined(self) -> bool:
+        """Whether VTK draws the boundary."""
+        return self._scene.outlined
+
+    def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None) -> None:
+        """Draw in the colours of ``theme``."""
+        self._scene.set_theme(theme, mesh)
+
+    def show(self, mesh: HalfEdgeMesh | None) -> None:
+        """Show another mesh."""
+        self._scene.show(mesh)
+
+    def update(self, mesh: HalfEdgeMesh) -> None:
+        """Show the same mesh after a change."""
+        self._scene.update(mesh)
+
+    def look(self, viewport: Viewport) -> None:
+        """Move the camera."""
+        self._scene.look(viewport)
+
+    def show_crowd(self, mesh: HalfEdgeMesh, crowd: bool) -> None:
+        """Draw the discs of irregular vertices, or leave them to the overlay."""
+        self._scene.show_crowd(mesh, crowd)
+
+    def close(self) -> None:
+        """Free the resources of VTK."""
+        self._plotter.removeEventFilter(self._filter)
+        self._plotter.close()
