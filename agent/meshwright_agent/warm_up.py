@@ -17,15 +17,15 @@ from contextlib import contextmanager
 from meshwright_core.core.compilation import cache_folder, entry_points_on_disk
 
 ENTRY_POINTS = 34
-"""Entry points of both packages that searches and runs leave on disk, for messages of progress."""
+"""Kernels of both packages that :func:`warm` stores on disk, for progress messages; tested."""
 
 _MARK = "warm"
 _REPORT_SECONDS = 0.5
 _CHANGING = "changing"
 """The argument with which this module compiles the second share only."""
 
-Tell = Callable[[int, int], None]
-"""Called as ``tell(done, total)`` with numbers of entry points."""
+ProgressCallback = Callable[[int, int], None]
+"""Called as ``report(done, total)`` with numbers of entry points."""
 
 
 def is_warm_on_disk() -> bool:
@@ -34,18 +34,18 @@ def is_warm_on_disk() -> bool:
 
 
 def progress() -> tuple[int, int]:
-    """How many entry points are on disk, and how many there will be, about."""
+    """How many entry points are on disk, and how many there will be."""
     done = entry_points_on_disk("meshwright_agent") + entry_points_on_disk()
     return min(done, ENTRY_POINTS), ENTRY_POINTS
 
 
-def warm(tell: Tell | None = None) -> None:
+def warm(report: ProgressCallback | None = None) -> None:
     """Compile, or load from the cache, what runs and searches need, for both kinds of mesh.
 
-    ``tell(done, total)`` is called from another thread now and then while kernels are compiled.
+    ``report(done, total)`` is called from another thread now and then while kernels are compiled.
     """
     if not is_warm_on_disk():
-        with _told(tell), _second_process():
+        with _reporting(report), _second_process():
             _exercise_observing()
     _exercise_observing()
     _exercise_changing()
@@ -122,9 +122,9 @@ def _second_process() -> Iterator[None]:
 
 
 @contextmanager
-def _told(tell: Tell | None) -> Iterator[None]:
-    """Call ``tell`` with :func:`progress` each time it has changed during the block."""
-    if tell is None:
+def _reporting(report: ProgressCallback | None) -> Iterator[None]:
+    """Call ``report`` with :func:`progress` each time it has changed during the block."""
+    if report is None:
         yield
         return
     ended = threading.Event()
@@ -135,7 +135,7 @@ def _told(tell: Tell | None) -> Iterator[None]:
             done, total = progress()
             if done != last:
                 last = done
-                tell(done, total)
+                report(done, total)
 
     thread = threading.Thread(target=watch, name="progress of the kernels", daemon=True)
     thread.start()

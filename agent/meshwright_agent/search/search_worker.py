@@ -1,4 +1,4 @@
-"""One thread of the solver, which shares its time among three methods.
+"""One thread of the solver, which divides its time among three methods.
 
 These are rollouts from the start, rollouts from the best state, and annealing from the best state.
 The next turn goes to the method with the least time per improvement.
@@ -41,11 +41,11 @@ class Candidate:
     operations: Operations
     score: int
     method: str
-    """What found it: "rollouts", "annealing" or "none"."""
+    """The method that found it: "rollouts", "annealing" or "none"."""
 
 
 class Kind(Enum):
-    """What a worker can spend its time on."""
+    """The methods among which a worker divides its time."""
 
     ROLLOUTS = "rollouts from the start"
     ANNEALING = "annealing from the best state"
@@ -69,7 +69,7 @@ class Arm:
 
 
 class Shared(Protocol):
-    """What the workers of one search share."""
+    """The state that all workers of one search share."""
 
     mesh: HalfEdgeMesh
     policy: Policy
@@ -80,13 +80,13 @@ class Shared(Protocol):
     best: Candidate
 
     def offer(self, candidate: Candidate) -> None:
-        """Tell of a state."""
+        """Add a state to the candidates if it is good enough."""
 
     def book(self, wanted: int) -> int:
-        """How many of so many rollouts may be begun."""
+        """Reserve up to `wanted` rollouts; returns how many may be started."""
 
     def count(self, rollouts: int) -> None:
-        """So many rollouts are done."""
+        """Add to the number of rollouts done."""
 
 
 class Worker:
@@ -106,7 +106,7 @@ class Worker:
         """Whether only rollouts from the start have been made."""
 
     def work(self) -> None:
-        """Rollouts from the start first; then the arm that has had least time for what it found."""
+        """Rollouts from the start first; then always the arm with the lowest cost per find."""
         search = self._search
         while not self._stop():
             arm = min(self._arms, key=lambda arm: arm.cost)
@@ -124,7 +124,7 @@ class Worker:
             if not self._opening:
                 arm.finds += search.score < before
             elif search.annealing:
-                # what comes after the first rollouts starts level with them
+                # the three arms start with equal statistics
                 self._opening = False
                 self._arms = [Arm(kind) for kind in Kind]
 
@@ -196,7 +196,7 @@ class Worker:
         return operations
 
     def _anneal(self, seconds: float) -> None:
-        """Anneal for so long from the best state that anybody has found."""
+        """Anneal for `seconds` from the best state of all threads."""
         search = self._search
         deadline = time.perf_counter() + seconds
         optimum = self._mesh.optimum

@@ -207,7 +207,7 @@ def prepare(policy: Policy) -> None:
 
 
 class _Search:
-    """What the workers share: the time, the best operations so far, and how many rollouts."""
+    """The state shared by all workers: time, best operations so far, number of rollouts."""
 
     def __init__(
         self,
@@ -242,7 +242,7 @@ class _Search:
         )  # fmt: skip
 
     def over(self, share: float) -> bool:
-        """Whether that share of the time is used up, or somebody said stop."""
+        """Whether that share of the time is used up, or the search was cancelled."""
         if self._cancelled is not None and self._cancelled():
             return True
         return self.seconds is not None and (
@@ -251,11 +251,11 @@ class _Search:
 
     @property
     def exhausted(self) -> bool:
-        """Whether all rollouts that were asked for are done."""
+        """Whether the given number of rollouts has been started."""
         return self.wanted is not None and self._begun >= self.wanted
 
     def offer(self, candidate: Candidate) -> None:
-        """A state that was found; the best few are kept, shortest first."""
+        """Add a state to the candidates; the best few are kept, shortest first."""
         with self._lock:
             if candidate.score > self.score:
                 return
@@ -272,19 +272,19 @@ class _Search:
             self.count(0)
 
     def take(self) -> list[Candidate]:
-        """The best states that have not been taken yet."""
+        """Remove and return the candidates."""
         taken, self._candidates = self._candidates, []
         return taken
 
     def book(self, wanted: int) -> int:
-        """How many of so many rollouts may be begun now."""
+        """Reserve up to `wanted` rollouts; returns how many may be started."""
         with self._lock:
             granted = wanted if self.wanted is None else min(wanted, self.wanted - self._begun)
             self._begun += max(granted, 0)
         return max(granted, 0)
 
     def count(self, rollouts: int) -> None:
-        """So many rollouts are done."""
+        """Add to the number of rollouts done and report progress."""
         with self._lock:
             self.done += rollouts
             done, score = self.done, self.score

@@ -1,8 +1,8 @@
 """Compiled kernels: one decorator, one cache on disk, one warm-up.
 
-Numba's own cache looks at the file of the function only, so an edit of an *imported* kernel would
-go unnoticed. Here the cache folder carries a hash of all sources of the package: an edit anywhere
-in it means a fresh folder, and stale ones are removed after a month.
+Numba's own cache is invalidated by edits of the file of the function only, not by those of an
+*imported* kernel. Here the name of the cache folder contains a hash of all sources of the package,
+so that any edit leads to a new folder. Folders that were not used for a month are removed.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def kernel(function: F) -> F:
 def bare_kernel(function: F) -> F:
     """A kernel that allocates nothing and so counts no references; numba refuses others.
 
-    Counting them takes several times as long as the work itself where small functions over
+    Reference counting takes several times as long as the work itself where small functions over
     :class:`~meshwright_core.core.arrays.MeshArrays` call each other, as all rewrites do.
     """
     return _compiled(function, counts_references=False)
@@ -77,8 +77,8 @@ def bare_kernel(function: F) -> F:
 def shared_kernel(function: F) -> F:
     """A kernel whose code is compiled once and linked into none of its callers.
 
-    For what several large kernels call: a call costs some nanoseconds more, which matters in no
-    loop over operations, and LLVM optimises the code once and not once in each of its callers.
+    For code that several large kernels call: LLVM optimises it once and not once in each caller. A
+    call takes some nanoseconds longer, which is negligible compared with an operation.
     """
     return _compiled(function, counts_references=True, form=SharedKernel)
 

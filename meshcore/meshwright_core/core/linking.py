@@ -1,18 +1,18 @@
 # mypy: disable-error-code="attr-defined,name-defined"
-"""How kernels are compiled and linked, so that a cold start compiles each of them once.
+"""Compiles and links numba kernels so that a cold start compiles each of them once.
 
-Numba compiles every function that a kernel calls into a library of its own, with machine code and
-a wrapper for Python, and optimises it again in each of its callers. Here there are three forms:
+For every function that a kernel calls, numba generates a library with machine code and a wrapper
+for Python, and optimises its LLVM IR again in each caller. Here a kernel has one of three forms:
 
 part
-    A kernel that another kernel calls: type inference and unoptimised LLVM IR only. Its arguments
-    are canonical (see :func:`canonical`), so that there is one part for int32 and int64.
+    A kernel called by another kernel: type inference and unoptimised LLVM IR only. Its argument
+    types are canonical (see :func:`canonical`), so that one part serves int32 and int64.
 entry point
-    A kernel that Python calls: all parts that it reaches are linked into one LLVM module, made
-    internal, optimised once and cached on disk as machine code.
+    A kernel called from Python: all parts in its call graph are linked into one LLVM module with
+    internal linkage, optimised once, and cached on disk as machine code.
 shared kernel
-    An entry point that other kernels reach by the name of a symbol, without linking its code. The
-    machine code in the cache holds the name; before it is loaded, what it names is.
+    An entry point that other kernels call through an external symbol. Their cached machine code
+    contains only the name of the symbol, so the shared kernel is loaded before they are.
 """
 
 from __future__ import annotations
@@ -48,8 +48,9 @@ _shared: dict[str, tuple[str, str, Types]] = {}
 
 
 def canonical(kind: Any) -> Any:
-    """The type that a kernel's argument has when another kernel calls it: int64 for every integer
-    that fits into it, literals included; any other type as it is.
+    """The argument type under which a kernel is compiled for calls from other kernels.
+
+    int64 for every integer type that fits into it, literals included; other types are unchanged.
     """
     kind = types.unliteral(kind)
     if isinstance(kind, types.Integer) and (kind.signed or kind.bitwidth < 64):
@@ -58,7 +59,7 @@ def canonical(kind: Any) -> Any:
 
 
 class Part(JITCodeLibrary):
-    """Unoptimised code of one kernel, and the libraries that it calls."""
+    """The unoptimised LLVM IR of one kernel, with references to the libraries that it calls."""
 
     def add_ir_module(self, ir_module: Any) -> None:
         """Add code to this library."""
@@ -66,7 +67,7 @@ class Part(JITCodeLibrary):
         super().add_ir_module(ir_module)
 
     def finalize(self) -> None:
-        """Nothing is linked or optimised before an entry point asks for it."""
+        """Do nothing: an entry point links and optimises the IR of all its parts together."""
         self._finalized = True
 
     def reached(self, found: dict[Any, None]) -> None:
@@ -85,7 +86,7 @@ class EntryPoint(JITCodeLibrary):
     """Optimised machine code of one kernel with everything that it calls."""
 
     exported: frozenset[str] = frozenset()
-    """Names of the functions that are reached from outside."""
+    """Names of the functions that keep external linkage."""
 
     def finalize(self) -> None:
         """Link all parts, optimise them together, and make machine code."""
@@ -145,7 +146,7 @@ class EntryPoint(JITCodeLibrary):
 
     @classmethod
     def load(cls, codegen: Any, name: str, code: bytes, defined: list[str]) -> EntryPoint:
-        """The library of which :meth:`machine_code` told."""
+        """Rebuild a library from what :meth:`machine_code` returned."""
         library = cls(codegen, name)
         library.enable_object_caching()
         library._set_compiled_object(code)
@@ -155,7 +156,7 @@ class EntryPoint(JITCodeLibrary):
 
 
 class _StoredForm(CompileResultCacheImpl):
-    """What of an entry point is written to disk."""
+    """Converts an entry point to what is pickled into the cache, and back."""
 
     def reduce(self, result: Any) -> Any:
         library = result.library
@@ -321,7 +322,7 @@ class SharedKernel(Kernel):
         return result.signature
 
     def provide(self, args: Types) -> str:
-        """Have the machine code in memory under its symbol, which is returned."""
+        """Load or compile the machine code and register its symbol, which is returned."""
         module, name = self.py_func.__module__, self.py_func.__name__
         kinds = hashlib.sha256(str(args).encode()).hexdigest()[:16]
         symbol = f"{_SYMBOL}{module}.{name}.{kinds}"
@@ -336,8 +337,8 @@ class SharedKernel(Kernel):
 
 @contextmanager
 def _collecting_seldom() -> Iterator[None]:
-    """Let Python look for garbage cycles less often: compiling makes many objects and few cycles,
-    and looking takes an eighth of the time.
+    """Run Python's garbage collector less often: compiling creates many objects and few reference
+    cycles, and collecting takes an eighth of the time.
     """
     usual = gc.get_threshold()
     if usual[0]:
