@@ -35,6 +35,12 @@ def test_the_floor_is_kept():
     assert 12 <= after.n_elements < 36
 
 
+def test_it_ends_when_nothing_was_found_for_many_sweeps():
+    mesh = optimal("l-shape")
+    after = replayed(mesh, coarsen(mesh, seconds=None, patience=1000))
+    assert after.n_elements <= 3
+
+
 def test_no_operations_for_triangles_or_when_cancelled():
     mesh = meshing.benchmark_mesh("tri", 10, np.random.default_rng(0))
     assert coarsen(mesh) == []
