@@ -49,7 +49,7 @@ def levels(page: Page, server: Server) -> None:
     book.show('import meshwright as mw\n\nwidget = mw.MeshWidget(level="two-turns")\nwidget')
     card = Card(page)
     card.button("Ask the agent").click()
-    card.button("Show a way").wait_for(timeout=120_000)
+    card.button("Show a solution").wait_for(timeout=120_000)
     book.ask(
         "[widget.apply(name, widget.mesh.halfedge(a, b)).score_change"
         " for name, (a, b) in widget.level.solution]"

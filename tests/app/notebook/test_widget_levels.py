@@ -73,7 +73,7 @@ def test_a_level_is_played_to_three_stars(widget, port):
     solve(port)
     level = told(port)
     assert (level["used"], level["stars"], level["best_stars"], level["done"]) == (2, 3, 3, True)
-    assert level["headline"] == "As few as can be"
+    assert level["headline"] == "Proven minimum"
     assert "three stars" in level["remark"]
     assert widget.stars == 3
     assert heard == [widget.level]

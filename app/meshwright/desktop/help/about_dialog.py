@@ -27,8 +27,8 @@ from meshwright.graphics.theme import GRID
 
 _COLUMNS = ("Package", "Version", "Licence")
 _SENTENCES = (
-    "Edits the connectivity of triangle and quad meshes half-edge by half-edge, with a trained "
-    "agent beside you.",
+    "Edits the connectivity of triangle and quad meshes half-edge by half-edge, by hand or with "
+    "a trained agent.",
     "After A. Narayanan, Y. Pan, P.-O. Persson, \u201cLearning topological operations on meshes "
     "with application to block decomposition of polygons\u201d.",
 )
