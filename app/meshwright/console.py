@@ -21,7 +21,7 @@ class UserError(Exception):
 
 
 class Update(Protocol):
-    """Called while a long piece of work goes on, to move its progress bar."""
+    """Called during long work, to move its progress bar."""
 
     def __call__(self, done: int, remark: str = "") -> None:
         """``done`` pieces of work are done; ``remark`` is shown beside the bar."""

@@ -183,7 +183,7 @@ def _own_settings(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 def _without_question(window: Any) -> None:
-    """A test that ends leaves nobody there to answer."""
+    """After a test, no dialog or worker is left to answer."""
     if window.isVisible():
         window.files.leave()
 

@@ -288,7 +288,7 @@ class LevelPlay:
             self.won.emit(self.stars)
 
     def _note(self, level: Level) -> None:
-        """Store the result; if that fails, playing goes on."""
+        """Store the result; an error does not end the game."""
         try:
             self.progress.note(level.name, self.stars, self.used)
         except MeshError as error:

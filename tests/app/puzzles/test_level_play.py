@@ -16,7 +16,7 @@ from meshwright_core import MeshError
 
 
 class Playing:
-    """A play on a document, with a fake agent, and what it has said."""
+    """A play on a document, with a fake agent, and what it has output."""
 
     def __init__(self, desk, greedy, path):
         self.desk, self.greedy = desk, greedy
@@ -209,8 +209,8 @@ def test_the_agent_solves_a_copy_of_the_level(playing, desk):
     assert changes
     assert len(playing.document.history) == 0
     assert play.rival.operations
-    said = play.show_answer()
-    assert "operation" in said
+    output = play.show_answer()
+    assert "operation" in output
     assert playing.document.history.cursor == 0
     assert len(playing.document.history) == len(play.rival.operations)
     assert play.remark == ""

@@ -136,7 +136,7 @@ class AgentController(Controller):
             self.open_policy(path)
 
     def open_policy(self, path: str) -> None:
-        """Use the policy in a file; a notice says if it cannot be read or is of another kind."""
+        """Use the policy in a file; a notice is shown if it is unreadable or of another kind."""
         try:
             kind = kind_of(path)
         except (ValueError, OSError) as error:

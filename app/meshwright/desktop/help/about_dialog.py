@@ -129,7 +129,7 @@ class AboutDialog(QDialog):
 
     def _on_row_changed(self, row: int, column: int, row_before: int, column_before: int) -> None:
         if 0 <= row < len(self.licences):
-            self.text.setPlainText(_told(self.licences[row]))
+            self.text.setPlainText(_licence_text(self.licences[row]))
 
 
 def own_version() -> str:
@@ -140,7 +140,7 @@ def own_version() -> str:
         return ""
 
 
-def _told(one: Licence) -> str:
+def _licence_text(one: Licence) -> str:
     text = one.text() or "The licence text was not installed with the package."
     home = f"\n{one.url}" if one.url else ""
     return f"{one.package} {one.version}: {one.licence}{home}\n\n{text}"

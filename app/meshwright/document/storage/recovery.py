@@ -128,7 +128,7 @@ class _Event(Struct):
 
 
 def _repeat(document: Document, record: Record) -> None:
-    """Do what a record of autosave says; MeshError if it does not follow from here."""
+    """Apply a record of autosave; MeshError if it does not follow from this state."""
     event = converted(record.header, _Event)
     if event.event == "go":
         document.go_to(event.number)

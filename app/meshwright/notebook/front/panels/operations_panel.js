@@ -41,7 +41,7 @@ export class OperationsPanel {
     const { replica, hoverState } = this._card;
     const armed = replica.catalogue.find((info) => info.operation === hoverState.armed);
     if (armed) return "A click applies it. Esc cancels.";
-    return hoverState.offers ? "Change of s here, for each." : "Point at a half-edge of the mesh.";
+    return hoverState.offers ? "How each operation changes s here." : "Point at a half-edge of the mesh.";
   }
 
   _fill(catalogue) {
