@@ -57,11 +57,6 @@ class Report:
         self.out.write((as_json(values) if self.as_json else text.rstrip("\n")) + "\n")
         self.out.flush()
 
-    def say(self, sentence: str) -> None:
-        """Write a remark to stderr if it is a terminal."""
-        if self.err.isatty():
-            self.note(sentence)
-
     def note(self, sentence: str) -> None:
         """Write a remark to stderr, also if it is a log."""
         self.err.write(one_line(sentence) + "\n")

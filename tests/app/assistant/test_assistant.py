@@ -19,7 +19,7 @@ def make(desk, greedy):
         document, load=lambda name: name, patient=False, make_runner=None, ask=None, **options
     ):
         def search(mesh, policy, seed, effort, enough, progress):
-            """Find what the greedy run finds; a patient one then waits to be received to stop."""
+            """Find what the greedy run finds; a patient one then waits for the request to stop."""
             found = greedy(mesh, **options)
             progress(1, mesh.optimum)
             if patient:
@@ -416,7 +416,7 @@ def test_a_chosen_policy_is_used_once_it_is_loaded(make, desk, star):
 
 
 def test_an_exiting_program_does_not_wait_for_a_run():
-    """A worker waits until its decision is applied; nobody applies it once the program dies."""
+    """A worker waits until its decision is applied, but must end with the program."""
     code = """if True:
         import time
         from meshwright.assistant.assistant import Assistant

@@ -147,7 +147,6 @@ def test_progress_is_shown_on_terminals_only(monkeypatch):
     monkeypatch.setattr(sys, "stderr", stream)
     with Report().progress("work", 3) as update:
         update(1, "s = 3")
-    Report().say("a remark")
     assert stream.getvalue() == ""
 
 

@@ -163,7 +163,7 @@ def test_leaving_a_level_asks_nothing(qtbot, window, tmp_path, monkeypatch):
     window.files.watch(tmp_path / "autosave")
     monkeypatch.setattr(
         "meshwright.desktop.files.unsaved_work.QuestionDialog", None
-    )  # who asks fails
+    )  # a question would fail the test
     window.levels.open("two-turns")
     solve(window)
     assert not window.isWindowModified()

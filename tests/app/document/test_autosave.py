@@ -293,7 +293,7 @@ def test_kill_9_loses_at_most_the_last_operation(tmp_path, seconds):
     child.wait(30)
     cursor, score = map(int, [line for line in reported if line.endswith("\n")][-1].split())
     document = recovered(tmp_path)
-    # the child may have done one more, and not come to say so
+    # the child may have done one more, and not have printed it
     assert document.history.cursor in (cursor, cursor + 1)
     assert [0, *(row.after for row in document.history)][cursor] == score
     document.mesh.validate()

@@ -78,4 +78,4 @@ def test_server_ends_with_its_parent_process(tmp_path):
         except OSError:
             return
         time.sleep(0.1)
-    pytest.fail("the server goes on")
+    pytest.fail("the server still runs")

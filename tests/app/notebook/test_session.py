@@ -435,7 +435,7 @@ def test_a_widget_without_connection_is_closed_when_another_is_created(star, tri
     port = Port(session)
     session.finish(session.assistant.step)
     port.reachable = False
-    session.document.undo()  # nobody is received, nothing breaks
+    session.document.undo()  # no client is notified, and no error
     other = Session.of(Document(triangles))
     assert session._ended and not other._ended
     until(lambda: workers() == before)

@@ -16,7 +16,7 @@ from meshwright_core import MeshError
 
 
 class Playing:
-    """A play on a document, with a fake agent, and what it has output."""
+    """A play on a document, with a fake agent, and its messages."""
 
     def __init__(self, desk, greedy, path):
         self.desk, self.greedy = desk, greedy
