@@ -39,6 +39,7 @@ def notebook(page: Page, server: Server) -> None:
     card = Card(page)
     mesh = card.look("root => root.meshwright.replica.halfedges")
     card.hover(_inside(card, mesh))
+    card.root.locator(".mw-notice").wait_for(state="hidden", timeout=120_000)
     page.wait_for_timeout(SETTLE)
 
 

@@ -138,7 +138,7 @@ def test_surfaces_out_of_the_plane(tmp_path):
     assert not (tmp_path / "solid.su2").exists()
 
 
-# -- what is repaired on reading --------------------------------------------------------------------
+# -- what is repaired on reading ------------------------------------------------------------------
 
 
 def put_obj(path, points, faces):
