@@ -3,6 +3,6 @@
 from meshwright.teaching.exercises.example_meshes import patch
 from meshwright.teaching.exercises.exercise import Exercise, exercise
 from meshwright.teaching.exercises.result import Answer
-from meshwright.teaching.exercises.solution import Solution
+from meshwright.teaching.exercises.solution import ExerciseSolution
 
-__all__ = ["Answer", "Exercise", "Solution", "exercise", "patch"]
+__all__ = ["Answer", "Exercise", "ExerciseSolution", "exercise", "patch"]

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
 
 
-class Line(NamedTuple):
+class CleanableLine(NamedTuple):
     """One line that may be deleted."""
 
     halfedge: int
@@ -94,10 +94,10 @@ def find_lines(m, cap):
     return starts[:found], ends[:found], chain[:count]
 
 
-def cleanable_lines(mesh: HalfEdgeMesh) -> list[Line]:
+def cleanable_lines(mesh: HalfEdgeMesh) -> list[CleanableLine]:
     """Every line of `mesh` that `cleanup` would delete now; [] for triangles. O(half-edges)."""
     if mesh.k == 3:
         return []
     starts, ends, chain = find_lines(mesh.arrays, mesh.degree_cap)
     pieces = np.split(chain, ends[:-1]) if len(ends) else []
-    return [Line(int(h), piece) for h, piece in zip(starts, pieces, strict=True)]
+    return [CleanableLine(int(h), piece) for h, piece in zip(starts, pieces, strict=True)]

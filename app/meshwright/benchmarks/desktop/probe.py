@@ -33,7 +33,7 @@ def start(began: float, *numbers: int) -> dict[str, Any]:
 
     result: dict[str, Any] = {}
 
-    class Watch(QObject):
+    class FirstPaintFilter(QObject):
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
             if event.type() == QEvent.Type.Paint and "first_paint_s" not in result:
                 result["first_paint_s"] = time.time() - began
@@ -43,7 +43,7 @@ def start(began: float, *numbers: int) -> dict[str, Any]:
             return False
 
     app = application()
-    watch = Watch()
+    watch = FirstPaintFilter()
     window = open_window("star", demo=False)
     window.installEventFilter(watch)
     _spin(app, lambda: window.canvas.built)
@@ -152,12 +152,12 @@ def _hover(app: Any, window: Any, count: int) -> list[float]:
 
     painted = [0]
 
-    class Watch(QObject):
+    class EventFilter(QObject):
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
             painted[0] += event.type() == QEvent.Type.Paint
             return False
 
-    watch = Watch()
+    watch = EventFilter()
     overlay, plotter = window.canvas.overlay, window.canvas.plotter
     overlay.installEventFilter(watch)
     times = []

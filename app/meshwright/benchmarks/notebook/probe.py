@@ -113,7 +113,7 @@ widget
 
 
 @dataclass(frozen=True)
-class Click:
+class ClickTimes:
     """One click: milliseconds by part, and what was sent for it in bytes."""
 
     milliseconds: dict[str, float]
@@ -134,7 +134,7 @@ class WidgetProbe:
         traffic = self.page.evaluate(READ)["traffic"]
         self.state_bytes = [row["bytes"] for row in traffic if row["word"] == "state"][-1]
 
-    def click(self) -> Click:
+    def click(self) -> ClickTimes:
         """Flip an edge by a real click; returns when the widget is idle again."""
         halfedge = self.notebook.ask("somewhere()")
         card = self.card
@@ -161,7 +161,7 @@ class WidgetProbe:
             "paint": found["painted"] - patch["at"],
         }
         everything = sum(row["bytes"] for row in found["traffic"] if row["way"] == "down")
-        return Click(milliseconds, patch["bytes"], everything)
+        return ClickTimes(milliseconds, patch["bytes"], everything)
 
     def pan(self, seconds: float) -> dict[str, Any]:
         """Drag the view in circles; painted frames per second, and the slowest frame."""

@@ -8,7 +8,7 @@ from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QVBoxLayout, QWidget
 
 from meshwright.desktop.canvas.gestures import Gesture
-from meshwright.desktop.canvas.mesh_view import MeshView, VtkView
+from meshwright.desktop.canvas.mesh_view import CanvasView, VtkView
 from meshwright.desktop.canvas.mouse import MouseInput
 from meshwright.desktop.canvas.overlay import Overlay
 from meshwright.desktop.controller import Connections
@@ -46,7 +46,7 @@ class Canvas(QWidget):
         super().__init__()
         self.document = document
         self.viewport = Viewport()
-        self.view = MeshView(self)
+        self.view = CanvasView(self)
         self.overlay = Overlay(self, theme)
         self._theme = theme
         self._picker: Picker | None = None
@@ -106,7 +106,7 @@ class Canvas(QWidget):
         self._point_again.stop()
         self.overlay.card.hide()
         self.view.close()
-        self.view = MeshView(self)
+        self.view = CanvasView(self)
 
     def focus(self) -> None:
         """Give the canvas the keyboard focus."""

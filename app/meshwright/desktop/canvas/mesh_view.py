@@ -11,7 +11,7 @@ from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 
 
-class MeshView:
+class CanvasView:
     """The empty view, used before VTK is imported. ``widget`` receives mouse and key events."""
 
     built = False
@@ -54,7 +54,7 @@ class MeshView:
         """Free the resources of VTK."""
 
 
-class VtkView(MeshView):
+class VtkView(CanvasView):
     """A plotter inside ``canvas``, complete when the constructor returns.
 
     The constructor imports VTK, needs a display and takes about a second. ``input_filter``

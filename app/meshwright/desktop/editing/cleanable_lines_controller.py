@@ -21,7 +21,7 @@ from meshwright.graphics.theme import Theme
 from meshwright_core.operations.catalogue import Operation
 
 if TYPE_CHECKING:
-    from meshwright_core.analysis.cleanable_lines import Line
+    from meshwright_core.analysis.cleanable_lines import CleanableLine
 
 LINES = "editing/lines"
 """The setting that shows removable lines."""
@@ -49,7 +49,7 @@ class CleanableLinesController(Controller):
         self._document, self._canvas, self._settings = document, canvas, settings
         self._readiness, self._hover, self._editing = readiness, hover, editing
         self._status = status
-        self._lines: list[Line] = []
+        self._lines: list[CleanableLine] = []
         self._edges = np.zeros(0, np.int64)  # sorted: ends of every edge on a line as one number
         self._line_of = np.zeros(0, np.int64)
         self._pause = QTimer(canvas)

@@ -6,7 +6,7 @@ from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QPushButton, QToolButton, QVBoxLayout, QWidget
 
-from meshwright.desktop.levels.star_rating import Stars
+from meshwright.desktop.levels.star_rating import StarRating
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.graphics.theme import GRID, Theme
@@ -69,7 +69,7 @@ class LevelBar(QFrame):
     def _make_head(self, theme: Theme) -> QHBoxLayout:
         self.title = named("", "LevelTitle")
         self.place = named("", "Hint")
-        self.stars = Stars(theme, 18)
+        self.stars = StarRating(theme, 18)
         self.goal = LevelFigure("Goal", "The score to reach: the lowest that is possible")
         self.par = LevelFigure("Par", "The fewest operations known")
         self.used = LevelFigure("You", "Your operations since the start; Undo takes them back")

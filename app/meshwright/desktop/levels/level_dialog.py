@@ -17,7 +17,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from meshwright.desktop.levels.star_rating import Stars
+from meshwright.desktop.levels.star_rating import StarRating
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.puzzles import level as levels
@@ -145,7 +145,7 @@ class LevelCard(QPushButton):
         self.picture = named("", "Picture")
         self.picture.setPixmap(picture(level.name, theme, self.devicePixelRatioF()))
         self.title = named(f"{level.number}  {level.title}", "CardTitle")
-        self.stars = Stars(theme, 14)
+        self.stars = StarRating(theme, 14)
         self.stars.count = best.stars
         column.addWidget(self.picture)
         column.addStretch(1)

@@ -13,7 +13,7 @@ INNER = 0.45
 """Radius of the notches, relative to that of the tips."""
 
 
-class Stars(QWidget):
+class StarRating(QWidget):
     """Three stars of ``size`` pixels, the first :attr:`count` of them filled."""
 
     def __init__(self, theme: Theme, size: int = 16) -> None:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from meshwright.teaching.exercises.result import BLANK, RIGHT, WRONG, Answer
-from meshwright.teaching.exercises.solution import Solution, solution_of
+from meshwright.teaching.exercises.solution import ExerciseSolution, solution_of
 
 Check = Callable[..., str]
 """Takes the answer; returns a sentence on why it is right, or raises :class:`WrongAnswer` or
@@ -70,7 +70,7 @@ class Exercise:
         except WrongAnswer as wrong:
             return Answer(self.name, WRONG, str(wrong))
 
-    def solution(self) -> Solution:
+    def solution(self) -> ExerciseSolution:
         """A solution, as code that can stand above the check."""
         return solution_of(self.name)
 

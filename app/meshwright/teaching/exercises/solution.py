@@ -17,7 +17,7 @@ _LOOK = (
 
 
 @dataclass(frozen=True)
-class Solution:
+class ExerciseSolution:
     """A solution of an exercise: ``code`` that can stand above its check."""
 
     exercise: str
@@ -39,7 +39,7 @@ class Solution:
         return {"text/plain": self.code, "text/html": self._repr_html_()}
 
 
-def solution_of(name: str) -> Solution:
+def solution_of(name: str) -> ExerciseSolution:
     """The solution of the exercise called ``name``.
 
     Raises LookupError if no lesson has one.
@@ -47,5 +47,5 @@ def solution_of(name: str) -> Solution:
     for lesson in lessons.shipped():
         for cell in lesson.exercises():
             if cell.name == name:
-                return Solution(name, cell.solution)
+                return ExerciseSolution(name, cell.solution)
     raise LookupError(f"No lesson has a solution of the exercise {name!r}.")

@@ -31,7 +31,7 @@ FAINT = 0.004
 
 
 @dataclass(frozen=True)
-class PolicyView:
+class PolicyLayerContent:
     """Coordinates and probabilities of an insight, for painting."""
 
     field: np.ndarray
@@ -56,11 +56,11 @@ class PolicyView:
     """The legend, line by line."""
 
 
-def sight(insight: Insight, mesh: HalfEdgeMesh, words: tuple[str, ...] = ()) -> PolicyView:
+def sight(insight: Insight, mesh: HalfEdgeMesh, words: tuple[str, ...] = ()) -> PolicyLayerContent:
     """What to paint for an insight about ``mesh`` in its current state."""
     order = np.argsort(insight.weights, kind="stable")
     halfedges = insight.halfedges[order]
-    return PolicyView(
+    return PolicyLayerContent(
         field=_corners(mesh, insight.field[:, 0]),
         blocks=insight.field[:, 1],
         elements=_corners(mesh, halfedges // mesh.k),
@@ -83,10 +83,10 @@ class FieldLayer(Layer):
 
     def __init__(self, theme: Theme, font: QFont) -> None:
         super().__init__(theme)
-        self.sight: PolicyView | None = None
+        self.sight: PolicyLayerContent | None = None
         self.above = InsightLayer(theme, font, self)
 
-    def show(self, sight: PolicyView | None) -> None:
+    def show(self, sight: PolicyLayerContent | None) -> None:
         """Show what the policy sees, or nothing."""
         if sight is not None or self.sight is not None:
             self.sight = sight
@@ -196,7 +196,7 @@ class InsightLayer(Layer):
         painter.setPen(QColor(self.theme.text))
         painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, text)
 
-    def _paint_template(self, painter: QPainter, seen: PolicyView) -> None:
+    def _paint_template(self, painter: QPainter, seen: PolicyLayerContent) -> None:
         """Paint a ring around each vertex: solid on the element itself, dotted further out."""
         font = QFont(self._font)
         font.setPixelSize(10)
@@ -222,7 +222,7 @@ class InsightLayer(Layer):
             painter.setPen(QColor(self.theme.arrow))
             painter.drawText(tag, Qt.AlignmentFlag.AlignCenter, text)
 
-    def _paint_place(self, painter: QPainter, seen: PolicyView) -> None:
+    def _paint_place(self, painter: QPainter, seen: PolicyLayerContent) -> None:
         """Paint a ring around the field of view if its elements are small."""
         corners = self.viewport.to_screen(seen.field.reshape(-1, 2))
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -234,7 +234,7 @@ class InsightLayer(Layer):
                 painter.setPen(pen(colour, width))
                 painter.drawEllipse(QPointF(x, y), radius, radius)
 
-    def _radius(self, seen: PolicyView) -> float:
+    def _radius(self, seen: PolicyLayerContent) -> float:
         """The radius of the rings, which is smaller for small elements."""
         corners = self.viewport.to_screen(seen.elements[seen.wanted])
         edges = np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)
