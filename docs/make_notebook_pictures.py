@@ -40,6 +40,7 @@ def notebook(page: Page, server: Server) -> None:
     mesh = card.look("root => root.meshwright.replica.halfedges")
     card.hover(_inside(card, mesh))
     card.root.locator(".mw-notice").wait_for(state="hidden", timeout=120_000)
+    card.until("root => root.meshwright.hoverState.ghost")
     page.wait_for_timeout(SETTLE)
 
 
