@@ -12,7 +12,7 @@ from qtpy.QtWidgets import QApplication
 from stage import HOME, LARGE, SHIFT, SMALL, Stage, allowed, shape
 
 from meshwright.assistant.policy_catalogue import shipped
-from meshwright.document.operation_preview import GLOBAL, best, choices
+from meshwright.document.operation_preview import best, choices
 from meshwright_core import HalfEdgeMesh
 
 Play = Callable[[], Image.Image]
@@ -44,7 +44,7 @@ def hover(theme: str, kind: str, size: tuple[int, int], name: str) -> Image.Imag
         (choice.operation, h)
         for h in allowed(document.mesh, "split")
         for choice in choices(document.mesh, h)
-        if choice.change == 0 and choice.operation not in GLOBAL
+        if choice.change == 0 and choice.info.is_local
         if gains_after(document.mesh, choice.operation, h)
     )
     document.submit(*first)
@@ -140,7 +140,10 @@ def lines() -> Image.Image:
     stage.rest(0.5)
     stage.point_at(allowed(mesh, "cleanup")[0])
     stage.rest(0.6)
-    return shot(stage)
+    image = stage.picture()
+    stage.window.actions_by_id["lines"].trigger()  # a setting, which the next windows would share
+    stage.close()
+    return image
 
 
 def fewest(name: str) -> HalfEdgeMesh:
@@ -299,7 +302,7 @@ def palette() -> Image.Image:
     stage = Stage(shape("h-shape"), "h-shape", SMALL, "dark")
     stage.window.actions_by_id["palette"].trigger()
     stage.rest(0.3)
-    QTest.keyClicks(QApplication.focusWidget() or stage.window, "sp")
+    QTest.keyClicks(stage.window.help.palette.field, "sp")
     stage.rest(0.3)
     return shot(stage)
 
@@ -324,7 +327,7 @@ def use_policy(stage: Stage) -> None:
 
 
 def search(stage: Stage, seconds: float) -> None:
-    """Let the agent search for some seconds and apply the result."""
+    """Run a search of some seconds; its result is applied."""
     from meshwright.assistant.search_runner import Effort
 
     use_policy(stage)
@@ -342,25 +345,25 @@ def shot(stage: Stage) -> Image.Image:
 
 SCENES: dict[str, tuple[str, Play]] = {
     "empty": ("No mesh yet", empty),
-    "tour": ("The tour follows what one does", tour),
+    "tour": ("The tour", tour),
     "hover": (
-        "A half-edge, its ghost, and every change of s",
+        "Preview of an operation, and the change of s of each",
         partial(hover, "light", "quad", SMALL, "cross"),
     ),
     "triangles": (
         "Triangles, dark, 1920 x 1080",
         partial(hover, "dark", "tri", LARGE, "airfoil"),
     ),
-    "menu": ("The menu shows the ghost of the row one points at", menu),
-    "selection": ("A region, and what can be done with it", selection),
-    "drag": ("Dragging a vertex: what would fold is hatched", dragging),
-    "lines": ("Lines that can be cleaned up", lines),
-    "hints": ("Hints: the policy's best operations here", hints),
-    "agent": ("What the policy sees while it plays", agent),
-    "history": ("The film of a run, a branch, and going back", history),
-    "optimum": ("Provably optimal", optimum),
+    "menu": ("The menu previews the operation under the mouse", menu),
+    "selection": ("A selected region, and its menu", selection),
+    "drag": ("Dragging a vertex: inverted elements are hatched", dragging),
+    "lines": ("Removable lines", lines),
+    "hints": ("Hints: the most probable operations", hints),
+    "agent": ("What the policy sees during a run", agent),
+    "history": ("The history of a run, with a branch", history),
+    "optimum": ("At the optimum", optimum),
     "quality": ("Inverted elements and quality", quality),
-    "error": ("A wrong file is one sentence", error),
+    "error": ("An error message", error),
     "new-mesh": (
         "New mesh: the gallery, with a live preview",
         partial(new_mesh, "gallery", "light"),
@@ -369,7 +372,7 @@ SCENES: dict[str, tuple[str, Play]] = {
     "draw": ("New mesh: drawn by hand", partial(new_mesh, "draw", "light")),
     "palette": ("The command palette", palette),
     "export": (
-        "Export of the film",
+        "Export as a video",
         partial(dialog, lambda stage: stage.window.playback.exporting.ask, "light"),
     ),
     "preferences": (

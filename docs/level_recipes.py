@@ -112,7 +112,7 @@ def polygon(kind: str, sides: int, max_edge: float | None = None) -> Make:
     )
 
 
-def spoilt(start: Callable[[], HalfEdgeMesh], *operations: str) -> Make:
+def scrambled(start: Callable[[], HalfEdgeMesh], *operations: str) -> Make:
     """A regular mesh after these operations at random places."""
 
     def make(rng: np.random.Generator) -> HalfEdgeMesh:
@@ -147,7 +147,7 @@ RECIPES = (
         "One flip",
         "Inside, six triangles should meet at a vertex. Flip the edge between the two vertices that"
         " have one edge too many: it goes to the two that lack one.",
-        spoilt(lambda: regular(2), "flip"),
+        scrambled(lambda: regular(2), "flip"),
         (1, 1),
         ("flip",),
         suits=lambda mesh, ways: inside(mesh),
@@ -157,7 +157,7 @@ RECIPES = (
         "A turn to the left or right",
         "Among quads, four edges should meet at a vertex. An edge turns in the hexagon of its two"
         " quads, left or right: one of the two ways makes all four vertices regular.",
-        spoilt(lambda: squares(4, 3), "flip_left"),
+        scrambled(lambda: squares(4, 3), "flip_left"),
         (1, 1),
     ),
     Recipe(
@@ -165,7 +165,7 @@ RECIPES = (
         "Two flips",
         "A flip takes one edge from each of its ends and gives one to each of the corners across."
         " Here it takes two, and the order matters. Undo costs nothing.",
-        spoilt(lambda: rhombus(4, 3), "flip", "flip"),
+        scrambled(lambda: rhombus(4, 3), "flip", "flip"),
         (2, 2),
         ("flip", "flip"),
         only=True,
@@ -176,7 +176,7 @@ RECIPES = (
         "Two turns",
         "Two edges have turned, close to each other. Look at what the score would become before"
         " you click: the best first step need not look like much.",
-        spoilt(lambda: squares(4, 4, _ell), "flip_left", "flip_right"),
+        scrambled(lambda: squares(4, 4, _ell), "flip_left", "flip_right"),
         (2, 2),
         suits=lambda mesh, ways: len(ways) == 1,
     ),
@@ -185,7 +185,7 @@ RECIPES = (
         "One vertex too many",
         "Where only four triangles meet, no flip helps: there is a vertex too many. Collapse one of"
         " its edges, and it merges with a neighbour.",
-        spoilt(lambda: triangle(4), "split"),
+        scrambled(lambda: triangle(4), "split"),
         (1, 1),
         ("collapse",),
         only=True,
@@ -193,9 +193,9 @@ RECIPES = (
     Recipe(
         "close-the-quad",
         "One quad too many",
-        "A collapse closes a quad: two opposite corners merge. It mends two corners with three"
-        " edges that face each other.",
-        spoilt(lambda: squares(4, 3), "split"),
+        "A collapse closes a quad: two opposite corners merge. Here two vertices of degree 3"
+        " become a regular one.",
+        scrambled(lambda: squares(4, 3), "split"),
         (1, 1),
         ("collapse",),
         only=True,
@@ -205,7 +205,7 @@ RECIPES = (
         "Open a vertex",
         "A vertex with too many edges can be split along one of them: a quad opens there. One turn"
         " beside it does the rest.",
-        spoilt(lambda: squares(4, 3), "collapse"),
+        scrambled(lambda: squares(4, 3), "collapse"),
         (1, 2),
         ("split",),
     ),
@@ -214,7 +214,7 @@ RECIPES = (
         "Make room",
         "Eight edges meet at one vertex. A split puts a new vertex on an edge; it has only four"
         " neighbours at first, and flips bring it the others.",
-        spoilt(lambda: regular(2), "collapse"),
+        scrambled(lambda: regular(2), "collapse"),
         (3, 3),
         ("split", "flip", "flip"),
         suits=lambda mesh, ways: inside(mesh),
@@ -225,7 +225,7 @@ RECIPES = (
         "An edge that opens cuts the next quad, and the next, up to the boundary on both sides. One"
         " end gains an edge, the other loses one: good for a vertex with three beside one with"
         " five.",
-        spoilt(lambda: squares(4, 3), "global_split"),
+        scrambled(lambda: squares(4, 3), "global_split"),
         (1, 2),
         ("global_split",),
         only=True,
@@ -242,7 +242,7 @@ RECIPES = (
         "flip-and-merge",
         "Flips and a collapse",
         "Operations help each other: a flip brings the surplus to where a collapse can use it.",
-        spoilt(lambda: triangle(5, 1), "split", "flip", "flip"),
+        scrambled(lambda: triangle(5, 1), "split", "flip", "flip"),
         (3, 3),
         ("flip", "collapse"),
         only=True,
@@ -250,17 +250,17 @@ RECIPES = (
     Recipe(
         "four-for-quads",
         "A bit of everything",
-        "A split, a collapse and two turns have spoilt a grid. Four operations mend it; perhaps"
-        " not these four.",
-        spoilt(lambda: squares(5, 3), "split", "flip_left", "flip_right", "collapse"),
+        "A split, a collapse and two turns were applied to a grid. Four operations repair it,"
+        " not necessarily the inverses of these.",
+        scrambled(lambda: squares(5, 3), "split", "flip_left", "flip_right", "collapse"),
         (4, 4),
         only=True,
     ),
     Recipe(
         "first-polygon",
         "A polygon as it comes",
-        "No more puzzles: these triangles are what a mesher made of a polygon. On the boundary the"
-        " angle says how many edges a vertex should have.",
+        "No more puzzles: these triangles are what a mesher made of a polygon. On the boundary"
+        " the angle determines the desired degree of a vertex.",
         polygon("tri", 6, 0.7),
         (4, 5),
     ),
@@ -276,15 +276,15 @@ RECIPES = (
     Recipe(
         "tee",
         "The T, in triangles",
-        "A right angle is one and a half triangles wide, so the wish of every corner is rounded up."
-        " What that adds up to, no connectivity can give: s* is not zero here.",
+        "A right angle is one and a half triangles wide, so the desired degree of every corner"
+        " is rounded up. No connectivity reaches their sum: s* is not zero here.",
         shaped("t-shape", "tri"),
         (1, 99),
     ),
     Recipe(
         "notch",
         "The notch",
-        "The reflex corner of the notch asks for four quads around it, all other corners for one"
+        "The reflex corner of the notch should have four quads around it, all other corners one"
         " each. Where should the three lines go that leave the notch?",
         shaped("single-notch", "quad"),
         (1, 99),
@@ -300,9 +300,9 @@ RECIPES = (
     Recipe(
         "plate",
         "The plate with a hole",
-        "Around a hole the wishes of the corners add up to nothing: four reflex corners against"
-        " four others. So s* is 0, and rings of quads can run around the hole.",
-        spoilt(
+        "The desired degrees of the corners balance: four reflex corners at the hole, four"
+        " others outside. So s* is 0, and rings of quads can run around the hole.",
+        scrambled(
             lambda: squares(5, 5, _ring),
             "collapse",
             "split",
@@ -324,8 +324,8 @@ RECIPES = (
     Recipe(
         "star",
         "The star",
-        "Five tips want one quad each, five reflex corners three each: together four edges are"
-        " missing, whatever you do. The optimum is s = 4, and the star can never be perfect.",
+        "Five tips should have one quad each, five reflex corners three each: together four"
+        " edges are missing. The optimum is s = 4, and the star can never be perfect.",
         shaped("star", "quad"),
         (1, 99),
     ),

@@ -39,6 +39,8 @@ def notebook(page: Page, server: Server) -> None:
     card = Card(page)
     mesh = card.look("root => root.meshwright.replica.halfedges")
     card.hover(_inside(card, mesh))
+    card.root.locator(".mw-notice").wait_for(state="hidden", timeout=120_000)
+    card.until("root => root.meshwright.hoverState.ghost")
     page.wait_for_timeout(SETTLE)
 
 
@@ -49,7 +51,7 @@ def levels(page: Page, server: Server) -> None:
     book.show('import meshwright as mw\n\nwidget = mw.MeshWidget(level="two-turns")\nwidget')
     card = Card(page)
     card.button("Ask the agent").click()
-    card.button("Show a way").wait_for(timeout=120_000)
+    card.button("Show a solution").wait_for(timeout=120_000)
     book.ask(
         "[widget.apply(name, widget.mesh.halfedge(a, b)).score_change"
         " for name, (a, b) in widget.level.solution]"

@@ -1,4 +1,4 @@
-"""Where a display, a browser or Qt's libraries are missing, tests are skipped, and say why."""
+"""Where a display, a browser or Qt's libraries are missing, tests are skipped, with the reason."""
 
 import os
 import subprocess

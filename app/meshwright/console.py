@@ -21,7 +21,7 @@ class UserError(Exception):
 
 
 class Update(Protocol):
-    """Called while a long piece of work goes on, to move its progress bar."""
+    """Called during long work, to move its progress bar."""
 
     def __call__(self, done: int, remark: str = "") -> None:
         """``done`` pieces of work are done; ``remark`` is shown beside the bar."""
@@ -56,11 +56,6 @@ class Report:
         """Write the result: ``values`` as one JSON object, or ``text``."""
         self.out.write((as_json(values) if self.as_json else text.rstrip("\n")) + "\n")
         self.out.flush()
-
-    def say(self, sentence: str) -> None:
-        """Write a remark to stderr if it is a terminal."""
-        if self.err.isatty():
-            self.note(sentence)
 
     def note(self, sentence: str) -> None:
         """Write a remark to stderr, also if it is a log."""

@@ -124,7 +124,7 @@ class Desk:
 
 @pytest.fixture(scope="session")
 def prepared_agent() -> None:
-    """The agent's kernels are compiled, so that no command has to say that it compiles them."""
+    """The agent's kernels are compiled, so that no command reports that it compiles them."""
     from meshwright_agent import warm_up
 
     if not warm_up.is_warm_on_disk():
@@ -183,7 +183,7 @@ def _own_settings(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 def _without_question(window: Any) -> None:
-    """A test that ends leaves nobody there to answer."""
+    """After a test, no dialog or worker is left to answer."""
     if window.isVisible():
         window.files.leave()
 

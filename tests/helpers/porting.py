@@ -100,9 +100,9 @@ class Port:
         ends = [mesh.origin(halfedge), mesh.target(halfedge)]
         return self.ask("operate", operation=operation, halfedge=halfedge, ends=ends)
 
-    def of(self, say: str) -> list[dict[str, Any]]:
+    def of(self, message: str) -> list[dict[str, Any]]:
         """The contents of all messages of one kind so far."""
-        return [packet.content for packet in self.packets if packet.content["type"] == say]
+        return [packet.content for packet in self.packets if packet.content["type"] == message]
 
     @property
     def sentence(self) -> str:

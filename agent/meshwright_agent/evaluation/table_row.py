@@ -60,7 +60,7 @@ def assess(
     """Measure one row for polygons with so many sides (a closed range).
 
     The numbers are those of :func:`meshwright_agent.evaluation.rollouts.evaluate`, the paper's, and
-    those that `settings` asks for.
+    those that `settings` requires.
     """
     report = progress or (lambda what, done: None)
     meshes = unseen(policy.kind, sides, settings.meshes, settings.seed)

@@ -6,7 +6,7 @@ lambda-return (generalised advantage estimation).
 
 An episode terminates at the optimum, when its steps are used up, or when no operation is permitted.
 The number of steps is part of the task and the value head sees the share of steps left, so all
-three are terminations: nothing follows them. Only the horizon truncates: an episode that goes on
+three are terminations: nothing follows them. Only the horizon truncates: an episode that continues
 beyond it is bootstrapped with the value of its last state.
 """
 

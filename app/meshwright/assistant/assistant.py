@@ -216,7 +216,7 @@ class Assistant:
 
     @property
     def stopping(self) -> bool:
-        """True once a search has been asked to end early."""
+        """True once a search has been requested to end early."""
         return self._run is not None and self._run.enough.is_set()
 
     def cancel(self) -> None:

@@ -29,7 +29,7 @@ class Effort:
     elements: np.ndarray | None = field(default=None, compare=False)
     """(n,) ids of the only elements that may change; None: all."""
     coarsen: bool = True
-    """Whether to go on for fewer elements (quads) once the score is as low as it gets."""
+    """Whether to continue for fewer elements (quads) once the score is at its lowest."""
 
 
 class SearchRunner:
@@ -47,7 +47,7 @@ class SearchRunner:
         progress: Callable[[int, int], None],
     ) -> None:
         """`mesh` is the runner's own; `enough` ends the search early, with the best so far;
-        `progress(done, best score)` is called while it goes on.
+        `progress(done, best score)` is called during the search.
         """
         self._mesh, self._policy, self._seed, self._effort = mesh, policy, seed, effort
         self._enough, self._progress = enough, progress

@@ -1,7 +1,7 @@
 """Every level: its mesh, its par, whether fewer operations would do, and how many the agent takes.
 
 The proof looks at all ways of fewer operations than par, as far as the time allows; a level whose
-file says that its par is proved, but where the search finds a shorter way, is an error. The agent
+file states that its par is proved, but where the search finds a shorter way, is an error. The agent
 is the solver, which shortens what it finds, without fewer elements in mind.
 """
 

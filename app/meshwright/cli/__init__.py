@@ -70,7 +70,7 @@ def build_parser() -> Parser:
     parser = Parser(
         prog="meshwright",
         description="Edit the connectivity of triangle and quad meshes half-edge by half-edge,\n"
-        "with a trained agent beside you.",
+        "by hand or with a trained agent.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,

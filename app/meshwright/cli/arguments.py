@@ -79,7 +79,7 @@ def read_domain(shape: str, corner_angle: float | None = None) -> Domain:
 def make_mesh(
     domain: Domain, kind: str, max_edge: float | None = None, seed: int = 0
 ) -> HalfEdgeMesh:
-    """Return a mesh of the domain, or raise UserError if it cannot be meshed as asked."""
+    """Return a mesh of the domain, or raise UserError if it cannot be meshed as requested."""
     from meshwright_core.domains import meshing
 
     with _bad_input(domain.name or "the domain"):

@@ -11,7 +11,7 @@ from meshwright.console import UserError
 
 
 def checked_output(path: str, endings: tuple[str, ...] = (), option: str = "-o") -> Path:
-    """Return the path if a file can be written there, or raise UserError that says why not.
+    """Return the path if a file can be written there, or raise UserError with the reason.
 
     ``endings`` are the allowed ones in lower case with their dot; empty allows any. Commands call
     this before they begin to work, so that a wrong path is reported at once.
@@ -33,7 +33,7 @@ def checked_output(path: str, endings: tuple[str, ...] = (), option: str = "-o")
 
 
 def checked_folder(path: str, option: str = "-o") -> Path:
-    """Return the folder, made if its parent exists, or raise UserError that says why not."""
+    """Return the folder, made if its parent exists, or raise UserError with the reason."""
     folder = Path(path)
     if folder.exists() and not folder.is_dir():
         raise UserError(f"{option} {path}: that is a file; give the name of a folder")

@@ -383,10 +383,10 @@ class Document:
 
     def untangle(self, by: str = YOU) -> tuple[int, int]:
         """Untangle inverted elements as one step; returns their number before and after."""
-        from meshwright.document.position_repair import mend  # imports scipy
+        from meshwright.document.position_repair import repair  # imports scipy
 
         mesh = self._need()
-        return self._do("untangle", "Untangle", -1, by, lambda: mend(mesh))
+        return self._do("untangle", "Untangle", -1, by, lambda: repair(mesh))
 
     def move(self, vertices: np.ndarray, positions: np.ndarray, by: str = YOU) -> None:
         """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step."""

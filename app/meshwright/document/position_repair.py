@@ -22,7 +22,7 @@ def tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
         _move(mesh, done.vertices, done.positions)
 
 
-def mend(mesh: HalfEdgeMesh) -> tuple[int, int]:
+def repair(mesh: HalfEdgeMesh) -> tuple[int, int]:
     """Untangle around each inverted element in turn; other vertices stay where they are.
 
     Returns the number of inverted elements before and after. Writes to the mesh's journal.

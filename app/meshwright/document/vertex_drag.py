@@ -20,7 +20,7 @@ from meshwright_core.geometry.sides import Sides
 
 KEPT = 0.02
 """Distance that a sliding vertex keeps from its neighbours, as a fraction of their distance."""
-CORNER = "A corner stays where it is: free it in its menu first."
+CORNER = "A corner keeps its position: free it in its menu first."
 LOCK = "This vertex is locked: unlock it in its menu first."
 
 

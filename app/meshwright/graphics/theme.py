@@ -205,7 +205,8 @@ QPushButton#ValueLink[warns="true"] {{ color: {t.warning}; }}
          selection-background-color: {t.accent_soft}; selection-color: {t.text}; }}
 #Table::item {{ padding: 2px 8px; }}
 QHeaderView, QHeaderView::section {{ background: {t.panel}; color: {t.muted}; border: 0;
-                                    padding: 4px 6px; font-size: 12px; }}
+                                    font-size: 12px; }}
+QHeaderView::section {{ padding: 4px 12px; }}
 #LicenceText {{ background: {t.background}; border: 1px solid {t.line}; border-radius: 6px;
                padding: 4px; font-family: monospace; font-size: 12px; }}
 QCheckBox {{ spacing: 8px; }}

@@ -31,7 +31,7 @@ TIMEOUT = 120.0
 
 
 class BuildError(Exception):
-    """The bundle cannot be built here; the text says why."""
+    """The bundle cannot be built here; the text gives the reason."""
 
 
 def constants() -> str:

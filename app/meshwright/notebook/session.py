@@ -202,7 +202,7 @@ class Session:
             self._dispatch(port, request)
         except MeshError as error:
             self.broadcaster.answer(port, request, "refused", sentence(str(error)))
-        except Exception as error:  # a bug: shown and logged, and the kernel goes on
+        except Exception as error:  # a bug: shown and logged, and the kernel keeps running
             _log.error("request '%s' failed", request.word, exc_info=error)
             self.broadcaster.answer(port, request, "failed", broken(error))
         finally:

@@ -213,7 +213,7 @@ class LevelPlay:
         if self.used < level.par:
             return "Better than the best known"
         if self.used == level.par:
-            return "As few as can be" if level.proved else "As few as the best known"
+            return "Proven minimum" if level.proved else "Equal to the best known"
         return "At the goal" if level.most else "At the optimum"
 
     @property
@@ -224,9 +224,9 @@ class LevelPlay:
             return ""
         if self.tally.barred:
             why = BARRED.get(self.tally.barred, "This step is not allowed in levels")
-            return f"{why}. Undo it, or begin again."
+            return f"{why}. Undo it, or restart."
         if self.tally.helped:
-            return "The agent's operations win no stars. Undo them, or begin again."
+            return "The agent's operations win no stars. Undo them, or restart."
         if self.done:
             return self._verdict(level)
         return "With a hint there are two stars at most." if self.hinted else ""
@@ -288,7 +288,7 @@ class LevelPlay:
             self.won.emit(self.stars)
 
     def _note(self, level: Level) -> None:
-        """Store the result; if that fails, playing goes on."""
+        """Store the result; an error does not end the game."""
         try:
             self.progress.note(level.name, self.stars, self.used)
         except MeshError as error:

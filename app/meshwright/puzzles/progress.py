@@ -108,8 +108,8 @@ class LevelProgress:
         try:
             os.replace(self.path, aside)
         except OSError:
-            return "they begin again."
-        return f"they begin again; it is kept as {aside.name}."
+            return "all levels start without stars."
+        return f"all levels start without stars; it is kept as {aside.name}."
 
     def _write(self, found: dict[str, Best]) -> None:
         record = {name: {"stars": best.stars, "used": best.used} for name, best in found.items()}

@@ -92,7 +92,7 @@ class NewMesh:
 
 
 def make(request: Mapping[str, Any]) -> NewMesh:
-    """Return the mesh that a request asks for.
+    """Return the requested mesh.
 
     Args:
         request: ``"source"`` is one of ``{"shape": name}``, ``{"polygon": sides, "seed": n}``,

@@ -185,7 +185,7 @@ class Sketch:
         if missing > 0:
             more = "one corner" if missing == 1 else f"{missing} corners"
             return f"{capitalised(what)} needs at least {more} more."
-        return f"Click the first corner to close {what}, or go on."
+        return f"Click the first corner to close {what}, or add more."
 
     def domain(self) -> dict[str, Any]:
         """The polygon as :meth:`meshwright_core.domains.domain.Domain.from_json` takes it;

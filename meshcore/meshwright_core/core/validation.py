@@ -138,7 +138,7 @@ def _check_counters(m: MeshArrays, directed: dict[tuple[int, int], int]) -> None
     }
     for counter, value in expected.items():
         found = int(m.counters[counter])
-        _require(found == value, f"counter {counter} says {found}, not {value}")
+        _require(found == value, f"counter {counter} is {found}, not {value}")
     listed = m.irregular[: expected[IRREGULAR]].tolist()
     _require(
         sorted(listed) == np.flatnonzero(delta).tolist(),

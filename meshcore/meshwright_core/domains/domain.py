@@ -358,7 +358,7 @@ def _from_mapping(content: Any, corner_angle: float) -> Domain:
 
 
 def _pairs(ring: Any, what: str) -> list[list[float]]:
-    """Return a JSON list of [x, y] pairs as floats, or say which entry is none."""
+    """Return a JSON list of [x, y] pairs as floats, or raise MeshError with the wrong entry."""
     if isinstance(ring, np.ndarray):
         ring = ring.tolist()
     if not isinstance(ring, Sequence) or isinstance(ring, str):

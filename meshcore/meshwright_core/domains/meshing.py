@@ -289,7 +289,7 @@ def _triangle(
         mesh = {name: mesh[name] for name in ("vertices", "triangles", "segments")}
         mesh["triangle_max_area"] = np.where(long, limit, -1.0)[:, None]
         mesh = _call(mesh, f"rp{quality}a")
-    raise MeshError("Triangle did not bring all edges below the longest edge that was asked for.")
+    raise MeshError("Triangle did not bring all edges below the requested longest edge.")
 
 
 def _call(mesh: dict[str, Any], switches: str) -> dict[str, Any]:

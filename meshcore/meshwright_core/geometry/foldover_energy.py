@@ -23,7 +23,7 @@ from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.outline import Polylines, place_on
 
 MEMORY = 10
-"""Pairs that L-BFGS remembers."""
+"""Pairs that L-BFGS keeps."""
 SUFFICIENT, CURVATURE = 1e-4, 0.9
 """Constants of the weak Wolfe conditions."""
 SHARPEST = 1e-9

@@ -107,11 +107,11 @@ def contained() -> Any:
 
     The system's errors and our own pass unchanged.
     """
-    said = io.StringIO()
+    printed = io.StringIO()
     try:
         with (
-            contextlib.redirect_stdout(said),
-            contextlib.redirect_stderr(said),
+            contextlib.redirect_stdout(printed),
+            contextlib.redirect_stderr(printed),
             warnings.catch_warnings(),
             np.errstate(all="ignore"),
         ):
@@ -122,13 +122,13 @@ def contained() -> Any:
     except (MeshError, OSError):
         raise
     except (Exception, SystemExit) as error:
-        raise MeshError(_why(error, said.getvalue())) from error
+        raise MeshError(_why(error, printed.getvalue())) from error
 
 
-def _why(error: BaseException, said: str) -> str:
+def _why(error: BaseException, printed: str) -> str:
     mute = isinstance(error, SystemExit | KeyError | AssertionError | EOFError)
     text = "" if mute else str(error)
-    text = " ".join((text or said).split()).rstrip(".")
+    text = " ".join((text or printed).split()).rstrip(".")
     damaged = "it is cut off or damaged"
     if not text:
         return damaged
@@ -216,7 +216,7 @@ def _trimesh(kind: str) -> tuple[Any, Any]:
 
 
 def _read_vtk(path: Path) -> Content:
-    """Read by meshio, which knows data, or by ourselves where it knows less."""
+    """Read by meshio, with its data, or by our own reader where meshio supports less."""
     import meshio
 
     try:

@@ -45,7 +45,7 @@ class _Reader:
         self.line()
         coding = self.words()
         if coding not in (["ASCII"], ["BINARY"]):
-            raise MeshError("it says neither ASCII nor BINARY")
+            raise MeshError("its third line is neither ASCII nor BINARY")
         self.binary = coding == ["BINARY"]
 
     def line(self) -> str:

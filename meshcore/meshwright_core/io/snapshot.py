@@ -67,7 +67,7 @@ def from_arrays(arrays: Mapping[str, np.ndarray]) -> HalfEdgeMesh:
     if k not in (3, 4) or not (0 < vertices <= MOST and 0 < elements <= MOST):
         raise MeshError("its sizes are not those of a mesh")
     if elements > 64 * (vertices + 64):
-        raise MeshError("it wants room for more elements than its vertices can have")
+        raise MeshError("it has room for more elements than its vertices can have")
     if cap < 0:
         raise MeshError("its degree cap is negative")
     counters = _array(arrays, "counters", np.int64, (RESTORED,))

@@ -283,7 +283,7 @@ def provide_rewrite(arrays: MeshArrays) -> None:
 def score_change(m, operation, h):
     """The exact change of s that an allowed operation makes, without applying it, in O(1).
 
-    0 for the collapse of a chord, which has no formula: a dry run tells its change.
+    0 for the collapse of a chord, which has no formula: a dry run gives its change.
     """
     if operation == TRI_FLIP:
         return triangle_edits.score_change_flip(m, h)

@@ -87,7 +87,7 @@ def check_global_split(m, h, cap):
 
 @bare_kernel
 def _cut(m, entry, v, before, after):
-    """Cut the quad entered through `entry`, whose edge x-y the vertex v halves, and go on.
+    """Cut the quad entered through `entry`, whose edge x-y the vertex v halves, and continue.
 
     before, after: the half-edges y-v and v-x on the other side of that edge. Returns the half-edge
     through which the cut enters the next quad (-1 on the boundary), the vertex put on the far edge

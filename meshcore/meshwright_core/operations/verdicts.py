@@ -8,7 +8,7 @@ from meshwright_core.operations.catalogue import Operation
 
 
 class Verdict:
-    """True when the operation is allowed; else `reason` says in words why not."""
+    """True when the operation is allowed; otherwise `reason` is the cause in words."""
 
     __slots__ = ("code", "reason")
 

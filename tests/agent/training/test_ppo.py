@@ -25,7 +25,7 @@ def slow_advantage(
 
     Two things stop the sum. Termination: no reward follows, so the next value is 0 and the next
     step, which belongs to another episode, does not count. Truncation by the horizon: the episode
-    goes on unseen, and values[horizon] stands for the rest of its return.
+    continues unseen, and values[horizon] stands for the rest of its return.
     """
     horizon = len(rewards)
     advantage, weight = 0.0, 1.0

@@ -83,7 +83,7 @@ def test_a_training_ends_early_and_its_best_policy_is_the_result(tmp_path, monke
     kept = load(tmp_path / "policy.safetensors").network.state_dict()
     assert all(torch.equal(kept[name], value) for name, value in parts["best"].items())
     assert any(not torch.equal(kept[name], value) for name, value in parts["network"].items())
-    # resumed it is at its end still, and another patience lets it go on
+    # resumed it is still at its end, and with another patience it continues
     assert train({**_TINY, "iterations": 9, "patience": 2}, tmp_path)["iteration"] == 3
     again = train({**_TINY, "iterations": 4, "patience": 3}, tmp_path)
     assert (again["iteration"], again["best_return"]) == (4, 0.9)

@@ -19,7 +19,7 @@ def make(desk, greedy):
         document, load=lambda name: name, patient=False, make_runner=None, ask=None, **options
     ):
         def search(mesh, policy, seed, effort, enough, progress):
-            """Find what the greedy run finds; a patient one then waits to be told to stop."""
+            """Find what the greedy run finds; a patient one then waits for the request to stop."""
             found = greedy(mesh, **options)
             progress(1, mesh.optimum)
             if patient:
@@ -267,16 +267,16 @@ def hinted(assistant, desk):
 def test_hints_hold_until_the_document_changes(make, desk, star):
     document = Document(star)
     assistant = make(document)
-    told = []
-    assistant.hinting.changed.connect(lambda: told.append(assistant.hinting.hints))
+    received = []
+    assistant.hinting.changed.connect(lambda: received.append(assistant.hinting.hints))
     assistant.hint()
     assert assistant.hinting.asking and assistant.hinting.hints == ()
     hints = hinted(assistant, desk)
-    assert 1 <= len(hints) <= 5 and told == [hints]
+    assert 1 <= len(hints) <= 5 and received == [hints]
     assert assistant.state is State.IDLE and document.history.cursor == 0
     document.submit(hints[0].operation, hints[0].halfedge)
     assert document.history.last.change == hints[0].change
-    assert assistant.hinting.hints == () and told[-1] == ()
+    assert assistant.hinting.hints == () and received[-1] == ()
 
 
 def test_a_hint_that_comes_too_late_is_dropped(make, desk, star):
@@ -416,7 +416,7 @@ def test_a_chosen_policy_is_used_once_it_is_loaded(make, desk, star):
 
 
 def test_an_exiting_program_does_not_wait_for_a_run():
-    """A worker waits until its decision is applied; nobody applies it once the program dies."""
+    """A worker waits until its decision is applied, but must end with the program."""
     code = """if True:
         import time
         from meshwright.assistant.assistant import Assistant

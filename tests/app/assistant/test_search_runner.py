@@ -14,21 +14,21 @@ def _all_steps(runner):
 
 
 def test_steps_lead_to_the_result(star):
-    told = []
+    received = []
     runner = SearchRunner(
         star.copy(),
         load("quad"),
         3,
         Effort(rollouts=2, seconds=None),
         Event(),
-        lambda *a: told.append(a),
+        lambda *a: received.append(a),
     )
     assert not runner.finished
     steps = _all_steps(runner)
     for operation, halfedge in steps:
         star.apply(operation, halfedge)
     assert star.score == star.optimum == 4
-    assert told[-1][1] == 4
+    assert received[-1][1] == 4
     assert runner.step() == [] and runner.reason == ""
 
 

@@ -22,9 +22,9 @@ def test_unknown_suite_is_refused(capsys):
 @pytest.mark.slow
 def test_suite_runs(name, capsys):
     assert cli.main(["bench", "--suite", name, "--quick", "--json"]) == 0
-    said = capsys.readouterr()
-    assert said.err == ""
-    values = json.loads(said.out)
+    output = capsys.readouterr()
+    assert output.err == ""
+    values = json.loads(output.out)
     assert values["suite"] == name
     assert values["results"]
     assert values["machine"]["cores"]

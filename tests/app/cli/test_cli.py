@@ -31,11 +31,11 @@ def broken(monkeypatch):
 
 def test_help_names_every_command(capsys):
     assert cli.main(["--help"]) == 0
-    said = capsys.readouterr()
-    assert said.err == ""
+    printed = capsys.readouterr()
+    assert printed.err == ""
     for name, command in COMMANDS.items():
-        assert f"    {name}" in said.out
-        assert command.SUMMARY.split()[0] in said.out
+        assert f"    {name}" in printed.out
+        assert command.SUMMARY.split()[0] in printed.out
 
 
 @pytest.mark.parametrize("name", list(COMMANDS))
@@ -50,7 +50,7 @@ def test_version(capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "says"),
+    ("words", "expected"),
     [
         (["improve"], "the following arguments are required: IN, -o/--output"),
         (["mesh", "star", "-o", "a.vtk", "--kind", "hex"], "invalid choice: 'hex'"),
@@ -66,20 +66,20 @@ def test_version(capsys):
         (["--loud"], "unrecognized arguments: --loud"),
     ],
 )
-def test_wrong_use_is_one_line_and_code_2(words, says, capsys):
+def test_wrong_use_is_one_line_and_code_2(words, expected, capsys):
     assert cli.main(words) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.count("\n") == 1
-    assert says in said.err
-    assert "--help" in said.err
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.count("\n") == 1
+    assert expected in printed.err
+    assert "--help" in printed.err
 
 
 def test_wrong_use_with_json_is_still_one_object(capsys):
     assert cli.main(["improve", "--json"]) == 2
-    said = capsys.readouterr()
-    assert "required" in json.loads(said.out)["error"]
-    assert said.err.count("\n") == 1
+    printed = capsys.readouterr()
+    assert "required" in json.loads(printed.out)["error"]
+    assert printed.err.count("\n") == 1
 
 
 def test_user_error_is_one_line_whatever_the_message(broken, capsys):
@@ -91,10 +91,10 @@ def test_user_error_is_one_line_whatever_the_message(broken, capsys):
 def test_internal_error_is_not_reported_as_bad_input(broken, capsys):
     broken(ValueError("of ours"))
     assert cli.main(["shapes"]) == 1
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert "internal error: ValueError: of ours" in said
-    assert "MESHWRIGHT_DEBUG=1" in said
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1
+    assert "internal error: ValueError: of ours" in printed
+    assert "MESHWRIGHT_DEBUG=1" in printed
 
 
 def test_internal_error_shows_its_traceback_with_the_debug_variable(broken, capsys, monkeypatch):
@@ -125,10 +125,10 @@ def test_closed_stdout_is_not_reported():
         [sys.executable, "-u", "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     child.stdout.close()
-    said = child.stderr.read()
+    printed = child.stderr.read()
     child.stderr.close()
     assert child.wait() == cli.READER_GONE
-    assert said == b""
+    assert printed == b""
 
 
 def test_json_turns_numpy_and_nan_into_plain_values():
@@ -147,7 +147,6 @@ def test_progress_is_shown_on_terminals_only(monkeypatch):
     monkeypatch.setattr(sys, "stderr", stream)
     with Report().progress("work", 3) as update:
         update(1, "s = 3")
-    Report().say("a remark")
     assert stream.getvalue() == ""
 
 
@@ -161,7 +160,7 @@ def test_progress_is_shown_on_a_terminal(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("name", "says"),
+    ("name", "expected"),
     [
         ("missing/a.vtk", "does not exist"),
         ("file.txt/a.vtk", "is not a folder"),
@@ -170,9 +169,9 @@ def test_progress_is_shown_on_a_terminal(monkeypatch):
         ("a", "a name without an ending"),
     ],
 )
-def test_output_is_checked_before_the_work(tmp_path, name, says):
+def test_output_is_checked_before_the_work(tmp_path, name, expected):
     (tmp_path / "file.txt").write_text("")
-    with pytest.raises(UserError, match=says):
+    with pytest.raises(UserError, match=expected):
         output_files.checked_output(str(tmp_path / name), (".vtk", ".obj"))
 
 

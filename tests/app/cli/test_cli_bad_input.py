@@ -69,37 +69,37 @@ BAD_POLYGONS = {
 
 @pytest.fixture
 def refused(tmp_path, monkeypatch, capfd):
-    """Run the command line where it must refuse; return the line that it says on stderr."""
+    """Run the command line where it must refuse; return its line on stderr."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv(cli.DEBUG, raising=False)
 
-    def run(*words: str, says: str = "") -> str:
+    def run(*words: str, part: str = "") -> str:
         before = {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
         code = cli.main(list(words))
-        said = capfd.readouterr()
-        assert said.err.count("\n") == 1, said.err
-        assert said.out == ""
-        assert code == 2, said.err
-        assert any(word in said.err for word in says.split("|")), said.err
+        output = capfd.readouterr()
+        assert output.err.count("\n") == 1, output.err
+        assert output.out == ""
+        assert code == 2, output.err
+        assert any(word in output.err for word in part.split("|")), output.err
         after = {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
         assert after == before
-        return said.err
+        return output.err
 
     return run
 
 
 @pytest.mark.parametrize("name", BAD_MESHES)
 def test_bad_mesh_file(refused, tmp_path, name):
-    text, says = BAD_MESHES[name]
+    text, part = BAD_MESHES[name]
     (tmp_path / name).write_text(text)
-    assert name in refused("improve", name, "-o", "out.obj", says=says)
+    assert name in refused("improve", name, "-o", "out.obj", part=part)
 
 
 @pytest.mark.parametrize("name", BAD_POLYGONS)
 def test_bad_polygon_file(refused, tmp_path, name):
-    polygon, says = BAD_POLYGONS[name]
+    polygon, part = BAD_POLYGONS[name]
     (tmp_path / name).write_text(json.dumps(polygon))
-    assert name in refused("mesh", name, "-o", "out.obj", "--kind", "quad", says=says)
+    assert name in refused("mesh", name, "-o", "out.obj", "--kind", "quad", part=part)
 
 
 def test_polygon_file_that_is_not_json(refused, tmp_path):
@@ -131,26 +131,26 @@ def test_unknown_command_gets_a_hint(refused):
 
 def test_output_folder_that_does_not_exist(refused, tmp_path):
     (tmp_path / "a.obj").write_text(TRIANGLES)
-    says = "the folder no does not exist"
-    refused("improve", "a.obj", "-o", "no/b.obj", says=says)
-    refused("improve", "a.obj", "-o", "b.obj", "--png", "no/b.png", says=says)
-    refused("mesh", "star", "-o", "no/b.obj", "--kind", "tri", says=says)
-    refused("improve", "a.obj", "-o", "b.obj", "--film", "no/b.gif", says=says)
-    refused("demo", "-o", "no/b.png", says=says)
+    part = "the folder no does not exist"
+    refused("improve", "a.obj", "-o", "no/b.obj", part=part)
+    refused("improve", "a.obj", "-o", "b.obj", "--png", "no/b.png", part=part)
+    refused("mesh", "star", "-o", "no/b.obj", "--kind", "tri", part=part)
+    refused("improve", "a.obj", "-o", "b.obj", "--film", "no/b.gif", part=part)
+    refused("demo", "-o", "no/b.png", part=part)
 
 
 def test_output_ending_that_cannot_be_written(refused, tmp_path):
     (tmp_path / "a.obj").write_text(TRIANGLES)
-    refused("improve", "a.obj", "-o", "b.docx", says="cannot write the ending .docx")
+    refused("improve", "a.obj", "-o", "b.docx", part="cannot write the ending .docx")
     refused(
-        "improve", "a.obj", "-o", "b.obj", "--png", "b.jpg", says="cannot write the ending .jpg"
+        "improve", "a.obj", "-o", "b.obj", "--png", "b.jpg", part="cannot write the ending .jpg"
     )
-    refused("improve", "a.obj", "-o", "b.obj", "--film", "b.avi", says="use one of .gif .mp4")
-    refused("mesh", "star", "-o", "b", "--kind", "tri", says="a name without an ending")
+    refused("improve", "a.obj", "-o", "b.obj", "--film", "b.avi", part="use one of .gif .mp4")
+    refused("mesh", "star", "-o", "b", "--kind", "tri", part="a name without an ending")
 
 
 def test_quads_into_a_format_of_triangles(refused):
-    refused("mesh", "star", "-o", "b.stl", "--kind", "quad", says="cannot write the ending .stl")
+    refused("mesh", "star", "-o", "b.stl", "--kind", "quad", part="cannot write the ending .stl")
 
 
 def shipped_policy(kind: str) -> Path:
@@ -162,8 +162,8 @@ def shipped_policy(kind: str) -> Path:
 
 def test_missing_policy(refused, tmp_path):
     (tmp_path / "a.obj").write_text(TRIANGLES)
-    refused("improve", "a.obj", "-o", "b.obj", "--policy", "no.safetensors", says="no such file")
-    refused("improve", "a.obj", "-o", "b.obj", "--policy", "nobody", says="nobody")
+    refused("improve", "a.obj", "-o", "b.obj", "--policy", "no.safetensors", part="no such file")
+    refused("improve", "a.obj", "-o", "b.obj", "--policy", "nobody", part="nobody")
 
 
 @pytest.mark.parametrize("share", [0.0, 0.001, 0.5, 0.999])
@@ -172,20 +172,26 @@ def test_policy_cut_short(refused, tmp_path, share):
     (tmp_path / "half.safetensors").write_bytes(whole[: int(share * len(whole))])
     (tmp_path / "a.obj").write_text(TRIANGLES)
     refused(
-        "improve", "a.obj", "-o", "b.obj", "--policy", "half.safetensors", says="half.safetensors"
+        "improve",
+        "a.obj",
+        "-o",
+        "b.obj",
+        "--policy",
+        "half.safetensors",
+        part="half.safetensors",
     )
 
 
 def test_policy_that_is_another_file(refused, tmp_path):
     (tmp_path / "a.obj").write_text(TRIANGLES)
-    refused("improve", "a.obj", "-o", "b.obj", "--policy", "a.obj", says="a.obj")
+    refused("improve", "a.obj", "-o", "b.obj", "--policy", "a.obj", part="a.obj")
 
 
 def test_policy_of_the_other_kind(refused, tmp_path):
     (tmp_path / "a.obj").write_text(TRIANGLES)
     policy = str(shipped_policy("quad"))
-    refused("improve", "a.obj", "-o", "b.obj", "--policy", policy, says="is for quads")
-    refused("evaluate", "--kind", "tri", "--policy", policy, says="is for quads")
+    refused("improve", "a.obj", "-o", "b.obj", "--policy", policy, part="is for quads")
+    refused("evaluate", "--kind", "tri", "--policy", policy, part="is for quads")
 
 
 @contextmanager
@@ -207,7 +213,7 @@ def test_full_disk_leaves_the_old_mesh_whole(refused, tmp_path, capfd, ending):
     assert cli.main(words) == 0
     capfd.readouterr()
     with files_no_larger_than(500):
-        refused(*words, says="too large|No space|cannot write")
+        refused(*words, part="too large|No space|cannot write")
     meshwright_core.read(tmp_path / f"a.{ending}").validate()
 
 
@@ -222,4 +228,4 @@ def test_full_disk_leaves_the_old_picture_whole(refused, tmp_path, monkeypatch):
     (tmp_path / "a.obj").write_text(TRIANGLES)
     (tmp_path / "a.png").write_bytes(b"old")
     words = ["improve", "a.obj", "-o", "a.obj", "--png", "a.png", "--rollouts", "1"]
-    refused(*words, says="no space left on device")
+    refused(*words, part="no space left on device")

@@ -31,9 +31,9 @@ def test_a_table_with_everything(small_table, tmp_path, capfd):
     words = ["evaluate", "--kind", "quad", "--table", "--meshes", "2", "--rollouts", "2"]
     more = ["--baselines", "--race", "0.05", "--shorten", "0.05", "--figure", str(tmp_path / "f")]
     assert cli.main([*words, *more, "--json"]) == 0
-    said = capfd.readouterr()
-    assert said.err == ""
-    found = json.loads(said.out)
+    output = capfd.readouterr()
+    assert output.err == ""
+    found = json.loads(output.out)
     assert [row["sides"] for row in found["rows"]] == [[6, 7], [8, 8]]
     assert found["rows"][1]["paper"]["single_mean"] == 0.95
     for row in found["rows"]:

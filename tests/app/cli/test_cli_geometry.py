@@ -37,10 +37,10 @@ def here(tmp_path, monkeypatch):
 def test_mesh_of_a_drawing(here, capsys, name):
     (here / name).write_text(SOUND[name])
     assert cli.main(["mesh", name, "-o", "out.vtk", "--max-edge", "5", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
+    report = json.loads(capsys.readouterr().out)
     mesh = meshwright_core.read(here / "out.vtk")
-    assert mesh.kind == told["kind"] == "quad"
-    assert mesh.n_elements == told["elements"]
+    assert mesh.kind == report["kind"] == "quad"
+    assert mesh.n_elements == report["elements"]
     mesh.validate()
 
 
@@ -58,12 +58,12 @@ def test_curved_sides_drawn_as_short_pieces_have_no_corners_above_the_angle(here
 @pytest.mark.parametrize("name", BAD)
 @pytest.mark.parametrize("words", [["mesh", "-o", "out.vtk"], ["view"]])
 def test_bad_drawing(here, capsys, name, words):
-    text, says = BAD[name]
+    text, expected = BAD[name]
     (here / name).write_text(text)
     assert cli.main([words[0], name, *words[1:]]) == 2
-    said = capsys.readouterr()
-    assert said.out == "" and said.err.count("\n") == 1
-    assert name in said.err and says in said.err
+    output = capsys.readouterr()
+    assert output.out == "" and output.err.count("\n") == 1
+    assert name in output.err and expected in output.err
     assert not (here / "out.vtk").exists()
 
 

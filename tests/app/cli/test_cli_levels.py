@@ -52,9 +52,9 @@ def test_play_opens_the_window_on_a_level(capsys, opened):
 
 def test_an_unknown_level_is_refused_in_one_line(capsys, opened):
     assert cli.main(["play", "two-flip"]) == 2
-    said = capsys.readouterr().err
-    assert "did you mean two-flips" in said
-    assert said.count("\n") == 1
+    output = capsys.readouterr().err
+    assert "did you mean two-flips" in output
+    assert output.count("\n") == 1
     assert opened == []
 
 

@@ -1,4 +1,4 @@
-"""The command line at work: what it writes can be read again, and says what it has done."""
+"""Commands of the command line: their files can be read again, and their reports are right."""
 
 import json
 import os
@@ -33,10 +33,10 @@ def run(capfd):
 
     def run_json(*words: str) -> dict:
         assert cli.main([*words, "--json"]) == 0, capfd.readouterr().err
-        said = capfd.readouterr()
-        assert said.err == ""
-        assert said.out.count("\n") == 1
-        return json.loads(said.out)
+        output = capfd.readouterr()
+        assert output.err == ""
+        assert output.out.count("\n") == 1
+        return json.loads(output.out)
 
     return run_json
 
@@ -55,31 +55,31 @@ def test_shapes_lists_the_gallery(run, capfd):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_mesh_writes_a_mesh_of_the_shape(run, kind, tmp_path):
-    said = run("mesh", "star", "-o", "star.vtk", "--kind", kind)
+    output = run("mesh", "star", "-o", "star.vtk", "--kind", kind)
     mesh = meshwright_core.read(tmp_path / "star.vtk")
     mesh.validate()
     domain = gallery.shape("star")
     assert corners(mesh) == {(*np.round(p, 9), 0.0) for p in domain.outline}
-    assert (said["kind"], said["elements"], said["vertices"]) == (
+    assert (output["kind"], output["elements"], output["vertices"]) == (
         kind,
         mesh.n_elements,
         mesh.n_vertices,
     )
-    assert (said["score"], said["optimum"]) == (mesh.score, mesh.optimum)
-    assert said["inverted_elements"] == len(quality.inverted(mesh)) == 0
+    assert (output["score"], output["optimum"]) == (mesh.score, mesh.optimum)
+    assert output["inverted_elements"] == len(quality.inverted(mesh)) == 0
 
 
 def test_mesh_takes_a_polygon_file(run, tmp_path):
     hole = [[1, 1], [2, 1], [2, 2], [1, 2]]
     polygon = {"outline": [[0, 0], [0, 3], [3, 3], [3, 0]], "holes": [hole]}
     (tmp_path / "a.json").write_text(json.dumps(polygon))
-    said = run("mesh", "a.json", "-o", "a.obj", "--kind", "quad", "--max-edge", "0.5")
+    output = run("mesh", "a.json", "-o", "a.obj", "--kind", "quad", "--max-edge", "0.5")
     mesh = meshwright_core.read(tmp_path / "a.obj")
     assert mesh.euler == 0
-    assert said["corners"] == 8
+    assert output["corners"] == 8
     ends = mesh.elements()
     lengths = np.linalg.norm(mesh.points[ends] - mesh.points[np.roll(ends, -1, axis=1)], axis=2)
-    assert said["elements"] == mesh.n_elements
+    assert output["elements"] == mesh.n_elements
     assert lengths.max() < 1.0
 
 
@@ -94,25 +94,26 @@ def test_same_seed_same_mesh(run, tmp_path):
 def test_improve_keeps_corners_and_the_optimum(run, kind, tmp_path):
     made = run("mesh", "star", "-o", "in.vtk", "--kind", kind)
     words = ("improve", "in.vtk", "-o", "out.vtk", "--rollouts", "3", "--png", "out.png")
-    said = run(*words, "--film", "out.gif")
+    output = run(*words, "--film", "out.gif")
     before, after = (
         meshwright_core.read(tmp_path / "in.vtk"),
         meshwright_core.read(tmp_path / "out.vtk"),
     )
     after.validate()
     assert corners(after) == corners(before)
-    assert said["score_before"] == made["score"] == before.score
-    assert said["score_after"] == after.score < before.score
-    assert said["optimum"] == after.optimum == before.optimum
-    assert said["elements"] == after.n_elements
-    assert said["inverted_elements"] == len(said["inverted_ids"]) == len(quality.inverted(after))
-    assert 1 <= said["rollouts"] <= 3  # it stops at the optimum
-    assert said["operations"] > 0
-    assert 0 < said["normalised_return"] <= 1
+    assert output["score_before"] == made["score"] == before.score
+    assert output["score_after"] == after.score < before.score
+    assert output["optimum"] == after.optimum == before.optimum
+    assert output["elements"] == after.n_elements
+    assert output["inverted_elements"] == len(quality.inverted(after))
+    assert output["inverted_elements"] == len(output["inverted_ids"])
+    assert 1 <= output["rollouts"] <= 3  # it stops at the optimum
+    assert output["operations"] > 0
+    assert 0 < output["normalised_return"] <= 1
     with Image.open(tmp_path / "out.png") as picture:
         assert picture.size == (1200, 900)
     with Image.open(tmp_path / "out.gif") as film:
-        assert film.n_frames == said["operations"] + 2  # the start, and the smoothing at the end
+        assert film.n_frames == output["operations"] + 2  # the start, and the smoothing at the end
 
 
 def test_improve_announces_the_compilation(run, capfd, monkeypatch):
@@ -131,8 +132,8 @@ def test_improve_in_place_with_a_budget_and_the_same_seed(run, tmp_path):
     for _ in range(2):
         (tmp_path / "a.obj").write_bytes(original)
         words = ("improve", "a.obj", "-o", "a.obj", "--rollouts", "2", "--steps", "5")
-        said = run(*words, "--seed", "7")
-        assert said["score_after"] <= said["score_before"]
+        output = run(*words, "--seed", "7")
+        assert output["score_after"] <= output["score_before"]
         written.add((tmp_path / "a.obj").read_bytes())
     assert len(written) == 1
 
@@ -140,11 +141,11 @@ def test_improve_in_place_with_a_budget_and_the_same_seed(run, tmp_path):
 def test_improve_with_a_time_limit_as_text(run, capfd):
     run("mesh", "l-shape", "-o", "a.vtk", "--kind", "quad")
     assert cli.main(["improve", "a.vtk", "-o", "b.vtk", "--search", "0.5"]) == 0
-    said = capfd.readouterr()
-    assert said.err == ""
-    assert said.out.startswith("a.vtk -> b.vtk\n")
+    output = capfd.readouterr()
+    assert output.err == ""
+    assert output.out.startswith("a.vtk -> b.vtk\n")
     for word in ("s* = ", "elements", "inverted", "operations", "seconds"):
-        assert word in said.out
+        assert word in output.out
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -160,11 +161,11 @@ def test_evaluate_reports_a_row(run, kind):
 
 def test_demo_without_a_display_writes_a_picture_and_says_so(tmp_path, capfd):
     assert cli.main(["demo"]) == 0
-    said = capfd.readouterr()
-    assert said.err == ""
-    assert said.out.count("\n") == 1
-    assert "no display" in said.out
-    assert str(tmp_path / "meshwright-demo.png") in said.out
+    output = capfd.readouterr()
+    assert output.err == ""
+    assert output.out.count("\n") == 1
+    assert "no display" in output.out
+    assert str(tmp_path / "meshwright-demo.png") in output.out
     with Image.open(tmp_path / "meshwright-demo.png") as picture:
         assert picture.width == 3 * picture.height
         assert len(picture.convert("RGB").getcolors(1 << 24)) > 20
@@ -173,23 +174,23 @@ def test_demo_without_a_display_writes_a_picture_and_says_so(tmp_path, capfd):
 @pytest.mark.slow
 def test_demo_with_a_display_that_does_not_answer(run, monkeypatch):
     monkeypatch.setenv("DISPLAY", ":931")
-    said = run("demo", "--shape", "l-shape", "--kind", "tri")
-    assert said["window"] is False
-    assert "Qt cannot open the display" in said["reason"]
+    output = run("demo", "--shape", "l-shape", "--kind", "tri")
+    assert output["window"] is False
+    assert "Qt cannot open the display" in output["reason"]
 
 
 def test_demo_writes_the_picture_that_is_asked_for(run, tmp_path):
-    said = run("demo", "-o", "a.png")
-    assert said["picture"] == str(tmp_path / "a.png")
-    assert said["score_after"] < said["score_before"]
+    output = run("demo", "-o", "a.png")
+    assert output["picture"] == str(tmp_path / "a.png")
+    assert output["score_after"] < output["score_before"]
 
 
 @pytest.mark.parametrize("words", [[], ["view"], ["star"]])
 def test_window_without_a_display_is_refused(words, capfd):
     assert cli.main(words) == 2
-    said = capfd.readouterr().err
-    assert said.count("\n") == 1
-    assert "there is no display here" in said
+    output = capfd.readouterr().err
+    assert output.count("\n") == 1
+    assert "there is no display here" in output
 
 
 @pytest.mark.slow

@@ -37,7 +37,7 @@ def controls(parent: QObject) -> list[QWidget]:
     ]
 
 
-def told(control: QWidget) -> str:
+def name_of(control: QWidget) -> str:
     text = control.text() if isinstance(control, QAbstractButton) else ""
     return control.accessibleName() or text.strip(" .\u2026\u00b7")
 
@@ -56,9 +56,11 @@ def test_every_control_of_the_window_has_a_name_and_a_tooltip(open_window, star,
     window = open_window({"quad": star, "tri": triangles, "none": None}[kind])
     found = controls(window)
     assert len(found) > 20
-    nameless = [where(control) for control in found if not told(control)]
+    nameless = [where(control) for control in found if not name_of(control)]
     assert not nameless, "\n".join(nameless)
-    without = [f"{told(control)}: {where(control)}" for control in found if not control.toolTip()]
+    without = [
+        f"{name_of(control)}: {where(control)}" for control in found if not control.toolTip()
+    ]
     assert not without, "\n".join(without)
 
 
@@ -68,8 +70,8 @@ def test_every_control_of_the_dialogs_has_a_name_and_a_tooltip(qtbot, open_windo
     dialog = page(window.settings, window) if page is PreferencesDialog else page(window)
     qtbot.addWidget(dialog)
     found = controls(dialog)
-    assert [where(control) for control in found if not told(control)] == []
-    assert [told(control) for control in found if not control.toolTip()] == []
+    assert [where(control) for control in found if not name_of(control)] == []
+    assert [name_of(control) for control in found if not control.toolTip()] == []
 
 
 def test_every_action_has_a_tooltip():

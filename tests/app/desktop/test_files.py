@@ -257,10 +257,10 @@ def test_unsaved_work_is_discarded_by_two_clicks_or_kept(qtbot, watched, star, t
     left_behind(folder, star.copy(), "first")
     left_behind(folder, star.copy(), "second", (4,))
     window = watched(star)
-    said = []
+    output = []
 
     def discard_one(dialog: RecoveryDialog) -> None:
-        said.extend(
+        output.extend(
             (card.title.text(), card.story.text(), card.place.text()) for card in dialog.cards
         )
         card = dialog.cards[0]
@@ -274,9 +274,9 @@ def test_unsaved_work_is_discarded_by_two_clicks_or_kept(qtbot, watched, star, t
     met = when_shown(qtbot, RecoveryDialog, discard_one)
     window.actions_by_id["recover"].trigger()
     assert len(met) == 1
-    assert {title for title, _, _ in said} == {"first", "second"}
-    assert any(story.startswith("3 steps, s ") for _, story, _ in said)
-    assert all(place.startswith("Today at") and "never saved" in place for _, _, place in said)
+    assert {title for title, _, _ in output} == {"first", "second"}
+    assert any(story.startswith("3 steps, s ") for _, story, _ in output)
+    assert all(place.startswith("Today at") and "never saved" in place for _, _, place in output)
     assert len(list(folder.iterdir())) == 1
     (left,) = recovery.lost(folder)
     left.discard()

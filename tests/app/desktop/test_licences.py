@@ -46,8 +46,8 @@ def test_shortcuts_dialog_lists_every_shortcut_and_is_not_modal(qtbot, open_wind
     window.activateWindow()
     assert window.help.keys.isVisible()
     blocks = key_blocks(window.actions_by_id.menus(window.document.kind))
-    told = {keys for _, lines in blocks for keys, *_ in lines}
-    assert {"Ctrl+Z", "F1", "Ctrl+K", "F"} <= told
+    listed = {keys for _, lines in blocks for keys, *_ in lines}
+    assert {"Ctrl+Z", "F1", "Ctrl+K", "F"} <= listed
     assert len(blocks[-1][1]) == len(MOUSE)
     columns = spread(blocks, 3)
     assert [block for column in columns for block in column] == blocks

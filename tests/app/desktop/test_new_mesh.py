@@ -393,9 +393,9 @@ def test_dead_process_is_reported_and_replaced(qtbot):
     maker.start()
     maker.ask({**REQUEST, "max_edge": 1.5e-3}, at_once=True)
     qtbot.waitUntil(lambda: maker._asked is not None, timeout=WAIT)
-    with qtbot.waitSignal(maker.failed, timeout=WAIT) as told:
+    with qtbot.waitSignal(maker.failed, timeout=WAIT) as received:
         maker._process.kill()
-    assert "process ended unexpectedly" in told.args[0]
+    assert "process ended unexpectedly" in received.args[0]
     with qtbot.waitSignal(maker.made, timeout=WAIT) as made:
         maker.ask(REQUEST, at_once=True)
     assert made.args[0].score == 12
@@ -413,7 +413,7 @@ def test_message_frames_round_trip():
 
 
 @pytest.mark.parametrize(
-    ("change", "says"),
+    ("change", "expected"),
     [
         ({"source": {"shape": "sta"}}, "did you mean"),
         ({"source": {"domain": {"outline": [[0, 0], [1, 1]]}}}, "at least 3"),
@@ -421,6 +421,6 @@ def test_message_frames_round_trip():
         ({"min_angle": 60}, "34"),
     ],
 )
-def test_invalid_requests_are_reported_in_one_sentence(change, says):
-    with pytest.raises(MeshError, match=says):
+def test_invalid_requests_are_reported_in_one_sentence(change, expected):
+    with pytest.raises(MeshError, match=expected):
         mesh_worker.make({**REQUEST, **change})

@@ -55,12 +55,12 @@ def test_invalid_stored_values_read_as_defaults(store):
 
 def test_a_change_is_emitted_once(store):
     settings = Settings(store)
-    told = []
-    settings.changed.connect(told.append)
+    received = []
+    settings.changed.connect(received.append)
     settings.theme = "dark"
     settings.theme = "dark"
     settings.clear("look")
-    assert told == ["look/theme", "look/theme"]
+    assert received == ["look/theme", "look/theme"]
 
 
 def test_recent_files_are_limited(store):

@@ -116,9 +116,9 @@ def test_clicks_on_a_column_cycle_through_its_vertices(qtbot, open_window, star)
         middle = np.array(window.canvas.viewport.size) / 2.0
         assert np.allclose(window.canvas.viewport.to_screen(star.points[vertex]), middle, atol=1)
     empty = tally.column(-2).center().toPoint()
-    said = window.status.message
+    output = window.status.message
     qtbot.mouseClick(tally, Qt.MouseButton.LeftButton, pos=empty)
-    assert window.status.message == said
+    assert window.status.message == output
 
 
 def test_outermost_columns_include_larger_irregularities(qtbot, open_window, star):

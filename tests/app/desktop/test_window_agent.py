@@ -184,7 +184,7 @@ def test_invalid_policy_file_is_reported_in_one_sentence(open_window, star, tmp_
     if kind is not None:
         policy_file(path, kind)
     window.agent.open_policy(str(path))
-    said = {"tri": "a policy for triangle meshes", "": "no policy file", None: "no such file"}
-    assert said[kind] in window.notice.text
+    output = {"tri": "a policy for triangle meshes", "": "no policy file", None: "no such file"}
+    assert output[kind] in window.notice.text
     assert window.assistant.policy == "greedy"
     assert window.agent_panel.policy.findText("other") < 0

@@ -67,7 +67,7 @@ def test_a_level_is_chosen_played_by_mouse_and_key_and_won(qtbot, window):
     press(qtbot, window, Qt.Key.Key_F)
     assert bar.used.text == "1"
     assert bar.stars.count == 3
-    assert bar.title.text() == "As few as can be"
+    assert bar.title.text() == "Proven minimum"
     assert "three stars" in bar.text.text()
     click(qtbot, bar.next)
     assert window.levels.level.name == "quarter-turn"
@@ -133,7 +133,7 @@ def test_forbidden_actions_of_a_level_are_refused_with_a_reason(qtbot, window):
     assert len(window.document.history) == 0
     menu = window.selection_tools.menus.of_vertex(0)
     titles = {action.text(): action.isEnabled() for action in menu.actions()}
-    assert titles["Locked (nothing changes it)"] is False
+    assert titles["Locked (not moved or removed)"] is False
     menu.deleteLater()
     window.levels.leave()
     window.actions_by_id["clean_all"].trigger()
@@ -163,7 +163,7 @@ def test_leaving_a_level_asks_nothing(qtbot, window, tmp_path, monkeypatch):
     window.files.watch(tmp_path / "autosave")
     monkeypatch.setattr(
         "meshwright.desktop.files.unsaved_work.QuestionDialog", None
-    )  # who asks fails
+    )  # a question would fail the test
     window.levels.open("two-turns")
     solve(window)
     assert not window.isWindowModified()

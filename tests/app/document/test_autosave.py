@@ -200,23 +200,23 @@ class FullDisk:
 def test_a_full_disk_is_reported_and_writing_resumes(document, tmp_path, monkeypatch):
     disk = FullDisk(monkeypatch)
     keeper = Autosave(document, tmp_path)
-    told, said = [], []
-    keeper.failed.connect(told.append)
-    keeper.resumed.connect(said.append)
+    reported, resumed = [], []
+    keeper.failed.connect(reported.append)
+    keeper.resumed.connect(resumed.append)
     wander(document, 2, 1)
     two = bits(document)
     disk.left = 100
     wander(document, 3, 2)
     document.undo()
-    assert len(told) == 1
-    assert "no space left" in told[0] and told[0].endswith(".")
+    assert len(reported) == 1
+    assert "no space left" in reported[0] and reported[0].endswith(".")
     copy = tmp_path / "copy"
     copy.mkdir()
     (copy / "a.journal").write_bytes(keeper.path.read_bytes())
     assert bits(recovered(copy)) == two
     disk.left = 1 << 40
     wander(document, 1, 3)
-    assert said == ["Autosave works again."]
+    assert resumed == ["Autosave works again."]
     keeper.leave()
     assert bits(recovered(tmp_path)) == bits(document)
 
@@ -225,10 +225,10 @@ def test_a_disk_that_is_full_from_the_start(document, tmp_path, monkeypatch):
     disk = FullDisk(monkeypatch)
     disk.left = 500
     keeper = Autosave(document, tmp_path)
-    told = []
-    keeper.failed.connect(told.append)
+    reported = []
+    keeper.failed.connect(reported.append)
     wander(document, 3, 1)
-    assert len(told) == 1
+    assert len(reported) == 1
     assert list(tmp_path.iterdir()) == []
     disk.left = 1 << 40
     deadline = time.monotonic() + 20
@@ -241,10 +241,10 @@ def test_a_disk_that_is_full_from_the_start(document, tmp_path, monkeypatch):
 def test_a_folder_that_cannot_be_made_is_reported(document, tmp_path):
     (tmp_path / "file").write_text("in the way")
     keeper = Autosave(document, tmp_path / "file" / "state")
-    told = []
-    keeper.failed.connect(told.append)
+    reported = []
+    keeper.failed.connect(reported.append)
     wander(document, 3, 1)
-    assert len(told) == 1
+    assert len(reported) == 1
     assert document.history.cursor == 3
     keeper.close()
     assert recovery.lost(tmp_path / "file" / "state") == []
@@ -286,14 +286,14 @@ for seed in range(1_000_000):
 def test_kill_9_loses_at_most_the_last_operation(tmp_path, seconds):
     code = CHILD.format(tests=str(HELPERS), folder=str(tmp_path), kind="quad")
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
-    told = [child.stdout.readline()]
+    reported = [child.stdout.readline()]
     time.sleep(seconds)
     child.send_signal(signal.SIGKILL)
-    told += child.stdout.readlines()
+    reported += child.stdout.readlines()
     child.wait(30)
-    cursor, score = map(int, [line for line in told if line.endswith("\n")][-1].split())
+    cursor, score = map(int, [line for line in reported if line.endswith("\n")][-1].split())
     document = recovered(tmp_path)
-    # the child may have done one more, and not come to say so
+    # the child may have done one more, and not have printed it
     assert document.history.cursor in (cursor, cursor + 1)
     assert [0, *(row.after for row in document.history)][cursor] == score
     document.mesh.validate()

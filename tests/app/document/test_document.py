@@ -187,13 +187,13 @@ def test_files(star, tmp_path):
 
 def test_hover_ends_when_its_half_edge_is_deleted(star):
     document = Document(star)
-    told: list[int] = []
-    document.hover_changed.connect(told.append)
+    received: list[int] = []
+    document.hover_changed.connect(received.append)
     collapsing = first_allowed(star, "collapse")
     document.hover = collapsing
     document.submit("collapse", collapsing)
     assert document.hover == -1
-    assert told == [collapsing, -1]
+    assert received == [collapsing, -1]
 
 
 @pytest.mark.parametrize(

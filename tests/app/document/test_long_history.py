@@ -38,7 +38,7 @@ def work(document: Document, operations: int, rng: np.random.Generator, most: in
             continue
         unwanted = "split" if mesh.n_elements > size else "collapse"
         if operation.value == unwanted:
-            continue  # neither more nor fewer elements as time goes on
+            continue  # neither more nor fewer elements over time
         if most < 100:
             change = mesh.apply(operation, h).score_change
             mesh.undo()

@@ -1,4 +1,4 @@
-"""Ghosts and numbers of what operations would do."""
+"""Previews of operations, and their changes of s."""
 
 import subprocess
 import sys

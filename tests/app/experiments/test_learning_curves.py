@@ -27,7 +27,7 @@ TINY = {
 
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Trainer, list[dict]]:
-    """A training of three updates as it stands on the disk while it goes on."""
+    """A training of three updates as it is on the disk while it runs."""
     from meshwright_agent.training.tensorboard import Events
 
     folder = tmp_path_factory.mktemp("trainings") / "tiny"

@@ -30,15 +30,15 @@ def test_suite_measures_clicks_panning_and_bytes(warm, capsys):
 
 
 @pytest.mark.parametrize(
-    ("missing", "told"),
+    ("missing", "expected"),
     [("jupyterlab", "JupyterLab is not installed: pip install jupyterlab"), ("playwright", "Play")],
 )
-def test_suite_names_what_to_install(missing, told, monkeypatch, capsys):
+def test_suite_names_what_to_install(missing, expected, monkeypatch, capsys):
     find = servers.find_spec
     monkeypatch.setattr(servers, "find_spec", lambda name: None if name == missing else find(name))
     assert cli.main(["bench", "--suite", "notebook", "--quick"]) == 2
-    said = capsys.readouterr().err
-    assert told in said and said.count("\n") == 1
+    output = capsys.readouterr().err
+    assert expected in output and output.count("\n") == 1
 
 
 def test_missing_chromium_is_named(monkeypatch, tmp_path):
@@ -78,4 +78,4 @@ def test_server_ends_with_its_parent_process(tmp_path):
         except OSError:
             return
         time.sleep(0.1)
-    pytest.fail("the server goes on")
+    pytest.fail("the server still runs")

@@ -54,7 +54,7 @@ class Kernel:
         self._id = 0
         self.comm = ""
         self.subshell = ""
-        self.heard: list[dict[str, Any]] = []
+        self.inbox: list[dict[str, Any]] = []
         self.printed = ""
 
     def run(self, code: str) -> str:
@@ -72,7 +72,7 @@ class Kernel:
         """Start a cell."""
         self._client.execute(code)
 
-    def say(self, do: str, **fields: Any) -> int:
+    def request(self, do: str, **fields: Any) -> int:
         """Send a request as JupyterLab does: to the subshell, if there is one."""
         self._id += 1
         content = {"do": do, "id": self._id, "view": "v", **fields}
@@ -96,12 +96,12 @@ class Kernel:
             self._note(message)
             if wanted(message):
                 return
-        pytest.fail(f"the kernel did not say it; last: {self.heard[-3:]} {self.printed}")
+        pytest.fail(f"no such message; last: {self.inbox[-3:]} {self.printed}")
 
     def answer(self, number: int) -> dict[str, Any]:
         """Read messages until the request of this number is answered."""
-        self.until(lambda m: self.heard and self.heard[-1].get("reply") == number)
-        return self.heard[-1]
+        self.until(lambda m: self.inbox and self.inbox[-1].get("reply") == number)
+        return self.inbox[-1]
 
     def _note(self, message: dict[str, Any]) -> None:
         content = message["content"]
@@ -109,7 +109,7 @@ class Kernel:
             if content["data"]["state"].get("_model_module") == "anywidget":
                 self.comm = content["comm_id"]
         elif message["msg_type"] == "comm_msg" and content["data"].get("method") == "custom":
-            self.heard.append(content["data"]["content"])
+            self.inbox.append(content["data"]["content"])
         elif message["msg_type"] == "stream":
             self.printed += content["text"]
         elif message["msg_type"] == "error":
@@ -134,7 +134,7 @@ def kernel() -> Iterator[Kernel]:
                 folder=document.__file__.removesuffix("app/meshwright/document/document.py")
             )
         )
-        state = started.answer(started.say("hello"))
+        state = started.answer(started.request("hello"))
         assert state["type"] in ("state", "agent")
         yield started
     finally:
@@ -147,10 +147,10 @@ def position(kernel: Kernel) -> int:
 
 
 def test_a_run_continues_after_its_cell_has_ended(kernel):
-    kernel.heard.clear()
+    kernel.inbox.clear()
     assert kernel.run("w.play(speed=30); print(w.history.cursor)") == "0"
-    kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("state") == "idle")
-    patches = [heard for heard in kernel.heard if heard["type"] == "patch"]
+    kernel.until(lambda m: kernel.inbox and kernel.inbox[-1].get("state") == "idle")
+    patches = [inbox for inbox in kernel.inbox if inbox["type"] == "patch"]
     assert len(patches) > 1  # it was seen on its way
     assert position(kernel) == patches[-1]["head"]["cursor"]
     score = kernel.run("print(w.score)")
@@ -159,9 +159,9 @@ def test_a_run_continues_after_its_cell_has_ended(kernel):
 
 def test_waiting_in_a_cell_completes_the_run(kernel):
     kernel.run("w.go_to(0)")
-    kernel.heard.clear()
+    kernel.inbox.clear()
     assert int(kernel.run("w.play(wait=True); print(w.history.cursor)")) > 1
-    assert any(heard["type"] == "patch" for heard in kernel.heard)
+    assert any(inbox["type"] == "patch" for inbox in kernel.inbox)
     kernel.run("w.go_to(0); w.step(); assert w.history.cursor >= 1")
 
 
@@ -169,9 +169,9 @@ def test_edits_of_a_running_cell_are_shown_while_it_runs(kernel):
     kernel.run("w.go_to(1)")
     kernel.begin("import time\nw.undo(); time.sleep(1.5); w.redo()")
     begun = time.monotonic()
-    kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("head", {}).get("cursor") == 0)
+    kernel.until(lambda m: kernel.inbox and kernel.inbox[-1].get("head", {}).get("cursor") == 0)
     assert time.monotonic() - begun < 1.2
-    kernel.until(lambda m: kernel.heard and kernel.heard[-1].get("head", {}).get("cursor") == 1)
+    kernel.until(lambda m: kernel.inbox and kernel.inbox[-1].get("head", {}).get("cursor") == 1)
 
 
 def test_clicks_through_a_subshell_run_in_the_thread_of_the_cells(kernel):
@@ -183,13 +183,13 @@ def test_clicks_through_a_subshell_run_in_the_thread_of_the_cells(kernel):
         "off = w.on('changed', lambda: seen.append(threading.current_thread().name))"
     )
     try:
-        kernel.answer(kernel.say("undo"))
+        kernel.answer(kernel.request("undo"))
         assert kernel.run("print(seen)") == "['MainThread']"
         # a cell that runs keeps the mesh to itself, unless it waits
         kernel.begin("import time; time.sleep(0.6); print('slept', w.history.cursor)")
         time.sleep(0.2)
-        kernel.heard.clear()
-        kernel.answer(kernel.say("redo"))
+        kernel.inbox.clear()
+        kernel.answer(kernel.request("redo"))
         assert "slept 0" in kernel.printed
         assert position(kernel) == 1
     finally:
@@ -199,9 +199,9 @@ def test_clicks_through_a_subshell_run_in_the_thread_of_the_cells(kernel):
 
 def test_exceptions_in_callbacks_are_shown_in_notebook_and_browser(kernel):
     kernel.run("w.go_to(1); off = w.on('changed', lambda: 1 / 0)")
-    kernel.heard.clear()
-    kernel.answer(kernel.say("undo"))
-    assert any(heard.get("tone") == "failed" for heard in kernel.heard)
+    kernel.inbox.clear()
+    kernel.answer(kernel.request("undo"))
+    assert any(inbox.get("tone") == "failed" for inbox in kernel.inbox)
     assert "ZeroDivisionError" in kernel.printed
     kernel.run("off()")
 
@@ -209,7 +209,7 @@ def test_exceptions_in_callbacks_are_shown_in_notebook_and_browser(kernel):
 def test_malformed_messages_do_not_stop_the_kernel(kernel):
     before = kernel.run("print(hash(w.mesh.arrays.points.tobytes()))")
     for content in ({"do": "operate"}, {"do": "undo", "more": 1}, {"do": 5}, {"halfedge": [[[]]]}):
-        number = kernel.say(content.pop("do", "hover"), **content)
+        number = kernel.request(content.pop("do", "hover"), **content)
         assert kernel.answer(number)["tone"] == "refused"
     assert kernel.run("print(hash(w.mesh.arrays.points.tobytes()))") == before
 

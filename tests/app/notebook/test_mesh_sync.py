@@ -121,13 +121,13 @@ def test_a_replica_follows_random_edits(kind, data):
             continue  # several changes may travel in one patch
         replica.take(sync.patch(mesh))
         status.inverted.follow(mesh, sync.moved, sync.turned)
-        told = status.update()
-        replica.scores[told["track"]["from"] :] = told["track"]["scores"]
+        sent = status.update()
+        replica.scores[sent["track"]["from"] :] = sent["track"]["scores"]
         assert replica.shows(mesh, sync.frame)
-        assert told["inverted"] == len(inverted(mesh))
+        assert sent["inverted"] == len(inverted(mesh))
         scores = [document.history.first[0], *(row.after for row in document.history)]
-        assert replica.scores[: told["length"] + 1] == scores
-        assert told["score"] == scores[told["cursor"]]
+        assert replica.scores[: sent["length"] + 1] == scores
+        assert sent["score"] == scores[sent["cursor"]]
 
 
 def test_bytes_of_a_local_operation_do_not_grow_with_the_mesh():

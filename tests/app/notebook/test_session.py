@@ -274,8 +274,8 @@ def test_the_agent_steps_plays_pauses_and_hints(port, star):
     port.ask("undo")
     port.ask("agent", action="hint")
     assert session.wait(10)
-    told = port.of("agent")[-1]
-    assert told["hints"] and set(told["hints"][0]) == {
+    received = port.of("agent")[-1]
+    assert received["hints"] and set(received["hints"][0]) == {
         "operation",
         "title",
         "halfedge",
@@ -284,7 +284,7 @@ def test_the_agent_steps_plays_pauses_and_hints(port, star):
     }
     score = star.score
     port.ask("take_hint", index=0)
-    assert star.score == score + told["hints"][0]["change"]
+    assert star.score == score + received["hints"][0]["change"]
     port.ask("agent", action="complete")
     assert session.wait(10) and session.document.at_optimum
     assert "At the optimum" in port.sentence
@@ -435,7 +435,7 @@ def test_a_widget_without_connection_is_closed_when_another_is_created(star, tri
     port = Port(session)
     session.finish(session.assistant.step)
     port.reachable = False
-    session.document.undo()  # nobody is told, nothing breaks
+    session.document.undo()  # no client is notified, and no error
     other = Session.of(Document(triangles))
     assert session._ended and not other._ended
     until(lambda: workers() == before)

@@ -32,7 +32,7 @@ class Shown(MeshWidget):
         self.packets.append(packet)
         self.replica.take(packet)
 
-    def say(self, do: str, **fields) -> None:
+    def send(self, do: str, **fields) -> None:
         content = {"do": do, "id": 1, "view": "v", **fields}
         self._handle_msg(
             {"content": {"data": {"method": "custom", "content": content}}, "buffers": []}
@@ -55,7 +55,7 @@ def show():
     def build(source, **options) -> Shown:
         widget = Shown(source, **options)
         made.append(widget)
-        widget.say("hello")
+        widget.send("hello")
         return widget
 
     yield build
@@ -194,14 +194,14 @@ def test_every_edit_from_python_is_sent(widget, star):
 def test_two_widgets_on_one_document_stay_synchronised(show, widget):
     other = show(widget)
     assert other.document is widget.document and other.assistant is widget.assistant
-    other.say("operate", **asked(widget.mesh))
+    other.send("operate", **operation_request(widget.mesh))
     assert widget.in_step and other.in_step and widget.score == other.score == widget.mesh.score
     other.close()
     widget.undo()
     assert widget.in_step
 
 
-def asked(mesh: HalfEdgeMesh) -> dict:
+def operation_request(mesh: HalfEdgeMesh) -> dict:
     operation, halfedge = allowed(mesh)
     ends = [mesh.origin(halfedge), mesh.target(halfedge)]
     return {"operation": operation, "halfedge": halfedge, "ends": ends}
@@ -214,7 +214,7 @@ def test_events(widget):
     widget.apply(*allowed(widget.mesh))
     assert seen == [("changed",), ("score", widget.score), ("history",)]
     seen.clear()
-    widget.say("hover", halfedge=4, operation=None)
+    widget.send("hover", halfedge=4, operation=None)
     assert seen == [("hover", 4)]
     widget.step()
     assert ("agent", "paused") in seen

@@ -33,7 +33,7 @@ def port(widget):
     made.close()
 
 
-def told(port):
+def level_state(port):
     """The content of the last level message."""
     return port.of("level")[-1]["level"]
 
@@ -54,7 +54,7 @@ def test_a_new_view_gets_the_level(port):
     json.dumps(message)
 
 
-def test_without_a_level_no_level_message_is_sent(monkeypatch, greedy, strip):
+def test_without_a_level_no_level_state_is_sent(monkeypatch, greedy, strip):
     script_agent(monkeypatch, greedy)
     widget = MeshWidget(strip)
     port = Port(widget.session)
@@ -71,31 +71,35 @@ def test_a_level_is_played_to_three_stars(widget, port):
     heard = []
     widget.on("level", heard.append)
     solve(port)
-    level = told(port)
+    level = level_state(port)
     assert (level["used"], level["stars"], level["best_stars"], level["done"]) == (2, 3, 3, True)
-    assert level["headline"] == "As few as can be"
+    assert level["headline"] == "Proven minimum"
     assert "three stars" in level["remark"]
     assert widget.stars == 3
     assert heard == [widget.level]
     stars = {one["name"]: one["stars"] for one in port.of("level")[-1]["all"]}
     assert stars["two-turns"] == 3
     port.ask("undo")
-    assert (told(port)["used"], told(port)["done"], told(port)["stars"]) == (1, False, 0)
+    assert (
+        level_state(port)["used"],
+        level_state(port)["done"],
+        level_state(port)["stars"],
+    ) == (1, False, 0)
     assert "all" not in port.of("level")[-1]
 
 
 def test_again_next_and_open(port):
     solve(port)
     port.ask("level", action="again")
-    assert (told(port)["used"], told(port)["best_stars"]) == (0, 3)
+    assert (level_state(port)["used"], level_state(port)["best_stars"]) == (0, 3)
     port.ask("level", action="next")
-    assert told(port)["name"] == levels.after("two-turns")
+    assert level_state(port)["name"] == levels.after("two-turns")
     port.ask("level", action="open", name="star")
-    assert told(port)["goal"] == 4
+    assert level_state(port)["goal"] == 4
     assert port.replica.shows(port.session.mesh, port.session.broadcaster.mesh_sync.frame)
     port.ask("level", action="next")
     assert "last level" in port.sentence
-    assert told(port)["name"] == "star"
+    assert level_state(port)["name"] == "star"
 
 
 @pytest.mark.parametrize(
@@ -131,19 +135,19 @@ def test_requests_outside_the_rules_of_a_level_are_refused(port):
     assert "not allowed in levels" in port.sentence
     assert len(port.session.document.history) == 0
     port.ask("smooth")
-    assert told(port)["used"] == 0
+    assert level_state(port)["used"] == 0
 
 
 def test_a_hint_costs_a_star(widget, port):
     widget.hint()
-    assert told(port)["hinted"]
+    assert level_state(port)["hinted"]
     solve(port)
-    assert told(port)["stars"] == 2
+    assert level_state(port)["stars"] == 2
 
 
 def test_the_agents_steps_earn_no_stars(widget, port):
     widget.complete()
-    level = told(port)
+    level = level_state(port)
     assert (level["helped"], level["stars"]) == (True, 0)
     assert "win no stars" in level["remark"]
 
@@ -151,9 +155,9 @@ def test_the_agents_steps_earn_no_stars(widget, port):
 def test_the_agent_solves_a_copy_of_the_mesh(widget, port):
     play = LevelBridge.of(widget.session).play
     port.ask("level", action="solve")
-    assert told(port)["rival"]["standing"] == "asked"
+    assert level_state(port)["rival"]["standing"] == "asked"
     assert widget.session.loop.pump(lambda: play.rival.standing is not OpponentState.ASKED, 20)
-    level = told(port)
+    level = level_state(port)
     assert level["rival"]["standing"] == "done"
     assert level["rival"]["used"] == len(play.rival.operations) > 0
     assert level["answered"]
@@ -166,7 +170,7 @@ def test_the_agent_solves_a_copy_of_the_mesh(widget, port):
 
 def test_a_solution_is_shown_where_the_agent_cannot_play(widget, port):
     port.ask("level", action="open", name="three-blocks")
-    assert told(port)["answered"]
+    assert level_state(port)["answered"]
     port.ask("level", action="solve")
     assert len(widget.history) == 4
 
@@ -185,12 +189,12 @@ def test_two_widgets_play_the_same_level(widget, port):
     second = Port(other.session)
     second.ask("hello")
     solve(second)
-    assert told(port)["stars"] == told(second)["stars"] == other.stars == 3
+    assert level_state(port)["stars"] == level_state(second)["stars"] == other.stars == 3
     second.close()
     other.close()
 
 
-def test_level_messages_are_small_and_sent_on_change_only(port):
+def test_level_states_are_small_and_sent_on_change_only(port):
     port.operate("flip_left", next(
         h for h in range(48) if port.session.document.check("flip_left", h)
     ))  # fmt: skip

@@ -1,4 +1,4 @@
-"""Every level is what its file says: a valid mesh, a goal, a way of par operations to it."""
+"""Every level file holds a valid mesh, a goal, and a solution of par operations."""
 
 import dataclasses
 import json
@@ -144,10 +144,10 @@ def test_a_bad_file_is_refused_with_one_sentence(tmp_path, contents, why):
     path.write_text(contents if isinstance(contents, str) else json.dumps(contents))
     with pytest.raises(MeshError) as refused:
         levels.read(path)
-    said = str(refused.value)
-    assert why in said
-    assert said.startswith(str(path))
-    assert "\n" not in said
+    output = str(refused.value)
+    assert why in output
+    assert output.startswith(str(path))
+    assert "\n" not in output
 
 
 def test_an_unknown_name_is_refused_with_suggestions():

@@ -65,7 +65,7 @@ print(json.dumps([value, misses, parts]))
 
 @pytest.fixture
 def tiny(tmp_path):
-    """Runs a script over three kernels in a fresh process; says value, misses, parts."""
+    """Runs a script over three kernels in a fresh process; prints value, misses, parts."""
     package = tmp_path / "code" / "tiny_kernels"
     package.mkdir(parents=True)
 

@@ -58,7 +58,7 @@ def test_arrays_are_read_only_and_own_their_data():
 
 
 @pytest.mark.parametrize(
-    ("outline", "says"),
+    ("outline", "expected"),
     [
         ([], ["outline has 0 points", "at least 3"]),
         ([[0, 0], [1, 0]], ["outline has 2 points", "at least 3"]),
@@ -77,13 +77,13 @@ def test_arrays_are_read_only_and_own_their_data():
         ([0, 1, 2, 3], ["outline", "pairs of numbers"]),
     ],
 )
-def test_bad_outline(outline, says):
+def test_bad_outline(outline, expected):
     message = refusal(outline)
-    assert all(part in message for part in says), message
+    assert all(part in message for part in expected), message
 
 
 @pytest.mark.parametrize(
-    ("holes", "says"),
+    ("holes", "expected"),
     [
         ([SQUARE * 0.2 + 4], ["Hole 0", "outside", "(4, 4"]),
         ([SQUARE * 3 - 1], ["Hole 0", "outside", "around it"]),
@@ -94,9 +94,9 @@ def test_bad_outline(outline, says):
         ([SQUARE[:2] * 0.1 + 0.5], ["Hole 0 has 2 points"]),
     ],
 )
-def test_bad_hole(holes, says):
+def test_bad_hole(holes, expected):
     message = refusal(SQUARE, holes)
-    assert all(part in message for part in says), message
+    assert all(part in message for part in expected), message
 
 
 def test_flags_must_fit():
@@ -122,7 +122,7 @@ def test_json_takes_its_name_from_the_file_if_it_has_none(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "expected"),
     [
         ("", ["empty"]),
         ('{"outline": [[0, 0], [1, 0],\n[0, 1]}', ["line 2", "not JSON"]),
@@ -141,7 +141,7 @@ def test_json_takes_its_name_from_the_file_if_it_has_none(tmp_path):
         ("[" * 100_000, ["too deep"]),
     ],
 )
-def test_bad_json_file(text, says, tmp_path):
+def test_bad_json_file(text, expected, tmp_path):
     path = tmp_path / "bad.json"
     path.write_text(text)
     with pytest.raises(MeshError) as error:
@@ -149,7 +149,7 @@ def test_bad_json_file(text, says, tmp_path):
     message = str(error.value)
     assert message.startswith(str(path))
     assert "\n" not in message
-    assert all(part in message for part in says), message
+    assert all(part in message for part in expected), message
 
 
 def test_files_that_cannot_be_read(tmp_path):

@@ -119,7 +119,7 @@ def test_seed_makes_another_mesh_of_the_same_domain_and_repeats():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "says"),
+    ("arguments", "reason"),
     [
         ({"kind": "hex"}, "'hex'"),
         ({"kind": "tri", "max_edge": 0.0}, "longest edge must be a positive number"),
@@ -131,8 +131,8 @@ def test_seed_makes_another_mesh_of_the_same_domain_and_repeats():
         ({"kind": "quad", "quads": "paving"}, "'paving'"),
     ],
 )
-def test_bad_arguments(arguments, says):
-    with pytest.raises(MeshError, match=says):
+def test_bad_arguments(arguments, reason):
+    with pytest.raises(MeshError, match=reason):
         meshing.mesh_domain(SQUARE, **arguments)
 
 

@@ -1,4 +1,4 @@
-"""Random parts: as many corners as asked for, nothing degenerate, meshes without folds."""
+"""Random parts: as many corners as requested, nothing degenerate, meshes without folds."""
 
 import numpy as np
 import pytest

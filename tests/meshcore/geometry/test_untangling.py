@@ -12,7 +12,7 @@ from meshwright_core.geometry.sides import Sides
 from meshwright_core.geometry.unfixable import unfixable, unfixable_corners
 
 
-def mended(mesh, vertices=None):
+def untangled(mesh, vertices=None):
     found = untangling.untangle(mesh, vertices)
     fixed = mesh.geometric()
     before = mesh.points[fixed].copy()
@@ -73,7 +73,7 @@ def test_untangling_from_bad_starting_positions(kind, start, name):
         for chain in Sides(mesh).chains:
             if mesh.geometric()[chain].any():
                 mesh.points[chain[1:-1]] = mesh.points[chain].mean(axis=0) + [0.1, 0.1, 0]
-    found = mended(mesh)
+    found = untangled(mesh)
     assert len(found.inverted) == 0
     assert quality.scaled_jacobian(mesh).min() > 1e-3
 
@@ -90,7 +90,7 @@ def test_untangling_moves_only_what_it_may():
     middle = np.flatnonzero(~mesh.boundary())
     near = middle[np.linalg.norm(mesh.points[middle] - [0.5, 0.5, 0], axis=1) < 0.25]
     mesh.points[near] = [0.9, 0.5, 0]
-    found = mended(mesh, near)
+    found = untangled(mesh, near)
     assert set(found.vertices) <= set(near)
     assert len(found.inverted) == 0
 
@@ -118,7 +118,7 @@ def test_a_flat_boundary_vertex_is_unfixable_and_the_rest_is_untangled():
     assert done
     inside = ~mesh.boundary()
     mesh.points[inside, :2] = np.random.default_rng(0).random((inside.sum(), 2))
-    found = mended(mesh)
+    found = untangled(mesh)
     flat = mesh.element_of(mesh.outgoing(vertex)[0])
     assert found.inverted.tolist() == found.unfixable.tolist() == [flat]
     assert unfixable(mesh).tolist() == [flat]
@@ -145,7 +145,7 @@ def test_boundary_vertices_of_one_quad_find_the_bends_of_a_circle(pieces, turn):
     points[boundary] = 0.9 * np.column_stack([np.cos(angle), np.sin(angle)])
     mesh = HalfEdgeMesh.from_elements(points, quads, np.zeros(9, bool))
     mesh.outline = [(np.arange(100, 100 + pieces), circle)]
-    assert len(mended(mesh).inverted) == 0
+    assert len(untangled(mesh).inverted) == 0
 
 
 def test_a_circle_seen_from_outside_is_unfixable_for_a_single_quad():
@@ -170,7 +170,7 @@ def test_locked_vertices_stay():
     before = mesh.points[inside].copy()
     others = np.flatnonzero(~mesh.boundary())[1:]
     mesh.points[others] = before
-    found = mended(mesh)
+    found = untangled(mesh)
     assert inside not in found.vertices
     assert len(found.inverted) == 0
 
@@ -180,7 +180,7 @@ def test_a_tilted_plane_is_untangled_in_its_plane():
     flat = meshing.mesh_domain(gallery.shape("l-shape"), "quad")
     mesh = HalfEdgeMesh.from_elements(flat.points @ turn.T + 3.0, flat.elements(), flat.geometric())
     mesh.points[~mesh.boundary()] = mesh.points[0]
-    assert len(mended(mesh).inverted) == 0
+    assert len(untangled(mesh).inverted) == 0
     assert np.abs(((mesh.points - 3.0) @ turn)[:, 2]).max() < 1e-9
 
 

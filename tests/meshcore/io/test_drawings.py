@@ -311,9 +311,9 @@ BAD = {
 
 @pytest.mark.parametrize("name", BAD)
 def test_bad_file_is_refused_in_one_sentence(refused, name):
-    content, says = BAD[name]
+    content, reason = BAD[name]
     message = refused(name, content)
-    assert any(part in message for part in says.split("|")), message
+    assert any(part in message for part in reason.split("|")), message
 
 
 def test_files_that_cannot_be_read(tmp_path):

@@ -138,7 +138,7 @@ def test_surfaces_out_of_the_plane(tmp_path):
     assert not (tmp_path / "solid.su2").exists()
 
 
-# -- what is mended on reading ---------------------------------------------------------------------
+# -- what is repaired on reading ------------------------------------------------------------------
 
 
 def put_obj(path, points, faces):
@@ -307,7 +307,7 @@ def test_cells_of_other_kinds(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("points", "faces", "says"),
+    ("points", "faces", "reason"),
     [
         ([[0, 0, 0], [1, 0, 0], ["nan", 1, 0]], [[0, 1, 2]], ["point 2", "nan"]),
         ([[0, 0, 0], [1, 0, 0], ["1e300", 1, 0]], [[0, 1, 2]], ["point 2", "1e+300"]),
@@ -321,9 +321,9 @@ def test_cells_of_other_kinds(tmp_path):
         ),
     ],
 )
-def test_bad_meshes(points, faces, says, tmp_path):
+def test_bad_meshes(points, faces, reason, tmp_path):
     message = refusal(put_obj(tmp_path / "bad.obj", points, faces))
-    assert all(part in message for part in says), message
+    assert all(part in message for part in reason), message
 
 
 def test_odd_paths(tmp_path, meshes):

@@ -35,7 +35,7 @@ def test_flip_turns_the_edge_and_keeps_its_id():
     assert {mesh.origin(h), mesh.target(h)} == {1, 3}
     assert edit.new_vertices == ()
     assert set(edit.touched) == {0, 1, 2, 3}
-    assert edit.score_change == 0  # each corner wants 3 edges, and two of them have 2
+    assert edit.score_change == 0  # 3 edges are desired at each corner, and two of them have 2
     _apply(mesh, "flip", 1, 3)
     assert faces(mesh) == {(0, 1, 2), (0, 2, 3)}
 

@@ -179,7 +179,7 @@ def _above(counter: list[int], before: int) -> bool:
 
 
 _steps = itertools.count(1)
-"""Positions of the mouse go on from one measurement to the next."""
+"""Positions of the mouse continue from one measurement to the next."""
 
 
 def _operate(app: Any, window: Any) -> dict[str, float]:

@@ -47,14 +47,14 @@ RUN = f"""async number => {{
 ASK = f"""async code => {{
     {PANEL}
     const kernel = panel.sessionContext.session.kernel;
-    const said = [];
+    const printed = [];
     const future = kernel.requestExecute({{code, store_history: false}});
     future.onIOPub = message => {{
-        if (message.header.msg_type === 'stream') said.push(message.content.text);
+        if (message.header.msg_type === 'stream') printed.push(message.content.text);
     }};
     const reply = await future.done;
     const failed = reply.content.status !== 'ok';
-    return {{failed, text: failed ? reply.content.evalue : said.join('')}};
+    return {{failed, text: failed ? reply.content.evalue : printed.join('')}};
 }}"""
 
 

@@ -140,7 +140,7 @@ class WidgetProbe:
         card = self.card
         card.hover(halfedge)
         card.arm("flip_left")
-        self.page.wait_for_timeout(150)  # the ghost has come
+        self.page.wait_for_timeout(150)  # the preview is shown
         self.notebook.ask("None", "spent.clear()")
         card.look(WATCH)
         self.page.mouse.click(*card.place(halfedge))

@@ -85,7 +85,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--figure",
         metavar="FOLDER",
         help="draw the learning curve, return against steps, share at s* against seconds "
-        "(a race of 1 second, if --race does not say otherwise), and rollouts",
+        "(a race of 1 second, unless --race sets it), and rollouts",
     )
 
 

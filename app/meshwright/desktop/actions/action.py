@@ -15,7 +15,7 @@ Run = Callable[[ActionContext], object]
 
 @dataclass(frozen=True)
 class Condition:
-    """A check with the sentence that says what is missing while it fails."""
+    """A check, with the sentence shown while it fails."""
 
     check: Check
     needs: str

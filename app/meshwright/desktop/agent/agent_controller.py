@@ -136,7 +136,7 @@ class AgentController(Controller):
             self.open_policy(path)
 
     def open_policy(self, path: str) -> None:
-        """Use the policy in a file; a notice says if it cannot be read or is of another kind."""
+        """Use the policy in a file; a notice is shown if it is unreadable or of another kind."""
         try:
             kind = kind_of(path)
         except (ValueError, OSError) as error:
@@ -185,7 +185,7 @@ class AgentController(Controller):
         policy = policy_label(self._assistant.policy)
         value = f"{insight.value:.2f}".replace("-", "\u2212")
         return (
-            f"{policy} rates {len(insight.halfedges)} half-edges; next: {title},"
+            f"Policy {policy} rates {len(insight.halfedges)} half-edges; next: {title},"
             f" {percent(wanted.probability)}, \u0394s {label(wanted.change)}",
             f"Rings: template, {slots} vertices by slot{beyond}",
             f"Tint: field of view, {len(insight.field)} elements in {blocks} blocks; value {value}",

@@ -16,7 +16,7 @@ from qtpy.QtWidgets import (
 )
 
 from meshwright.desktop.application.settings import SYSTEM, Settings
-from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.basic import named, segment
 from meshwright.graphics.theme import COLOURS, GRID
 
 _THEMES = (
@@ -53,7 +53,7 @@ class PreferencesDialog(QDialog):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(4 * GRID, 3 * GRID, 4 * GRID, 3 * GRID)
         layout.setSpacing(12)
-        layout.addWidget(named("LOOK", "Heading"))
+        layout.addWidget(named("APPEARANCE", "Heading"))
         layout.addLayout(self._look())
         layout.addWidget(
             self._switch(
@@ -80,11 +80,8 @@ class PreferencesDialog(QDialog):
         line = QHBoxLayout()
         line.setSpacing(0)
         for name, word, tooltip in _THEMES:
-            button = QPushButton(word)
-            button.setObjectName("Segment")
-            button.setCheckable(True)
+            button = segment(word)
             button.setToolTip(tooltip)
-            button.setAutoDefault(False)
             button.clicked.connect(self._keeper("theme", name))
             group.addButton(button)
             self.themes[name] = button

@@ -151,7 +151,7 @@ class OperationButton(QAbstractButton):
         if not self.allowed and self._choice is not None:
             text = f"{text}\nNot here: {self._choice.verdict.reason}."
         else:
-            text += "\nClick to arm it; each click on the mesh then applies it."
+            text += "\nClick to choose it; each click on the mesh then applies it."
         self.setToolTip(text)
         self.setAccessibleDescription(text)
 

@@ -93,9 +93,9 @@ class VertexMenus:
             action = _checkable(degrees, str(wanted), present == {wanted})
             action.triggered.connect(then(document.set_desired, wanted))
         geometric, locked = mesh.geometric()[vertices], mesh.locked()[vertices]
-        corner = _checkable(menu, "Corner (stays where it is)", bool(geometric.all()))
+        corner = _checkable(menu, "Corner (keeps its position)", bool(geometric.all()))
         corner.triggered.connect(then(document.set_geometric))
-        lock = _checkable(menu, "Locked (nothing changes it)", bool(locked.all()))
+        lock = _checkable(menu, "Locked (not moved or removed)", bool(locked.all()))
         lock.triggered.connect(then(document.set_locked))
         smooth = menu.addAction("Smooth here")
         smooth.triggered.connect(then(_smooth, document))

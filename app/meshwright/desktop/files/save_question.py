@@ -1,4 +1,4 @@
-"""A dialog that asks a question, with the answers as buttons."""
+"""A dialog with a question, and the answers as buttons."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from meshwright.graphics.theme import GRID
 
 
 class QuestionDialog(QDialog):
-    """Asks ``title``, with ``text`` below it; :attr:`answer` is the id of the clicked button.
+    """``title`` is the question, ``text`` stands below; :attr:`answer` is the id of the answer.
 
     ``answers`` are (id, text), the recommended one last; ``aside`` is placed apart at the left, for
     an answer that discards something. Escape gives the empty answer.

@@ -47,7 +47,7 @@ class Guard(Protocol):
 
 
 class NoGuard:
-    """Saves nothing and asks nothing: for windows that a program opens."""
+    """No autosave and no questions: for windows that a program opens."""
 
     def __init__(self, window: QWidget) -> None:
         self._window = window

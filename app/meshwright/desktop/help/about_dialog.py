@@ -27,8 +27,8 @@ from meshwright.graphics.theme import GRID
 
 _COLUMNS = ("Package", "Version", "Licence")
 _SENTENCES = (
-    "Edits the connectivity of triangle and quad meshes half-edge by half-edge, with a trained "
-    "agent beside you.",
+    "Edits the connectivity of triangle and quad meshes half-edge by half-edge, by hand or with "
+    "a trained agent.",
     "After A. Narayanan, Y. Pan, P.-O. Persson, \u201cLearning topological operations on meshes "
     "with application to block decomposition of polygons\u201d.",
 )
@@ -129,7 +129,7 @@ class AboutDialog(QDialog):
 
     def _on_row_changed(self, row: int, column: int, row_before: int, column_before: int) -> None:
         if 0 <= row < len(self.licences):
-            self.text.setPlainText(_told(self.licences[row]))
+            self.text.setPlainText(_licence_text(self.licences[row]))
 
 
 def own_version() -> str:
@@ -140,7 +140,7 @@ def own_version() -> str:
         return ""
 
 
-def _told(one: Licence) -> str:
+def _licence_text(one: Licence) -> str:
     text = one.text() or "The licence text was not installed with the package."
     home = f"\n{one.url}" if one.url else ""
     return f"{one.package} {one.version}: {one.licence}{home}\n\n{text}"

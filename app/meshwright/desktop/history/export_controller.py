@@ -71,7 +71,7 @@ class ExportBar(QFrame):
 
 
 class ExportController(Controller):
-    """Asks what to export and writes it in a thread, one file at a time."""
+    """Opens the export dialog and writes the file in a thread, one at a time."""
 
     def __init__(
         self,

@@ -17,7 +17,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.basic import named, segment
 from meshwright.desktop.widgets.number_box import DecimalBox, IntegerBox
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export.export_job import SIZES, ExportOptions
@@ -78,10 +78,7 @@ class ExportDialog(QDialog):
     def _fill(self) -> None:
         order = self.order
         for ending, title, hint in FORMATS:
-            button = QPushButton(title)
-            button.setObjectName("Segment")
-            button.setCheckable(True)
-            button.setAutoDefault(False)
+            button = segment(title)
             button.setToolTip(hint)
             button.setChecked(ending == order.ending)
             self._group.addButton(button)

@@ -94,7 +94,7 @@ class LevelBar(QFrame):
         self.text = named("", "LevelText")
         self.text.setWordWrap(True)
         self.text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        self.again = self._button("Again", "again", "Restart the level")
+        self.again = self._button("Restart", "again", "Restart the level")
         self.answer = self._button("Ask the agent", "answer", "")
         self.next = self._button("Next", "next", "Start the next level")
         line = QHBoxLayout()
@@ -160,12 +160,12 @@ class LevelBar(QFrame):
             reached = level is not None and rival.score <= level.goal
             shown = str(len(rival.operations)) if standing is OpponentState.DONE else "\u2013"
             self.agent.show_value(shown if reached else f"{shown} (s {rival.score})")
-        knows = standing is OpponentState.DONE or (level is not None and bool(level.most))
-        self.answer.setText("Show a solution" if knows else "Ask the agent")
+        solved = standing is OpponentState.DONE or (level is not None and bool(level.most))
+        self.answer.setText("Show a solution" if solved else "Ask the agent")
         self.answer.setEnabled(standing is not OpponentState.ASKED)
         self.answer.setToolTip(
             "Restart with this solution: Redo steps through it"
-            if knows
+            if solved
             else "Let the agent solve a copy of this level, and compare"
         )
 

@@ -108,11 +108,11 @@ class LevelController(Controller):
     def show_way(self) -> None:
         """Restart the level with a solution as steps to redo, and play them."""
         try:
-            said = self.play.show_answer()
+            message = self.play.show_answer()
         except MeshError as error:
             self._notice.show_message(str(error))
             return
-        self._status.show_message(said)
+        self._status.show_message(message)
         self._playback.play_or_hold()
 
     def leave(self) -> None:
@@ -120,7 +120,7 @@ class LevelController(Controller):
         self.play.leave()
 
     def refuses(self, action: str) -> bool:
-        """Whether the level forbids an action; if so a message says why."""
+        """Whether the level forbids an action; if so, the reason is shown."""
         why = self.play.refusal(action)
         if why:
             self._status.show_message(why)

@@ -1,7 +1,7 @@
 """Small widgets of the panels."""
 
 from qtpy.QtCore import QRectF, Qt, Signal
-from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent
+from qtpy.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from qtpy.QtWidgets import (
     QFrame,
     QHBoxLayout,
@@ -28,6 +28,22 @@ def named(text: str, name: str) -> QLabel:
     made = QLabel(text)
     made.setObjectName(name)
     return made
+
+
+def segment(title: str) -> QPushButton:
+    """A checkable button of a segmented control, wide enough for its title in bold.
+
+    The style sheet makes the title bold while the button is checked, which Qt's size hint ignores.
+    """
+    button = QPushButton(title)
+    button.setObjectName("Segment")
+    button.setCheckable(True)
+    button.setAutoDefault(False)
+    font = QFont(button.font())
+    font.setPixelSize(13)
+    font.setWeight(QFont.Weight.DemiBold)
+    button.setMinimumWidth(QFontMetrics(font).horizontalAdvance(title) + 5 * GRID)
+    return button
 
 
 def rule() -> QFrame:

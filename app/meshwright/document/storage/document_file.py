@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def is_drawing(path: str | Path) -> bool:
-    """Whether the ending says that the file holds a shape that has to be meshed."""
+    """Whether the ending is that of a file with a shape, which has to be meshed."""
     return Path(path).suffix.lower() in SHAPES
 
 
@@ -69,7 +69,7 @@ def read_meshed(path: str | Path, kind: str) -> DocumentState:
 
 
 def write(path: str | Path, state: DocumentState) -> None:
-    """Write a project, with the whole history, or a mesh file, as the ending says.
+    """Write a project, with the whole history, or a mesh file, by the ending.
 
     Raises MeshError, one sentence that names the file, if it cannot be written.
     """

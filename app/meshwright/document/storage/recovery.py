@@ -128,7 +128,7 @@ class _Event(Struct):
 
 
 def _repeat(document: Document, record: Record) -> None:
-    """Do what a record of autosave says; MeshError if it does not follow from here."""
+    """Apply a record of autosave; MeshError if it does not follow from this state."""
     event = converted(record.header, _Event)
     if event.event == "go":
         document.go_to(event.number)
@@ -152,6 +152,6 @@ def _make_room(document: Document, room: tuple[int, int] | None) -> None:
         raise MeshError("a step of the record lacks its room")
     missing = (room[0] - len(mesh.arrays.vertex), room[1] - len(mesh.arrays.element_mark))
     if max(missing) > snapshot.MOST:
-        raise MeshError("a step of the record wants too much room")
+        raise MeshError("a step of the record needs too much room")
     if max(missing) > 0:
         mesh.room_for(*room)

@@ -170,7 +170,7 @@ class Film:
         every: int = 1,
         progress: video.ReportProgress | None = None,
     ) -> int:
-        """Write the film as GIF or MP4, as the ending says; returns the number of frames.
+        """Write the film as GIF or MP4, by the ending; returns the number of frames.
 
         ``seconds`` is how long one frame stays, ``every`` how many steps it stands for. Raises,
         and calls ``progress``, as :func:`meshwright.graphics.export.video.save` does.

@@ -19,7 +19,7 @@ def ghost_packet(
     operation: str | None,
     bar: Callable[[str], str] | None = None,
 ) -> Packet:
-    """All operations at a live half-edge, and the preview ("ghost") of one of them.
+    """All operations at a live half-edge, and the preview of one of them.
 
     The preview is of ``operation``, or where that is None of the best one that is allowed. There is
     none where the operation is refused, by the mesh or by the document's ``bar``.

@@ -50,11 +50,11 @@ class Request(Envelope, frozen=True, kw_only=True, forbid_unknown_fields=True, t
 
 
 class Hello(Request, frozen=True, tag="hello"):
-    """A new view asks for the whole state."""
+    """A new view requests the whole state."""
 
 
 class Hover(Request, frozen=True, tag="hover"):
-    """The pointer is over a half-edge, -1 for none; asks for a preview of an operation there, by
+    """The pointer is over a half-edge, -1 for none; requests a preview of an operation there, by
     default of the best one.
     """
 
@@ -63,7 +63,7 @@ class Hover(Request, frozen=True, tag="hover"):
 
 
 class Operate(Request, frozen=True, tag="operate"):
-    """Apply an operation; ``ends`` are the half-edge's vertices as the browser knows them."""
+    """Apply an operation; ``ends`` are the half-edge's vertices in the browser's copy."""
 
     operation: Text
     halfedge: Id
@@ -186,7 +186,7 @@ WORDS: dict[str, type[Request]] = {word_of(kind): kind for kind in get_args(AnyR
 
 
 class RefusedError(Exception):
-    """A message is malformed; ``sentence`` says why, in words for the reader of the notebook."""
+    """A message is malformed; ``sentence`` gives the reason for the reader of the notebook."""
 
     def __init__(self, sentence: str, sender: Envelope | None = None) -> None:
         super().__init__(sentence)

@@ -62,7 +62,7 @@ def choice(given: Any, offers: Iterable[str]) -> str:
 def result_of(function: object, *arguments: Any) -> Any:
     """The result of calling the function of an answer; NoAnswer if it is None or ``...``."""
     if not callable(function):
-        raise WrongAnswer(f"A function is wanted here, not {quoted(function)}.")
+        raise WrongAnswer(f"A function is expected here, not {quoted(function)}.")
     try:
         value = function(*arguments)
     except Exception as error:

@@ -17,7 +17,7 @@ from meshwright.teaching.exercises.exercise import declare
 def flip_change(answer: object) -> str:
     """The change of s by a flip with +2, 0, -1, -1."""
     n = whole_number(answer)
-    require(n != 2, "That much is gained, but say it as a change: after minus before.")
+    require(n != 2, "That much is gained, but give it as a change: after minus before.")
     require(n != -4, "Is every vertex nearer to its desired degree? Look at b once more.")
     require(n != 0, "The sum with signs stays; s, the sum of absolute values, does not.")
     require(n == -2, "a and b each lose an edge, c and d each gain one.")

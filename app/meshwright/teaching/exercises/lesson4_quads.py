@@ -29,7 +29,7 @@ def split_change(answer: object) -> str:
     """The change of s by a split with a +2, d -1, f -1."""
     n = whole_number(answer)
     require(n != -3, "The new vertex counts too: it has three edges, and four are desired.")
-    require(n != 2, "Say it as a change: after minus before.")
+    require(n != 2, "Give it as a change: after minus before.")
     require(n == -2, "a loses one, d and f gain one each, and a vertex of degree 3 is new.")
     return "4 before; +1, 0, 0 and the new -1 after: 2."
 

@@ -40,7 +40,7 @@ def bare_l(widget: object) -> str:
     )
     require(
         block_count(mesh) == 3,
-        f"There are {block_count(mesh)} blocks now. Undo until there are three, and go on with X.",
+        f"There are {block_count(mesh)} blocks now. Undo until there are three; continue with X.",
     )
     require(
         mesh.n_elements == 3,

@@ -132,7 +132,7 @@ def _numbers(given: Any, count: int) -> np.ndarray:
     try:
         found = np.asarray(given, dtype=float).ravel()
     except (TypeError, ValueError):
-        raise WrongAnswer(f"Numbers are wanted here, not {quoted(given)}.") from None
-    require(len(found) == count, f"{count} numbers are wanted here, not {len(found)}.")
+        raise WrongAnswer(f"Numbers are expected here, not {quoted(given)}.") from None
+    require(len(found) == count, f"{count} numbers are expected here, not {len(found)}.")
     require(np.all(np.isfinite(found)), f"{quoted(given)} is not made of numbers.")
     return found

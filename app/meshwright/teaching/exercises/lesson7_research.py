@@ -100,4 +100,4 @@ def _number(given: Any) -> float:
             raise TypeError
         return float(given)
     except (TypeError, ValueError):
-        raise WrongAnswer(f"A number is wanted here, not {quoted(given)}.") from None
+        raise WrongAnswer(f"A number is expected here, not {quoted(given)}.") from None

@@ -139,9 +139,9 @@ def _geos(lead: str) -> Iterator[None]:
     try:
         yield
     except (shapely.GEOSException, ValueError, TypeError) as error:
-        said = " ".join(str(error).split()).rsplit("Exception: ", 1)[-1].rstrip(".")
-        said = said if len(said) <= 100 else said[:97] + "..."
-        raise MeshError(f"{lead} ({said[:1].lower() + said[1:]})") from error
+        reason = " ".join(str(error).split()).rsplit("Exception: ", 1)[-1].rstrip(".")
+        reason = reason if len(reason) <= 100 else reason[:97] + "..."
+        raise MeshError(f"{lead} ({reason[:1].lower() + reason[1:]})") from error
 
 
 def _pieces(shape: Any, corner_angle: float) -> Iterator[Piece]:

@@ -150,7 +150,7 @@ def _entities(text: str) -> Iterator[Entity]:
 
 
 class _Reader:
-    """Turns entities into pieces; knows the blocks and which layers are hidden."""
+    """Turns entities into pieces, with the blocks and the hidden layers of the drawing."""
 
     def __init__(self, sections: dict[str, list[Entity]], corner_angle: float, step: float) -> None:
         self.corner_angle = corner_angle

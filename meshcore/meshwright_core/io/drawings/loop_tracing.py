@@ -137,7 +137,7 @@ def _refuse_loose_ends(
         x, y = ends[i, 0 if node[i, 0] == end else 1]
         if len(members) == 1:
             raise MeshError(
-                f"the outline is open: a line ends at ({x:.6g}, {y:.6g}) and none goes on there"
+                f"the outline is open: a line ends at ({x:.6g}, {y:.6g}) and none continues there"
             )
         raise MeshError(
             f"{len(members)} lines meet at ({x:.6g}, {y:.6g}), so that it is not clear which "

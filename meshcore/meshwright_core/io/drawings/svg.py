@@ -75,7 +75,7 @@ def read(content: bytes, corner_angle: float, step: float) -> list[Piece]:
 
 
 def _words(error: ElementTree.ParseError) -> str:
-    """Return what the XML parser says, without the place."""
+    """Return the message of the XML parser, without the place."""
     return str(error).split(":")[0]
 
 
@@ -133,7 +133,7 @@ class _Reader:
         link = element.get("href") or element.get("{http://www.w3.org/1999/xlink}href") or ""
         target = self.by_id.get(link.removeprefix("#"))
         if target is None:
-            raise MeshError(f"a <use> asks for {link[:40]!r}, which is not there")
+            raise MeshError(f"a <use> refers to {link[:40]!r}, which is not there")
         children = list(target) if _tag(target) == "symbol" else [target]
         return replace(look, matrix=look.matrix @ self._shift(element)), children
 
@@ -143,18 +143,18 @@ class _Reader:
         return shift
 
     def _look(self, element: ElementTree.Element, look: _Look) -> _Look | None:
-        """Return what the element inherits and says itself; None if it is not displayed."""
+        """Return the inherited and own style of the element; None if it is not displayed."""
         style: dict[str, str] = {}
         for name in element.get("class", "").split():
             style |= self.rules.get(name, {})
         style |= _declarations(element.get("style", ""))
 
-        def said(name: str) -> str:
+        def attribute(name: str) -> str:
             return style.get(name, element.get(name, "")).strip().lower()
 
-        if said("display") == "none":
+        if attribute("display") == "none":
             return None
-        fill, stroke, visibility = said("fill"), said("stroke"), said("visibility")
+        fill, stroke, visibility = attribute("fill"), attribute("stroke"), attribute("visibility")
         return _Look(
             look.matrix @ _matrix(element.get("transform", "")),
             look.filled if fill in ("", "inherit") else fill not in ("none", "transparent"),

@@ -69,13 +69,13 @@ class LinesLayer(PictureLayer):
             painter.drawPolyline(self._shape(line, COARSE))
 
     def _stroke(
-        self, painter: QPainter, line: np.ndarray, alpha: int, glow: float, core: float
+        self, painter: QPainter, line: np.ndarray, alpha: int, halo: float, core: float
     ) -> None:
         """A wide soft line under a thin one, with a dot at either end."""
         shape = self._shape(line, STEP)
         soft = QColor(self.theme.accent)
         soft.setAlpha(alpha)
-        painter.setPen(QPen(soft, glow, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
+        painter.setPen(QPen(soft, halo, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
         painter.drawPolyline(shape)
         painter.setPen(pen(self.theme.accent, core, Qt.PenStyle.DotLine))
         painter.drawPolyline(shape)

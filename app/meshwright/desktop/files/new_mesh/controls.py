@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 from qtpy.QtCore import QSignalBlocker, Qt, Signal
-from qtpy.QtGui import QFont, QFontMetrics
 from qtpy.QtWidgets import (
     QButtonGroup,
     QCheckBox,
@@ -18,7 +17,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.basic import named, segment
 from meshwright.desktop.widgets.number_box import DecimalBox
 from meshwright.graphics.theme import GRID
 
@@ -42,12 +41,8 @@ class SegmentedButtons(QWidget):
         self.buttons: dict[str, QPushButton] = {}
         self._group = QButtonGroup(self)
         for key, title in choices:
-            button = QPushButton(title)
-            button.setObjectName("Segment")
-            button.setCheckable(True)
-            button.setAutoDefault(False)
+            button = segment(title)
             button.setAccessibleName(f"{name}: {title}")
-            button.setMinimumWidth(_width(button, title))
             button.clicked.connect(self._on_clicked)
             self._group.addButton(button)
             self.buttons[key] = button
@@ -171,14 +166,6 @@ class OptionalNumber(QWidget):
     def _on_typed(self) -> None:
         self._place_slider()
         self.changed.emit()
-
-
-def _width(button: QPushButton, title: str) -> int:
-    """The width in pixels of a button with its title in bold, as it is while checked."""
-    font = QFont(button.font())
-    font.setPixelSize(13)
-    font.setWeight(QFont.Weight.DemiBold)
-    return QFontMetrics(font).horizontalAdvance(title) + 5 * GRID
 
 
 def heading(text: str) -> QLabel:

@@ -70,7 +70,7 @@ class NewMeshDialog(QDialog):
             "file": self.file,
         }
         self._asked: Mapping[str, Any] | None = None
-        self._told = self._path = ""
+        self._error = self._path = ""
         self._theme = theme
         self._accepting = False
         self.setStyleSheet(_style(theme))
@@ -182,7 +182,7 @@ class NewMeshDialog(QDialog):
         page = self.page
         self.options.settings.setEnabled(page.takes_settings)
         source = page.source
-        self._accepting, self._told = False, ""
+        self._accepting, self._error = False, ""
         path = source.get("file", "") if source else ""
         if path and path != self._path:
             self._path = path
@@ -214,7 +214,7 @@ class NewMeshDialog(QDialog):
         self._refresh(sentence(words))
 
     def _on_message(self, words: str) -> None:
-        self._told = words
+        self._error = words
         self._refresh()
 
     def _refresh(self, failed: str = "") -> None:
@@ -222,7 +222,7 @@ class NewMeshDialog(QDialog):
             WORKING if self._accepting else MAKE if self.page.takes_settings else OPEN
         )
         self.make.setEnabled(not self._accepting and (self.made is not None or self.maker.busy))
-        wrong = failed or self._told or (self.page.words if self.page.is_wrong else "")
+        wrong = failed or self._error or (self.page.words if self.page.is_wrong else "")
         self.status.setText(wrong or self.page.words)
         self.mark.setVisible(bool(wrong))
         if self.status.property("warns") != bool(wrong):
@@ -235,7 +235,7 @@ def _style(theme: Theme) -> str:
     return f"""
 #Status {{ color: {theme.muted}; }}
 #Status[warns="true"] {{ color: {theme.warning}; }}
-#Table QHeaderView::section {{ padding: 4px 17px 4px 11px; }}
+#Table QHeaderView::section {{ padding: 4px 11px; }}
 #Table QLineEdit {{ padding: 0 4px; border-radius: 0; border: 1px solid {theme.accent}; }}
 QListWidget {{ font-size: 12px; }}
 QListWidget::item {{ padding: 4px 2px; }}

@@ -40,11 +40,11 @@ class RandomPage(Page):
         self.seed.setRange(0, LAST_SEED)
         self.seed.setAccessibleName("Seed")
         self.seed.setToolTip("The same number of sides and seed always give the same shape")
-        self.seed.setMinimumWidth(12 * GRID)
+        self.seed.setMinimumWidth(10 * GRID)
         for field in (self.sides, self.seed):
             field.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.sides.setFixedWidth(8 * GRID)
-        self.dice = QPushButton("Others")
+        self.dice = QPushButton("Other seeds")
         self.dice.setToolTip("Show shapes of other seeds")
         self.dice.setAutoDefault(False)
         self.pictures = Pictures("Random shapes by seed")

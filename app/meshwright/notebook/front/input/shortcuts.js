@@ -12,7 +12,7 @@ export const KEY_HELP = [
   ["H", "Hints; then 1 to 5 applies one"],
   [".", "One step of the agent"],
   ["Space", "Play or pause the agent"],
-  ["Esc", "Close, disarm, stop"],
+  ["Esc", "Close, cancel, stop"],
 ];
 export const MOUSE_HELP = [
   ["Click", "Operations of a half-edge"],

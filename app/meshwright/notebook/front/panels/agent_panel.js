@@ -126,13 +126,13 @@ export class AgentPanel {
     if (loading) return "Loading the policy\u2026";
     if (asking) return "Computing hints\u2026";
     if (state === "searching") return `Searching${lowest}\u2026`;
-    if (state === "playing") return `Playing: ${counted(decisions, "operation")}${lowest}`;
-    if (state === "paused") return `Paused after ${counted(decisions, "operation")}${lowest}`;
-    return decisions ? `${counted(decisions, "operation")} taken${lowest}` : "Ready";
+    if (state === "playing") return `Playing: ${counted(decisions, "decision")}${lowest}`;
+    if (state === "paused") return `Paused after ${counted(decisions, "decision")}${lowest}`;
+    return decisions ? `${counted(decisions, "decision")} taken${lowest}` : "Ready";
   }
 
   _updatePace(speed) {
-    const words = `${speed.toLocaleString("en")} operations per second`;
+    const words = `${speed.toLocaleString("en")} decisions per second`;
     setText(this._pace, `${speed.toLocaleString("en")}\u2009/\u2009s`);
     this._speed.setAttribute("aria-valuetext", words);
     this._speed.title = `Playing speed: ${words}`;

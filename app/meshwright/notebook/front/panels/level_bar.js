@@ -17,7 +17,7 @@ export class LevelBar {
     this._stars = starRow("mw-level-stars");
     this._facts = node("div", "mw-level-facts");
     this._text = node("p", "mw-level-text");
-    this._again = this._button("Again", "again", "Restart this level");
+    this._again = this._button("Restart", "again", "Restart this level");
     this._solve = this._button("Ask the agent", "solve", "");
     this._next = this._button("Next", "next", "Go to the next level");
     this._live = node("div", "mw-unseen", { role: "status", "aria-live": "polite" });
@@ -104,7 +104,7 @@ export class LevelBar {
 
   _updateButtons(level) {
     const searching = level.rival !== null && level.rival.standing === "asked";
-    setText(this._solve.firstChild, level.answered ? "Show a way" : searching ? "Searching\u2026" : "Ask the agent");
+    setText(this._solve.firstChild, level.answered ? "Show a solution" : searching ? "Searching\u2026" : "Ask the agent");
     this._solve.title = level.answered
       ? "Restart with the agent's operations in the history: redo applies them"
       : "Let the agent solve this level on its own copy of the mesh";

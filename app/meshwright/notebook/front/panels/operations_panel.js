@@ -31,7 +31,7 @@ export class OperationsPanel {
       row.setAttribute("aria-pressed", String(armed));
       const summary = asSentence(info.summary);
       const title = refused ? `${summary}\nNot here: ${asSentence(offer.reason)}`
-        : `${summary}\n${armed ? "A click on the mesh applies it." : "Click to arm it: then each click on the mesh applies it."}`;
+        : `${summary}\n${armed ? "A click on the mesh applies it." : "Click to choose it; each click on the mesh then applies it."}`;
       if (row.title !== title) row.title = title;
     }
     setText(this._hint, this._hintText());
@@ -40,8 +40,8 @@ export class OperationsPanel {
   _hintText() {
     const { replica, hoverState } = this._card;
     const armed = replica.catalogue.find((info) => info.operation === hoverState.armed);
-    if (armed) return "A click applies it. Esc disarms it.";
-    return hoverState.offers ? "Change of s here, for each." : "Point at a half-edge of the mesh.";
+    if (armed) return "A click applies it. Esc cancels.";
+    return hoverState.offers ? "How each operation changes s here." : "Point at a half-edge of the mesh.";
   }
 
   _fill(catalogue) {

@@ -16,8 +16,8 @@ export class ScorePanel {
       title: "Normalised return: (s at the start \u2212 s) / (s at the start \u2212 optimum)",
     }, this._bar);
     this._optimal = node("div", "mw-optimal", { hidden: true },
-      node("div", "mw-optimal-title", {}, icon("check", 16), "At the optimum"),
-      node("div", "mw-optimal-text", {}, "No connectivity scores lower for these desired degrees."));
+      node("div", "mw-optimal-title", {}, icon("check", 16), "Provably optimal"),
+      node("div", "mw-optimal-text", {}, "s = s*: no connectivity is better under these desired degrees."));
     this._summary = node("div", "mw-score-words", {}, this._goal, this._gap);
     this._facts = node("dl", "mw-facts");
     this._irregular = this._fact("Irregular vertices");
