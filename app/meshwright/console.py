@@ -54,8 +54,14 @@ class Report:
 
     def result(self, values: Mapping[str, Any], text: str) -> None:
         """Write the result: ``values`` as one JSON object, or ``text``."""
-        self.out.write((as_json(values) if self.as_json else text.rstrip("\n")) + "\n")
-        self.out.flush()
+        try:
+            self.out.write((as_json(values) if self.as_json else text.rstrip("\n")) + "\n")
+            self.out.flush()
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            self.as_json = False  # the error cannot be written to stdout either
+            raise UserError(f"the result cannot be written to stdout ({error.strerror})") from None
 
     def note(self, sentence: str) -> None:
         """Write a remark to stderr, also if it is a log."""

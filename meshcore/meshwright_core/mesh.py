@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from operator import index
 
 import numpy as np
 
@@ -86,6 +87,7 @@ class HalfEdgeMesh(MeshView):
             return Verdict.refused(
                 refusals.OTHER_KIND, self, Operation(operation), h, self.degree_cap
             )
+        h = index(h)
         found = catalogue.check_once(self._arrays, code, h, self.degree_cap)
         if found == refusals.ALLOWED or found == refusals.NEED_ROOM:
             return YES
@@ -106,6 +108,7 @@ class HalfEdgeMesh(MeshView):
         code = self._codes.get(operation, -1)
         if code < 0:
             raise OperationRefused(self.check(operation, h).reason)
+        h = index(h)
         done = catalogue.apply_once(self._arrays, code, h, self.degree_cap)
         while done.code == refusals.NEED_ROOM:
             self._enlarge()

@@ -9,7 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from meshwright_agent.search.annealing import Operations, with_room
-from meshwright_agent.search.shortening import Goal, first_names, name_all, nothing_replayed, replay
+from meshwright_agent.search.shortening import (
+    ReplayLimits,
+    first_names,
+    name_all,
+    nothing_replayed,
+    replay,
+)
 from meshwright_core.core.arrays import MeshArrays
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import CLEANUP, CODES, NAMES
@@ -37,7 +43,7 @@ def without_cleanups(mesh: HalfEdgeMesh, operations: Operations) -> Operations:
     done = nothing_replayed(len(left))
     stop = replay(
         _copy(start), first_names(mesh.slots, len(start.vertex), names), left, 0, len(left),
-        Goal(0, 0, int(states[-1, 1]), _UNLIMITED), done,
+        ReplayLimits(0, 0, int(states[-1, 1]), _UNLIMITED), done,
     )  # fmt: skip
     if stop < 0:
         return operations

@@ -59,7 +59,7 @@ _EXHAUSTED, _FULL, _NODES_USED, _NO_SLOTS = 0, 1, 2, 3
 
 
 @by_reference
-class Goal(NamedTuple):
+class SearchLimits(NamedTuple):
     """What is searched for, and how long."""
 
     score: int
@@ -71,7 +71,7 @@ class Goal(NamedTuple):
 
 
 @by_reference
-class Path(NamedTuple):
+class OperationPath(NamedTuple):
     """The sequence of operations being tried, for each of D + 1 numbers of them."""
 
     place: np.ndarray
@@ -159,8 +159,8 @@ class _Search:
         ended = int(
             _explore(
                 work.arrays, _first_names(len(work.arrays.vertex)), self._depth,
-                Goal(self._goal, self._most, nodes),
-                Path(
+                SearchLimits(self._goal, self._most, nodes),
+                OperationPath(
                     np.zeros((self._depth + 1, 2), np.int64),
                     np.zeros((self._depth + 1, width), np.int64),
                     np.zeros((self._depth + 1, width), np.uint64),

@@ -52,7 +52,7 @@ class Names(NamedTuple):
 
 
 @by_reference
-class Goal(NamedTuple):
+class ReplayLimits(NamedTuple):
     """What a replay must reach, and what it must keep to."""
 
     cap: int
@@ -245,7 +245,7 @@ def debug_pass(prefix, names, work, work_names, deletion, goal, done, chunk):
             continue
         end = min(at + chunk, total)
         # goal and bounds apply to the whole list, so they are switched off for this part
-        replay(prefix, names, entries, at, end, Goal(goal.cap, 0, -1, 0), done)
+        replay(prefix, names, entries, at, end, ReplayLimits(goal.cap, 0, -1, 0), done)
         progress[0] = end
     return True
 
@@ -316,7 +316,7 @@ class _Shortener:
                 break
             self._relax_bounds(-1 - int(names), operations)
         self.names = int(names)
-        self.goal = Goal(
+        self.goal = ReplayLimits(
             self.cap, int(self.states[:, 2].min()), int(self.states[-1, 1]),
             int(self.states[-1, 2]),
         )  # fmt: skip

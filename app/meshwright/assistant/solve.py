@@ -75,8 +75,8 @@ def solve(
     Args:
         mesh: what :func:`meshwright.mesh` takes; a mesh or document is not changed. A shape is
             meshed with quads.
-        seconds: time limit of the search, in seconds, above 0. Compiling what was never compiled
-            on this machine comes on top of it.
+        seconds: time limit of the search, in seconds, above 0. Smoothing the result, and compiling
+            kernels on first use, take additional time.
         policy: name of a shipped policy, a policy file, or a loaded policy; None for the one
             shipped for this kind of mesh.
         seed: at least 0. How far a search comes in a given time depends on the machine, too.
@@ -87,14 +87,19 @@ def solve(
     start = resolve.mesh(mesh)
     if start.n_elements == 0:
         raise MeshError("This mesh has no elements.")
-    if not isinstance(seconds, int | float | np.number) or not 0 < seconds < math.inf:
+    number = isinstance(seconds, int | float | np.number) and not isinstance(seconds, bool)
+    if not number or not 0 < seconds < math.inf:
         raise MeshError(f"seconds is a number above 0, not {seconds!r}.")
-    whole_number(seed, 0, "seed")
+    seed = whole_number(seed, 0, "seed")
+    if seed >= 2**63:
+        raise MeshError("seed must be below 2**63.")
     from meshwright_agent.policy import policy_files
     from meshwright_agent.search import solver
 
     try:
         chosen = policy_files.shipped(start.kind)[0] if policy is None else policy
+        if not isinstance(chosen, policy_files.Policy | str | os.PathLike):
+            raise MeshError(f"policy is a name, a file or a loaded policy, not {chosen!r}.")
         if not isinstance(chosen, policy_files.Policy):
             chosen = policy_files.load(chosen)
         policy_files.require_kind(chosen, start.kind)

@@ -20,7 +20,7 @@ import numba
 import platformdirs
 from numba.core import config as numba_config
 
-from meshwright_core.core.linking import Kernel, SharedKernel
+from meshwright_core.core.linking import Kernel, SharedKernel, note_unwritable
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -100,8 +100,8 @@ def _compiled(function: F, counts_references: bool, form: type[Kernel] = Kernel)
     configuration.CACHE_DIR = str(cache_folder(function.__module__.partition(".")[0]))
     try:
         compiled.enable_caching()
-    except (RuntimeError, OSError):
-        pass  # numba found no folder that it may write: each process compiles for itself
+    except (RuntimeError, OSError):  # the folder cannot be written
+        note_unwritable(str(cache_root()), "it is not a writable folder")
     finally:
         configuration.CACHE_DIR = before
     return cast(F, compiled)

@@ -20,14 +20,16 @@ from __future__ import annotations
 import copy
 import gc
 import hashlib
+import logging
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache
 from importlib import import_module
 from typing import Any
 
 import llvmlite.binding as llvm
 from numba.core import compiler, types, typing
-from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import compile_result
 from numba.core.compiler_lock import global_compiler_lock
@@ -39,6 +41,8 @@ from meshwright_core.core.references import declare_read_only
 
 Types = tuple[Any, ...]
 """Numba types of arguments."""
+
+_log = logging.getLogger(__name__)
 
 _SYMBOL = "meshwright."
 _ENVIRONMENT = "_ZN08NumbaEnv"
@@ -158,6 +162,9 @@ class EntryPoint(JITCodeLibrary):
 class _StoredForm(CompileResultCacheImpl):
     """Converts an entry point to what is pickled into the cache, and back."""
 
+    # numba's other locators put files beside the sources or under a key that misses imported code
+    _locator_classes = (UserProvidedCacheLocator,)
+
     def reduce(self, result: Any) -> Any:
         library = result.library
         description = copy.copy(result.fndesc)
@@ -190,6 +197,17 @@ class _StoredForm(CompileResultCacheImpl):
         )
 
 
+@cache
+def note_unwritable(folder: str, reason: str) -> None:
+    """Log, once for each folder and reason, that compiled code is not kept."""
+    _log.warning(
+        "Compiled code cannot be kept in %s (%s): each start compiles again."
+        " Set MESHWRIGHT_CACHE_DIR to a writable folder.",
+        folder,
+        reason,
+    )
+
+
 class KernelCache(FunctionCache):
     """Numba's cache of one function, with the entry points of a kernel in it."""
 
@@ -203,7 +221,19 @@ class KernelCache(FunctionCache):
         """
         rtsys.initialize(target_context)
         with self._guard_against_spurious_io_errors():
-            return self._load_overload(sig, target_context)
+            try:
+                return self._load_overload(sig, target_context)
+            except Exception:  # a damaged file can fail in any way; the kernel is compiled again
+                with suppress(OSError):
+                    self.flush()
+                return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Write an entry point to disk; a full disk only costs the next process a compilation."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            note_unwritable(self.cache_path, error.strerror or str(error))
 
 
 class Kernel(CPUDispatcher):

@@ -72,11 +72,15 @@ def tiny(tmp_path):
     def write(factor: int) -> None:
         (package / "__init__.py").write_text(KERNELS + f"\n\nFACTOR = {factor}\n")
 
-    def run(cache=tmp_path / "cache"):
+    def run(cache=tmp_path / "cache", **options):
         paths = os.pathsep.join([str(package.parent), *sys.path])
         environment = {**os.environ, "MESHWRIGHT_CACHE_DIR": str(cache), "PYTHONPATH": paths}
         done = subprocess.run(
-            [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True
+            [sys.executable, "-c", SCRIPT],
+            env=environment,
+            capture_output=True,
+            text=True,
+            **options,
         )
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)
@@ -112,6 +116,30 @@ def test_a_shared_kernel_that_is_gone_from_the_cache_is_compiled_again(tiny, tmp
     for path in (tmp_path / "cache").rglob("*shared_sum*"):
         path.unlink()
     assert tiny() == [EXPECTED, 1, 2]
+
+
+@pytest.mark.parametrize("ending", [".nbi", ".nbc"])
+@pytest.mark.parametrize("kept", [0, 20])
+def test_a_damaged_file_of_the_cache_is_replaced(tiny, tmp_path, ending, kept):
+    tiny()
+    for path in (tmp_path / "cache").rglob(f"*both*{ending}"):
+        path.write_bytes(path.read_bytes()[:kept])
+    assert tiny()[:2] == [EXPECTED, 1]
+    assert tiny() == [EXPECTED, 0, 0]
+
+
+def test_no_file_is_written_beside_the_sources(tiny, tmp_path):
+    (tmp_path / "file").write_text("")
+    tiny(tmp_path / "file")
+    assert not list((tmp_path / "code").rglob("*.nb?"))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such limit")
+def test_a_full_disk_costs_only_the_cache(tiny):
+    import resource
+
+    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))  # noqa: E731
+    assert tiny(preexec_fn=limit)[0] == EXPECTED
 
 
 def test_integers_have_one_type_between_kernels():
