@@ -71,9 +71,11 @@ def test_each_stage_is_shown_and_enables_what_it_compiled(qtbot, prepared):
 
 
 def test_compiled_kernels_are_only_loaded(qtbot, prepared):
-    state = prepared()
+    shown = threading.Event()
+    state = prepared(load=lambda: shown.wait(WAIT / 1000) and None)
     state.warmup.start()
     assert state.status.preparation == LOADING
+    shown.set()
     qtbot.waitUntil(lambda: state.readiness.agent, timeout=WAIT)
     assert state.readiness.editing
     assert state.status.preparation == ""
