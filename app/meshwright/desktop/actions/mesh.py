@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from meshwright.desktop.actions.action import Action, has_mesh, has_quads
+from meshwright_core.errors import capitalised
 from meshwright_core.operations.catalogue import CATALOGUE, OperationInfo
 
 
@@ -15,7 +16,7 @@ def _operation(info: OperationInfo) -> Action:
     return Action(
         id=operation_id(info),
         title=info.title,
-        tooltip=info.summary[:1].upper() + info.summary[1:],
+        tooltip=capitalised(info.summary),
         run=lambda context: context.editing.operate(info.operation),
         shortcuts=(info.key.upper(),),
         enabled=lambda context: context.document.kind == info.kind,

@@ -12,6 +12,7 @@ from meshwright.desktop.files.new_mesh.painting import paint_shape, squares
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core.domains.domain import Domain
+from meshwright_core.errors import capitalised
 
 PICTURE = QSize(112, 88)
 
@@ -108,5 +109,4 @@ def picture(domain: Domain, theme: Theme, ratio: float = 1.0) -> QIcon:
 
 def words_of(name: str) -> str:
     """A shape's name as a title."""
-    words = name.replace("_", " ").replace("-", " ")
-    return words[:1].upper() + words[1:]
+    return capitalised(name.replace("_", " ").replace("-", " "))
