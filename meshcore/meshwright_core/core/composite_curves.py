@@ -13,6 +13,7 @@ the arc length everywhere.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -121,9 +122,8 @@ def _bernstein_slope(control, first, degree, u, v, c):
 def place_on(curves, curve, t, point, tangent):
     """Write the point at t and the derivative by t; beyond an open end: straight on."""
     length = curve_length(curves, curve)
-    if curves.closed[curve]:
-        if t < 0.0 or t > length:
-            t -= np.floor(t / length) * length
+    if curves.closed[curve] and (t < 0.0 or t > length):
+        t -= np.floor(t / length) * length
     inside = min(max(t, 0.0), length)
     span = span_at(curves, curve, inside)
     extent = curves.stop[span] - curves.start[span]
@@ -324,7 +324,7 @@ def span_points(span: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray
 def _de_casteljau(span: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     level = [np.broadcast_to(row, (len(u), 4)) for row in span]
     while len(level) > 2:
-        level = [(1.0 - u) * a + u * b for a, b in zip(level[:-1], level[1:], strict=True)]
+        level = [(1.0 - u) * a + u * b for a, b in pairwise(level)]
     value = (1.0 - u) * level[0] + u * level[1]
     return value, (len(span) - 1) * (level[1] - level[0])
 
