@@ -35,6 +35,10 @@ _NAMELESS = ("", "0", "defpoints")
 """Layers whose names say nothing."""
 _CENTRE_LINES = ("CENTER", "CENTRE", "DASHDOT", "PHANTOM", "ACAD_ISO04W100", "ACAD_ISO10W100")
 """Line types that mark axes and bends, not edges."""
+_MATTERS = re.compile(
+    rf"\b(?:{'|'.join([*dxf_entities.KINDS, 'INSERT'])})\b(?!.*without required BLOCK)"
+)
+"""Messages of ezdxf about what may be a part of the shape; of missing blocks we know the names."""
 _UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 13: "um", 14: "dm"}
 
 
@@ -45,23 +49,23 @@ def read(content: bytes) -> Drawing:
         MeshError: the file is no DXF, or damaged beyond repair; an entity is damaged; blocks are
             nested too deep or repeat too often; there is nothing to trace.
     """
-    text, notes = dxf_tags.completed(content)
+    text, notes, dropped = dxf_tags.completed(content)
     with contained():
         from ezdxf import recover
 
         document, auditor = recover.read(io.BytesIO(text), errors="ignore")
     reader = _Reader(document)
     reader.drawing.notes = [*notes, *_repairs(auditor)]
+    reader.drawing.ignored.update(dropped)
     reader.read_model(document)
     return reader.drawing
 
 
 def _repairs(auditor: Any) -> list[str]:
     """What ezdxf left out or changed that may matter for the shape."""
-    told = [entry for entry in [*auditor.fixes, *auditor.errors] if entry.entity is not None]
-    told = [entry for entry in told if entry.entity.dxftype() in (*dxf_entities.KINDS, "INSERT")]
-    messages = [re.sub(r"\s+", " ", entry.message).rstrip(".") for entry in told]
-    return [f"ezdxf repaired the file: {message}" for message in dict.fromkeys(messages)][:20]
+    messages = [" ".join(e.message.split()).rstrip(".") for e in [*auditor.fixes, *auditor.errors]]
+    told = [message for message in dict.fromkeys(messages) if _MATTERS.search(message)]
+    return [f"repaired by ezdxf: {message[:1].lower()}{message[1:]}" for message in told][:20]
 
 
 @dataclass

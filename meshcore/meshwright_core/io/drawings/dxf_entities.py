@@ -111,7 +111,7 @@ def _heavy(entity: Any) -> Iterator[Curve | None]:
     side = 1.0 if entity.is_3d_polyline else mirror(entity)
     # 16: control points of a curve whose own points are there too
     vertices = [v for v in entity.vertices if not int(v.dxf.flags) & 16]
-    rows = [(*v.dxf.location[:2], v.dxf.get("bulge", 0.0)) for v in vertices]
+    rows = [(v.dxf.location.x, v.dxf.location.y, v.dxf.get("bulge", 0.0)) for v in vertices]
     yield from with_bulges(rows, bool(entity.is_closed), side)
 
 

@@ -8,11 +8,13 @@ the same repairs apply to it.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 
 from meshwright_core.errors import MeshError
 
 _BINARY = b"AutoCAD Binary DXF"
+_DAMAGED = "it is a binary DXF file that is cut off or damaged"
 _MARKERS = {
     b"ELLIPSE": b"AcDbEllipse",
     b"HATCH": b"AcDbHatch",
@@ -22,15 +24,23 @@ _MARKERS = {
 """Subclasses without whose marker ezdxf does not read an entity."""
 _COMMON = {5, 6, 8, 48, 60, 62, 67, 102, 284, 330, 347, 348, 360, 370, 390, 410, 420, 430, 440}
 """Group codes that all entities have."""
+_SOLIDS = {b"3DSOLID", b"BODY", b"HELIX", b"MESH", b"REGION", b"SURFACE"}
+"""Entities that are left out before ezdxf sees them: it requires all of their parts."""
 _READ = {b"ARC", b"CIRCLE", b"ELLIPSE", b"INSERT", b"LINE", b"LWPOLYLINE", b"SPLINE", b"VERTEX"}
 """Entities whose numbers are checked."""
+
+_MODERN, _UNICODE = b"AC1015", b"AC1021"
+"""The versions with all these entities, and in which names are in UTF-8."""
 
 Tag = tuple[int, bytes, int]
 """Group code, value, and the line of the value; 0 for the line in a binary file."""
 
 
-def completed(content: bytes) -> tuple[bytes, list[str]]:
-    """Return the content of a DXF file as text that ezdxf reads, and what was repaired.
+def completed(content: bytes) -> tuple[bytes, list[str], Counter[str]]:
+    """Make the content of a DXF file such that ezdxf reads it.
+
+    Returns:
+        The content as text; what was repaired; how many entities of which kind were left out.
 
     Raises:
         MeshError: with the line, where it is not DXF, or cut off within a tag; a curve has a
@@ -39,34 +49,79 @@ def completed(content: bytes) -> tuple[bytes, list[str]]:
     binary = content.startswith(_BINARY)
     lines: list[bytes] = []
     sections: set[bytes] = set()
-    ended, previous = False, b""
+    kinds: set[bytes] = set()
+    dropped: Counter[str] = Counter()
+    blocks, inserted = set(), {}
+    variables: dict[bytes, int] = {}
+    ended, previous, kind = False, b"", b""
     entity: list[Tag] = []
     for tag in _binary_tags(content) if binary else _text_tags(content):
         code, value, _ = tag
         if code == 0:
-            _append(lines, entity)
-            entity = [tag]
+            _append(lines, entity, variables)
+            entity = [] if value in _SOLIDS else [tag]
+            dropped[value.decode("utf-8", "replace")] += value in _SOLIDS
+            kinds.add(value)
+            kind = value
             if value == b"EOF":
                 ended = True
                 break
         elif entity:
             entity.append(tag)
+            if code == 2 and kind == b"BLOCK":
+                blocks.add(value.upper())
+            elif code == 2 and kind == b"INSERT":
+                inserted[value.upper()] = value
         if code == 2 and previous == b"SECTION":
             sections.add(value.upper())
         previous = value if code == 0 else b""
     if not ended:
-        _append(lines, entity)
+        _append(lines, entity, variables)
     if b"ENTITIES" not in sections and b"BLOCKS" not in sections:
         raise MeshError("it is not a DXF file, or cut off: it has no section ENTITIES")
     notes = [] if ended else ["the end of the file is not marked (EOF): it may be cut off"]
-    return b"\n".join([*lines, b"0", b"EOF", b""]), notes
+    for name in inserted.keys() - blocks:
+        shown = inserted[name].decode("utf-8", "replace")[:40]
+        notes.append(f"there is no block named {shown!r}")
+    head = _set_version(lines, variables, bool(kinds & _MARKERS.keys()))
+    return b"\n".join([*head, *lines, b"0", b"EOF", b""]), notes, +dropped
 
 
-def _append(lines: list[bytes], entity: list[Tag]) -> None:
-    """Append the lines of an entity, checked, with the markers of its subclass."""
+def _set_version(lines: list[bytes], variables: dict[bytes, int], modern: bool) -> list[bytes]:
+    """Correct the version of a file that names none, or one older than its entities.
+
+    Returns:
+        A header to be put in front.
+    """
+    at = variables.get(b"$ACADVER")
+    if at is not None:
+        if modern and lines[at] < _MODERN:
+            lines[at] = _MODERN
+        return []
+    version = _MODERN
+    if b"$DWGCODEPAGE" not in variables:
+        try:
+            everything = b"\n".join(lines)
+            version = _MODERN if everything.isascii() or not everything.decode() else _UNICODE
+        except UnicodeDecodeError:
+            version = _MODERN
+    if not (modern or version == _UNICODE):
+        return []
+    return [b"0", b"SECTION", b"2", b"HEADER", b"9", b"$ACADVER", b"1", version, b"0", b"ENDSEC"]
+
+
+def _append(lines: list[bytes], entity: list[Tag], variables: dict[bytes, int]) -> None:
+    """Append the lines of an entity, checked, with the markers of its subclass.
+
+    `variables` takes the line of the value of each variable of the header.
+    """
     if not entity:
         return
     kind = entity[0][1]
+    if kind == b"SECTION" and len(entity) > 1 and entity[1][1] == b"HEADER":
+        for i, (code, value, _) in enumerate(entity):
+            if code == 9:
+                variables[value] = len(lines) + 2 * i + 3
     if kind in _READ:
         _check_numbers(kind.decode(), entity)
     if kind in _MARKERS and (100, _MARKERS[kind]) not in {tag[:2] for tag in entity}:
@@ -133,7 +188,9 @@ def _binary_tags(content: bytes) -> Iterator[Tag]:
         tags = list(binary_tags_loader(content))
     except Exception as error:
         # what its unpacking raises on damaged files is not documented
-        raise MeshError("it is a binary DXF file that is cut off or damaged") from error
+        raise MeshError(_DAMAGED) from error
+    if not tags:
+        raise MeshError(_DAMAGED)
     variables = {
         str(tag.value): str(tags[i + 1].value) for i, tag in enumerate(tags[:-1]) if tag.code == 9
     }
