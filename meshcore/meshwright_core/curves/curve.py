@@ -38,7 +38,7 @@ KINK = 1e-6
 """Radians by which the tangent jumps at a kink, at least."""
 LARGEST_DEGREE = 25
 _FLAT = 0.01
-"""Radians of sweep below which an arc is written by its ends: its centre is far away."""
+"""Radians of sweep below which an arc is not written by its centre, which is far away."""
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 _GAUSS, _WEIGHTS = 0.5 * (_GAUSS + 1.0), 0.5 * _WEIGHTS
 _DENSE = np.linspace(0.0, 1.0, 33)
@@ -455,6 +455,8 @@ class Curve:
 
     def to_json(self) -> dict[str, Any]:
         """The piece as an object of a domain file; see :mod:`.curve_json`."""
+        if self.kind == "ellipse" and abs(self.data["sweep"]) < _FLAT:
+            return curve_json.to_json("spline", _spline_data(self.spans))
         if self.kind == "arc" and abs(self.data["sweep"]) < _FLAT:
             bulge = math.tan(0.25 * self.data["sweep"])
             return {"arc": {"from": self.start.tolist(), "to": self.end.tolist(), "bulge": bulge}}
@@ -471,7 +473,7 @@ class Curve:
         if kind == "spline":
             return cls.spline(**data)
         if "bulge" in data:
-            return cls.arc_by_bulge(*data["points"], data["bulge"])
+            return cls.arc_by_bulge(data["points"][0], data["points"][1], data["bulge"])
         return cls.arc(**data) if kind == "arc" else cls.ellipse(**data)
 
     def __repr__(self) -> str:
