@@ -37,8 +37,9 @@ def part_of_conic(axes: Array, data: dict[str, Any], spans: list[Array]) -> dict
 
 
 def image_of_conic(axes: Array, data: dict[str, Any], affine: Array) -> tuple[str, dict[str, Any]]:
-    """Kind and data of the image of an arc under an affine map (2, 3): a circle stays one only under
-    similarities.
+    """Kind and data of the image of an arc under an affine map (2, 3).
+
+    A circle stays one under similarities only.
     """
     centre = affine[:, :2] @ data["centre"] + affine[:, 2]
     images = axes @ affine[:, :2].T
