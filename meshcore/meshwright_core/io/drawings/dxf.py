@@ -121,7 +121,10 @@ class _Reader:
         if self.hatches:
             drawing.ignored["HATCH"] += len(self.hatches)
         if not drawing.curves:
-            others = [f"{count} {name}" for name, count in sorted(drawing.ignored.items())]
+            others = [
+                name if count == 1 else f"{count:,} {name}"
+                for name, count in sorted(drawing.ignored.items())
+            ]
             found = f", only {listed(others)}" if others else ""
             told = f"; {drawing.notes[0]}" if drawing.notes else ""
             raise MeshError(f"there are no lines or curves to trace in it{found}{told}")

@@ -15,6 +15,7 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.irregularity import CORNER_ANGLE
+from meshwright_core.curves.curve import Curve
 from meshwright_core.errors import MeshError
 from meshwright_core.io.drawings import loose_ends, measures
 from meshwright_core.io.drawings.crossings import crossings, split_at_crossings
@@ -32,6 +33,8 @@ GAP = 1e-3
 SMOOTH = 1.0
 """Degrees that two curves may turn where they meet without a corner: files round their numbers."""
 MAX_REGIONS = 10_000
+_SAME = 1e-9
+"""Points of a polyline nearer than this share of the drawing's size are one point twice."""
 _TOLD = 1e-7
 """Share of the drawing's size from which on it is told that ends were moved."""
 _MOST = 8
@@ -92,7 +95,7 @@ class _Tracer:
         """Trace the drawing."""
         network, mends = self._network()
         faces = faces_of(network)
-        if not faces.faces:
+        if not faces.faces and (network.degrees() == 1).any():
             faces, network = self._crossed(faces, network)
         material = self._material(faces)
         regions = self._regions(faces, material, network)
@@ -103,14 +106,15 @@ class _Tracer:
             network, faces.stray, max((region.area for region in regions), default=0.0), self.size
         )
         if not regions:
-            raise MeshError(opened[0][0] if opened else "there is no closed outline in it")
+            raise MeshError(self._nothing(opened, network))
         self._tell(mends, network, kept, material, faces)
         ignored = [f"{count:,} {kind}" for kind, count in sorted(self.drawing.ignored.items())]
         told = [f"{', '.join(ignored)} left out"] if ignored else []
         if strays:
             place = place_words(strays[0].curve.start)
             number = counted(len(strays), "line or curve", "lines and curves")
-            told.append(f"{number} that enclose nothing left out, the first at {place}")
+            verb = "encloses" if len(strays) == 1 else "enclose"
+            told.append(f"{number} that {verb} nothing left out, the first at {place}")
         return DrawingReport(
             regions,
             self.repairs,
@@ -120,11 +124,36 @@ class _Tracer:
             self.drawing.units,
         )
 
+    def _nothing(self, opened: list[tuple[str, bool]], network: Network) -> str:
+        """Why there is no region."""
+        told = f"; {self.drawing.notes[0]}" if self.drawing.notes else ""
+        if opened:
+            return opened[0][0] + told
+        for crossing in crossings(network.edges, network.nodes, self.tolerance, self.size):
+            return f"the outline crosses itself at {place_words(crossing.place)}"
+        return f"there is no closed outline in it{told}"
+
     def _network(self) -> tuple[Network, list[Repair]]:
-        curves = [one.curve for one in self.drawn]
+        curves = [self._without_repeats(one.curve) for one in self.drawn]
         network = joined(curves, [(i,) for i in range(len(curves))], self.tolerance)
         network, mends = mended(network, self.gap, self.tolerance)
         return self._without_slivers(network), mends
+
+    def _without_repeats(self, curve: Curve) -> Curve:
+        """A polyline without points that all but repeat the one before."""
+        if curve.kind != "polyline":
+            return curve
+        points = curve.data["points"]
+        apart = np.hypot(*np.diff(points, axis=0).T) > _SAME * self.size
+        if apart.all():
+            return curve
+        keep = np.concatenate([[True], apart])
+        # its ends stay
+        keep[-1] = True
+        if keep.sum() > 2 and not apart[-1]:
+            keep[np.flatnonzero(keep[:-1])[-1]] = False
+            keep[0] = True
+        return Curve.polyline(points[keep]) if keep.sum() > 1 else curve
 
     def _without_slivers(self, network: Network) -> Network:
         """Drop one of two curves that enclose less than the tolerance between them."""
