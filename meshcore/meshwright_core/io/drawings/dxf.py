@@ -213,7 +213,7 @@ class _Reader:
                 self.read(members, _Place(place.matrix @ matrix, layer, place.depth + 1))
 
     def size(self, name: str, depth: int) -> int:
-        """How many entities a block stands for, with the blocks in it, before it is put anywhere."""
+        """How many entities a block stands for, with the blocks in it."""
         key = (name.lower(), depth)
         block = self.blocks.get(name)
         if block is None or depth > _DEPTH:

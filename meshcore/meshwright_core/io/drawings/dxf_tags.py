@@ -85,6 +85,7 @@ def completed(content: bytes, objects: bool = True) -> tuple[bytes, list[str], C
                 dropped[value.decode("utf-8", "replace")[:40]] += 1
             kinds.add(value)
             kind = value
+            section = b"" if value == b"ENDSEC" else section
             if value == b"EOF":
                 ended = True
                 break
@@ -102,6 +103,9 @@ def completed(content: bytes, objects: bool = True) -> tuple[bytes, list[str], C
         _append(lines, entity, variables)
     if b"ENTITIES" not in sections and b"BLOCKS" not in sections:
         raise MeshError("it is not a DXF file, or cut off: it has no section ENTITIES")
+    if not ended and section:
+        shown = section.decode("utf-8", "replace")[:20]
+        raise MeshError(f"it is cut off: the section {shown} has no end")
     notes = [] if ended else ["the end of the file is not marked (EOF): it may be cut off"]
     for name in inserted.keys() - blocks:
         shown = inserted[name].decode("utf-8", "replace")[:40]
