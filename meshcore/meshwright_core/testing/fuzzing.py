@@ -14,6 +14,7 @@ from meshwright_core.core.arrays import DEGREE, DESIRED, JOURNAL_TOP, RESTORED
 from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.errors import MeshError
 from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations import catalogue
 from meshwright_core.operations.catalogue import Operation
 from meshwright_core.testing.curved_starts import bent, grid_regions, region_areas
 from meshwright_core.testing.face_list_oracle import Edge, FaceList, Range, Refused
@@ -41,10 +42,10 @@ def edge_ranges(mesh: HalfEdgeMesh) -> dict[Edge, Range]:
     """The curve and the range of each edge along a curve, in the direction of the curve."""
     halfedges = mesh.halfedges_of(mesh.element_ids()).ravel()
     curve, span = edge_places(mesh.arrays, halfedges, mesh.k)
+    along = np.flatnonzero((curve >= 0) & (span[:, 0] < span[:, 1]))
+    rows = zip(halfedges[along].tolist(), curve[along].tolist(), span[along].tolist(), strict=True)
     return {
-        (mesh.origin(h), mesh.target(h)): (int(c), float(start), float(stop))
-        for h, c, (start, stop) in zip(halfedges.tolist(), curve, span, strict=True)
-        if c >= 0 and start < stop
+        (mesh.origin(h), mesh.target(h)): (number, start, stop) for h, number, (start, stop) in rows
     }
 
 
@@ -192,10 +193,12 @@ def _attempt(
     verdict = mesh.check(operation, h)
     new: list[int] = []
     if verdict:
-        score = mesh.score
+        score, code = mesh.score, catalogue.CODES[mesh.k][operation]
+        known = catalogue.CATALOGUE[code].score_formula
+        predicted = catalogue.score_change(mesh.arrays, code, h) if known else None
         edit = mesh.apply(Operation(operation), h)
         new = list(edit.new_vertices)
-        if mesh.score != score + edit.score_change:
+        if mesh.score != score + edit.score_change or predicted not in (None, edit.score_change):
             raise MeshError(f"{where} reported a wrong change of s")
     try:
         after = oracle.after(operation, a, b, new)
@@ -208,7 +211,7 @@ def _attempt(
     found = face_list(mesh)
     if after.regions != found.regions:
         raise MeshError(f"{where} gave other faces or regions than it should")
-    if not _same_ranges(mesh, after.ranges, found.ranges):
+    if not same_ranges(mesh, after.ranges, found.ranges):
         raise MeshError(f"{where} put an edge in a wrong place of its curve")
     degrees = after.degrees()
     if any(mesh.arrays.vertex[v, DEGREE] != d for v, d in degrees.items()):
@@ -218,7 +221,7 @@ def _attempt(
     return after, True
 
 
-def _same_ranges(mesh: HalfEdgeMesh, expected: dict[Edge, Range], found: dict[Edge, Range]) -> bool:
+def same_ranges(mesh: HalfEdgeMesh, expected: dict[Edge, Range], found: dict[Edge, Range]) -> bool:
     """Whether edges lie on the same curves at the same places, those on closed ones modulo the
     length.
     """
