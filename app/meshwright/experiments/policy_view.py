@@ -21,8 +21,8 @@ from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.arguments import whole_number
 from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.errors import sentence
-from meshwright_core.operations.catalogue import CATALOGUE, Operation
 from meshwright_core.geometry.true_edges import TrueEdges
+from meshwright_core.operations.catalogue import CATALOGUE, Operation
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.policy_files import Policy

@@ -175,9 +175,7 @@ def _has_curve(options: FigureOptions, moment: HistoryMoment | None) -> bool:
     return options.curve and moment is not None and len(moment.scores) > 1
 
 
-def _fills(
-    true: TrueEdges, rims: list[np.ndarray], view: Viewport, colours: Theme
-) -> list[Area]:
+def _fills(true: TrueEdges, rims: list[np.ndarray], view: Viewport, colours: Theme) -> list[Area]:
     """The area of the mesh, or those of its regions in different tints."""
     loops = [rims]
     if true.region_count > 1:
