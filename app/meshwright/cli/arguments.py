@@ -36,7 +36,7 @@ def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
     from meshwright.sources import resolve
     from meshwright_core.io import file_checks, formats
 
-    with _bad_input(path):
+    with bad_input(path):
         found = resolve.resolve(Path(path), corner_angle=corner_angle)
         if not isinstance(found, Document) or found.mesh is None:
             with file_checks.naming(Path(path)):
@@ -56,7 +56,7 @@ def read_document(word: str, kind: str, corner_angle: float | None = None) -> Do
 
     if resolve.names_file(word):
         _require_file(word)
-    with _bad_input(word):
+    with bad_input(word):
         found = resolve.resolve(word, corner_angle=corner_angle)
     if isinstance(found, Document):
         return found
@@ -72,7 +72,7 @@ def read_domain(shape: str, corner_angle: float | None = None) -> Domain:
 
     if resolve.names_file(shape):
         _require_file(shape)
-    with _bad_input(shape):
+    with bad_input(shape):
         return resolve.domain(shape, corner_angle=corner_angle)
 
 
@@ -82,7 +82,7 @@ def make_mesh(
     """Return a mesh of the domain, or raise UserError if it cannot be meshed as requested."""
     from meshwright_core.domains import meshing
 
-    with _bad_input(domain.name or "the domain"):
+    with bad_input(domain.name or "the domain"):
         return meshing.mesh_domain(domain, kind, max_edge=max_edge, seed=seed)
 
 
@@ -110,7 +110,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
         name = shipped[0]
     elif looks_like_path(name):
         _require_file(name)
-    with _bad_input(name, policy_files.PolicyError):
+    with bad_input(name, policy_files.PolicyError):
         policy = policy_files.load(name)
         policy_files.require_kind(policy, kind, name)
     return policy
@@ -123,7 +123,7 @@ def read_configuration(path: str | None, kind: str) -> TrainingConfiguration:
     if path is not None:
         _require_file(path)
     source = path or str(trainer.shipped_configuration(kind))
-    with _bad_input(source, trainer.ConfigurationError):
+    with bad_input(source, trainer.ConfigurationError):
         configuration = trainer.read_configuration(source)
     found = configuration.task.kind
     if found != kind:
@@ -204,7 +204,7 @@ def _require_file(path: str) -> None:
 
 
 @contextmanager
-def _bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
+def bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
     """Turn a MeshError, or one of ``more``, into a UserError whose sentence names the input."""
     from meshwright_core.errors import MeshError
 

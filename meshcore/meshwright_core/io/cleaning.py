@@ -175,7 +175,7 @@ def regions(content: Content, count: int) -> NDArray[np.int64] | None:
     None if they are not said, are no whole numbers, or are all the same.
     """
     kind = next((kind for kind in ("triangle", "quad") if kind in content.cells), "")
-    values = np.asarray(content.regions.get(kind, ()))
+    values = np.asarray((content.regions or {}).get(kind, ()))
     if values.shape != (count,) or values.dtype.kind not in "biuf":
         return None
     if not (np.isfinite(values).all() and (values == np.rint(values)).all()):

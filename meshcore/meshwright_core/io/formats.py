@@ -175,7 +175,7 @@ def _meshio_path(module: str, **options: Any) -> tuple[Any, Any]:
         import meshio
 
         cells = [(kind, block.astype(np.int32)) for kind, block in content.cells.items()]
-        regions = [region.astype(np.int32) for region in content.regions.values()]
+        regions = [region.astype(np.int32) for region in (content.regions or {}).values()]
         cell_data = {"region": regions} if regions else None
         mesh = meshio.Mesh(content.points, cells, point_data=content.data, cell_data=cell_data)
         importlib.import_module(f"meshio.{module}").write(str(path), mesh, **options)

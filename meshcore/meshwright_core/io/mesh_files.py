@@ -56,8 +56,9 @@ def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
     Only live vertices and elements are written, renumbered in order. Coordinates are exact (17
     digits where they need them) but in Nastran (at least nine digits), glTF and 3MF (single
     precision) files. Geometric flags and desired degrees go along as point data where the format
-    has it; elsewhere `read` finds the corners by angle. Several regions are written as cell data "region" (VTK, VTU) or as physical
-    groups (Gmsh). Edges along curves become straight: files of meshes hold no curves, projects do.
+    has it; elsewhere `read` finds the corners by angle. Several regions become cell data "region"
+    (VTK, VTU) or physical groups (Gmsh). Edges along curves become straight: mesh files hold no
+    curves, projects do.
 
     Raises:
         MeshError: one sentence that begins with the path: the ending is unknown, the format does

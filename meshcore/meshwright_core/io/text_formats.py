@@ -25,7 +25,7 @@ class Content(NamedTuple):
     points: NDArray[np.float64]
     cells: Cells
     data: dict[str, NDArray[np.generic]]
-    regions: dict[str, NDArray[np.generic]] = {}
+    regions: dict[str, NDArray[np.generic]] | None = None
 
 
 _COUNTS = re.compile(rb"Meshwright: (\d+) points, (\d+) elements")
@@ -179,7 +179,7 @@ def write_msh(content: Content) -> str:
     Regions are physical groups, numbered from 1.
     """
     kind, elements = _block(content)
-    groups = content.regions.get(kind, np.zeros(len(elements), np.int64)) + 1
+    groups = (content.regions or {}).get(kind, np.zeros(len(elements), np.int64)) + 1
     code = {"triangle": 2, "quad": 3}[kind]
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", f"{len(content.points)}"]
     lines += [f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in _numbered(content.points)]
