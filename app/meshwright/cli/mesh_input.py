@@ -71,9 +71,9 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
     word = arguments.input
     if not resolve.names_file(word) or is_drawing(word):
         if arguments.geometry is not None:
-            raise UserError(f"--geometry {arguments.geometry}: {word} is no mesh but a shape itself")
-        domain = read_domain(word, arguments)
-        return inputs.make_mesh(domain, arguments.kind or "quad", arguments.max_edge, arguments.seed)
+            raise UserError(f"--geometry {arguments.geometry}: {word} is itself a shape, no mesh")
+        domain, kind = read_domain(word, arguments), arguments.kind or "quad"
+        return inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed)
     for option in ("kind", "max_edge", "region"):
         drawn = option == "region" and arguments.geometry is not None
         if getattr(arguments, option) is not None and not drawn:
@@ -89,7 +89,8 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
 
 def read_domain(word: str, arguments: argparse.Namespace) -> Domain:
     """Return the domain that a gallery name or a drawing means, as the arguments say."""
-    domain = inputs.read_domain(word, arguments.corner_angle, arguments.curve_step, arguments.region)
+    angle, step = arguments.corner_angle, arguments.curve_step
+    domain = inputs.read_domain(word, angle, step, arguments.region)
     if not arguments.fit_arcs:
         return domain
     from meshwright_core.domains import arc_fitting

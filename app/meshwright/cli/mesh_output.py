@@ -52,9 +52,9 @@ def measures(mesh: HalfEdgeMesh) -> dict[str, Any]:
     For the JSON of a command.
     """
     import numpy as np
+    from meshwright_core.geometry.edge_curves import element_areas
 
     from meshwright_core.geometry import quality
-    from meshwright_core.geometry.edge_curves import element_areas
 
     areas, region = element_areas(mesh), mesh.regions()
     values: dict[str, Any] = {

@@ -8,6 +8,7 @@ two corners are projected to the curve between them, in their order.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -250,7 +251,7 @@ class _Placement:
             if self._curve[vertex] < 0:
                 self._curve[vertex], self._parameter[vertex] = curve, t
         marks = [(first, 0), *met, (last, len(chain) - 1)]
-        for (stop, place), (ahead, until) in zip(marks[:-1], marks[1:], strict=True):
+        for (stop, place), (ahead, until) in pairwise(marks):
             if until <= place:
                 raise MeshError(
                     "The corners of an interface do not follow each other as the vertices of the"
