@@ -52,9 +52,9 @@ def measures(mesh: HalfEdgeMesh) -> dict[str, Any]:
     For the JSON of a command.
     """
     import numpy as np
-    from meshwright_core.geometry.edge_curves import element_areas
 
     from meshwright_core.geometry import quality
+    from meshwright_core.geometry.edge_curves import element_areas
 
     areas, region = element_areas(mesh), mesh.regions()
     values: dict[str, Any] = {
@@ -78,13 +78,17 @@ def measure_rows(values: dict[str, Any], noun: str) -> list[tuple[str, str]]:
         ("area", f"{values['area']:.10g}"),
         ("shape", f"worst scaled Jacobian {values['worst_scaled_jacobian']:.2f}"),
     ]
+    regions = region_words(values, noun)
+    return [*rows, ("regions", regions)] if regions else rows
+
+
+def region_words(values: dict[str, Any], noun: str) -> str:
+    """``steel 12 quads, copper 8 quads``; empty unless :func:`measures` found several regions."""
     regions = values.get("regions", [])
-    if regions:
-        words = [
-            f"{region['name'] or f'region {number}'} {region['elements']:,} {noun}"
-            for number, region in enumerate(regions[:SHOWN_REGIONS], start=1)
-        ]
-        if len(regions) > SHOWN_REGIONS:
-            words.append(f"and {len(regions) - SHOWN_REGIONS:,} more")
-        rows.append(("regions", ", ".join(words)))
-    return rows
+    words = [
+        f"{region['name'] or f'region {number}'} {region['elements']:,} {noun}"
+        for number, region in enumerate(regions[:SHOWN_REGIONS], start=1)
+    ]
+    if len(regions) > SHOWN_REGIONS:
+        words.append(f"and {len(regions) - SHOWN_REGIONS:,} more")
+    return ", ".join(words)
