@@ -1,9 +1,6 @@
-"""Finds arcs in the polylines of a domain, or in the boundary of a mesh, and puts them there."""
+"""Finds arcs in the boundary of a mesh with straight edges, and places the mesh on them."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,30 +17,9 @@ from meshwright_core.mesh import HalfEdgeMesh
 Points = NDArray[np.float64]
 
 TOLERANCE = 1e-4
-"""Distance of the points of a polyline from the arcs that stand for it, relative to the size."""
+"""Distance of boundary vertices from the arcs through them, relative to the size of the mesh."""
 _COLLINEAR = 1e-9
 """Distance from a line, relative to the size, below which a point lies on it."""
-
-
-def with_arcs(domain: Domain, tolerance: float = TOLERANCE) -> Domain:
-    """The domain with arcs and segments in place of its polylines.
-
-    Curves that are no polylines stay; so do names, where the pieces of a polyline have one.
-
-    Args:
-        domain: between polygons or curves.
-        tolerance: relative to the size of the domain.
-    """
-    reach = tolerance * domain.diameter
-    angle = CORNER_ANGLE if domain.sides is None else domain.sides.corner_angle
-    regions, names = [], []
-    for region in domain.regions:
-        loops = [_fitted_loop(loop, reach) for loop in region.loops]
-        regions.append((region.name, loops))
-        names.append([[""] * len(loop) for loop in loops])
-    if len(regions) == 1:
-        return Domain.from_curves(regions[0][1], domain.name, angle)
-    return Domain.from_regions(regions, domain.name, angle)
 
 
 def mesh_with_arcs(
@@ -103,30 +79,3 @@ def _bends(points: Points, straight: float) -> NDArray[np.bool_]:
     across = np.abs(way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0])
     found: NDArray[np.bool_] = across > straight * np.where(length > 0.0, length, 1.0)
     return found
-
-
-def _fitted_loop(loop: Sequence[Curve], reach: float) -> list[Curve]:
-    """The curves of a closed loop, each run of straight edges fitted."""
-    polygonal = [curve.straight or curve.kind == "polyline" for curve in loop]
-    if all(polygonal):
-        points = np.concatenate([_corners(curve)[:-1] for curve in loop])
-        return fitted_polygon(points, reach)
-    first = polygonal.index(False)
-    curves = [*loop[first:], *loop[:first]]
-    found: list[Curve] = []
-    for straight, run in groupby(curves, lambda curve: curve.straight or curve.kind == "polyline"):
-        pieces = list(run)
-        if not straight or (len(pieces) == 1 and pieces[0].straight):
-            found += pieces
-            continue
-        points = np.concatenate([*(_corners(curve)[:-1] for curve in pieces), [pieces[-1].end]])
-        found += fit_arcs(points, reach)
-    return found
-
-
-def _corners(curve: Curve) -> Points:
-    """(n, 2) the points of a polyline or a straight curve."""
-    if curve.kind == "polyline":
-        points: Points = np.asarray(curve.data["points"])
-        return points
-    return np.array([curve.start, curve.end])
