@@ -63,17 +63,36 @@ def read_document(word: str, kind: str, corner_angle: float | None = None) -> Do
     return Document(make_mesh(found, kind), found.name or Path(word).stem)
 
 
-def read_domain(shape: str, corner_angle: float | None = None) -> Domain:
+def read_domain(
+    shape: str,
+    corner_angle: float | None = None,
+    curve_step: float | None = None,
+    region: str | None = None,
+    gap: float | None = None,
+    fit: str | None = None,
+) -> Domain:
     """Return the domain with this name in the gallery, or in this drawing.
 
     ``corner_angle`` in degrees: a point where the boundary turns by more is a corner.
+    ``curve_step``, ``region``, ``gap`` and ``fit`` as for
+    :func:`meshwright.sources.resolve.resolve`; they are for drawings.
     """
     from meshwright.sources import resolve
 
     if resolve.names_file(shape):
         _require_file(shape)
+    for option, value in (("--region", region), ("--fit-arcs", fit)):
+        if value is not None and not resolve.names_file(shape):
+            raise UserError(f"{option}: this is for drawings, and {shape} is a name in the gallery")
     with bad_input(shape):
-        return resolve.domain(shape, corner_angle=corner_angle)
+        return resolve.domain(
+            shape,
+            corner_angle=corner_angle,
+            curve_step=curve_step,
+            region=region,
+            gap=gap,
+            fit=fit,
+        )
 
 
 def make_mesh(
@@ -151,6 +170,14 @@ def seed(text: str) -> int:
     value = _int(text)
     if value < 0:
         raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least 0")
+    return value
+
+
+def length(text: str) -> float:
+    """Read a finite number of at least 0 from the command line."""
+    value = _float(text)
+    if not (value >= 0 and math.isfinite(value)):
+        raise argparse.ArgumentTypeError(f"{text} is not a number of at least 0")
     return value
 
 

@@ -38,7 +38,33 @@ def add_geometry_arguments(parser: argparse.ArgumentParser) -> None:
 def add_drawing_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that say how drawings, and boundaries of mesh files, are read."""
     parser.add_argument(
-        "--region", metavar="NAME", help="take this region of a drawing alone (see shapes FILE)"
+        "--region",
+        metavar="NAME",
+        help="take this region of a drawing, by its name or number (see shapes FILE), several with "
+        "commas between them, or all; by default all that touch",
+    )
+    add_tracing_arguments(parser)
+    parser.add_argument(
+        "--curve-step",
+        metavar="DEGREES",
+        type=inputs.angle,
+        help="an edge along a curve of a drawing turns by no more; as much as the shape allows "
+        "where it is left out",
+    )
+    parser.add_argument(
+        "--fit-arcs",
+        action="store_true",
+        help="find arcs in polylines, of a drawing or of the boundary of a mesh file",
+    )
+
+
+def add_tracing_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that say what is found in a drawing."""
+    parser.add_argument(
+        "--gap",
+        metavar="WIDTH",
+        type=inputs.length,
+        help="close gaps of a drawing up to this width, in its units (0.001 of its size)",
     )
     parser.add_argument(
         "--corner-angle",
@@ -46,17 +72,6 @@ def add_drawing_arguments(parser: argparse.ArgumentParser) -> None:
         type=inputs.angle,
         help="a boundary vertex is a corner where the boundary turns by more (0.01, or 1 beside a "
         "curve); raise it where curved sides are drawn as short straight pieces",
-    )
-    parser.add_argument(
-        "--curve-step",
-        metavar="DEGREES",
-        type=inputs.angle,
-        help="by how much a polyline turns at a point, at most, where it stands for a curve",
-    )
-    parser.add_argument(
-        "--fit-arcs",
-        action="store_true",
-        help="find arcs in polylines, of a drawing or of the boundary of a mesh file",
     )
 
 
@@ -89,14 +104,14 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
 
 def read_domain(word: str, arguments: argparse.Namespace) -> Domain:
     """Return the domain that a gallery name or a drawing means, as the arguments say."""
-    angle, step = arguments.corner_angle, arguments.curve_step
-    domain = inputs.read_domain(word, angle, step, arguments.region)
-    if not arguments.fit_arcs:
-        return domain
-    from meshwright_core.domains import arc_fitting
-
-    with inputs.bad_input(word):
-        return arc_fitting.with_arcs(domain)
+    return inputs.read_domain(
+        word,
+        arguments.corner_angle,
+        arguments.curve_step,
+        arguments.region,
+        arguments.gap,
+        "arcs" if arguments.fit_arcs else None,
+    )
 
 
 def _on_drawing(word: str, mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:
