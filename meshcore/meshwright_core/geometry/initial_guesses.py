@@ -80,6 +80,7 @@ def hold_single_quads(part: MovablePart) -> MovablePart:
     single = _single(part)
     if not single.any():
         return part
+    part = _first_on_closed_sides(part, single)
     t, held = part.seats.parameter, []
     for run in part.runs():
         if not single[run.members].any():
@@ -100,6 +101,21 @@ def hold_single_quads(part: MovablePart) -> MovablePart:
         held.extend(run.members[corners].tolist())
     part.settle()
     return part.holding(held)
+
+
+def _first_on_closed_sides(part: MovablePart, single: np.ndarray) -> MovablePart:
+    """The part with one vertex held at a bend on each closed side all of whose vertices slide."""
+    t = part.seats.parameter
+    for i in np.flatnonzero(single).tolist():
+        if not part.sliding[i] or not part.encircles(i):
+            continue
+        curve, half = int(part.seats.curve[i]), 0.5 * float(np.ptp(part.seats.reach[i]))
+        bends = bends_between(part, curve, t[i] - half, t[i] + half)
+        if len(bends):
+            t[i] = bends[np.argmin(np.abs(bends - t[i]))]
+            part.settle()
+            part = part.holding([i])
+    return part
 
 
 def _nearest_in_order(values: np.ndarray, places: np.ndarray) -> np.ndarray:

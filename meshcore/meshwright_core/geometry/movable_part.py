@@ -135,7 +135,7 @@ class MovablePart:
         for i in np.flatnonzero(self.sliding).tolist():
             before = int(seats.before[i])
             # the seam of a closed side is where a lower bound is one round back
-            if before >= 0 and not (seats.low[i] < 0.0 and self._encircles(i)):
+            if before >= 0 and not (seats.low[i] < 0.0 and self.encircles(i)):
                 continue
             run, shift = [i], [0.0]
             while 0 <= (after := int(seats.after[run[-1]])) != i:
@@ -148,7 +148,7 @@ class MovablePart:
             found.append(SlidingRun(np.array(run, np.int64), np.array(shift), low, high))
         return found
 
-    def _encircles(self, i: int) -> bool:
+    def encircles(self, i: int) -> bool:
         """Whether all vertices of the closed side of i slide."""
         v = int(self.seats.after[i])
         while v >= 0 and v != i:
