@@ -9,7 +9,6 @@ import numpy as np
 import shapely
 
 from meshwright_core.curves.curve import Curve
-from meshwright_core.io.drawings import measures
 from meshwright_core.io.drawings.drawn import Points
 from meshwright_core.io.drawings.network import Edge, Network, joined
 
@@ -36,7 +35,7 @@ def crossings(edges: Sequence[Edge], nodes: Points, tolerance: float, size: floa
     """Return where edges meet away from the nodes that they share."""
     if not edges:
         return []
-    dense = [measures.samples(edge.curve) for edge in edges]
+    dense = [edge.dense for edge in edges]
     owner = np.repeat(np.arange(len(dense)), [len(line) for line in dense])
     lines = shapely.linestrings(np.concatenate(dense), indices=owner)
     one, other = shapely.STRtree(lines).query(lines, predicate="intersects")

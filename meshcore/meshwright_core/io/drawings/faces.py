@@ -66,7 +66,7 @@ class Faces:
         """(n, 2) points along a closed way, without the last one, which is the first one."""
         rows = []
         for i, back in ways:
-            points = measures.samples(self.edges[i].curve)
+            points = self.edges[i].dense
             rows.append(points[::-1][:-1] if back else points[:-1])
         return np.concatenate(rows)
 
@@ -226,5 +226,4 @@ def around(faces: Faces) -> NDArray[np.int64]:
 
 
 def _middle(edge: Edge) -> Points:
-    points = measures.samples(edge.curve, 30.0)
-    return points[len(points) // 2]
+    return edge.dense[len(edge.dense) // 2]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -41,6 +42,11 @@ class Edge:
     b: int
     curve: Curve
     owners: Owners
+
+    @cached_property
+    def dense(self) -> Points:
+        """Points (n, 2) along the curve, for estimates."""
+        return measures.samples(self.curve)
 
 
 @dataclass
