@@ -22,9 +22,8 @@ if TYPE_CHECKING:
 
 STRAIGHT = 1e-6
 """Radians by which a side may turn where it counts as straight."""
-MOST = np.radians(120.0)
-"""The most that one edge may turn: a circle keeps three edges, half a circle two. The Coons maps of
-elements with more are valid in a band only that is narrow against the radius."""
+MOST = np.radians(135.0)
+"""The most that one edge may turn: a circle keeps three edges, half a circle two."""
 FINE = np.radians(2.0)
 """Turning of the pieces of the domain's outline that segments are tested against."""
 

@@ -16,7 +16,8 @@ from tiny_meshes import grid, ring
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.analysis.drawability import Obstacles
 from meshwright_core.curves.curve import Curve
-from meshwright_core.domains import gallery, meshing
+from meshwright_core.domains import gallery, mesh_on_domain, meshing
+from meshwright_core.domains.domain import Domain
 from meshwright_core.geometry import smoothing
 
 DART = [[0, 0], [1, -1], [0.4, 0], [1, 1]]
@@ -65,11 +66,41 @@ def test_each_kind_of_obstacle(points, elements, count):
     assert _count(HalfEdgeMesh.from_elements(points, elements)) == count
 
 
+def _arch(pieces):
+    """Half a ring of so many quads; its corners are the vertices 0 to 3."""
+    angle = np.pi * np.arange(pieces + 1) / pieces
+    arc = np.column_stack([np.cos(angle), np.sin(angle)])
+    outer = 2 + 2 * np.arange(pieces + 1)
+    outer[[0, -1]] = 0, 1
+    inner = outer + np.where(outer < 2, 2, 1)
+    points = np.zeros((2 * (pieces + 1), 2))
+    points[outer], points[inner] = 2 * arc, arc
+    quads = np.column_stack([inner[:-1], outer[:-1], outer[1:], inner[1:]])
+    return HalfEdgeMesh.from_elements(points, quads, np.arange(len(points)) < 4)
+
+
 def test_sides_that_turn_keep_their_edges():
     assert _count(round_ring(3)) == 0
     assert _count(annulus_sector(90.0)) == 0
     # one edge for half a circle would do, but not well
     assert _count(annulus_sector(180.0)) == 1 + 1
+
+
+def test_sides_that_bend_keep_some_edges():
+    # an edge along a curve turns by 135 degrees at most: three around a circle; the arcs of 18
+    # degrees a piece turn by 162 in all
+    assert Obstacles(ring(24, 1)).count(ring(3, 1)) == 0
+    assert Obstacles(_arch(10)).count(_arch(2)) == 0
+    assert Obstacles(_arch(10)).count(_arch(1)) == 1 + 1
+
+
+def test_vertices_of_one_quad_need_a_kink():
+    """On a smooth curve their corner would be flat."""
+    points = [[1, 0], [0, 1], [-1, 0], [0, -1]]
+    square = HalfEdgeMesh.from_elements(points, [[0, 1, 2, 3]], [False] * 4)
+    assert _count(square) == 0
+    disc = Domain.from_curves([[Curve.arc((0, 0), 1.0, 0.0, 2 * np.pi)]])
+    assert _count(mesh_on_domain.placed(square, disc)) == 4
 
 
 def test_smooth_vertices_need_two_elements():
