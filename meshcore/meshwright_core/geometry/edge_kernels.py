@@ -52,7 +52,7 @@ def place_on_edge(curves, curve, span, offsets, w, point, slope):
 
 @kernel
 def end_tangents(curves, curve, span, ends):
-    """(n, 2, 3) derivatives by w of edges on curves (n,) at both ends, given as in :func:`bulges`."""
+    """(n, 2, 3) derivatives by w at both ends of edges, given as in :func:`bulges`."""
     found, place = np.zeros((len(curve), 2, 3)), np.zeros(3)
     offsets = np.zeros((2, 3))
     for i in range(len(curve)):
