@@ -1,0 +1,1 @@
+"""Curves of drawings: segments, arcs and splines, exact at every point."""
