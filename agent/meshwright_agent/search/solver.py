@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 
 import numpy as np
+from meshwright_core.geometry.boundary_spacing import anchors
 
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
@@ -27,7 +28,6 @@ from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
 from meshwright_agent.search.shortening import shorten as shorter
 from meshwright_core.domains.meshing import benchmark_mesh
-from meshwright_core.geometry.boundary_spacing import anchors
 from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
