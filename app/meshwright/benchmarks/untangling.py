@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 import shapely
+from meshwright_core.geometry.sides import Sides
 
 from meshwright.console import Update, no_update
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality, smoothing, untangling
-from meshwright_core.geometry.sides import Sides
 from meshwright_core.geometry.unfixable import unfixable
 
 SUMMARY = "share of randomly edited meshes without inverted elements: as is, averaged, untangled"

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from meshwright_core.geometry.outline import Outline
 
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.geometry.outline import Outline
 from meshwright_core.geometry.quality import TOLERANCE, reference_normals
 
 CHUNK = 1 << 12

@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from meshwright_core.geometry.outline import place_all
+from meshwright_core.geometry.sides import Sides
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import FLAGS, GEOMETRIC, LOCKED
-from meshwright_core.geometry.outline import place_all
-from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
 from meshwright_core.geometry.movable_part import elements_at
-from meshwright_core.geometry.sides import Sides
+from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
 
 KEPT = 0.02
 """Distance that a sliding vertex keeps from its neighbours, as a fraction of their distance."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from meshwright_core.geometry.outline import Outline
 
 from meshwright.document.document import Document
 from meshwright.document.score_series import ScoreSeries
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN
-from meshwright_core.geometry.outline import Outline
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, inverted
 
 BLOCKS_UP_TO = 20_000

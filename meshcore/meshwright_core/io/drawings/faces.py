@@ -129,7 +129,9 @@ def _pruned(network: Network) -> NDArray[np.bool_]:
     return alive
 
 
-def _cycles(network: Network, alive: NDArray[np.bool_]) -> tuple[list[list[int]], NDArray[np.int64]]:
+def _cycles(
+    network: Network, alive: NDArray[np.bool_]
+) -> tuple[list[list[int]], NDArray[np.int64]]:
     """Ways around faces as half-edges (2 edge, or 2 edge + 1 backwards), and the way of each."""
     edges = network.edges
     leaving: dict[int, list[int]] = {}
@@ -176,7 +178,8 @@ def _around(network: Network, node: int, halves: list[int]) -> list[int]:
 
     near = angles(_NEAR)
     ordered = sorted(halves, key=lambda half: near[half])
-    turns = [(near[h] - near[g]) % (2 * np.pi) for g, h in zip([ordered[-1], *ordered], ordered)]
+    before = [ordered[-1], *ordered[:-1]]
+    turns = [(near[h] - near[g]) % (2 * np.pi) for g, h in zip(before, ordered, strict=True)]
     # begin after the widest free angle, so that no group of neighbours is cut
     begin = int(np.argmax(turns))
     ordered, turns = ordered[begin:] + ordered[:begin], turns[begin:] + turns[:begin]
