@@ -173,7 +173,8 @@ class AgentController(Controller):
         if mesh is None or insight is None:
             self.field.show(None)
         else:
-            self.field.show(sight(insight, mesh, self._words(insight, mesh.kind)))
+            words = self._words(insight, mesh.kind)
+            self.field.show(sight(insight, mesh, words, self._canvas.edges))
 
     def _words(self, insight: Insight, kind: str) -> tuple[str, ...]:
         """The legend of what the policy sees, in three lines."""
