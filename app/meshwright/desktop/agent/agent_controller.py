@@ -49,7 +49,7 @@ class AgentController(Controller):
     ) -> None:
         super().__init__(theme)
         self._document, self._assistant, self._settings = document, assistant, settings
-        self._panel, self._hints = panel, hints
+        self._canvas, self._panel, self._hints = canvas, panel, hints
         self._status, self._notice, self._parent = status, notice, parent
         self._region: tuple[HalfEdgeMesh, np.ndarray] | None = None  # mesh, elements outside
         overlay = canvas.overlay
