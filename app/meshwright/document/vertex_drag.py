@@ -15,7 +15,7 @@ from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import FLAGS, GEOMETRIC, LOCKED
 from meshwright_core.geometry.outline import place_all
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
-from meshwright_core.geometry.region import elements_at
+from meshwright_core.geometry.movable_part import elements_at
 from meshwright_core.geometry.sides import Sides
 
 KEPT = 0.02

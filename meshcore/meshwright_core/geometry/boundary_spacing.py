@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright_core.geometry import region as regions
-from meshwright_core.geometry.region import Region
+from meshwright_core.geometry import movable_part
+from meshwright_core.geometry.movable_part import Region
 from meshwright_core.geometry.unfixable import turns
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def anchors(mesh: HalfEdgeMesh) -> np.ndarray:
     About one for each :data:`PIECE` of turning, evenly by :func:`_measure`; all vertices of a side
     that has no more. A search that locks them cannot turn a disc into a square.
     """
-    region = regions.whole(mesh)
+    region = movable_part.whole(mesh)
     found: list[int] = []
     if region.frame is None:
         return np.array(found, np.int64)

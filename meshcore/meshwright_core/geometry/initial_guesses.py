@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from meshwright_core.geometry.quality import TOLERANCE
-from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.movable_part import Region
 from meshwright_core.geometry.sides import in_order
 from meshwright_core.geometry.unfixable import turns
 

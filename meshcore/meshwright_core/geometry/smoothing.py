@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry import region as regions
+from meshwright_core.geometry import movable_part
 from meshwright_core.geometry.boundary_spacing import bending, spread
 from meshwright_core.geometry.outline import place_on
 from meshwright_core.geometry.quality import TOLERANCE
-from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.movable_part import Region
 from meshwright_core.geometry.unfixable import fixable
 from meshwright_core.geometry.untangling import ALL, untangle_region
 
@@ -191,7 +191,7 @@ def smooth(
         ids (n,) of the vertices that have moved, and their new positions (n, 3). On a surface that
         is not plane vertices move along their tangent plane.
     """
-    region = regions.chosen(mesh, vertices)
+    region = movable_part.chosen(mesh, vertices)
     region.settle()
     sweep(region, iterations)
     return region.changed(mesh)
@@ -201,7 +201,7 @@ def average(
     mesh: HalfEdgeMesh, vertices: Iterable[int] | None = None, iterations: int = 100
 ) -> tuple[np.ndarray, np.ndarray]:
     """Plain averaging, for comparison: as :func:`smooth`, but elements may fold."""
-    region = regions.chosen(mesh, vertices)
+    region = movable_part.chosen(mesh, vertices)
     region.settle()
     sweep(region, iterations, guarded=False)
     return region.changed(mesh)
@@ -225,7 +225,7 @@ def relax(
     """
     if around is None:
         return _relax_whole(mesh)
-    seeds = regions.live(mesh, around)
+    seeds = movable_part.live(mesh, around)
     return _relax_near(mesh, seeds, thorough).inverted() if len(seeds) else seeds
 
 
@@ -233,7 +233,7 @@ def _relax_near(mesh: HalfEdgeMesh, seeds: np.ndarray, thorough: bool = True) ->
     """Relax around `seeds`, with more and more rings as long as something stays inverted."""
     reach = RINGS
     while True:
-        region = regions.around(mesh, regions.rings(mesh, seeds, reach))
+        region = movable_part.around(mesh, movable_part.rings(mesh, seeds, reach))
         last = len(region.elements) >= min(LARGEST, mesh.n_elements)
         if _relax_region(region, tries=3 if last and thorough else 1) or last or not thorough:
             _write(mesh, region)
@@ -279,7 +279,7 @@ def _write(mesh: HalfEdgeMesh, region: Region) -> None:
 
 
 def _relax_whole(mesh: HalfEdgeMesh) -> np.ndarray:
-    region = regions.whole(mesh)
+    region = movable_part.whole(mesh)
     if mesh.n_elements <= WHOLE:
         _relax_region(region)
         _write(mesh, region)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright_core.geometry import region as regions
+from meshwright_core.geometry import movable_part
 from meshwright_core.geometry.quality import TOLERANCE
-from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.movable_part import Region
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -23,7 +23,7 @@ PLACES = 20000
 
 def unfixable(mesh: HalfEdgeMesh) -> np.ndarray:
     """Ids, ascending, of the elements of `mesh` that are known to be unfixable."""
-    region = regions.whole(mesh)
+    region = movable_part.whole(mesh)
     return np.sort(region.element_ids[unfixable_corners(region).any(axis=1)])
 
 

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright_core.geometry import region as regions
+from meshwright_core.geometry import movable_part
 from meshwright_core.geometry.foldover_energy import Problem, unfold
 from meshwright_core.geometry.initial_guesses import hold_single_quads, starts
 from meshwright_core.geometry.outline import Polylines
-from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.movable_part import Region
 from meshwright_core.geometry.unfixable import unfixable_corners
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def untangle(
         polish: the most steps that improve shapes once nothing is inverted.
         seed: of the random starts that follow when all others fail.
     """
-    region = regions.chosen(mesh, vertices)
+    region = movable_part.chosen(mesh, vertices)
     starts, evaluations = untangle_region(region, polish, seed)
     moved, positions = region.changed(mesh)
     bad = region.inverted_rows()

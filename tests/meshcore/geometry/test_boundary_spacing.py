@@ -5,7 +5,7 @@ import pytest
 
 from meshwright_core.domains import gallery
 from meshwright_core.domains.meshing import mesh_domain
-from meshwright_core.geometry import region, smoothing
+from meshwright_core.geometry import movable_part, smoothing
 from meshwright_core.geometry.boundary_spacing import anchors, bending
 
 

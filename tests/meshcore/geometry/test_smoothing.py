@@ -5,7 +5,7 @@ from side_checks import assert_on_sides
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality, smoothing
-from meshwright_core.geometry import region as regions
+from meshwright_core.geometry import movable_part
 
 
 def jittered(kind, elements, amount, seed=0):
@@ -23,14 +23,14 @@ def test_smoothing_makes_the_worst_no_worse_and_keeps_the_outline(kind, name):
     mesh = meshing.mesh_domain(gallery.shape(name), kind)
     corners = np.flatnonzero(mesh.geometric())
     before = mesh.points[corners].copy()
-    region = regions.whole(mesh)
+    region = movable_part.whole(mesh)
     worst = shape_of(region).min()
     vertices, positions = smoothing.smooth(mesh)
     assert len(vertices)
     mesh.move(vertices, positions)
     assert mesh.points[corners].tobytes() == before.tobytes()
     assert len(quality.inverted(mesh)) == 0
-    assert shape_of(regions.whole(mesh)).min() >= worst - 1e-12
+    assert shape_of(movable_part.whole(mesh)).min() >= worst - 1e-12
     assert_on_sides(mesh)
 
 
@@ -104,7 +104,7 @@ def test_relax_touches_only_what_is_near_and_is_one_step(kind):
     assert mesh.steps == steps + 1
     moved = np.flatnonzero((mesh.points != before).any(axis=1))
     assert 0 < len(moved) < 60
-    assert set(moved) <= set(regions.rings(mesh, edit.touched, 2).tolist())
+    assert set(moved) <= set(movable_part.rings(mesh, edit.touched, 2).tolist())
     assert mesh.undo()
     assert mesh.points.tobytes() == before.tobytes()
 

@@ -7,7 +7,7 @@ from side_checks import assert_on_sides
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import foldover_energy, quality, untangling
-from meshwright_core.geometry import region as regions
+from meshwright_core.geometry import movable_part
 from meshwright_core.geometry.sides import Sides
 from meshwright_core.geometry.unfixable import unfixable, unfixable_corners
 
@@ -28,7 +28,7 @@ def untangled(mesh, vertices=None):
 @pytest.mark.parametrize("eps", [1.0, 1e-2])
 def test_gradient_against_finite_differences(kind, name, eps):
     mesh = meshing.mesh_domain(gallery.shape(name), kind)
-    region = regions.whole(mesh)
+    region = movable_part.whole(mesh)
     rng = np.random.default_rng(0)
     free = np.flatnonzero(region.free)
     region.points[free, :2] += 0.3 * rng.normal(size=(len(free), 2))
@@ -151,7 +151,7 @@ def test_boundary_vertices_of_one_quad_find_the_bends_of_a_circle(pieces, turn):
 def test_a_circle_seen_from_outside_is_unfixable_for_a_single_quad():
     mesh = meshing.mesh_domain(gallery.shape("annulus"), "tri")
     inner = min(mesh.boundary_loops(), key=len)
-    region = regions.whole(mesh)
+    region = movable_part.whole(mesh)
     assert not unfixable_corners(region).any()
     h = next(
         h
