@@ -75,8 +75,8 @@ class Ghost:
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
         """Bounding box as least x, least y, largest x, largest y; zeros if it is empty."""
-        lines = [_outline_of(edges) for edges in (self.added_edges, self.removed_edges)]
-        seen = np.concatenate([*lines, self.places, self.fresh])
+        edges = [part for part in (self.added_edges, self.removed_edges) if len(part)]
+        seen = np.concatenate([*(part.box[:, :2] for part in edges), self.places, self.fresh])
         if not len(seen):
             return 0.0, 0.0, 0.0, 0.0
         (x, y), (right, top) = seen.min(axis=0).tolist(), seen.max(axis=0).tolist()
@@ -101,12 +101,6 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
         places=seen.places[shown, :2],
         delta=seen.delta[shown],
     )
-
-
-def _outline_of(edges: EdgeParts) -> np.ndarray:
-    """(n, 2) points that span the box around edges, to a fiftieth of the longest."""
-    size = np.linalg.norm(edges.ends[:, 1] - edges.ends[:, 0], axis=1).max(initial=0.0)
-    return edges.polylines(0.02 * size)[0][:, :2] if size else np.zeros((0, 2))
 
 
 def choices(

@@ -19,6 +19,8 @@ from meshwright_core.core.curve_edges import edge_places
 
 _INNER = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Where a segment of a polyline is compared with the edge, as fractions of it."""
+_COARSE = 0.005
+"""Accuracy of the box around edges, relative to the longest of them."""
 _LEVELS = 40
 """The most times that a segment is halved; beyond it, its ends are equal in floating point."""
 
@@ -81,6 +83,15 @@ class EdgeParts:
         found[fractions == 0.0] = first[fractions == 0.0]
         found[fractions == 1.0] = second[fractions == 1.0]
         return found
+
+    @property
+    def box(self) -> np.ndarray:
+        """(2, 3) lower and upper corner of a box around the edges; zeros if there are none."""
+        if not len(self):
+            return np.zeros((2, 3))
+        size = float(np.linalg.norm(self.ends[:, 1] - self.ends[:, 0], axis=1).max())
+        points, _ = self.polylines(max(_COARSE * size, 1e-300))
+        return np.stack([points.min(axis=0), points.max(axis=0)])
 
     def polylines(
         self, tolerance: float, box: np.ndarray | None = None, outside: float = np.inf
