@@ -155,9 +155,11 @@ def test_relax_after_every_operation_keeps_the_mesh_drawn():
 
 
 def test_a_surface_is_smoothed_in_its_tangent_planes():
-    mesh = meshing.grid("quad", 100, np.random.default_rng(0))
-    mesh.points[:, 2] = 0.2 * np.sin(3 * mesh.points[:, 0])
-    mesh.outline = [(ids, mesh.points[ids].copy()) for ids, _ in mesh.outline]
+    flat = meshing.grid("quad", 100, np.random.default_rng(0))
+    flat.points[:, 2] = 0.2 * np.sin(3 * flat.points[:, 0])
+    mesh = HalfEdgeMesh.from_elements(
+        flat.points, flat.elements(), flat.geometric(), flat.desired()
+    )
     before = mesh.points.copy()
     assert len(smoothing.relax(mesh)) == 0
     assert (mesh.points != before).any()
