@@ -148,9 +148,7 @@ def place_sides(curved, points, c, d, slope):
         edge_offsets(curved.curves, curved.curve[r], span, ends, offsets)
         for j in range(0, NODES, step):
             w = j / (NODES - 1)
-            place_on_edge(
-                curved.curves, curved.curve[r], span, offsets, w, d[i, j], slope[i, j]
-            )
+            place_on_edge(curved.curves, curved.curve[r], span, offsets, w, d[i, j], slope[i, j])
             for x in range(3):
                 d[i, j, x] -= (1.0 - w) * ends[0, x] + w * ends[1, x]
                 slope[i, j, x] -= ends[1, x] - ends[0, x]
@@ -242,3 +240,19 @@ def curved_corners(curved, points, reference):
             sine = det / lengths if lengths > 0.0 else 0.0
             sines[c, corner] = min(sines[c, corner], sine)
     return sines, angles
+
+
+@kernel
+def at_corners(curved, points, normal):
+    """(c, k) sines of the angles between the tangents of the sides at the corners themselves."""
+    count, k = curved.sides.shape
+    sines = np.zeros((count, k))
+    d, slope = np.zeros((4, NODES, 3)), np.zeros((4, NODES, 3))
+    p, q = np.zeros(3), np.zeros(3)
+    for c in range(count):
+        place_sides(curved, points, c, d, slope)
+        for i in range(k):
+            derivatives(curved, points, c, curved.samples.at_corner[i], d, slope, p, q)
+            lengths = np.sqrt(np.dot(p, p) * np.dot(q, q))
+            sines[c, i] = determinant(p, q, normal) / lengths if lengths > 0.0 else 0.0
+    return sines

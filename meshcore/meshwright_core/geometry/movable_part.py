@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from meshwright_core.core.arrays import CURVE, FLAGS, GEOMETRIC, HALF, LOCKED, TWIN
-from meshwright_core.core.composite_curves import Curves
+from meshwright_core.core.composite_curves import Curves, place_all
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.coons import CurvedElements, curved_corners
 from meshwright_core.geometry.curved_elements import table
@@ -22,7 +22,7 @@ from meshwright_core.geometry.edge_curves import EdgePlaces, ends_of
 from meshwright_core.geometry.planes import plane_normal
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
 from meshwright_core.geometry.seats import Seats, find_seats, home_places, no_seats, place_seats
-from meshwright_core.geometry.turning import BENDS, CurveTurning, turnings
+from meshwright_core.geometry.turning import BENDS, CurveTurning, Turning, turnings
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -62,6 +62,10 @@ class MovablePart:
     """(n,) bool: neither geometric nor locked, and among the requested vertices."""
     curves: Curves
     """Those of the mesh."""
+    turning: Turning
+    """Of these curves."""
+    is_loop: np.ndarray
+    """(n,) bool: which of the curves are boundary loops; the others are interfaces."""
     seats: Seats
     curved: CurvedElements
     """The elements with sides that bend, or may do so where their ends can slide. It reads the
@@ -90,6 +94,15 @@ class MovablePart:
         size = np.ptp(self.points, axis=0).max()
         away = np.abs(there - self.points[rows]).max(axis=1) > ON_SIDE * size
         self.points[rows[away]] = there[away]
+
+    def placed(self, members: np.ndarray, parameters: np.ndarray) -> np.ndarray:
+        """(n, 3) points of the sides of the sliding `members` (n,) at other parameters (n,)."""
+        seats = self.seats
+        points = place_all(self.curves, seats.curve[members], parameters)
+        offset: np.ndarray = (
+            points + seats.offset[members] + parameters[:, None] * seats.slope[members]
+        )
+        return offset
 
     def fork(self) -> MovablePart:
         """The same part with a copy of the positions."""
@@ -122,7 +135,7 @@ class MovablePart:
         for i in np.flatnonzero(self.sliding).tolist():
             before = int(seats.before[i])
             # the seam of a closed side is where a lower bound is one round back
-            if before >= 0 and not (seats.low[i] < 0.0 and self._encircles(i)):
+            if before >= 0 and not (seats.low[i] < 0.0 and self.encircles(i)):
                 continue
             run, shift = [i], [0.0]
             while 0 <= (after := int(seats.after[run[-1]])) != i:
@@ -135,7 +148,7 @@ class MovablePart:
             found.append(SlidingRun(np.array(run, np.int64), np.array(shift), low, high))
         return found
 
-    def _encircles(self, i: int) -> bool:
+    def encircles(self, i: int) -> bool:
         """Whether all vertices of the closed side of i slide."""
         v = int(self.seats.after[i])
         while v >= 0 and v != i:
@@ -265,6 +278,8 @@ def _part(
         element_ids=ids,
         movable=movable,
         curves=curves,
+        turning=CurveTurning.of(mesh),
+        is_loop=np.isin(np.arange(mesh.boundary_info.count), mesh.boundary_info.loops),
         seats=seats,
         curved=_curved(mesh, ids, elements, vertices, seats, flat=frame is not None),
         home=seats.parameter.copy(),

@@ -23,12 +23,9 @@ from meshwright_core.core.arrays import (
     GEOMETRIC,
     HALF,
     LEFT,
-    ORIGIN,
     START,
-    TWIN,
     VERTICES,
     along_curve,
-    following,
     neighbour,
     turned,
 )
@@ -231,9 +228,7 @@ def find_seats(m, vertices, slides, seats, k):
             back = i - 1 if i > 0 else count - 1
             ahead = i + 1 if i < count - 1 else 0
             seats.before[j], seats.after[j] = members[back], members[ahead]
-            seats.low[j] = (0.0 if i > 0 else -length) + (
-                0.0 if members[back] >= 0 else t[back]
-            )
+            seats.low[j] = (0.0 if i > 0 else -length) + (0.0 if members[back] >= 0 else t[back])
             seats.high[j] = (0.0 if i < count - 1 else length) + (
                 0.0 if members[ahead] >= 0 else t[ahead]
             )
