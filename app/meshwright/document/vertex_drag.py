@@ -63,7 +63,10 @@ class Drag:
         seats = self._part.seats
         here = float(seats.parameter[row])
         bounds = []
-        for other, shift in ((seats.before[row], seats.low[row]), (seats.after[row], seats.high[row])):
+        for other, shift in (
+            (seats.before[row], seats.low[row]),
+            (seats.after[row], seats.high[row]),
+        ):
             there = float(shift + (seats.parameter[other] if other >= 0 else 0.0))
             bounds.append(here + (0.5 if other >= 0 else 1.0) * (there - here))
         margin = KEPT * (bounds[1] - bounds[0])

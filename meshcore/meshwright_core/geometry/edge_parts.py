@@ -139,9 +139,7 @@ class EdgeParts:
         breaks, base = _breaks(self.curves)
         near = 1e-12 * (high - low)  # a break at an end is none
         start = np.searchsorted(breaks, base[curve] + low + near, "right")
-        count = np.maximum(
-            np.searchsorted(breaks, base[curve] + high - near, "left") - start, 0
-        )
+        count = np.maximum(np.searchsorted(breaks, base[curve] + high - near, "left") - start, 0)
         owner = np.repeat(np.arange(len(on)), count)
         step = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
         t = breaks[start[owner] + step] - base[curve[owner]]
