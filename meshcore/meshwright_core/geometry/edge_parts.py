@@ -1,8 +1,8 @@
 """Edges as parts of curves, and their polylines for drawing and picking.
 
-:mod:`meshwright_core.geometry.edge_curves` knows the edges of a mesh. An :class:`EdgeParts` needs no
-mesh, so that it can stand for the edges that an operation would add, or those at a vertex that is
-being dragged, as well. Its polylines are as fine as a view demands: the tolerance holds inside a
+:mod:`meshwright_core.geometry.edge_curves` knows the edges of a mesh. An :class:`EdgeParts` needs
+no mesh, so that it can stand for the edges that an operation would add, or those at a vertex that
+is being dragged, as well. Its polylines are as fine as a view demands: the tolerance holds inside a
 box, a wider one outside of it, so that the number of points depends little on the zoom.
 """
 

@@ -158,8 +158,8 @@ class FileController(Controller):
     def open(self, path: str | Path) -> None:
         """Open a mesh file, a project, or the shape in a drawing.
 
-        Of a drawing whose regions lie apart, some have to be chosen: the dialog for new meshes shows
-        them.
+        Of a drawing whose regions lie apart, some have to be chosen: the dialog for new meshes
+        shows them.
         """
         place = Path(path).absolute()
         if not self.may_drop():

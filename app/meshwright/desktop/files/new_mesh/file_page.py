@@ -104,12 +104,12 @@ class FilePage(Page):
                 "Increase it if curved sides are drawn as short straight pieces.",
             ),
             (
-                "Edges turn along curves by",
+                "Edges turn along a curve by",
                 self.curve_step,
                 "At most; automatic is as much as the shape allows.",
             ),
             (
-                "Polylines are taken",
+                "Polylines are read",
                 self.fit,
                 "Arcs or splines are found in polylines that stand for curves.",
             ),
@@ -221,7 +221,7 @@ def _angle(value: float, low: float, high: float, decimals: int, name: str) -> Q
     made.setValue(value)
     made.setSuffix("\u00b0")
     made.setAlignment(Qt.AlignmentFlag.AlignRight)
-    made.setFixedWidth(10 * GRID)
+    made.setFixedWidth(14 * GRID)
     made.setKeyboardTracking(False)
     made.setAccessibleName(name)
     return made

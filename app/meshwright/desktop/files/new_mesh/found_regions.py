@@ -76,14 +76,14 @@ class FoundRegions(QWidget):
     def chosen(self) -> list[int]:
         """The indices of the ticked regions."""
         rows = range(self.table.rowCount())
-        return [row for row in rows if self._is_ticked(row)]
+        return list(rows) if len(rows) == 1 else [row for row in rows if self._is_ticked(row)]
 
     @property
     def choice(self) -> str | None:
         """The chosen regions as :func:`meshwright.sources.mesh_worker.make` takes them, empty for
         none; None before anything was found.
         """
-        if self._contents is None or not self.table.rowCount():
+        if self._contents is None or not self._contents.regions:
             return None
         return ",".join(str(row + 1) for row in self.chosen)
 
@@ -103,14 +103,14 @@ class FoundRegions(QWidget):
         self.table.horizontalHeaderItem(1).setText(f"Area{units}")
         count = len(contents.regions)
         groups = 1 + max((row.group for row in contents.regions), default=-1)
-        apart = (
-            " that touch" if groups == 1 < count else f", in {groups} parts" if groups > 1 else ""
-        )
+        apart = f", in {groups} parts" if groups > 1 else ""
+        if groups == 1 < count:
+            apart = ", which touch"
         self.title.setText(f"{plural(count, 'region')} in the drawing{apart}")
         with QSignalBlocker(self.table):
             self.table.setRowCount(count)
             for row, region in enumerate(contents.regions):
-                self._fill(row, region, row in contents.chosen)
+                self._fill(row, region, row in contents.chosen, count > 1)
         self.table.setColumnHidden(4, not any(row.layer for row in contents.regions))
         height = self.table.horizontalHeader().sizeHint().height() + 2
         self.table.setFixedHeight(height + _ROW * min(max(count, 1), MOST_ROWS))
@@ -125,20 +125,20 @@ class FoundRegions(QWidget):
         with QSignalBlocker(self.table):
             self._mark()
 
-    def _fill(self, row: int, region: RegionRow, ticked: bool) -> None:
-        texts = (
-            region.name, f"{region.area:,.6g}", str(region.holes), str(region.corners), region.layer,
-        )  # fmt: skip
+    def _fill(self, row: int, region: RegionRow, ticked: bool, several: bool) -> None:
+        counts = str(region.holes), str(region.corners)
+        texts = (region.name, f"{region.area:,.6g}", *counts, region.layer)
         for column, text in enumerate(texts):
             item = QTableWidgetItem(text)
             flags = Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable
-            if column == 0:
+            if column == 0 and several:
                 flags |= Qt.ItemFlag.ItemIsUserCheckable
                 item.setCheckState(Qt.CheckState.Checked if ticked else Qt.CheckState.Unchecked)
             side = Qt.AlignmentFlag.AlignRight if column in _NUMBERS else Qt.AlignmentFlag.AlignLeft
             item.setTextAlignment(side | Qt.AlignmentFlag.AlignVCenter)
             item.setFlags(flags)
-            item.setToolTip(TIP)
+            if several:
+                item.setToolTip(TIP)
             self.table.setItem(row, column, item)
 
     def _mark(self) -> None:
@@ -163,9 +163,9 @@ class FoundRegions(QWidget):
         ):  # fmt: skip
             if not sentences:
                 continue
-            label = named(title, "Label")
+            label = named(title, "Hint")
             self._words.addWidget(label, row, 0, Qt.AlignmentFlag.AlignTop)
-            words = named(_joined(sentences), "Reason")
+            words = named(_joined(sentences), "Hint")
             words.setWordWrap(True)
             words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
             self._words.addWidget(words, row, 1)
@@ -197,7 +197,6 @@ def _table() -> QTableWidget:
     made = QTableWidget(0, len(_TITLES))
     made.setObjectName("Table")
     made.setAccessibleName("Regions in the drawing")
-    made.setToolTip(TIP)
     made.verticalHeader().hide()
     made.verticalHeader().setDefaultSectionSize(_ROW)
     made.setShowGrid(False)
