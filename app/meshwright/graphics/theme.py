@@ -245,8 +245,8 @@ QHeaderView::section {{ padding: 4px 12px; }}
 QCheckBox {{ spacing: 8px; }}
 QCheckBox::indicator, #Table::indicator {{ width: 16px; height: 16px; border-radius: 4px;
                        border: 1px solid {t.faint}; background: {t.raised}; }}
-QCheckBox::indicator:checked, #Table::indicator:checked {{ background: {t.accent}; border-color: {t.accent};
-                               image: url({icons}/check-{t.name}.svg); }}
+QCheckBox::indicator:checked, #Table::indicator:checked {{
+    background: {t.accent}; border-color: {t.accent}; image: url({icons}/check-{t.name}.svg); }}
 QCheckBox::indicator:hover, QCheckBox:focus::indicator {{ border-color: {t.accent}; }}
 QPushButton#Segment {{ border-radius: 0; padding: 6px 16px; }}
 QPushButton#Segment:checked {{ background: {t.accent_soft}; border-color: {t.accent};
