@@ -40,6 +40,7 @@ class Drag:
     """
 
     def __init__(self, mesh: HalfEdgeMesh, vertices: Sequence[int], grabbed: int) -> None:
+        self._mesh = mesh
         self._part = part = around(mesh, np.asarray(vertices, np.int64))
         self._rows = np.flatnonzero(part.movable)
         self.vertices: np.ndarray = part.vertices[self._rows]
@@ -81,7 +82,9 @@ class Drag:
         for row, place, bounds in zip(
             rows.tolist(), places[self._slides], self._ranges.tolist(), strict=True
         ):
-            part.seats.parameter[row] = self._nearest(int(part.seats.curve[row]), place, *bounds)
+            seats = part.seats  # the side may lie off its curve
+            goal = place - seats.offset[row] - seats.parameter[row] * seats.slope[row]
+            seats.parameter[row] = self._nearest(int(seats.curve[row]), goal, *bounds)
         if len(rows):
             part.points[rows] = place_seats(part.curves, part.seats, rows)
 
@@ -106,14 +109,9 @@ class Drag:
 
     @property
     def parameters(self) -> np.ndarray:
-        """(n,) the parameters of those on curves, 0 of others."""
-        seats, curves = self._part.seats, self._part.curves
-        t, curve = seats.parameter[self._rows].copy(), seats.curve[self._rows]
-        on = np.flatnonzero(curve >= 0)
-        length, closed = self._lengths[curve[on]], curves.closed[curve[on]]
-        inside = np.where(closed, np.mod(t[on], length), np.clip(t[on], 0.0, length))
-        t[on] = np.where(closed & (inside >= length), 0.0, inside)
-        return t
+        """(n,) the parameters of those on curves, as :meth:`HalfEdgeMesh.move` takes them."""
+        found: np.ndarray = self._part.parameters(self._mesh)[self._rows]
+        return found
 
     @property
     def moved(self) -> bool:
