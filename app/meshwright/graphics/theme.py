@@ -120,6 +120,26 @@ def theme(name: str, colours: str = "vermilion") -> Theme:
     return replace(THEMES[name], plus=plus, minus=minus)
 
 
+REGION_HUES = ("#c58b2a", "#3f78c9", "#4c9a57", "#9560b8", "#bf5670")
+"""Fills of regions are mixed with these hues, in turn."""
+REGION_SHARE = 0.14
+"""Share of the hue in a region's fill: enough to tell neighbours apart, light enough for marks."""
+
+
+def region_fills(theme: Theme, count: int) -> list[str]:
+    """The fill of each region of a mesh; the plain fill if there is only one."""
+    if count < 2:
+        return [theme.fill] * count
+    hues = (REGION_HUES[i % len(REGION_HUES)] for i in range(count))
+    return [_mixed(theme.fill, hue, REGION_SHARE) for hue in hues]
+
+
+def _mixed(one: str, other: str, share: float) -> str:
+    """A colour ``share`` of the way from one to another, all as six hexadecimal digits."""
+    a, b = bytes.fromhex(one[1:]), bytes.fromhex(other[1:])
+    return "#" + bytes(round(x + share * (y - x)) for x, y in zip(a, b, strict=True)).hex()
+
+
 def style_sheet(theme: Theme) -> str:
     """The Qt style sheet of the whole window."""
     t, icons = theme, (Path(meshwright_assets.__file__).parent / "icons").as_posix()

@@ -5,7 +5,8 @@
 
 import { ghostOf } from "../canvas/ghost.js";
 import { asSentence } from "../dom.js";
-import { halfedgeNear, middleOf } from "../mesh/picking.js";
+import { halfedgeNear } from "../mesh/picking.js";
+import { middleOfElement } from "../mesh/sides.js";
 
 const ANSWER_TIMEOUT = 3000;
 const ANTICIPATE = { after: 14, times: 3 };
@@ -32,7 +33,7 @@ export class HoverState {
     this.pinned = pinned && halfedge >= 0;
     if (halfedge === this.halfedge) return;
     this.halfedge = halfedge;
-    this._place = halfedge < 0 ? null : middleOf(this._card.replica.corners(this._card.replica.element(halfedge)));
+    this._place = halfedge < 0 ? null : middleOfElement(this._card.replica, this._card.replica.element(halfedge));
     this._picked = this._previewed = null;
     this._applyWhenKnown = false;
     this._forget();
