@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
+    CURVE,
     DEGREE,
     DELTA_SUM,
     DESIRED,
@@ -33,6 +34,8 @@ from meshwright_core.core.irregularity import (
     planar_boundary_angles,
     turning_angles,
 )
+from meshwright_core.core.mesh_boundary import Chain, MeshBoundary, Seats, polyline_boundary
+from meshwright_core.core.region_interfaces import interface_chains
 from meshwright_core.errors import MeshError
 
 
@@ -175,8 +178,14 @@ def build(
     geometric: np.ndarray | None,
     desired_degree: np.ndarray | None,
     corner_angle: float = CORNER_ANGLE,
-) -> MeshArrays:
-    """Arrays of the mesh with these (n, 2|3) points and (m, k) elements; see `from_elements`."""
+    boundary: MeshBoundary | None = None,
+    seats: Seats | None = None,
+    regions: np.ndarray | None = None,
+) -> tuple[MeshArrays, MeshBoundary]:
+    """Arrays of the mesh with these (n, 2|3) points and (m, k) elements, and its curves.
+
+    See `from_elements`; here `boundary` and `seats` are taken as they are, and no point is moved.
+    """
     points, elements = checked_input(points, elements)
     n, (m, k) = len(points), elements.shape
     twin = twins_of(elements)
@@ -184,14 +193,23 @@ def build(
     start, end = boundary_chain(elements, twin)
     before, after = np.full(n, -1), np.full(n, -1)
     after[start], before[end] = end, start
+    regions = checked_regions(regions, m)
+    chains, junctions = interface_chains(elements, twin, regions)
 
     flags = np.zeros(n, np.int32)
     if geometric is None:
         turn = turning_angles(points[start], points[before[start]], points[after[start]])
         flags[start[turn > corner_angle]] = GEOMETRIC
+        for chain in chains:
+            flags[_corners(points, chain, corner_angle)] = GEOMETRIC
     else:
         flags[np.asarray(geometric, bool)] = GEOMETRIC
         flags[half < 0] = 0
+    flags[junctions] |= GEOMETRIC
+    if boundary is None or seats is None:
+        loops = [Chain(loop, True) for loop in trace_loops(start, end)]
+        names = ("",) * (int(regions.max()) + 1)
+        boundary, seats = polyline_boundary(points, [*loops, *chains], flags > 0, names)
 
     degree = np.bincount(elements.ravel(), minlength=n)
     degree[start] += 1
@@ -212,6 +230,10 @@ def build(
     arrays.vertex[:n, DEGREE] = degree
     arrays.vertex[:n, DESIRED] = desired
     arrays.vertex[:n, FLAGS] = flags
+    arrays.vertex[:n, CURVE] = np.where(half >= 0, seats.curve, -1)
+    arrays.parameter[:n] = np.where(arrays.vertex[:n, CURVE] >= 0, seats.parameter, 0.0)
+    arrays.region[:m] = regions
+    arrays = arrays._replace(curves=boundary.curves, interface=boundary.table())
     delta = degree - desired
     irregular = np.flatnonzero(delta)
     arrays.irregular[: len(irregular)] = irregular
@@ -225,7 +247,28 @@ def build(
     for vertex in np.flatnonzero(half < 0)[::-1]:
         arrays.vertex[vertex, HALF] = -2 - counters[FREE_VERTEX]
         counters[FREE_VERTEX] = vertex
-    return arrays
+    return arrays, boundary
+
+
+def checked_regions(regions: np.ndarray | None, elements: int) -> np.ndarray:
+    """The region of each element as (m,) int64, 0 where none is given; MeshError if invalid."""
+    if regions is None:
+        return np.zeros(elements, np.int64)
+    regions = np.asarray(regions)
+    if regions.shape != (elements,) or not np.issubdtype(regions.dtype, np.integer):
+        raise MeshError("regions must hold one whole number for each element")
+    if regions.min() < 0 or regions.max() > np.iinfo(np.int32).max:
+        raise MeshError("regions must be numbered from 0")
+    return regions.astype(np.int64)
+
+
+def _corners(points: np.ndarray, chain: Chain, corner_angle: float) -> np.ndarray:
+    """The vertices at which an interface turns by more than `corner_angle` degrees."""
+    line = chain.vertices
+    before, after = np.roll(line, 1), np.roll(line, -1)
+    if not chain.closed:
+        line, before, after = line[1:-1], line[:-2], line[2:]
+    return line[turning_angles(points[line], points[before], points[after]) > corner_angle]
 
 
 def trace_loops(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
