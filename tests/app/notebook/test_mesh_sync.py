@@ -52,7 +52,7 @@ def test_a_patch_holds_the_differences(star):
     sync, replica = follow(star)
     star.set_locked(3)
     packet = sync.patch(star)
-    assert [len(b) for b in packet.buffers] == [4, 8, 1, 1, 0, 0, 0]
+    assert [len(b) for b in packet.buffers] == [4, 8, 1, 1, *8 * [0]]
     replica.take(packet)
     assert replica.slots.flags[3] & FIXED
     nothing = sync.patch(star)
