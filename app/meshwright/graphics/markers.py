@@ -15,6 +15,8 @@ LARGEST = 16.0
 SMALLEST = 2.5
 CROWDED = 0.36
 """The largest radius of a disc, relative to the shortest edge at its vertex."""
+STRAIGHT = {3: (4, 6), 4: (3, 4)}
+"""Desired degree on a straight side, and inside, by the sides of an element."""
 READABLE = 6.0
 """Discs smaller than this radius in pixels carry no number."""
 
@@ -22,8 +24,11 @@ READABLE = 6.0
 @dataclass(frozen=True)
 class Markers:
     """Irregular vertices (n,), with their delta (n,), places (n, 2), length of their shortest edges
-    ``reach`` (n,), and whether they are corners (n,); places of all corners and of locked vertices;
-    boundary loops (m, 2), each ending with its first point.
+    ``reach`` (n,), and whether they are corners (n,); places of all corners, anchors and locked
+    vertices; boundary loops (m, 2), each ending with its first point.
+
+    Anchors are vertices that an operation keeps as it keeps corners, but where the side goes
+    straight on: the tangent point of a line and an arc.
     """
 
     vertices: np.ndarray
@@ -32,6 +37,7 @@ class Markers:
     reach: np.ndarray
     corners: np.ndarray
     corner_places: np.ndarray
+    anchor_places: np.ndarray
     locked_places: np.ndarray
     loops: tuple[np.ndarray, ...]
 
@@ -47,7 +53,8 @@ def markers(mesh: HalfEdgeMesh) -> Markers:
     delta = mesh.irregularity()
     points = mesh.points[:, :2]
     vertices = np.flatnonzero(delta)
-    corners = mesh.vertices()[mesh.geometric()[mesh.vertices()]]
+    fixed = mesh.vertices()[mesh.geometric()[mesh.vertices()]]
+    anchors = mesh.desired()[fixed] == np.where(mesh.boundary()[fixed], *STRAIGHT[mesh.k])
     locked = mesh.vertices()[mesh.locked()[mesh.vertices()]]
     return Markers(
         vertices=vertices,
@@ -55,7 +62,8 @@ def markers(mesh: HalfEdgeMesh) -> Markers:
         places=points[vertices],
         reach=_shortest_edges(mesh.elements(), points, vertices),
         corners=mesh.geometric()[vertices],
-        corner_places=points[corners],
+        corner_places=points[fixed[~anchors]],
+        anchor_places=points[fixed[anchors]],
         locked_places=points[locked],
         loops=tuple(points[np.append(loop, loop[0])] for loop in mesh.boundary_loops()),
     )

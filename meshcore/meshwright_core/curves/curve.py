@@ -28,6 +28,7 @@ from meshwright_core.core.composite_curves import (
 )
 from meshwright_core.curves import bezier_spans, curve_json
 from meshwright_core.curves.bezier_spans import evened, homogeneous, segment
+from meshwright_core.curves.part_data import image_of_conic, part_of_conic, spline_of_spans
 from meshwright_core.errors import MeshError
 
 Array = NDArray[np.float64]
@@ -448,15 +449,21 @@ class Curve:
             )
         if self.kind == "spline":
             if affine is None:
-                return Curve("spline", _spline_data(spans), spans)
+                return Curve("spline", spline_of_spans(spans), spans)
             data = dict(self.data, control=self.data["control"] @ affine[:, :2].T + affine[:, 2])
             return Curve("spline", data, spans)
-        return _conic(self, spans, affine)
+        axes = self.data.get("radius", 1.0) * np.eye(2)
+        if self.kind == "ellipse":
+            axes = np.array([self.data["major"], self.data["minor"]])
+        if affine is None:
+            return Curve(self.kind, part_of_conic(axes, self.data, spans), spans)
+        kind, data = image_of_conic(axes, self.data, affine)
+        return Curve(kind, data, spans if kind == "arc" else evened(spans))
 
     def to_json(self) -> dict[str, Any]:
         """The piece as an object of a domain file; see :mod:`.curve_json`."""
         if self.kind == "ellipse" and abs(self.data["sweep"]) < _FLAT:
-            return curve_json.to_json("spline", _spline_data(self.spans))
+            return curve_json.to_json("spline", spline_of_spans(self.spans))
         if self.kind == "arc" and abs(self.data["sweep"]) < _FLAT:
             bulge = math.tan(0.25 * self.data["sweep"])
             return {"arc": {"from": self.start.tolist(), "to": self.end.tolist(), "bulge": bulge}}
@@ -517,63 +524,3 @@ def _mapped(span: Array, affine: Array) -> Array:
     image = span.copy()
     image[:, :2] = span[:, :2] @ affine[:, :2].T + span[:, 3:] * affine[:, 2]
     return image
-
-
-def _conic(curve: Curve, spans: list[Array], affine: Array | None) -> Curve:
-    """An arc of a circle or ellipse of the given spans: a part of `curve`, or its image."""
-    data = dict(curve.data)
-    circle = curve.kind == "arc"
-    axes = data["radius"] * np.eye(2) if circle else np.array([data["major"], data["minor"]])
-    if affine is None:
-        ends = np.array([spans[0][0, :2] / spans[0][0, 3], spans[-1][-1, :2] / spans[-1][-1, 3]])
-        local = np.linalg.solve(axes.T, (ends - data["centre"]).T).T
-        first, last = np.arctan2(local[:, 1], local[:, 0]).tolist()
-        turn = math.copysign(2.0 * math.pi, data["sweep"])
-        # both angles on the way from the old start to the old end, which may touch either
-        begin = (first - data["start"]) % turn
-        if abs(begin - turn) < 1e-9:
-            begin = 0.0
-        stop = (last - data["start"]) % turn
-        if abs(stop) <= abs(begin) + 1e-12:
-            stop += turn
-        return Curve(curve.kind, dict(data, start=data["start"] + begin, sweep=stop - begin), spans)
-    centre = affine[:, :2] @ data["centre"] + affine[:, 2]
-    images = axes @ affine[:, :2].T
-    scale = float(np.linalg.norm(images[0]))
-    across = np.array([-images[0, 1], images[0, 0]])
-    flips = images[1] @ across < 0.0
-    if circle and np.abs(images[1] - (-across if flips else across)).max() <= 1e-12 * scale:
-        turned = float(np.arctan2(images[0, 1], images[0, 0]))
-        sign = -1.0 if flips else 1.0
-        data.update(
-            centre=centre, radius=scale, start=turned + sign * data["start"],
-            sweep=sign * data["sweep"],
-        )  # fmt: skip
-        return Curve("arc", data, spans)
-    data = {
-        "centre": centre, "major": images[0], "minor": images[1],
-        "start": data["start"], "sweep": data["sweep"],
-    }  # fmt: skip
-    return Curve("ellipse", data, evened(spans))
-
-
-def _spline_data(spans: list[Array]) -> dict[str, Any]:
-    """Spans of one degree as a B-spline whose knots have the multiplicity of the degree.
-
-    The ends of neighbouring spans may have different weights: each span is scaled to the one
-    before it, which does not change its points.
-    """
-    degree = len(spans[0]) - 1
-    rows, scale = [spans[0]], 1.0
-    for before, after in pairwise(spans):
-        scale *= before[-1, 3] / after[0, 3]
-        rows.append(after[1:] * scale)
-    control = np.concatenate(rows)
-    knots = np.arange(len(spans) + 1, dtype=np.float64)
-    weights = control[:, 3]
-    return {
-        "degree": degree,
-        "control": control[:, :2] / weights[:, None],
-        "knots": np.concatenate([[0.0], np.repeat(knots, degree), knots[-1:]]),
-        "weights": None if (weights == 1.0).all() else weights,
-    }
