@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from meshwright.graphics.markers import STRAIGHT
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import (
     CURVE,
@@ -35,12 +36,6 @@ from meshwright_core.core.arrays import (
     TWIN,
 )
 from meshwright_core.core.composite_curves import Curves
-from meshwright_core.core.irregularity import (
-    QUAD_INSIDE,
-    QUAD_STRAIGHT,
-    TRIANGLE_INSIDE,
-    TRIANGLE_STRAIGHT,
-)
 from meshwright_core.core.mesh_boundary import MeshBoundary
 
 VERSION = 2
@@ -48,7 +43,6 @@ ALIVE, BOUNDARY, CORNER, FIXED, ANCHOR = 1, 2, 4, 8, 16
 """Bits of a vertex's flags; FIXED is a vertex locked by the user, ANCHOR with CORNER a geometric
 vertex whose desired degree is that of a straight side.
 """
-_USUAL = {3: (TRIANGLE_STRAIGHT, TRIANGLE_INSIDE), 4: (QUAD_STRAIGHT, QUAD_INSIDE)}
 
 
 @dataclass
@@ -127,7 +121,7 @@ class SlotArrays:
         alive = half >= 0
         on_boundary = arrays.edge[np.maximum(half, 0), TWIN] < 0
         geometric = (rows[:, FLAGS] & GEOMETRIC) > 0
-        straight = rows[:, DESIRED] == np.where(on_boundary, *_USUAL[mesh.k])
+        straight = rows[:, DESIRED] == np.where(on_boundary, *STRAIGHT[mesh.k])
         flags = np.zeros(max(used, vertices), np.uint8)
         flags[:used] = np.where(
             alive,
