@@ -330,11 +330,21 @@ class Curve:
         Summed over a closed chain with one origin this is the area enclosed, positive if it turns
         counter-clockwise. Gauss-Legendre quadrature of order 24 on each span.
         """
+        start, end = self.start, self.end
+        (x, y), (dx, dy) = start - np.asarray(origin, np.float64), end - start
+        return self._own_area + 0.5 * float(x * dy - y * dx)
+
+    @cached_property
+    def _own_area(self) -> float:
+        """:meth:`area_about` its start."""
         total = 0.0
-        base = np.asarray(origin, np.float64)
         for span in self.spans:
+            if len(span) == 2:
+                (x, y), (z, w) = (row[:2] / row[3] - self.start for row in span)
+                total += 0.5 * float(x * w - y * z)
+                continue
             point, slope = span_points(span, _GAUSS)
-            x, y = (point[:, :2] - base).T
+            x, y = (point[:, :2] - self.start).T
             total += 0.5 * float(_WEIGHTS @ (x * slope[:, 1] - y * slope[:, 0]))
         return total
 
@@ -380,7 +390,10 @@ class Curve:
             data["control"] = data["control"][::-1].copy()
             data["knots"] = (knots[0] + knots[-1]) - knots[::-1]
             data["weights"] = None if weights is None else weights[::-1].copy()
-        return Curve(self.kind, data, [span[::-1].copy() for span in reversed(self.spans)])
+        found = Curve(self.kind, data, [span[::-1].copy() for span in reversed(self.spans)])
+        if "_own_area" in self.__dict__:
+            found.__dict__["_own_area"] = -self._own_area
+        return found
 
     def split(self, t: ArrayLike) -> tuple[Curve, ...]:
         """Its parts between parameters t (n,), ascending, strictly between 0 and the length.
