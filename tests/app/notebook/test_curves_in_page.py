@@ -30,7 +30,9 @@ BENT = """root => {
   const all = [...Array(replica.halfedges).keys()];
   return all.filter((h) => replica.live(h) && replica.edgeCurves.get(h));
 }"""
-PATH = """(root, [h, tolerance]) => [...root.meshwright.replica.edgeCurves.get(h).path(tolerance)]"""
+PATH = (
+    """(root, [h, tolerance]) => [...root.meshwright.replica.edgeCurves.get(h).path(tolerance)]"""
+)
 COLOUR = """(root, at) => {
   const [x, y] = root.meshwright.view.toScreen(...at).map((value) => Math.round(value * devicePixelRatio));
   const pen = root.querySelector("canvas.mw-lower").getContext("2d");

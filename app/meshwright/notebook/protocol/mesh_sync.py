@@ -145,7 +145,7 @@ class SlotArrays:
         parameter = np.zeros(len(flags), "<f8")
         parameter[:used] = np.where(curve[:used] >= 0, arrays.parameter[:used], 0.0)
         region = np.zeros(len(origin) // mesh.k, "<i2")
-        region[: held // mesh.k] = arrays.region[: held // mesh.k] * (origin[:held : mesh.k] >= 0)
+        region[: held // mesh.k] = arrays.region[: held // mesh.k] * (origin[: held : mesh.k] >= 0)
         return cls(places, delta, flags, origin, twin, curve, parameter, region)
 
     @classmethod
