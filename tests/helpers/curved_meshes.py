@@ -73,34 +73,30 @@ def ring() -> HalfEdgeMesh:
 
 
 def plate(size: float = 4.0, fillet: float = 1.0, hole: float = 1.0) -> HalfEdgeMesh:
-    """A square plate from -size to size with filleted corners and a round hole in the middle.
-
-    The tangent points of the fillets are anchors.
+    """A square plate from -size to size with filleted corners and a round hole: two rings of twelve
+    quads. Vertices 3 i and 3 i + 2, the tangent points of the fillets, are anchors; 3 i + 1 is the
+    middle of a fillet, 24 + j opposite to j on the hole.
     """
     a, f = size, size - fillet
-    sides, corners = [], []
+    sides, rim = [], []
+    middle = f + fillet * math.sqrt(0.5)
     for turn in range(4):
         c, s = round(math.cos(turn * math.pi / 2)), round(math.sin(turn * math.pi / 2))
         matrix = np.array([[c, -s], [s, c]])
-        start, stop = matrix @ (a, -f), matrix @ (a, f)
         sides += [
-            Curve.line(start, stop),
+            Curve.line(matrix @ (a, -f), matrix @ (a, f)),
             Curve.arc(matrix @ (f, f), fillet, turn * math.pi / 2, math.pi / 2),
         ]
-        middle = f + fillet * math.sqrt(0.5)
-        corners.append([matrix @ p for p in ((a, f), (middle, middle), (f, a), (f - 1.0, f - 1.0))])
-    rim = np.array([p for corner in corners for p in corner])  # 4 per corner
-    points = np.concatenate([rim, _on_circle(hole, 4)])
-    quads = []
-    for i in range(4):
-        right, top, left, inner = (4 * i + j for j in range(4))
-        following = 4 * ((i + 1) % 4)
-        quads += [
-            (inner, right, top, left),
-            (inner, left, following, following + 3),
-            (16 + i, inner, following + 3, 16 + (i + 1) % 4),
-        ]
-    anchors = [4 * i + j for i in range(4) for j in (0, 2)]
+        rim += [matrix @ p for p in ((a, f), (middle, middle), (f, a))]
+    outer = np.array(rim)
+    inner = hole * outer / np.linalg.norm(outer, axis=1)[:, None]
+    points = np.concatenate([outer, 0.5 * (outer + inner), inner])
+    quads = [
+        (i + ring, (i + 1) % 12 + ring, (i + 1) % 12 + ring + 12, i + ring + 12)
+        for ring in (0, 12)
+        for i in range(12)
+    ]
+    anchors = [3 * i + j for i in range(4) for j in (0, 2)]
     loops = [sides, [circle(hole, sweep=-2 * math.pi)]]
     return meshed(points, np.array(quads), loops, anchors)
 

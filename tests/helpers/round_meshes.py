@@ -84,9 +84,7 @@ def round_disc():
     """Five quads: a square in the middle, and four from its sides to the circle."""
     points = np.vstack([polar(0.5, [45, 135, 225, 315]), polar(1.0, [45, 135, 225, 315])])
     k = np.arange(4)
-    quads = np.vstack(
-        [[[0, 1, 2, 3]], np.column_stack([k, k + 4, (k + 1) % 4 + 4, (k + 1) % 4])]
-    )
+    quads = np.vstack([[[0, 1, 2, 3]], np.column_stack([k, k + 4, (k + 1) % 4 + 4, (k + 1) % 4])])
     return curved_mesh(points, quads, boundary_of([[circle(1.0)]]), [k + 4], [])
 
 

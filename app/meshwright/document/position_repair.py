@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.geometry.quality import inverted
-from meshwright_core.geometry.region import chosen, elements_at
+from meshwright_core.geometry.movable_part import chosen, elements_at
 from meshwright_core.geometry.smoothing import relax, smooth
 from meshwright_core.geometry.untangling import untangle
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.irregularity import usual_desired_degree
 
 BASE_RADIUS = 10.0
 """Radius in pixels of the disc of a vertex with |delta| = 1, where there is room."""
@@ -15,8 +16,6 @@ LARGEST = 16.0
 SMALLEST = 2.5
 CROWDED = 0.36
 """The largest radius of a disc, relative to the shortest edge at its vertex."""
-STRAIGHT = {3: (4, 6), 4: (3, 4)}
-"""Desired degree on a straight side, and inside, by the sides of an element."""
 READABLE = 6.0
 """Discs smaller than this radius in pixels carry no number."""
 
@@ -54,7 +53,8 @@ def markers(mesh: HalfEdgeMesh) -> Markers:
     points = mesh.points[:, :2]
     vertices = np.flatnonzero(delta)
     fixed = mesh.vertices()[mesh.geometric()[mesh.vertices()]]
-    anchors = mesh.desired()[fixed] == np.where(mesh.boundary()[fixed], *STRAIGHT[mesh.k])
+    usual = [usual_desired_degree(mesh.k, boundary) for boundary in (True, False)]
+    anchors = mesh.desired()[fixed] == np.where(mesh.boundary()[fixed], *usual)
     locked = mesh.vertices()[mesh.locked()[mesh.vertices()]]
     return Markers(
         vertices=vertices,

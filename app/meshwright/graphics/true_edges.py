@@ -13,7 +13,8 @@ import numpy as np
 
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.core.arrays import HALF, ORIGIN, TWIN
+from meshwright_core.core.arrays import HALF, TWIN
+from meshwright_core.geometry.edge_curves import bent_edges, curve_halfedges
 from meshwright_core.geometry.edge_parts import EdgeParts
 
 TOLERANCE = 0.1
@@ -35,13 +36,12 @@ class TrueEdges:
 
     def __init__(self, mesh: HalfEdgeMesh) -> None:
         self._mesh = mesh
-        self._boundary, self._constrained = _along_curves(mesh)
-        both = np.concatenate([self._boundary, self._constrained])
-        both.sort()
-        parts = EdgeParts.of(mesh.arrays, both, mesh.k)
-        bent = parts.bent()
-        self._parts = parts.take(bent)
-        self.halfedges: np.ndarray = both[bent]
+        on_curves = curve_halfedges(mesh)
+        twins = mesh.arrays.edge[on_curves, TWIN]
+        self._between = on_curves[on_curves < twins]  # one half-edge of each edge of an interface
+        bent = bent_edges(mesh, on_curves)
+        self._parts = EdgeParts(mesh.arrays.curves, bent.curve, bent.span, bent.ends)
+        self.halfedges: np.ndarray = bent.halfedges
         self.elements: np.ndarray = np.unique(self.halfedges // mesh.k)
         self._corners = mesh.points[mesh.corners(self.elements), :2]
         corners = self._parts.ends.reshape(-1, 3)[:, :2]
@@ -74,6 +74,12 @@ class TrueEdges:
         self._points = points[:, :2]
         self._loops = self._interfaces = None
         return True
+
+    @property
+    def points(self) -> np.ndarray:
+        """(n, 2) points that span the box around the mesh: its vertices, and those of curves."""
+        mesh = self._mesh
+        return np.concatenate([mesh.points[mesh.vertices(), :2], self._points])
 
     def line(self, halfedge: int) -> np.ndarray:
         """(n, 2) the edge of a half-edge, from its origin to its target."""
@@ -114,9 +120,7 @@ class TrueEdges:
     def interfaces(self) -> list[np.ndarray]:
         """The edges between two regions, each (n, 2)."""
         if self._interfaces is None:
-            twins = self._mesh.arrays.edge[self._constrained, TWIN]
-            once = self._constrained[self._constrained < twins]
-            self._interfaces = [self.line(halfedge) for halfedge in once.tolist()]
+            self._interfaces = [self.line(halfedge) for halfedge in self._between.tolist()]
         return self._interfaces
 
     def _closed_lines(self) -> list[np.ndarray]:
@@ -147,8 +151,7 @@ def polygons(
 
 def polylines(parts: EdgeParts, viewport: Viewport) -> list[np.ndarray]:
     """Edges that need not be in a mesh, each (n, 2) in the plane, as fine as the view demands."""
-    tolerance = TOLERANCE / viewport.pixels
-    points, first = parts.polylines(tolerance, _box(viewport, 0.0))
+    points, first = parts.polylines(TOLERANCE / viewport.pixels, _box(viewport, 0.0))
     return np.split(points[:, :2], first[1:-1]) if len(parts) else []
 
 
@@ -163,16 +166,3 @@ def _box(viewport: Viewport, around: float) -> np.ndarray:
     half = np.array(viewport.size) / (2.0 * viewport.pixels) * (1.0 + 2.0 * around)
     centre = np.array(viewport.centre)
     return np.stack([centre - half, centre + half])
-
-
-def _along_curves(mesh: HalfEdgeMesh) -> tuple[np.ndarray, np.ndarray]:
-    """The half-edges on the boundary, and those between two regions; ascending."""
-    k, region = mesh.k, mesh.arrays.region
-    edge = mesh.arrays.edge[: k * len(region)]
-    twin = edge[:, TWIN]
-    alive = edge[:, ORIGIN] >= 0
-    boundary = np.flatnonzero(alive & (twin < 0))
-    if len(mesh.region_names) < 2:
-        return boundary, np.zeros(0, np.int64)
-    inner = np.flatnonzero(alive & (twin >= 0))
-    return boundary, inner[region[inner // k] != region[twin[inner] // k]]

@@ -109,6 +109,8 @@ class Domain:
         for array in (*loops, *corners):
             array.flags.writeable = False
         self.name = name
+        self.curve_step: float | None = None
+        """Degrees that an edge of a mesh turns along a curve, at most; None: as it comes."""
         self.outlines = outlines
         """How many of the loops are outlines: the components of the domain."""
         self.loops: tuple[Points, ...] = tuple(loops)

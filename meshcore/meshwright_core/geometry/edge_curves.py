@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
 
 _SAFETY = 1.5
-"""Pieces of a polyline more than a circle of the same length and turning needs, for other curves."""
+"""Factor of the pieces that an arc of the same length and turning needs, for other curves."""
 _STEEPEST = np.radians(30.0)
 """The most that a curve turns in one piece of a polyline, whatever the tolerance."""
 

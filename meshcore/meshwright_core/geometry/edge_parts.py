@@ -1,9 +1,9 @@
 """Edges as parts of curves, and their polylines for drawing and picking.
 
-An :class:`EdgeParts` stands for edges without a mesh: those of a mesh, those that an operation
-would add, or those of a vertex that is being dragged. A polyline is as fine as the view demands: a
-tolerance holds inside a box, a wider one outside of it, so that the number of points depends little
-on the zoom.
+:mod:`meshwright_core.geometry.edge_curves` knows the edges of a mesh. An :class:`EdgeParts` needs no
+mesh, so that it can stand for the edges that an operation would add, or those at a vertex that is
+being dragged, as well. Its polylines are as fine as a view demands: the tolerance holds inside a
+box, a wider one outside of it, so that the number of points depends little on the zoom.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from meshwright_core.core.curve_edges import edge_places
 
 _INNER = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Where a segment of a polyline is compared with the edge, as fractions of it."""
+_COARSE = 0.005
+"""Accuracy of the box around edges, relative to the longest of them."""
 _LEVELS = 40
 """The most times that a segment is halved; beyond it, its ends are equal in floating point."""
-_STRAIGHT = 1e-9
-"""An edge that deviates from its chord by less than this, relative to its length, is straight."""
 
 
 @dataclass(frozen=True)
@@ -84,17 +84,14 @@ class EdgeParts:
         found[fractions == 1.0] = second[fractions == 1.0]
         return found
 
-    def bent(self) -> np.ndarray:
-        """(n,) bool which of the edges are not straight."""
-        rows, low, high = self._pieces()
-        deviation = np.zeros(len(self))
-        for share in _INNER[1:]:
-            inner = low + share * (high - low)
-            away = _distances(self.points(rows, inner), self.ends[rows, 0], self.ends[rows, 1])
-            np.maximum.at(deviation, rows, away)
-        size = np.linalg.norm(self.ends[:, 1] - self.ends[:, 0], axis=1)
-        bent: np.ndarray = (self.curve >= 0) & (deviation > _STRAIGHT * size)
-        return bent
+    @property
+    def box(self) -> np.ndarray:
+        """(2, 3) lower and upper corner of a box around the edges; zeros if there are none."""
+        if not len(self):
+            return np.zeros((2, 3))
+        size = float(np.linalg.norm(self.ends[:, 1] - self.ends[:, 0], axis=1).max())
+        points, _ = self.polylines(max(_COARSE * size, 1e-300))
+        return np.stack([points.min(axis=0), points.max(axis=0)])
 
     def polylines(
         self, tolerance: float, box: np.ndarray | None = None, outside: float = np.inf
@@ -106,6 +103,8 @@ class EdgeParts:
             box: (2, 2) lower and upper corner of what is in view; None for everything.
             outside: the tolerance outside of the box.
         """
+        if (self.curve < 0).all():
+            return self.ends.reshape(-1, 3), 2 * np.arange(len(self) + 1)
         rows, low, high = self._pieces()
         kept: list[tuple[np.ndarray, np.ndarray]] = []
         for _ in range(_LEVELS):

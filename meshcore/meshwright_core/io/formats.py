@@ -24,8 +24,10 @@ from meshwright_core.errors import MeshError
 from meshwright_core.io import legacy_vtk, text_formats
 from meshwright_core.io.text_formats import Content
 
-SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json")
+SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json", ".poly")
 """Endings of files that hold a shape; see :mod:`meshwright_core.io.drawings`."""
+DAT = ".dat"
+"""The ending of meshes of Tecplot and of coordinates of airfoils, which hold a shape."""
 
 _ENDS = 1000
 """Empty reads at the end of a file after which its reader is taken to be stuck."""

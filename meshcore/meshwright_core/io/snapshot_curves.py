@@ -62,8 +62,9 @@ def stored_boundary(arrays: Mapping[str, np.ndarray]) -> tuple[MeshBoundary, boo
         for curve in np.flatnonzero(table[:, LEFT] >= 0).tolist()
     ]
     loops = tuple(np.flatnonzero(table[:, LEFT] < 0).tolist())
+    text = stored(arrays, "boundary", np.uint8, (-1,)).tobytes()
     try:
-        known = json.loads(stored(arrays, "boundary", np.uint8, (-1,)).tobytes())
+        known = json.loads(text)
         names, recorded = known["regions"], bool(known["recorded"])
         pieces = tuple(tuple(map(_piece, some)) for some in known["pieces"])
         if len(pieces) != count or not names or not all(isinstance(name, str) for name in names):

@@ -1,14 +1,15 @@
+import itertools
 import time
 
 import numpy as np
 import pytest
+from round_meshes import boundary_of, curved_mesh
 from side_checks import assert_on_sides
 
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.curves.curve import Curve
 from meshwright_core.domains import gallery, meshing
-from meshwright_core.geometry import foldover_energy, quality, untangling
-from meshwright_core.geometry import region as regions
-from meshwright_core.geometry.sides import Sides
+from meshwright_core.geometry import foldover_energy, movable_part, quality, untangling
 from meshwright_core.geometry.unfixable import unfixable, unfixable_corners
 
 
@@ -16,7 +17,7 @@ def untangled(mesh, vertices=None):
     found = untangling.untangle(mesh, vertices)
     fixed = mesh.geometric()
     before = mesh.points[fixed].copy()
-    mesh.move(found.vertices, found.positions)
+    mesh.move(found.vertices, found.positions, found.parameters)
     assert mesh.points[fixed].tobytes() == before.tobytes()
     assert sorted(quality.inverted(mesh)) == found.inverted.tolist()
     assert_on_sides(mesh)
@@ -28,21 +29,13 @@ def untangled(mesh, vertices=None):
 @pytest.mark.parametrize("eps", [1.0, 1e-2])
 def test_gradient_against_finite_differences(kind, name, eps):
     mesh = meshing.mesh_domain(gallery.shape(name), kind)
-    region = regions.whole(mesh)
+    part = movable_part.whole(mesh)
     rng = np.random.default_rng(0)
-    free = np.flatnonzero(region.free)
-    region.points[free, :2] += 0.3 * rng.normal(size=(len(free), 2))
+    free = np.flatnonzero(part.free)
+    part.points[free, :2] += 0.3 * rng.normal(size=(len(free), 2))
     unit = 0.3
-    targets = np.full(len(region.elements), unit * unit)
-    centre = region.points.mean(axis=0)[:2]
-    problem, x = untangling.energy_problem(
-        region,
-        np.zeros(region.elements.shape, bool),
-        (region.points[:, :2] - centre) / unit,
-        centre,
-        unit,
-        targets,
-    )
+    targets = np.full(len(part.elements), unit * unit)
+    problem, x = untangling.energy_problem(part, np.zeros(part.elements.shape, bool), unit, targets)
     x = x + 1e-3  # off the bends of polylines, where there is no gradient
     gradient, unused = np.zeros(len(x)), np.zeros(len(x))
     value, _ = foldover_energy.energy(problem, x, gradient, eps, 0.5)
@@ -70,8 +63,10 @@ def test_untangling_from_bad_starting_positions(kind, start, name):
     elif start == "random":
         mesh.points[inside, :2] = rng.uniform(-1, 1, (len(inside), 2))
     else:  # all vertices of a side at one point, and not even on the side
-        for chain in Sides(mesh).chains:
-            if mesh.geometric()[chain].any():
+        for loop in mesh.boundary_loops():
+            ends = np.flatnonzero(mesh.geometric()[loop])
+            for a, b in itertools.pairwise(ends.tolist()):
+                chain = loop[a : b + 1]
                 mesh.points[chain[1:-1]] = mesh.points[chain].mean(axis=0) + [0.1, 0.1, 0]
     found = untangled(mesh)
     assert len(found.inverted) == 0
@@ -137,22 +132,21 @@ def test_a_doublet_is_unfixable():
 def test_boundary_vertices_of_one_quad_find_the_bends_of_a_circle(pieces, turn):
     # 2 x 2 quads whose outline is a polygon of so many pieces, none of its points geometric
     angle = 2 * np.pi * np.arange(pieces) / pieces
-    circle = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(pieces)])
-    boundary = [0, 1, 2, 5, 8, 7, 6, 3]
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    boundary_vertices = [0, 1, 2, 5, 8, 7, 6, 3]
     quads = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]]
     angle = 2 * np.pi * np.arange(8) / 8 + turn
     points = np.zeros((9, 2))
-    points[boundary] = 0.9 * np.column_stack([np.cos(angle), np.sin(angle)])
-    mesh = HalfEdgeMesh.from_elements(points, quads, np.zeros(9, bool))
-    mesh.outline = [(np.arange(100, 100 + pieces), circle)]
+    points[boundary_vertices] = 0.9 * np.column_stack([np.cos(angle), np.sin(angle)])
+    boundary = boundary_of([[Curve.polyline(np.vstack([circle, circle[:1]]))]])
+    mesh = curved_mesh(points, quads, boundary, [boundary_vertices], [])
     assert len(untangled(mesh).inverted) == 0
 
 
 def test_a_circle_seen_from_outside_is_unfixable_for_a_single_quad():
     mesh = meshing.mesh_domain(gallery.shape("annulus"), "tri")
     inner = min(mesh.boundary_loops(), key=len)
-    region = regions.whole(mesh)
-    assert not unfixable_corners(region).any()
+    assert not unfixable_corners(movable_part.whole(mesh)).any()
     h = next(
         h
         for a, b in zip(inner, np.roll(inner, -1), strict=True)

@@ -102,9 +102,15 @@ def test_changed_numbers_are_refused_or_give_a_valid_mesh(mesh):
         ("done.places", lambda a: a.__setitem__(0, 1 << 30), "beyond|lacks|length"),
         ("done.rows", lambda a: a.__setitem__((0, 0), 1 << 20), "length"),
         ("done.rows", lambda a: a.__setitem__((0, 3), 1 << 20), "impossible"),
-        ("outline.ids", lambda a: a.__setitem__(0, 1 << 40), "outline"),
+        ("curve", lambda a: a.__setitem__(0, 1 << 30), "curve that does not exist"),
+        ("parameter", lambda a: a.__setitem__(0, 1e9), "beyond the ends"),
+        ("region", lambda a: a.__setitem__(0, 1), "region that does not exist"),
+        ("curves.control", lambda a: a.__setitem__((0, 3), 0.0), "curves"),
+        ("curves.first_control", lambda a: a.__setitem__(1, 1 << 40), "curves"),
+        ("interface", lambda a: a.__setitem__((0, 0), 0), "interface|curve"),
+        ("boundary", lambda a: a.__setitem__(0, 255), "names"),
         ("sizes", lambda a: a.__setitem__(0, 5), "sizes"),
-        ("sizes", lambda a: a.__setitem__(2, 1 << 27), "room"),
+        ("sizes", lambda a: a.__setitem__(2, 1 << 24), "room"),
     ],
 )
 def test_messages_name_what_is_wrong(mesh, name, change, words):

@@ -136,10 +136,9 @@ class Canvas(QWidget):
 
     def fit(self) -> None:
         """Fit the view to the mesh, and refit it when the canvas is resized."""
-        mesh = self.document.mesh
         self._fitted = True
-        if mesh is not None:
-            self.viewport = self.viewport.fitted(mesh.points[mesh.vertices()])
+        if self.edges is not None:
+            self.viewport = self.viewport.fitted(self.edges.points)
             self._look()
 
     def see(self, viewport: Viewport) -> None:
