@@ -107,8 +107,8 @@ def without_doublets(
     return points[used], new[merged], geometric[used]
 
 
-def merged_doublets(quads: Elements, kept: Flags) -> tuple[Elements, Flags]:
-    """The quads of :func:`without_doublets` on the old points, and which of the old ones they are.
+def merged_doublets(quads: Elements, kept: Flags) -> tuple[Elements, Elements]:
+    """The quads of :func:`without_doublets` on the old points, and their rows among the old ones.
 
     kept: (n,) vertices that stay even if they have two quads.
     """

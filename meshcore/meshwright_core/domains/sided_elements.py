@@ -184,7 +184,8 @@ class SidedElements:
             counts = np.cumsum([0, *(len(piece.curve.spans) for piece in side.pieces)])
             spans = self.curves.first_span[number] + counts
             stops = self.curves.stop[spans[1:] - 1].tolist()
-            row, start = [], 0.0
+            row: list[CurvePiece] = []
+            start = 0.0
             for piece, stop in zip(side.pieces, stops, strict=True):
                 data = piece.curve.to_json()
                 row.append(CurvePiece(start, stop, piece.curve.kind, piece.name, data))
