@@ -34,7 +34,8 @@ PATH = (
     """(root, [h, tolerance]) => [...root.meshwright.replica.edgeCurves.get(h).path(tolerance)]"""
 )
 COLOUR = """(root, at) => {
-  const [x, y] = root.meshwright.view.toScreen(...at).map((value) => Math.round(value * devicePixelRatio));
+  const place = root.meshwright.view.toScreen(...at);
+  const [x, y] = place.map((value) => Math.round(value * devicePixelRatio));
   const pen = root.querySelector("canvas.mw-lower").getContext("2d");
   const channels = [...pen.getImageData(x, y, 1, 1).data.slice(0, 3)];
   return "#" + channels.map((value) => value.toString(16).padStart(2, "0")).join("");

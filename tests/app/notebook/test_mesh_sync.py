@@ -174,7 +174,7 @@ def test_a_state_holds_curves_regions_and_anchors():
         (interfaces.reshape(-1, 4), mesh.boundary_info.table()),
     ):
         np.testing.assert_array_equal(sent, true)
-    plate, replica = follow(curved_meshes.plate())
+    _, replica = follow(curved_meshes.plate())
     anchors = np.flatnonzero(replica.slots.flags & ANCHOR)
     assert anchors.tolist() == [4 * i + j for i in range(4) for j in (0, 2)]
 

@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.graphics.markers import STRAIGHT
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import (
     CURVE,
@@ -36,6 +35,7 @@ from meshwright_core.core.arrays import (
     TWIN,
 )
 from meshwright_core.core.composite_curves import Curves
+from meshwright_core.core.irregularity import usual_desired_degree
 from meshwright_core.core.mesh_boundary import MeshBoundary
 
 VERSION = 2
@@ -121,7 +121,8 @@ class SlotArrays:
         alive = half >= 0
         on_boundary = arrays.edge[np.maximum(half, 0), TWIN] < 0
         geometric = (rows[:, FLAGS] & GEOMETRIC) > 0
-        straight = rows[:, DESIRED] == np.where(on_boundary, *STRAIGHT[mesh.k])
+        usual = [usual_desired_degree(mesh.k, boundary) for boundary in (True, False)]
+        straight = rows[:, DESIRED] == np.where(on_boundary, *usual)
         flags = np.zeros(max(used, vertices), np.uint8)
         flags[:used] = np.where(
             alive,

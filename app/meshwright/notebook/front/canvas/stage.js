@@ -6,7 +6,7 @@ import { halfedgeAt, vertexAt } from "../mesh/picking.js";
 import { clamp } from "../numbers.js";
 import { arrowMiddle, arrowOf } from "./arrow.js";
 import { Markers } from "./markers.js";
-import { MeshPainter } from "./mesh_painter.js";
+import { DEVIATION, MeshPainter } from "./mesh_painter.js";
 import { Overlay } from "./overlay.js";
 import { Viewport } from "./viewport.js";
 
@@ -113,6 +113,11 @@ export class Stage {
     this.view = this.view.resized(across / ratio, down / ratio);
     if (this.fitted) this._fit();
     this.paint(); // resizing clears a canvas
+  }
+
+  /** Greatest deviation of painted curves, in the plane. */
+  get tolerance() {
+    return DEVIATION / (this.view.pixels * (this._ratio || 1));
   }
 
   pan(dx, dy) {

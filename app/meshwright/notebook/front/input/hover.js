@@ -132,7 +132,9 @@ export class HoverState {
     if (this._key() === this._answered) return;
     const now = performance.now();
     if (this._pending && now - this._pending.at < ANSWER_TIMEOUT) return;
-    const fields = { halfedge: this.halfedge, operation: this.wanted };
+    const fields = {
+      halfedge: this.halfedge, operation: this.wanted, tolerance: Math.min(card.stage.tolerance, 1),
+    };
     this._pending = { id: card.link.send("hover", fields), at: now, ...fields };
   }
 
