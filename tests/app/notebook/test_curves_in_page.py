@@ -15,7 +15,7 @@ from meshwright.notebook import MeshWidget
 from meshwright.notebook.protocol.mesh_sync import CoordinateFrame
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.geometry.edge_curves import curved_halfedges, edge_points
-from meshwright_core.geometry.quality import inverted
+from meshwright_core.geometry.quality import Measure, inverted
 from meshwright_core.operations.catalogue import of_kind
 
 MESHES = ("disc", "ring", "plate", "insert")
@@ -93,6 +93,12 @@ def edited(widget: MeshWidget, steps: int, seed: int) -> None:
             return
 
 
+def doubtful(mesh: HalfEdgeMesh) -> set[int]:
+    """Elements with a corner so flat that the page's float32 coordinates do not tell its sign."""
+    sines = Measure(mesh).everything().sine.min(axis=1)
+    return set(mesh.element_ids()[np.abs(sines) < 2e-5].tolist())
+
+
 @pytest.mark.parametrize("name", MESHES)
 def test_edges_are_those_of_python_in_every_state(browser, tmp_path, name):
     widget = MeshWidget(getattr(curved_meshes, name)())
@@ -110,8 +116,10 @@ def test_edges_are_those_of_python_in_every_state(browser, tmp_path, name):
             card.await_head(cursor=state)
             widget.go_to(state)
             require_equal_edges(card, widget.mesh, frame)
-            found = card.look("root => [...root.meshwright.derived.inverted].sort((a, b) => a - b)")
-            assert found == inverted(widget.mesh).tolist()
+            found = card.look("root => root.meshwright.derived.inverted")
+            assert len(found) == len(set(found))
+            sure = set(widget.mesh.element_ids().tolist()) - doubtful(widget.mesh)
+            assert set(found) & sure == set(inverted(widget.mesh).tolist()) & sure
 
 
 def test_offsets_of_ends_are_blended(browser, tmp_path):

@@ -9,8 +9,12 @@ import { emptyBox, take } from "./boxes.js";
 
 /** Distance below which a vertex counts as on its curve: places are rounded to float32. */
 const ROUNDING = 2e-7;
-/** Deviation from the chord below which an edge is straight. */
-const STRAIGHT = 1e-9;
+/** Deviation from the chord, relative to its length, below which an edge is straight: that of an arc
+ * of 1e-7 radians.
+ */
+const STRAIGHT = 1.25e-8;
+/** Errors of rounding in the distance of a point from a chord. */
+const NOISE = 2e-15;
 /** Tolerance of paths that do not depend on the zoom. */
 export const COARSE = 5e-4;
 const DEEPEST = 14;
@@ -52,13 +56,13 @@ class EdgeCurve {
 
   /** Whether it deviates from its chord. */
   get bent() {
-    const path = this.path(STRAIGHT, 3);
-    this._paths.clear();
+    const path = this._sampled(-1, 2);
     const last = path.length - 2;
+    const chord = Math.hypot(path[last] - path[0], path[last + 1] - path[1]);
+    const most = Math.max(STRAIGHT * chord, NOISE);
     for (let i = 2; i < last; i += 2) {
-      if (awayFromChord(path[0], path[1], path[last], path[last + 1], path[i], path[i + 1]) > STRAIGHT) {
-        return true;
-      }
+      const away = awayFromChord(path[0], path[1], path[last], path[last + 1], path[i], path[i + 1]);
+      if (away > most) return true;
     }
     return false;
   }
@@ -80,12 +84,12 @@ class EdgeCurve {
   /** Points [x, y, x, y, ...] from end to end whose polyline is within `tolerance`, rounded down to
    * a power of two: one path serves a step of the zoom.
    */
-  path(tolerance, deepest = DEEPEST) {
+  path(tolerance) {
     const step = tolerance === COARSE ? COARSE : 2 ** Math.floor(Math.log2(tolerance));
     let path = this._paths.get(step);
     if (!path) {
       if (this._paths.size >= MOST_PATHS) this._paths.clear();
-      path = this._sampled(step, deepest);
+      path = this._sampled(step, DEEPEST);
       this._paths.set(step, path);
     }
     return path;
