@@ -69,22 +69,29 @@ def read_domain(
     curve_step: float | None = None,
     region: str | None = None,
     gap: float | None = None,
+    fit: str | None = None,
 ) -> Domain:
     """Return the domain with this name in the gallery, or in this drawing.
 
     ``corner_angle`` in degrees: a point where the boundary turns by more is a corner.
-    ``curve_step``, ``region`` and ``gap`` as for :func:`meshwright.sources.resolve.resolve`; they
-    are for drawings.
+    ``curve_step``, ``region``, ``gap`` and ``fit`` as for
+    :func:`meshwright.sources.resolve.resolve`; they are for drawings.
     """
     from meshwright.sources import resolve
 
     if resolve.names_file(shape):
         _require_file(shape)
-    elif region is not None:
-        raise UserError(f"--region: this is for drawings, and {shape} is a shape of the gallery")
+    for option, value in (("--region", region), ("--fit-arcs", fit)):
+        if value is not None and not resolve.names_file(shape):
+            raise UserError(f"{option}: this is for drawings, and {shape} is a name in the gallery")
     with bad_input(shape):
         return resolve.domain(
-            shape, corner_angle=corner_angle, curve_step=curve_step, region=region, gap=gap
+            shape,
+            corner_angle=corner_angle,
+            curve_step=curve_step,
+            region=region,
+            gap=gap,
+            fit=fit,
         )
 
 

@@ -104,14 +104,14 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
 
 def read_domain(word: str, arguments: argparse.Namespace) -> Domain:
     """Return the domain that a gallery name or a drawing means, as the arguments say."""
-    angle, step = arguments.corner_angle, arguments.curve_step
-    domain = inputs.read_domain(word, angle, step, arguments.region, arguments.gap)
-    if not arguments.fit_arcs:
-        return domain
-    from meshwright_core.domains import arc_fitting
-
-    with inputs.bad_input(word):
-        return arc_fitting.with_arcs(domain)
+    return inputs.read_domain(
+        word,
+        arguments.corner_angle,
+        arguments.curve_step,
+        arguments.region,
+        arguments.gap,
+        "arcs" if arguments.fit_arcs else None,
+    )
 
 
 def _on_drawing(word: str, mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:

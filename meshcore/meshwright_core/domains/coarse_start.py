@@ -16,10 +16,12 @@ Points = NDArray[np.float64]
 Ids = NDArray[np.int64]
 Reals = NDArray[np.float64]
 
-GOOD = 0.05
-"""Scaled Jacobian that the quads of a triangle should have at least."""
+GOOD = 0.01
+"""Scaled Jacobian that the quads of a triangle with curved sides should have at least."""
 _ROUNDS = 12
 _SWEEPS = 8
+_FLAT = 165.0
+"""Degrees of a corner of a triangle beyond which it needs an edge through it."""
 _BEND = np.radians(20.0)
 """An edge that turns by less is not cut for the sake of a triangle's shape."""
 
@@ -127,22 +129,18 @@ def _remedy(shape: CurvedTriangles, triangles: Ids, walls: Ids, quality: Reals) 
         if quality[t] >= GOOD:
             break
         corners = triangles[t]
-        if any(int(v) in done for v in corners):
-            continue  # the triangles around a change are looked at again first
-        done.update(int(v) for v in corners)
         angles = shape.corner_angles(triangles[t : t + 1])[0]
         flat = int(np.argmax(angles))
-        opposite = (flat + 1) % 3
-        if angles[flat] > 165.0:
-            if wall[t, opposite]:
-                points.append(shape.points[corners].mean(axis=0))
-            else:
-                ends = corners[[opposite, (opposite + 1) % 3]]
-                points.append(shape.points[ends].mean(axis=0))
-        elif turn[t].max() > _BEND:
+        if angles[flat] <= _FLAT and turn[t].max() > _BEND:
             cuts.add(int(sides[t, int(np.argmax(turn[t]))]))
-        else:
-            points.append(shape.points[corners].mean(axis=0))
+            continue
+        if any(int(v) in done for v in corners):
+            continue  # the triangles around a new point are looked at again first
+        done.update(int(v) for v in corners)
+        opposite = (flat + 1) % 3
+        inside = not wall[t, opposite] and angles[flat] > _FLAT
+        ends = corners[[opposite, (opposite + 1) % 3]] if inside else corners
+        points.append(shape.points[ends].mean(axis=0))
     if cuts:
         edges.cut(np.array(sorted(cuts)))
     return np.array(points).reshape(-1, 2)

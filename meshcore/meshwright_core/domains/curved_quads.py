@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import place_all, tangents
-from meshwright_core.domains.side_edges import SideEdges
+from meshwright_core.domains.side_edges import STRAIGHT, SideEdges
+from meshwright_core.domains.triangulation import triangle_areas
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]
@@ -31,7 +32,7 @@ class CurvedTriangles:
 
     def __init__(self, edges: SideEdges, points: Points) -> None:
         self.points, self.edges = points, edges
-        bent = np.flatnonzero(edges.turnings() > 0.0)
+        bent = np.flatnonzero(edges.turnings() > STRAIGHT)
         low, high = np.sort(edges.ends[bent], axis=1).T
         keys = low * len(points) + high
         order = np.argsort(keys)
@@ -48,8 +49,19 @@ class CurvedTriangles:
         return found
 
     def shapes(self, triangles: Ids) -> Reals:
-        """(m,) the least scaled Jacobian of the three quads of each triangle (m, 3)."""
+        """(m,) the least scaled Jacobian of the three quads of each triangle (m, 3).
+
+        1 for triangles without curved sides that are not upside down: their quads never are.
+        """
         sides = self.side_edges(triangles)
+        plain = (sides < 0).all(axis=1)
+        found = np.where(triangle_areas(self.points, triangles) > 0.0, 1.0, -1.0)
+        bent = np.flatnonzero(~plain)
+        if len(bent):
+            found[bent] = self._curved_shapes(triangles[bent], sides[bent])
+        return found
+
+    def _curved_shapes(self, triangles: Ids, sides: Ids) -> Reals:
         place, slope = self._halves(triangles, sides)
         middle = place[:, :, 0, -1]
         centre = middle.mean(axis=1)

@@ -229,6 +229,22 @@ class Domain:
         content["hole_corners"] = [flags.tolist() for flags in self.hole_corners]
         return content
 
+    def flattened(self, turn_degrees: float) -> Domain:
+        """A polygon whose sides turn by so many degrees at each point, at most, in place of curves.
+
+        Its corners are those of this domain.
+
+        Raises:
+            MeshError: it has several outlines or regions, or its polylines cross.
+        """
+        if self.sides is None:
+            return self
+        if self.outlines > 1 or self.interfaces:
+            raise MeshError("A domain of several parts or regions is no polygon.")
+        loops = [self.sides.polyline(side, turn_degrees) for side in self.sides.loop_sides]
+        points, corners = [row for row, _ in loops], [flags for _, flags in loops]
+        return Domain(points[0], points[1:], corners[0], corners[1:], self.name)
+
     @property
     def outline(self) -> Points:
         """The largest outline."""

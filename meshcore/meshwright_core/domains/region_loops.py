@@ -135,7 +135,7 @@ class RegionLoops:
         self.polylines: list[Points] = []
         self.flags: list[Flags] = []
         for side in self.loop_sides:
-            points, flags = self._polyline(side)
+            points, flags = self.polyline(side, PREVIEW_TURN)
             self.polylines.append(points)
             self.flags.append(flags)
 
@@ -237,10 +237,11 @@ class RegionLoops:
                         f" ({spot.x:.6g}, {spot.y:.6g})."
                     )
 
-    def _polyline(self, side: Side) -> tuple[Points, Flags]:
+    def polyline(self, side: Side, turn_degrees: float) -> tuple[Points, Flags]:
+        """Points (n, 2) along a boundary loop, and which of them are corners or junctions."""
         rows, flags = [], []
         for piece, node in zip(side.pieces, side.nodes[:-1], strict=True):
-            rows.append(samples(piece.curve, PREVIEW_TURN)[:-1])
+            rows.append(samples(piece.curve, turn_degrees)[:-1])
             own = np.zeros(len(rows[-1]), bool)
             point = self.graph.points.get(node)
             own[0] = point is not None and point.kind != ANCHOR

@@ -19,6 +19,8 @@ TURN_OF_EDGE = 90.0
 _SPARE = 0.12
 """Share of an edge's turning by which a side may turn more before it gets an edge more."""
 _EVEN = 1e-3
+_INSIDE = 1e-9
+"""Distance from the ends of spans, in lengths of the side, at which their tangents are taken."""
 _SHARES = np.linspace(0.0, 1.0, 65)
 SAMPLES = np.linspace(0.0, 1.0, 17)
 """Fractions of an edge's parameters at which its shape is looked at."""
@@ -82,9 +84,13 @@ class SideEdges:
         spans = slice(self.curves.first_span[number], self.curves.first_span[number + 1])
         start, stop = self.curves.start[spans], self.curves.stop[spans]
         bent = np.diff(self.curves.first_control)[spans] > 2
-        shares = [np.linspace(1e-7, 1.0 - 1e-7, 9 if bends else 2) for bends in bent]
+        # a little inside of the spans, whose tangents may differ where they meet
+        margin = _INSIDE * stop[-1]
         t = np.concatenate(
-            [a + (b - a) * share for a, b, share in zip(start, stop, shares, strict=True)]
+            [
+                np.clip(np.linspace(a, b, 9 if bends else 2), a + margin, b - margin)
+                for a, b, bends in zip(start, stop, bent, strict=True)
+            ]
         )
         way = tangents(self.curves, np.full(len(t), number), t)
         angle = np.arctan2(way[:, 1], way[:, 0])
@@ -97,9 +103,10 @@ class SideEdges:
         return t, total
 
     def turning(self, side: int, low: float, high: float) -> float:
-        """Radians by which a side turns between two parameters, low < high."""
+        """Radians by which a side turns between two parameters, low < high, ends excluded."""
         t, total = self._tables[side]
-        return float(np.interp(high, t, total) - np.interp(low, t, total))
+        margin = 2.0 * _INSIDE * self.starts[side][-1]
+        return float(np.interp(high - margin, t, total) - np.interp(low + margin, t, total))
 
     def turnings(self) -> Reals:
         """(e,) radians by which each edge turns."""
@@ -114,7 +121,9 @@ class SideEdges:
         """Parameters that cut a stretch of a side in `count` parts, alike in turning and length."""
         t, total = self._tables[side]
         inner = low + _SHARES * (high - low)
-        turn = np.interp(inner, t, total) - np.interp(low, t, total)
+        margin = 2.0 * _INSIDE * self.starts[side][-1]
+        inner = np.clip(inner, low + margin, high - margin)
+        turn = np.interp(inner, t, total) - np.interp(low + margin, t, total)
         measure = _SHARES + (turn / turn[-1] if turn[-1] > 1e-6 else 0.0)
         shares = np.arange(1, count) / count
         found = np.interp(shares * measure[-1], measure, _SHARES)

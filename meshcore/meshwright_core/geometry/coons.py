@@ -229,7 +229,9 @@ def curved_corners(curved, points, reference):
             pp, qq = np.dot(p, p), np.dot(q, q)
             corner = samples.nearest[s]
             if samples.at_corner[corner] == s:
-                angles[c, corner] = np.arctan2(det, along)
+                # at the second and fourth corner of a quad one of p and q points to the corner
+                inwards = -along if k == 4 and corner % 2 else along
+                angles[c, corner] = np.arctan2(det, inwards)
             elif k == 3:
                 rr = pp + qq - 2.0 * along
                 # the smallest angle lies between the two longest sides

@@ -3,13 +3,22 @@ import time
 
 import numpy as np
 import pytest
-from round_meshes import boundary_of, curved_mesh
+from round_meshes import (
+    boundary_of,
+    curved_mesh,
+    dragged_plate,
+    fan,
+    round_disc,
+    round_insert,
+    round_ring,
+)
 from side_checks import assert_on_sides
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import foldover_energy, movable_part, quality, untangling
+from meshwright_core.geometry.edge_curves import element_areas
 from meshwright_core.geometry.unfixable import unfixable, unfixable_corners
 
 
@@ -47,6 +56,55 @@ def test_gradient_against_finite_differences(kind, name, eps):
         below, _ = foldover_energy.energy(problem, x - step, unused, eps, 0.5)
         scale = max(1.0, np.abs(gradient).max())
         assert (above - below) / 2e-6 == pytest.approx(gradient[i], rel=1e-4, abs=1e-5 * scale)
+
+
+@pytest.mark.parametrize("eps", [1.0, 1e-2])
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        pytest.param(round_disc(), id="disc"),
+        pytest.param(round_ring(3, rows=2), id="ring"),
+        pytest.param(round_ring(9, rows=2), id="fine ring"),
+        pytest.param(round_insert(), id="insert"),
+        pytest.param(fan(5), id="triangles"),
+        pytest.param(dragged_plate(), id="corner off its curve"),
+    ],
+)
+def test_gradient_on_curves_against_finite_differences(mesh, eps):
+    part = movable_part.whole(mesh)
+    rng = np.random.default_rng(1)
+    free = np.flatnonzero(part.free)
+    part.points[free, :2] += 0.2 * rng.normal(size=(len(free), 2))
+    unit = 0.7
+    targets = np.full(len(part.elements), unit * unit)
+    dropped = np.zeros(part.elements.shape, bool)
+    problem, x = untangling.energy_problem(part, dropped, unit, targets)
+    assert len(problem.curved.element)
+    gradient, unused = np.zeros(len(x)), np.zeros(len(x))
+    foldover_energy.energy(problem, x, gradient, eps, 0.5)
+    for i in range(len(x)):
+        step = np.zeros(len(x))
+        step[i] = 1e-6
+        above, _ = foldover_energy.energy(problem, x + step, unused, eps, 0.5)
+        below, _ = foldover_energy.energy(problem, x - step, unused, eps, 0.5)
+        scale = max(1.0, np.abs(gradient).max())
+        assert (above - below) / 2e-6 == pytest.approx(gradient[i], rel=1e-5, abs=1e-6 * scale)
+
+
+@pytest.mark.parametrize("name", ["disc", "ring", "insert", "triangles"])
+def test_curved_meshes_are_untangled_from_bad_positions(name):
+    mesh = {
+        "disc": round_disc(), "ring": round_ring(5, rows=3), "insert": round_insert(),
+        "triangles": fan(5),
+    }[name]  # fmt: skip
+    free = np.flatnonzero(~mesh.geometric())
+    areas = np.abs(element_areas(mesh).sum())
+    places = mesh.points[free].copy()
+    mesh.points[free] = places[0] + 0.3 * (places - places[0]) + [0.1, 0.2, 0.0]
+    found = untangled(mesh)
+    assert len(found.inverted) == 0
+    assert quality.scaled_jacobian(mesh).min() > 0.2
+    assert element_areas(mesh).sum() == pytest.approx(areas, rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])

@@ -58,6 +58,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         "corners": int(mesh.geometric()[mesh.vertices()].sum()),
         "score": mesh.score,
         "optimum": mesh.optimum,
+        **mesh_output.measures(mesh),
         "inverted_elements": len(inverted),
         "inverted_ids": inverted,
         "seconds": round(time.perf_counter() - start, 3),
@@ -71,6 +72,8 @@ def _text(values: dict[str, Any]) -> str:
     noun = KIND_NOUN[str(values["kind"])]
     text = (
         f"{values['output']}: {values['elements']} {noun}, {values['vertices']} vertices, "
-        f"s = {values['score']}, s* = {values['optimum']}"
+        f"s = {values['score']}, s* = {values['optimum']}, area {values['area']:.10g}"
     )
-    return text + mesh_output.inverted_words(values["inverted_ids"], lead="; ")
+    text += mesh_output.inverted_words(values["inverted_ids"], lead="; ")
+    regions = mesh_output.region_words(values, noun)
+    return f"{text}\n  {regions}" if regions else text

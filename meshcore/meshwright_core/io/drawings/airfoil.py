@@ -9,6 +9,7 @@ the points; the trailing edge is a corner, or two with a segment between them wh
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 import numpy as np
 
@@ -94,4 +95,4 @@ def _stretches(points: Points) -> list[tuple[int, int]]:
     across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     turn = np.abs(np.degrees(np.arctan2(across, (before * after).sum(axis=1))))
     corners = [0, *(np.flatnonzero(turn > _SHARP) + 1).tolist(), len(points) - 1]
-    return list(zip(corners[:-1], corners[1:], strict=True))
+    return list(pairwise(corners))

@@ -9,9 +9,8 @@ import numpy as np
 import shapely
 
 from meshwright_core.curves.curve import Curve
-from meshwright_core.io.drawings import measures
 from meshwright_core.io.drawings.drawn import Points
-from meshwright_core.io.drawings.network import Edge, Network, joined
+from meshwright_core.io.drawings.network import Edge, Network, Owners, joined
 
 _ROUNDS = 40
 """Projections from one curve to the other by which a crossing is found."""
@@ -32,11 +31,13 @@ class Crossing:
     place: Points
 
 
-def crossings(edges: Sequence[Edge], nodes: Points, tolerance: float, size: float) -> list[Crossing]:
+def crossings(
+    edges: Sequence[Edge], nodes: Points, tolerance: float, size: float
+) -> list[Crossing]:
     """Return where edges meet away from the nodes that they share."""
     if not edges:
         return []
-    dense = [measures.samples(edge.curve) for edge in edges]
+    dense = [edge.dense for edge in edges]
     owner = np.repeat(np.arange(len(dense)), [len(line) for line in dense])
     lines = shapely.linestrings(np.concatenate(dense), indices=owner)
     one, other = shapely.STRtree(lines).query(lines, predicate="intersects")
@@ -94,7 +95,8 @@ def split_at_crossings(network: Network, tolerance: float, size: float) -> Netwo
     for crossing in crossings(network.edges, network.nodes, tolerance, size):
         cuts.setdefault(crossing.one, []).append(crossing.place)
         cuts.setdefault(crossing.other, []).append(crossing.place)
-    curves, owners = [], []
+    curves: list[Curve] = []
+    owners: list[Owners] = []
     for i, edge in enumerate(network.edges):
         parts: Sequence[Curve] = (edge.curve,)
         if i in cuts:

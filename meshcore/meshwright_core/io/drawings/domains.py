@@ -46,8 +46,9 @@ def domain_of(
         return Domain(outline, holes, name=name, corner_angle=corner_angle)
     loops, names = [], []
     for region in regions:
-        loops.append([_curves(loop, fitted) for loop in region.loops])
-        names.append([_side_names(loop, fitted) for loop in region.loops])
+        ways = [_forward(loop) for loop in region.loops]
+        loops.append([_curves(loop, fitted) for loop in ways])
+        names.append([_side_names(loop, fitted) for loop in ways])
     if len(regions) == 1:
         return Domain.from_curves(loops[0], name, corner_angle, names[0])
     called = [region.name for region in regions]
@@ -68,6 +69,13 @@ def _ring(loop: tuple[Side, ...]) -> Points:
         points = side.curve.data["points"]
         rows.append(points[::-1][:-1] if side.back else points[:-1])
     return np.concatenate(rows)
+
+
+def _forward(loop: tuple[Side, ...]) -> tuple[Side, ...]:
+    """The loop in the direction in which most of it was drawn: domains turn loops themselves."""
+    if 2 * sum(side.back for side in loop) <= len(loop):
+        return loop
+    return tuple(Side(side.curve, not side.back, side.name) for side in reversed(loop))
 
 
 def _curves(loop: tuple[Side, ...], fitted: dict[int, tuple[Curve, ...]]) -> list[Curve]:

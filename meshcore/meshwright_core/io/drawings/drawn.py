@@ -96,7 +96,9 @@ def polyline(points: ArrayLike) -> Curve | None:
     """
     line = np.array(points, dtype=np.float64).reshape(-1, 2)
     if len(line) > MAX_POINTS:
-        raise MeshError(f"it has {len(line):,} points, and {MAX_POINTS:,} are the most that are read")
+        raise MeshError(
+            f"it has {len(line):,} points, and {MAX_POINTS:,} are the most that are read"
+        )
     if not (np.abs(line) < LARGEST).all():
         raise MeshError("a coordinate is not a finite number")
     if len(line) < 2 or not (np.diff(line, axis=0) != 0).any():

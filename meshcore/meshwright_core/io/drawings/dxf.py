@@ -24,7 +24,6 @@ from meshwright_core.io.drawings.drawn import (
     Drawing,
     DrawnCurve,
     Points,
-    counted,
     listed,
 )
 from meshwright_core.io.formats import contained
@@ -217,5 +216,3 @@ def _affine(entity: Any) -> Points:
 
 def _paper_layouts(document: Any) -> list[Any]:
     return [layout for layout in document.layouts if not layout.is_modelspace]
-
-

@@ -66,7 +66,7 @@ class Faces:
         """(n, 2) points along a closed way, without the last one, which is the first one."""
         rows = []
         for i, back in ways:
-            points = measures.samples(self.edges[i].curve)
+            points = self.edges[i].dense
             rows.append(points[::-1][:-1] if back else points[:-1])
         return np.concatenate(rows)
 
@@ -129,7 +129,9 @@ def _pruned(network: Network) -> NDArray[np.bool_]:
     return alive
 
 
-def _cycles(network: Network, alive: NDArray[np.bool_]) -> tuple[list[list[int]], NDArray[np.int64]]:
+def _cycles(
+    network: Network, alive: NDArray[np.bool_]
+) -> tuple[list[list[int]], NDArray[np.int64]]:
     """Ways around faces as half-edges (2 edge, or 2 edge + 1 backwards), and the way of each."""
     edges = network.edges
     leaving: dict[int, list[int]] = {}
@@ -176,7 +178,8 @@ def _around(network: Network, node: int, halves: list[int]) -> list[int]:
 
     near = angles(_NEAR)
     ordered = sorted(halves, key=lambda half: near[half])
-    turns = [(near[h] - near[g]) % (2 * np.pi) for g, h in zip([ordered[-1], *ordered], ordered)]
+    before = [ordered[-1], *ordered[:-1]]
+    turns = [(near[h] - near[g]) % (2 * np.pi) for g, h in zip(before, ordered, strict=True)]
     # begin after the widest free angle, so that no group of neighbours is cut
     begin = int(np.argmax(turns))
     ordered, turns = ordered[begin:] + ordered[:begin], turns[begin:] + turns[:begin]
@@ -226,5 +229,4 @@ def around(faces: Faces) -> NDArray[np.int64]:
 
 
 def _middle(edge: Edge) -> Points:
-    points = measures.samples(edge.curve, 30.0)
-    return points[len(points) // 2]
+    return edge.dense[len(edge.dense) // 2]

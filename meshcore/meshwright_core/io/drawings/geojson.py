@@ -1,4 +1,4 @@
-"""GeoJSON (RFC 7946): polygons as named areas, lines as curves, coordinates taken as plane ones."""
+"""GeoJSON (RFC 7946): polygons as named areas, lines as curves, in plane coordinates."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings.drawn import DrawnArea, Drawing, polyline
+from meshwright_core.io.drawings.drawn import Drawing, DrawnArea, polyline
 
 _TYPES = (
     "Feature",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -41,6 +42,11 @@ class Edge:
     b: int
     curve: Curve
     owners: Owners
+
+    @cached_property
+    def dense(self) -> Points:
+        """Points (n, 2) along the curve, for estimates."""
+        return measures.samples(self.curve)
 
 
 @dataclass
@@ -141,9 +147,7 @@ def _clustered(
     return points[leader], label[inverse].astype(np.int64)
 
 
-def _split_atoms(
-    atoms: Ids, host: Ids, nodes: Points, tolerance: float
-) -> tuple[Ids, Ids]:
+def _split_atoms(atoms: Ids, host: Ids, nodes: Points, tolerance: float) -> tuple[Ids, Ids]:
     """Split straight edges (m, 2) at the nodes that lie on them; those of no length go."""
     long = atoms[:, 0] != atoms[:, 1]
     atoms, host = atoms[long], host[long]
@@ -271,9 +275,7 @@ def _chains(
     if not len(atoms):
         return []
     low, high = atoms.min(axis=1), atoms.max(axis=1)
-    _, first, inverse = np.unique(
-        low * len(nodes) + high, return_index=True, return_inverse=True
-    )
+    _, first, inverse = np.unique(low * len(nodes) + high, return_index=True, return_inverse=True)
     copies = np.bincount(inverse)
     # which lines share an edge: neighbours along a line must agree in it
     shared: dict[int, Owners] = {}

@@ -7,7 +7,7 @@ from typing import Any
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.domain_json import PolygonContent, parsed
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings.drawn import DrawnArea, Drawing, polyline
+from meshwright_core.io.drawings.drawn import Drawing, DrawnArea, polyline
 
 
 def collected(content: Any) -> Drawing:

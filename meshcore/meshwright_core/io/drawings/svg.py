@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from xml.etree import ElementTree
 
@@ -229,7 +228,12 @@ class _Reader:
         right, low = x + width, y + height
         if rx <= 0 or ry <= 0:
             return _line_through([(x, y), (right, y), (right, low), (x, low), (x, y)])
-        centres = [(right - rx, y + ry), (right - rx, low - ry), (x + rx, low - ry), (x + rx, y + ry)]
+        centres = [
+            (right - rx, y + ry),
+            (right - rx, low - ry),
+            (x + rx, low - ry),
+            (x + rx, y + ry),
+        ]
         arcs = [
             _round(centre, rx, ry, (i - 1) * math.pi / 2, math.pi / 2)
             for i, centre in enumerate(centres)
@@ -284,9 +288,7 @@ def _paints(value: str) -> bool:
     return value not in ("none", "transparent")
 
 
-def _round(
-    centre: tuple[float, float], rx: float, ry: float, start: float, sweep: float
-) -> Curve:
+def _round(centre: tuple[float, float], rx: float, ry: float, start: float, sweep: float) -> Curve:
     if rx == ry:
         return Curve.arc(centre, rx, start, sweep)
     return Curve.ellipse(centre, (rx, 0.0), (0.0, ry), start, sweep)

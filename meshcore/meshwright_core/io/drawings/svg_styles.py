@@ -81,12 +81,18 @@ def _rules(sheet: str) -> Iterator[tuple[list[Any], Declared]]:
         rule = pending.pop(0)
         if rule.type == "qualified-rule":
             yield rule.prelude, _declared(tinycss2.parse_blocks_contents(rule.content))
-        elif rule.type == "at-rule" and rule.lower_at_keyword == "media" and rule.content:
-            if not _PRINT.match(tinycss2.serialize(rule.prelude)):
-                inner = tinycss2.parse_rule_list(
-                    rule.content, skip_comments=True, skip_whitespace=True
-                )
-                pending = [*inner, *pending]
+        elif _is_for_screens(rule):
+            inner = tinycss2.parse_rule_list(rule.content, skip_comments=True, skip_whitespace=True)
+            pending = [*inner, *pending]
+
+
+def _is_for_screens(rule: Any) -> bool:
+    """Whether a rule is a group of others that counts where things are not printed."""
+    import tinycss2
+
+    if rule.type != "at-rule" or rule.lower_at_keyword != "media" or not rule.content:
+        return False
+    return _PRINT.match(tinycss2.serialize(rule.prelude)) is None
 
 
 def _parsed(text: str) -> list[Any]:

@@ -22,6 +22,7 @@ from meshwright_core.io.drawings.crossings import crossings, split_at_crossings
 from meshwright_core.io.drawings.drawn import Drawing, Points, counted, listed, place_words
 from meshwright_core.io.drawings.faces import Face, Faces, Way, around, faces_of
 from meshwright_core.io.drawings.gaps import Repair, mended
+from meshwright_core.io.drawings.mending_words import mending_words
 from meshwright_core.io.drawings.network import Edge, Network, joined
 from meshwright_core.io.drawings.region_names import named
 from meshwright_core.io.drawings.report import DrawingReport, FoundRegion, Side
@@ -35,10 +36,6 @@ SMOOTH = 1.0
 MAX_REGIONS = 10_000
 _SAME = 1e-9
 """Points of a polyline nearer than this share of the drawing's size are one point twice."""
-_TOLD = 1e-7
-"""Share of the drawing's size from which on it is told that ends were moved."""
-_MOST = 8
-"""Repairs of a kind that are told one by one."""
 
 
 def traced(
@@ -80,7 +77,9 @@ class _Tracer:
             self.drawn = [one for one in drawing.curves if (one.layer or "0").lower() in wanted]
             if not self.drawn:
                 there = listed(sorted({one.layer or "0" for one in drawing.curves}))
-                raise MeshError(f"there is nothing on the layer {listed(sorted(layers))}, but on {there}")
+                raise MeshError(
+                    f"there is nothing on the layer {listed(sorted(layers))}, but on {there}"
+                )
         if not self.drawn:
             raise MeshError("there are no lines or curves in it")
         boxes = np.array([one.curve.box for one in self.drawn])
@@ -107,7 +106,12 @@ class _Tracer:
         )
         if not regions:
             raise MeshError(self._nothing(opened, network))
-        self._tell(mends, network, kept, material, faces)
+        between = {
+            i
+            for i, sides in self._sides(faces).items()
+            if all(f >= 0 and material[f] for f in sides)
+        }
+        self.repairs += mending_words(mends, network, kept, between, self.size, self.tolerance)
         ignored = [f"{count:,} {kind}" for kind, count in sorted(self.drawing.ignored.items())]
         told = [f"{', '.join(ignored)} left out"] if ignored else []
         if strays:
@@ -240,7 +244,9 @@ class _Tracer:
         found = np.full(len(faces.faces), -1)
         shapes = []
         for area in self.drawing.areas or []:
-            rings = [np.concatenate([measures.samples(c)[:-1] for c in ring]) for ring in area.rings]
+            rings = [
+                np.concatenate([measures.samples(c)[:-1] for c in ring]) for ring in area.rings
+            ]
             # even-odd, whichever ring comes first
             shape = shapely.Polygon()
             for ring in rings:
@@ -274,7 +280,9 @@ class _Tracer:
         regions = []
         for k, i in enumerate(solid):
             loops = tuple(
-                tuple(Side(faces.edges[e].curve, back, self._name(faces.edges[e])) for e, back in loop)
+                tuple(
+                    Side(faces.edges[e].curve, back, self._name(faces.edges[e])) for e, back in loop
+                )
                 for loop in ways[k]
             )
             holes = sum(
@@ -352,9 +360,7 @@ class _Tracer:
             count += measures.turn_angle(arrive, leave) > least
         return count
 
-    def _crossings(
-        self, faces: Faces, ways: list[list[list[Way]]], network: Network
-    ) -> list[str]:
+    def _crossings(self, faces: Faces, ways: list[list[list[Way]]], network: Network) -> list[str]:
         """For each region, a sentence on where its boundary crosses another curve."""
         of: dict[int, list[int]] = {}
         for k, loops in enumerate(ways):
@@ -371,54 +377,3 @@ class _Tracer:
                 for k in of.get(kept[i], []):
                     found[k] = found[k] or f"the boundary crosses {what} at {place}"
         return found
-
-    def _tell(
-        self,
-        mends: list[Repair],
-        network: Network,
-        kept: set[int],
-        material: Sequence[bool],
-        faces: Faces,
-    ) -> None:
-        """Write down what was mended where it is a part of a boundary."""
-        nodes = network.nodes[
-            sorted({n for i in kept for n in (network.edges[i].a, network.edges[i].b)})
-        ]
-        for kind, text, texts in (
-            ("gap", "a gap of {size} closed at {place}", "gaps closed"),
-            ("reach", "an end {size} off drawn to the next curve at {place}", "ends drawn on"),
-            ("hair", "a loose end of length {size} left out at {place}", "short loose ends left out"),
-        ):
-            told = [
-                mend for mend in mends if mend.kind == kind
-                and (kind == "hair" or _nearest(nodes, mend.place) <= 3 * mend.size + self.tolerance)
-            ]  # fmt: skip
-            for mend in told[:_MOST]:
-                self.repairs.append(
-                    text.format(size=f"{mend.size:.3g}", place=place_words(mend.place))
-                )
-            if len(told) > _MOST:
-                self.repairs.append(f"{len(told) - _MOST} more {texts}")
-        moved = network.moved[network.moved > _TOLD * self.size]
-        if len(moved):
-            self.repairs.append(
-                f"{counted(len(moved), 'end')} moved by up to {moved.max():.2g} to meet others"
-            )
-        if network.hairs:
-            number = counted(network.hairs, "line or curve", "lines and curves")
-            self.repairs.append(f"{number} shorter than {self.tolerance:.2g} left out")
-        side = self._sides(faces)
-        double = []
-        for i in sorted(kept):
-            between = all(face >= 0 and material[face] for face in side.get(i, (-1, -1)))
-            if len(network.edges[i].owners) > 1 and not between:
-                double.append(network.edges[i].curve)
-        if double:
-            number = counted(len(double), "line or curve", "lines and curves")
-            place = place_words(double[0].start)
-            verb = "counts" if len(double) == 1 else "count"
-            self.repairs.append(f"{number} drawn more than once {verb} once, the first at {place}")
-
-
-def _nearest(nodes: Points, place: Points) -> float:
-    return float(np.hypot(*(nodes - place).T).min()) if len(nodes) else np.inf

@@ -14,8 +14,8 @@ from meshwright_core.curves.curve import Curve
 from meshwright_core.errors import MeshError
 from meshwright_core.io.drawings.drawn import (
     LARGEST,
-    DrawnArea,
     Drawing,
+    DrawnArea,
     Points,
     polyline,
 )
