@@ -2,11 +2,16 @@
 
 import { middleOf } from "../mesh/picking.js";
 import { sidePoint } from "../mesh/sides.js";
+import { clamp } from "../numbers.js";
 
 const ARROW_DEPTH = 9;
 const ARROW_TRIM = 0.12;
-/** Points of an arrow along a curve; an odd number, so that one is in the middle. */
-const CURVED_POINTS = 25;
+/** The largest depth of an arrow along a curve, relative to the length of its side. */
+const NARROW = 0.3;
+/** Fewest and most points of half an arrow along a curve, and pixels from one to the next. */
+const FEWEST = 12;
+const MOST = 150;
+const STEP = 12;
 
 /** Corners of a half-edge's element on the screen, from its origin on. */
 export function cornersFrom(replica, view, halfedge) {
@@ -40,15 +45,14 @@ export function arrowMiddle(points) {
 
 function curvedArrow(replica, view, halfedge) {
   const inner = innerPoint(replica, view, halfedge);
-  const [a, b] = [inner(0.5, 0), inner(0.5, 1)];
-  const depth = Math.hypot(b[0] - a[0], b[1] - a[1]) / 2;
-  const v = Math.min(0.22, ARROW_DEPTH / Math.max(depth, 1e-6)) / 2;
-  const trim = v + ARROW_TRIM * (1 - 2 * v);
-  const points = [];
-  for (let i = 0; i < CURVED_POINTS; i += 1) {
-    points.push(inner(trim + (i / (CURVED_POINTS - 1)) * (1 - 2 * trim), v));
-  }
-  return points;
+  const along = (v, trim, half) => Array.from({ length: 2 * half + 1 }, (_, i) =>
+    inner(trim + (i / (2 * half)) * (1 - 2 * trim), v));
+  const length = lengthOf(along(0, 0, FEWEST));
+  const depth = Math.max(lengthOf([inner(0.5, 0), inner(0.5, 1)]) / 2, 1e-6);
+  // in a narrow element nearer to its own side than to those beside it
+  const wanted = Math.min(ARROW_DEPTH, NARROW * length);
+  const v = Math.min(0.22, wanted / depth) / 2;
+  return along(v, v + ARROW_TRIM * (1 - 2 * v), Math.round(clamp(length / STEP / 2, FEWEST, MOST)));
 }
 
 /** A function that gives the point at (u, v) in an element, on the screen: v = 0 is the half-edge,
