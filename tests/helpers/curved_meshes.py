@@ -16,7 +16,9 @@ INSERT = ("plate", "insert")
 """The names of the regions of :func:`insert`."""
 
 
-def circle(radius: float, centre: Sequence[float] = (0.0, 0.0), sweep: float = 2 * math.pi) -> Curve:
+def circle(
+    radius: float, centre: Sequence[float] = (0.0, 0.0), sweep: float = 2 * math.pi
+) -> Curve:
     """A whole circle from angle 0; clockwise with a negative sweep, as holes are."""
     return Curve.arc(centre, radius, 0.0, sweep)
 
@@ -110,6 +112,4 @@ def insert() -> HalfEdgeMesh:
             (inner + i, outer + i, outer + (i + 1) % 4, inner + (i + 1) % 4) for i in range(4)
         ]
     regions = np.array([1] * 5 + [0] * 4)
-    return meshed(
-        points, np.array(quads), [[circle(2.0)]], (), [circle(1.0)], regions, INSERT
-    )
+    return meshed(points, np.array(quads), [[circle(2.0)]], (), [circle(1.0)], regions, INSERT)

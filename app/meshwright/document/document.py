@@ -392,12 +392,11 @@ class Document:
         self,
         vertices: np.ndarray,
         positions: np.ndarray,
-        parameters: np.ndarray | None = None,
         by: str = YOU,
+        parameters: np.ndarray | None = None,
     ) -> None:
-        """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step.
-
-        ``parameters`` (n,) are those of vertices on curves, as :meth:`HalfEdgeMesh.move` has it.
+        """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step; ``parameters`` (n,) as in
+        :meth:`HalfEdgeMesh.move`.
         """
         mesh = self._need()
         self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions, parameters))

@@ -40,6 +40,7 @@ class Drag:
     """
 
     def __init__(self, mesh: HalfEdgeMesh, vertices: Sequence[int], grabbed: int) -> None:
+        self._mesh = mesh
         self._part = part = around(mesh, np.asarray(vertices, np.int64))
         self._rows = np.flatnonzero(part.movable)
         self.vertices: np.ndarray = part.vertices[self._rows]
@@ -63,7 +64,10 @@ class Drag:
         seats = self._part.seats
         here = float(seats.parameter[row])
         bounds = []
-        for other, shift in ((seats.before[row], seats.low[row]), (seats.after[row], seats.high[row])):
+        for other, shift in (
+            (seats.before[row], seats.low[row]),
+            (seats.after[row], seats.high[row]),
+        ):
             there = float(shift + (seats.parameter[other] if other >= 0 else 0.0))
             bounds.append(here + (0.5 if other >= 0 else 1.0) * (there - here))
         margin = KEPT * (bounds[1] - bounds[0])
@@ -78,7 +82,9 @@ class Drag:
         for row, place, bounds in zip(
             rows.tolist(), places[self._slides], self._ranges.tolist(), strict=True
         ):
-            part.seats.parameter[row] = self._nearest(int(part.seats.curve[row]), place, *bounds)
+            seats = part.seats  # the side may lie off its curve
+            goal = place - seats.offset[row] - seats.parameter[row] * seats.slope[row]
+            seats.parameter[row] = self._nearest(int(seats.curve[row]), goal, *bounds)
         if len(rows):
             part.points[rows] = place_seats(part.curves, part.seats, rows)
 
@@ -103,14 +109,9 @@ class Drag:
 
     @property
     def parameters(self) -> np.ndarray:
-        """(n,) the parameters of those on curves, 0 of others."""
-        seats, curves = self._part.seats, self._part.curves
-        t, curve = seats.parameter[self._rows].copy(), seats.curve[self._rows]
-        on = np.flatnonzero(curve >= 0)
-        length, closed = self._lengths[curve[on]], curves.closed[curve[on]]
-        inside = np.where(closed, np.mod(t[on], length), np.clip(t[on], 0.0, length))
-        t[on] = np.where(closed & (inside >= length), 0.0, inside)
-        return t
+        """(n,) the parameters of those on curves, as :meth:`HalfEdgeMesh.move` takes them."""
+        found: np.ndarray = self._part.parameters(self._mesh)[self._rows]
+        return found
 
     @property
     def moved(self) -> bool:

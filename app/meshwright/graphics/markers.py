@@ -23,8 +23,8 @@ READABLE = 6.0
 @dataclass(frozen=True)
 class Markers:
     """Irregular vertices (n,), with their delta (n,), places (n, 2), length of their shortest edges
-    ``reach`` (n,), and whether they are corners (n,); places of all corners, anchors and locked
-    vertices; boundary loops (m, 2), each ending with its first point.
+    ``reach`` (n,), and whether they are corners or anchors (n,); places of all corners, anchors and
+    locked vertices; boundary loops (m, 2), each ending with its first point.
 
     Anchors are vertices that an operation keeps as it keeps corners, but where the side goes
     straight on: the tangent point of a line and an arc.
@@ -35,6 +35,7 @@ class Markers:
     places: np.ndarray
     reach: np.ndarray
     corners: np.ndarray
+    anchors: np.ndarray
     corner_places: np.ndarray
     anchor_places: np.ndarray
     locked_places: np.ndarray
@@ -61,7 +62,8 @@ def markers(mesh: HalfEdgeMesh) -> Markers:
         delta=delta[vertices],
         places=points[vertices],
         reach=_shortest_edges(mesh.elements(), points, vertices),
-        corners=mesh.geometric()[vertices],
+        corners=np.isin(vertices, fixed[~anchors]),
+        anchors=np.isin(vertices, fixed[anchors]),
         corner_places=points[fixed[~anchors]],
         anchor_places=points[fixed[anchors]],
         locked_places=points[locked],

@@ -63,7 +63,8 @@ def make(request: Mapping[str, Any]) -> Answer:
             return Answer(_meshed(_drawn(source, region), request), "", contents)
         if path:
             found = resolve(Path(path), corner_angle=source["corner_angle"])
-            assert isinstance(found, Document) and found.mesh is not None
+            assert isinstance(found, Document)
+            assert found.mesh is not None
             _refuse_many(found.mesh.n_elements, "has")
             return Answer(_made(found.mesh, found.name, path))
         return Answer(_meshed(_domain(source), request))

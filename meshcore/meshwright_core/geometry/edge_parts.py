@@ -1,8 +1,8 @@
 """Edges as parts of curves, and their polylines for drawing and picking.
 
-:mod:`meshwright_core.geometry.edge_curves` knows the edges of a mesh. An :class:`EdgeParts` needs no
-mesh, so that it can stand for the edges that an operation would add, or those at a vertex that is
-being dragged, as well. Its polylines are as fine as a view demands: the tolerance holds inside a
+:mod:`meshwright_core.geometry.edge_curves` knows the edges of a mesh. An :class:`EdgeParts` needs
+no mesh, so that it can stand for the edges that an operation would add, or those at a vertex that
+is being dragged, as well. Its polylines are as fine as a view demands: the tolerance holds inside a
 box, a wider one outside of it, so that the number of points depends little on the zoom.
 """
 
@@ -139,9 +139,7 @@ class EdgeParts:
         breaks, base = _breaks(self.curves)
         near = 1e-12 * (high - low)  # a break at an end is none
         start = np.searchsorted(breaks, base[curve] + low + near, "right")
-        count = np.maximum(
-            np.searchsorted(breaks, base[curve] + high - near, "left") - start, 0
-        )
+        count = np.maximum(np.searchsorted(breaks, base[curve] + high - near, "left") - start, 0)
         owner = np.repeat(np.arange(len(on)), count)
         step = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
         t = breaks[start[owner] + step] - base[curve[owner]]

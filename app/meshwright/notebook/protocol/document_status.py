@@ -60,9 +60,7 @@ class InvertedElements:
         found[:kept] = self._inverted[:kept]
         found[look] = False
         elements = np.flatnonzero(look & (corners[:, 0] >= 0))
-        if len(elements):
-            measured = Measure(mesh, elements, self._normal).everything()
-            found[elements[measured.inverted]] = True
+        found[elements] = Measure(mesh, elements, self._normal).everything().inverted
         self._inverted = found
 
 

@@ -49,15 +49,23 @@ def read(content: bytes) -> Drawing:
             nested too deep or repeat too often; there is nothing to trace.
     """
     text, notes, dropped = dxf_tags.completed(content)
-    with contained():
-        from ezdxf import recover
-
-        document, auditor = recover.read(io.BytesIO(text), errors="ignore")
+    try:
+        document, auditor = _document(text)
+    except MeshError:
+        # layouts, groups and styles may be what is damaged
+        document, auditor = _document(dxf_tags.completed(content, objects=False)[0])
     reader = _Reader(document)
     reader.drawing.notes = [*notes, *_repairs(auditor)]
     reader.drawing.ignored.update(dropped)
     reader.read_model(document)
     return reader.drawing
+
+
+def _document(text: bytes) -> tuple[Any, Any]:
+    with contained():
+        from ezdxf import recover
+
+        return recover.read(io.BytesIO(text), errors="ignore")
 
 
 def _repairs(auditor: Any) -> list[str]:
@@ -96,7 +104,8 @@ class _Reader:
         self.hatches: list[tuple[Any, _Place]] = []
         self.members: dict[str, list[Any]] = {}
         self.curves: dict[int, list[Any]] = {}
-        self.sizes: dict[str, int] = {}
+        self.sizes: dict[tuple[str, int], int] = {}
+        self.total = 0
 
     def read_model(self, document: Any) -> None:
         """Read the model space, or the first layout that holds anything if it is empty."""
@@ -181,9 +190,11 @@ class _Reader:
         columns, rows = (
             max(1, int(entity.dxf.get(key, 1))) for key in ("column_count", "row_count")
         )
+        if place.depth == 0:
+            self.total += columns * rows * self.size(name, 1)
+            if self.total > MAX_CURVES:
+                raise MeshError(f"it has more than {MAX_CURVES:,} lines and curves")
         members = self.members.setdefault(name, list(block))
-        if columns * rows * max(1, len(members)) > MAX_CURVES:
-            raise MeshError(f"it has more than {MAX_CURVES:,} lines and curves")
         try:
             side = dxf_entities.mirror(entity)
         except dxf_entities.TiltedError:
@@ -200,6 +211,24 @@ class _Reader:
                 matrix = own.copy()
                 matrix[:2, 2] += column * across + row * along
                 self.read(members, _Place(place.matrix @ matrix, layer, place.depth + 1))
+
+    def size(self, name: str, depth: int) -> int:
+        """How many entities a block stands for, with the blocks in it."""
+        key = (name.lower(), depth)
+        block = self.blocks.get(name)
+        if block is None or depth > _DEPTH:
+            return 1
+        if key not in self.sizes:
+            count = 1
+            for entity in block:
+                if entity.dxftype() == "INSERT":
+                    grid = [entity.dxf.get(word, 1) for word in ("column_count", "row_count")]
+                    within = self.size(entity.dxf.get("name", ""), depth + 1)
+                    count += max(1, int(grid[0])) * max(1, int(grid[1])) * within
+                else:
+                    count += 1
+            self.sizes[key] = count
+        return self.sizes[key]
 
 
 def _affine(entity: Any) -> Points:

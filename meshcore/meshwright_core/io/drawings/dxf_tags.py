@@ -24,8 +24,22 @@ _MARKERS = {
 """Subclasses without whose marker ezdxf does not read an entity."""
 _COMMON = {5, 6, 8, 48, 60, 62, 67, 102, 284, 330, 347, 348, 360, 370, 390, 410, 420, 430, 440}
 """Group codes that all entities have."""
-_SOLIDS = {b"3DSOLID", b"BODY", b"HELIX", b"MESH", b"REGION", b"SURFACE"}
-"""Entities that are left out before ezdxf sees them: it requires all of their parts."""
+_KEPT = {
+    *(
+        b"ARC",
+        b"ATTDEF",
+        b"ATTRIB",
+        b"BLOCK",
+        b"CIRCLE",
+        b"ELLIPSE",
+        b"ENDBLK",
+        b"HATCH",
+        b"INSERT",
+    ),
+    *(b"LINE", b"LWPOLYLINE", b"POLYLINE", b"SEQEND", b"SPLINE", b"VERTEX"),
+}
+"""Entities that are of use; of all others ezdxf would require all parts."""
+_STRUCTURE = {b"ENDSEC", b"EOF", b"SECTION"}
 _READ = {b"ARC", b"CIRCLE", b"ELLIPSE", b"INSERT", b"LINE", b"LWPOLYLINE", b"SPLINE", b"VERTEX"}
 """Entities whose numbers are checked."""
 
@@ -36,8 +50,12 @@ Tag = tuple[int, bytes, int]
 """Group code, value, and the line of the value; 0 for the line in a binary file."""
 
 
-def completed(content: bytes) -> tuple[bytes, list[str], Counter[str]]:
+def completed(content: bytes, objects: bool = True) -> tuple[bytes, list[str], Counter[str]]:
     """Make the content of a DXF file such that ezdxf reads it.
+
+    Args:
+        content: of the file.
+        objects: whether to keep the section of objects, which is not essential.
 
     Returns:
         The content as text; what was repaired; how many entities of which kind were left out.
@@ -53,16 +71,21 @@ def completed(content: bytes) -> tuple[bytes, list[str], Counter[str]]:
     dropped: Counter[str] = Counter()
     blocks, inserted = set(), {}
     variables: dict[bytes, int] = {}
-    ended, previous, kind = False, b"", b""
+    ended, previous, kind, section = False, b"", b"", b""
     entity: list[Tag] = []
     for tag in _binary_tags(content) if binary else _text_tags(content):
         code, value, _ = tag
         if code == 0:
             _append(lines, entity, variables)
-            entity = [] if value in _SOLIDS else [tag]
-            dropped[value.decode("utf-8", "replace")] += value in _SOLIDS
+            drawn = section in (b"ENTITIES", b"BLOCKS")
+            useless = drawn and value not in _KEPT | _STRUCTURE
+            useless |= section == b"OBJECTS" and not objects and value not in _STRUCTURE
+            entity = [] if useless else [tag]
+            if useless and section == b"ENTITIES" and value != b"VIEWPORT":
+                dropped[value.decode("utf-8", "replace")[:40]] += 1
             kinds.add(value)
             kind = value
+            section = b"" if value == b"ENDSEC" else section
             if value == b"EOF":
                 ended = True
                 break
@@ -73,12 +96,16 @@ def completed(content: bytes) -> tuple[bytes, list[str], Counter[str]]:
             elif code == 2 and kind == b"INSERT":
                 inserted[value.upper()] = value
         if code == 2 and previous == b"SECTION":
-            sections.add(value.upper())
+            section = value.upper()
+            sections.add(section)
         previous = value if code == 0 else b""
     if not ended:
         _append(lines, entity, variables)
     if b"ENTITIES" not in sections and b"BLOCKS" not in sections:
         raise MeshError("it is not a DXF file, or cut off: it has no section ENTITIES")
+    if not ended and section:
+        shown = section.decode("utf-8", "replace")[:20]
+        raise MeshError(f"it is cut off: the section {shown} has no end")
     notes = [] if ended else ["the end of the file is not marked (EOF): it may be cut off"]
     for name in inserted.keys() - blocks:
         shown = inserted[name].decode("utf-8", "replace")[:40]
@@ -107,7 +134,8 @@ def _set_version(lines: list[bytes], variables: dict[bytes, int], modern: bool) 
             version = _MODERN
     if not (modern or version == _UNICODE):
         return []
-    return [b"0", b"SECTION", b"2", b"HEADER", b"9", b"$ACADVER", b"1", version, b"0", b"ENDSEC"]
+    head = "0 SECTION 2 HEADER 9 $ACADVER 1 {} 9 $DWGCODEPAGE 3 ANSI_1252 0 ENDSEC"
+    return head.format(version.decode()).encode().split()
 
 
 def _append(lines: list[bytes], entity: list[Tag], variables: dict[bytes, int]) -> None:

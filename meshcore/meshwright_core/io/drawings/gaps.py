@@ -92,8 +92,11 @@ def _pair(
             (one, end), (other, stop) = loose[i], loose[j]
             width = float(np.hypot(*(places[i] - places[j])))
             goal = _meeting(curves[one], end, curves[other], stop, width)
-            curves[one] = _moved(curves[one], end, goal)
-            curves[other] = _moved(curves[other], stop, goal)
+            if one == other:
+                curves[one] = with_ends(curves[one], goal, goal)
+            else:
+                curves[one] = _moved(curves[one], end, goal)
+                curves[other] = _moved(curves[other], stop, goal)
             repair = Repair("gap", 0.5 * (places[i] + places[j]), width)
             done += [(one, end, repair), (other, stop, None)]
     return done
@@ -110,22 +113,7 @@ def _end(curve: Curve, end: int) -> tuple[Points, Points]:
 
 
 def _moved(curve: Curve, end: int, goal: Points) -> Curve:
-    start, stop = (curve.start, goal) if end else (goal, curve.end)
-    if (start == stop).all() and curve.kind not in ("polyline",):
-        # all but closed: moved_ends keeps the form of closed curves only
-        return curve if (curve.start == curve.end).all() else _closed(curve, goal)
-    return with_ends(curve, start, stop)
-
-
-def _closed(curve: Curve, goal: Points) -> Curve:
-    """A curve whose ends nearly meet, closed at a place near them."""
-    middle = 0.5 * curve.length
-    one, other = curve.split(middle)
-    points = np.vstack([
-        measures.samples(one.moved_ends(goal, one.end)),
-        measures.samples(other.moved_ends(other.start, goal))[1:],
-    ])  # fmt: skip
-    return Curve.through(points, closed=True)
+    return with_ends(curve, curve.start if end else goal, goal if end else curve.end)
 
 
 def _meeting(one: Curve, end: int, other: Curve, stop: int, width: float) -> Points:

@@ -24,6 +24,8 @@ Owners = tuple[int, ...]
 
 _PAIRS = 5_000_000
 """Pairs of points within the tolerance beyond which a drawing is refused."""
+_OPEN = 0.3
+"""Share of a curve's length that its chord has at least where a similarity moves its ends."""
 _COARSE = 5.0
 """Degrees of the samples by which curves near a point are found."""
 
@@ -221,13 +223,47 @@ def _split_curves(
 
 
 def with_ends(curve: Curve, start: Points, end: Points) -> Curve:
-    """The curve with these ends, which lie near its own; only the ends of a polyline move."""
+    """The curve with these ends, which lie near its own.
+
+    Of polylines and splines the ends move, and of splines what is near to them; arcs stay arcs.
+    """
+    if (curve.start == start).all() and (curve.end == end).all():
+        return curve
     if curve.kind == "polyline":
         points = curve.data["points"]
-        if (points[0] == start).all() and (points[-1] == end).all():
-            return curve
         return Curve.polyline(np.vstack([start, points[1:-1], end]))
-    return curve.moved_ends(start, end)
+    chord = float(np.hypot(*(curve.end - curve.start)))
+    if curve.kind == "line" or chord > _OPEN * curve.length:
+        return curve.moved_ends(start, end)
+    # a similarity of the chord would change the size of a curve that all but closes
+    if curve.kind in ("arc", "ellipse") and (start == end).all():
+        return whole(curve).moved_ends(start, end)
+    if curve.kind == "arc":
+        return Curve.arc_through(start, curve.point(0.5 * curve.length), end)
+    if curve.kind == "ellipse":
+        curve = Curve.through(measures.samples(curve, 1.0))
+    return _blended(curve, start, end)
+
+
+def whole(curve: Curve) -> Curve:
+    """The whole circle or ellipse of an arc, from the same start."""
+    data = curve.data
+    sweep = np.copysign(2.0 * np.pi, data["sweep"])
+    if curve.kind == "arc":
+        return Curve.arc(data["centre"], data["radius"], data["start"], sweep)
+    return Curve.ellipse(data["centre"], data["major"], data["minor"], data["start"], sweep)
+
+
+def _blended(curve: Curve, start: Points, end: Points) -> Curve:
+    """A spline whose control points follow the moves of its ends, less with the distance."""
+    shares = np.linspace(0.0, 1.0, len(curve.data["control"]))[:, None]
+    moves = (1.0 - shares) * (start - curve.start) + shares * (end - curve.end)
+    data = curve.data
+    made = Curve.spline(data["control"] + moves, data["knots"], data["degree"], data["weights"])
+    # exactly, for rounding; knots at the ends may not be clamped
+    return (
+        made.moved_ends(start, end) if not (start == end).all() else made.moved_ends(start, start)
+    )
 
 
 def _without_doubles(

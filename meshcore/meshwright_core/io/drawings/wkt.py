@@ -142,7 +142,7 @@ class _Parser:
             self.expect("(")
             self.skip()
         else:
-            for curve in self.chain(kind):
+            for curve in self.chain(kind, depth):
                 self.drawing.add(curve)
 
     def skip(self) -> None:
@@ -160,7 +160,7 @@ class _Parser:
         self.expect("(")
         while True:
             if not self.empty():
-                chain = self.chain(self.kind("LINESTRING"))
+                chain = self.chain(self.kind("LINESTRING"), 1)
                 if chain and (chain[0].start != chain[-1].end).any():
                     raise MeshError("it is not sound WKT: a ring of a polygon is not closed")
                 for curve in chain:
@@ -172,8 +172,10 @@ class _Parser:
         if rings:
             self.areas.append(DrawnArea(tuple(rings)))
 
-    def chain(self, kind: str) -> Chain:
+    def chain(self, kind: str, depth: int) -> Chain:
         """Read the curves of a string of points, or of a compound curve."""
+        if depth > _DEPTH:
+            raise MeshError("it is not sound WKT: curves are nested too deep")
         if kind not in _CURVES:
             raise MeshError(f"it is not sound WKT: a {kind} cannot be a part of a boundary")
         if self.empty():
@@ -182,7 +184,7 @@ class _Parser:
             parts: Chain = []
             self.expect("(")
             while True:
-                parts += self.chain(self.kind("LINESTRING"))
+                parts += self.chain(self.kind("LINESTRING"), depth + 1)
                 if self.expect(", )") == ")":
                     return parts
         points = self.points()

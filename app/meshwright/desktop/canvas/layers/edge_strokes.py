@@ -37,7 +37,9 @@ class EdgeStrokes:
             return
         bent = self._edges.curve >= 0
         ends = viewport.to_screen(self._edges.ends[~bent])
-        self._lines = [QLineF(*line) for line in ends[_in_view(ends, viewport)].reshape(-1, 4).tolist()]
+        self._lines = [
+            QLineF(*line) for line in ends[_in_view(ends, viewport)].reshape(-1, 4).tolist()
+        ]
         for line in polylines(self._edges.take(bent), viewport):
             places = viewport.to_screen(line)
             if _in_view(places[None], viewport)[0]:

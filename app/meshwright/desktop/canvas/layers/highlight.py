@@ -30,9 +30,7 @@ class SpotLayer(Layer):
         """(n, 2) the highlighted point, or the corners of the highlighted element, in the plane."""
         return self._places
 
-    def show(
-        self, places: np.ndarray, element: int = -1, edges: TrueEdges | None = None
-    ) -> None:
+    def show(self, places: np.ndarray, element: int = -1, edges: TrueEdges | None = None) -> None:
         """Highlight ``places`` (n, 2 or 3) in the plane: one point, or the corners of an element
         with its true edges.
         """

@@ -23,7 +23,8 @@ class MarkersLayer(Layer):
         super().__init__(theme)
         self._font = QFont(font)
         self._font.setWeight(QFont.Weight.DemiBold)
-        self._discs = np.empty((0, 5))  # x, y, radius, delta, corner? of visible irregular vertices
+        # x, y, radius, delta, corner?, anchor? of visible irregular vertices
+        self._discs = np.empty((0, 6))
         self._numbers = True
         self._corners = np.empty((0, 2))
         self._anchors = np.empty((0, 2))
@@ -55,7 +56,7 @@ class MarkersLayer(Layer):
         Discs are VTK's where ``crowd``, the boundary is where ``outlined``.
         """
         self.viewport = viewport
-        self._discs = np.empty((0, 5))
+        self._discs = np.empty((0, 6))
         self._corners = self._anchors = self._rings = np.empty((0, 2))
         self._outline, self._interfaces = QPainterPath(), QPainterPath()
         if marks is not None and edges is not None:
@@ -76,6 +77,7 @@ class MarkersLayer(Layer):
                         marks.radii(viewport),
                         marks.delta,
                         marks.corners,
+                        marks.anchors,
                     )
                 )
                 self._discs = inside(discs, viewport)
@@ -109,12 +111,16 @@ class MarkersLayer(Layer):
         plus, minus = QColor(self.theme.plus), QColor(self.theme.minus)
         halo = QPen(QColor(self.theme.background), 1.25)
         font = QFont(self._font)
-        for x, y, r, delta, corner in self._discs.tolist():
+        for x, y, r, delta, corner, anchor in self._discs.tolist():
             if not near.contains(x, y):
                 continue
             if corner:
                 painter.setPen(Qt.PenStyle.NoPen)
                 painter.setBrush(QColor(self.theme.corner))
+                painter.drawRect(QRectF(x - r, y - r, 2 * r, 2 * r))
+            elif anchor:
+                painter.setPen(QPen(QColor(self.theme.corner), 1.25))
+                painter.setBrush(QColor(self.theme.background))
                 painter.drawRect(QRectF(x - r, y - r, 2 * r, 2 * r))
             painter.setPen(halo if r > 4 else Qt.PenStyle.NoPen)
             painter.setBrush(plus if delta > 0 else minus)
