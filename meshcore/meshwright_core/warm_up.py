@@ -29,10 +29,12 @@ def exercise() -> None:
     triangles.apply("flip", triangles.halfedge(0, 2))
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(3.0), np.arange(3.0)))
     corners = np.array([0, 1, 3, 4])
-    quads = HalfEdgeMesh.from_elements(
-        np.column_stack([x, y]),
-        np.column_stack([corners, corners + 1, corners + 4, corners + 3]),
-    )
+    places = np.column_stack([x, y])
+    elements = np.column_stack([corners, corners + 1, corners + 4, corners + 3])
+    halves = HalfEdgeMesh.from_elements(places, elements, regions=[0, 1, 0, 1])
+    halves.move([4], halves.points[[4]], halves.parameters()[[4]])
+    halves.off_curve()
+    quads = HalfEdgeMesh.from_elements(places, elements)
     quads.move([4], np.array([[3.0, 3.0, 0.0]]))
     relax(quads, [4])
     inverted(quads)

@@ -224,6 +224,11 @@ def _add_markers(
 ) -> None:
     for x, y in view.to_screen(marks.corner_places).tolist():
         drawing.add(Square((x, y), 3.5 * unit, colours.corner))
+    for x, y in view.to_screen(marks.anchor_places).tolist():
+        drawing.add(
+            Square((x, y), 2.75 * unit, colours.corner),
+            Square((x, y), 1.5 * unit, colours.background),
+        )
     # radii are those of the window; larger figures have larger discs
     radii = marks.radii(Viewport(view.centre, view.pixels / unit, view.size)) * unit
     places = view.to_screen(marks.places).tolist()

@@ -1,9 +1,9 @@
 """Corners and desired degrees of a plane mesh from the directions of its curves.
 
 The edges along curves divide the surroundings of a vertex into sectors, one for each region there.
-The sum rule: the desired degree is the sum over the sectors of max(1, round(angle / alpha)), alpha
-= 60 degrees for triangles and 90 for quads, and one more on the boundary; that is equation 2 of the
-paper where there is one sector on the boundary, 6 or 4 where a smooth interface passes.
+By the sum rule (:func:`meshwright_core.core.irregularity.desired_between`) their angles give the
+desired degree: that of equation 2 where there is one sector on the boundary, 6 or 4 where a smooth
+interface passes.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy as np
 from meshwright_core.core.arrays import CURVE, ELEMENT_SLOTS, ORIGIN, SIDES, TWIN, MeshArrays
 from meshwright_core.core.composite_curves import tangents
 from meshwright_core.core.curve_edges import edge_places
+from meshwright_core.core.irregularity import desired_on_boundary
 from meshwright_core.core.mesh_boundary import MeshBoundary
 
 _NEAR_END = 1e-11
@@ -81,8 +82,7 @@ def _directions(m: MeshArrays, curve: np.ndarray, span: np.ndarray) -> np.ndarra
 
 def desired_by_sectors(found: Sectors, k: int, slots: int) -> np.ndarray:
     """(slots,) desired degree of the vertices on curves by the sum rule, 0 for others."""
-    alpha = 60.0 if k == 3 else 90.0
-    shares = np.maximum(1, np.floor(found.angle / alpha + 0.5 + 1e-9).astype(np.int64))
+    shares = desired_on_boundary(found.angle, k) - 1
     desired: np.ndarray = np.bincount(found.vertex, weights=shares, minlength=slots)
     desired = desired.astype(np.int64)
     desired[np.unique(found.vertex[found.boundary])] += 1

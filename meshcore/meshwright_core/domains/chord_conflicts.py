@@ -20,17 +20,25 @@ _ANGLE_SHARE, _LEAST_ANGLE = 0.35, 25.0
 """A corner between chords has this share of its true angle, or as many degrees, at least."""
 
 
-def settle(edges: SideEdges) -> None:
+def settle(edges: SideEdges, settled: int = 0) -> None:
     """Cut edges until their chords enclose what the sides do; MeshError if that has no end.
 
     Afterwards no two vertices have two edges in common, the chords around each vertex are in the
     order of the sides there, and between a side and its chords there is no other side, nor near
     them. So the chords can be bent to the sides without meeting.
+
+    Args:
+        edges: of the sides; they are cut as needed.
+        settled: the first so many edges have been settled before.
     """
+    looked_at = settled
     for _ in range(_ROUNDS):
         bad = _repeated(edges)
         if not len(bad):
-            bad = np.union1d(_wrong_angles(edges), _hit_lenses(edges))
+            bad = np.union1d(_wrong_angles(edges), _hit_lenses(edges, looked_at))
+            looked_at = len(edges.side) - len(bad)
+        else:
+            looked_at = min(looked_at, int(bad.min()))
         if not len(bad):
             return
         edges.cut(bad)
@@ -46,7 +54,7 @@ def _repeated(edges: SideEdges) -> Ids:
     twice = np.flatnonzero((times[number.ravel()] > 1) | (low == high))
     if not len(twice):
         return twice
-    turn = edges.turnings()
+    turn = edges.turnings
     order = twice[np.argsort(turn[twice], kind="stable")]
     # all but the straightest of each pair
     _, first = np.unique(number.ravel()[order], return_index=True)
@@ -60,7 +68,7 @@ def _wrong_angles(edges: SideEdges) -> Ids:
     points = edges.points
     chord = points[edges.ends[:, 1]] - points[edges.ends[:, 0]]
     direction = edges.directions()
-    bent = edges.turnings() > STRAIGHT
+    bent = edges.turnings > STRAIGHT
     # what leaves a vertex: edges forward, then backward
     vertex = np.concatenate([edges.ends[:, 0], edges.ends[:, 1]])
     away = np.concatenate([direction[:, 0], -direction[:, 1]])
@@ -86,34 +94,40 @@ def _wrong_angles(edges: SideEdges) -> Ids:
     return np.unique(bad % len(edges.side))
 
 
-def _hit_lenses(edges: SideEdges) -> Ids:
-    """Edges that bend, and between which and their chord, or near, another side runs."""
-    turn = edges.turnings()
+def _hit_lenses(edges: SideEdges, first: int) -> Ids:
+    """Edges from `first` on between which and their chord, or near, another side runs.
+
+    Cutting an edge does not move any side, so that those looked at before stay clear.
+    """
+    turn = edges.turnings
     bent = np.flatnonzero(turn > STRAIGHT)
-    if not len(bent):
-        return bent
+    fresh = bent[bent >= first]
+    if not len(fresh):
+        return fresh
     shapes = edges.places(np.arange(len(edges.side)), SAMPLES)
     straight = np.setdiff1d(np.arange(len(edges.side)), bent)
     lines = np.empty(len(edges.side), object)
     lines[bent] = shapely.linestrings(shapes[bent])
     if len(straight):
         lines[straight] = shapely.linestrings(shapes[straight][:, [0, -1]])
-    chords = shapes[bent][:, :1] + SAMPLES[:, None] * (shapes[bent][:, -1:] - shapes[bent][:, :1])
-    sagitta = np.linalg.norm(shapes[bent] - chords, axis=2).max(axis=1)
+    chords = shapes[fresh][:, :1] + SAMPLES[:, None] * (
+        shapes[fresh][:, -1:] - shapes[fresh][:, :1]
+    )
+    sagitta = np.linalg.norm(shapes[fresh] - chords, axis=2).max(axis=1)
     lenses = shapely.buffer(
-        shapely.convex_hull(lines[bent]), _CLEAR * sagitta, quad_segs=2, join_style="mitre"
+        shapely.convex_hull(lines[fresh]), _CLEAR * sagitta, quad_segs=2, join_style="mitre"
     )
     lens, line = shapely.STRtree(lines).query(lenses, predicate="intersects")
-    shared = edges.ends[bent[lens]][:, :, None] == edges.ends[line][:, None, :]
+    shared = edges.ends[fresh[lens]][:, :, None] == edges.ends[line][:, None, :]
     joined = shared.any(axis=(1, 2))
     # a side that begins at an end of the edge must not come back to it
-    own = bent[lens] != line
+    own = fresh[lens] != line
     at_start = shared.any(axis=1)[:, 0]
     rest = np.where(at_start[:, None, None], shapes[line][:, _REST:], shapes[line][:, :-_REST])
     back = np.zeros(len(lens), bool)
     pairs = np.flatnonzero(joined & own)
     if len(pairs):
-        hulls = shapely.convex_hull(lines[bent[lens[pairs]]])
+        hulls = shapely.convex_hull(lines[fresh[lens[pairs]]])
         back[pairs] = shapely.intersects(hulls, shapely.linestrings(rest[pairs]))
-    returning = np.where(turn[bent[lens[back]]] >= turn[line[back]], bent[lens[back]], line[back])
-    return np.union1d(bent[lens[~joined]], returning)
+    returning = np.where(turn[fresh[lens[back]]] >= turn[line[back]], fresh[lens[back]], line[back])
+    return np.union1d(fresh[lens[~joined]], returning)

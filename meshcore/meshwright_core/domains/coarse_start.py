@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,41 +20,54 @@ Reals = NDArray[np.float64]
 
 GOOD = 0.01
 """Scaled Jacobian that the quads of a triangle with curved sides should have at least."""
-_ROUNDS = 12
+_ROUNDS = 10
 _SWEEPS = 8
+_MANY = 400
+"""Edges of sides beyond which the second way is not tried where the first one is good."""
 _FLAT = 165.0
 """Degrees of a corner of a triangle beyond which it needs an edge through it."""
-_BEND = np.radians(20.0)
+_APART = 0.7
+"""Distance between two new points, in their distances from the sides, at least."""
+_BEND = np.radians(2.0)
 """An edge that turns by less is not cut for the sake of a triangle's shape."""
 
 
 def coarse(edges: SideEdges, size: float, seed: int) -> SidedElements:
     """Triangles on the coarse edges of sides, without a point inside where none is needed.
 
-    Edges are flipped, points inserted and edges of sides cut while a triangle has an inverted quad.
-    What is best of all that is tried has the fewest bad triangles, then the fewest triangles.
+    Edges are flipped, points inserted and edges of sides cut while a triangle has an inverted quad,
+    in two ways: with points where that helps, and with cuts there. What is best of all that is
+    tried has the fewest bad triangles, then the fewest triangles.
 
     Args:
         edges: of the sides; they are cut as needed.
         size: diameter of the domain.
         seed: as for :func:`.triangulation.triangulated`.
     """
-    inner = np.empty((0, 2))
     best: tuple[int, int] | None = None
-    for _ in range(_ROUNDS):
-        chord_conflicts.settle(edges)
-        points, triangles, regions = _triangulation(edges, inner, size, seed)
-        shape = CurvedTriangles(edges, points)
-        walls = edge_keys(edges.ends, len(points))
-        quality = _flipped(shape, triangles, walls)
-        bad = quality < GOOD
-        rank = (int(bad.sum()), len(triangles))
-        if best is None or rank < best:
-            best = rank
-            found = SidedElements.of(edges, points, triangles, regions)
-        if not bad.any():
+    for insert in (True, False):
+        trial, inner, settled = copy(edges), np.empty((0, 2)), 0
+        for _ in range(_ROUNDS):
+            chord_conflicts.settle(trial, settled)
+            settled = len(trial.side)
+            points, triangles, regions = _triangulation(trial, inner, size, seed)
+            shape = CurvedTriangles(trial, points)
+            walls = edge_keys(trial.ends, len(points))
+            quality = _flipped(shape, triangles, walls)
+            bad = int((quality < GOOD).sum())
+            if best is None or (bad, len(triangles)) < best:
+                best = (bad, len(triangles))
+                found = SidedElements.of(trial, points, triangles, regions)
+            if not bad or (best[0] == 0 and len(triangles) > best[1]):
+                break
+            more, cuts = _remedy(shape, triangles, walls, quality, insert)
+            inner = np.vstack([inner, more])
+            if len(cuts):
+                settled -= len(cuts)
+                trial.cut(cuts)
+        unchanged = len(found.points) == len(edges.curve)
+        if best[0] == 0 and (unchanged or len(edges.side) > _MANY):
             break
-        inner = np.vstack([inner, _remedy(shape, triangles, walls, quality)])
     return found
 
 
@@ -107,40 +122,53 @@ def _flipped(shape: CurvedTriangles, triangles: Ids, walls: Ids) -> Reals:
     return quality
 
 
-def _remedy(shape: CurvedTriangles, triangles: Ids, walls: Ids, quality: Reals) -> Points:
-    """Points to insert for bad triangles; cuts edges that bend most where no point would help."""
+def _remedy(
+    shape: CurvedTriangles, triangles: Ids, walls: Ids, quality: Reals, insert: bool
+) -> tuple[Points, Ids]:
+    """Points to insert for bad triangles, and edges of sides to cut.
+
+    A triangle with a straight angle needs an edge there: a point on its opposite side. Where a side
+    bends into a triangle, and hides one end of it from the third corner, either it is cut, or a
+    point is inserted where both ends see it, far from all sides.
+
+    insert: whether to insert points rather than cut, where both would do.
+    """
     edges = shape.edges
-    sides = shape.side_edges(triangles)
-    turn = np.append(edges.turnings(), 0.0)[sides]
-    keys = np.stack(
-        [
-            edge_keys(
-                np.stack([triangles[:, i], triangles[:, (i + 1) % 3]], axis=1), len(shape.points)
-            )
-            for i in range(3)
-        ],
-        axis=1,
-    )
-    wall = np.isin(keys, walls)
+    bad = np.flatnonzero(quality < GOOD)
+    bad = bad[np.argsort(quality[bad], kind="stable")]
+    corners = triangles[bad]
+    sides = shape.side_edges(corners)
+    turn = np.append(edges.turnings, 0.0)[sides]
+    angles = shape.corner_angles(corners)
+    flat = angles.max(axis=1) > _FLAT
+    bends = np.argmax(turn, axis=1)
+    bent = turn.max(axis=1) > _BEND
+    rows = np.arange(len(bad))
+    spots, clear = np.zeros((len(bad), 2)), np.zeros(len(bad))
+    if insert:
+        spots, clear = shape.free_places(corners, bends, sides[rows, bends])
     points: list[Points] = []
+    room: list[float] = []
     cuts: set[int] = set()
     done: set[int] = set()
-    for t in np.argsort(quality, kind="stable").tolist():
-        if quality[t] >= GOOD:
-            break
-        corners = triangles[t]
-        angles = shape.corner_angles(triangles[t : t + 1])[0]
-        flat = int(np.argmax(angles))
-        if angles[flat] <= _FLAT and turn[t].max() > _BEND:
-            cuts.add(int(sides[t, int(np.argmax(turn[t]))]))
+    for i in rows.tolist():
+        if not flat[i] and bent[i]:
+            if clear[i] > 0.0:
+                if all(
+                    np.hypot(*(spots[i] - other)) > _APART * max(clear[i], far)
+                    for other, far in zip(points, room, strict=True)
+                ):
+                    points.append(spots[i])
+                    room.append(float(clear[i]))
+            else:
+                cuts.add(int(sides[i, bends[i]]))
             continue
-        if any(int(v) in done for v in corners):
+        if any(int(v) in done for v in corners[i]):
             continue  # the triangles around a new point are looked at again first
-        done.update(int(v) for v in corners)
-        opposite = (flat + 1) % 3
-        inside = not wall[t, opposite] and angles[flat] > _FLAT
-        ends = corners[[opposite, (opposite + 1) % 3]] if inside else corners
-        points.append(shape.points[ends].mean(axis=0))
-    if cuts:
-        edges.cut(np.array(sorted(cuts)))
-    return np.array(points).reshape(-1, 2)
+        done.update(int(v) for v in corners[i])
+        start = (int(np.argmax(angles[i])) + 1) % 3
+        ends = corners[i][[start, (start + 1) % 3]]
+        on_wall = np.isin(edge_keys(ends[None], len(shape.points)), walls)[0]
+        points.append(shape.points[ends if flat[i] and not on_wall else corners[i]].mean(axis=0))
+        room.append(0.0)
+    return np.array(points).reshape(-1, 2), np.array(sorted(cuts), int)

@@ -8,10 +8,11 @@ unit square under its Coons map, which is looked at on a grid.
 from __future__ import annotations
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import place_all, tangents
-from meshwright_core.domains.side_edges import STRAIGHT, SideEdges
+from meshwright_core.domains.side_edges import SAMPLES, STRAIGHT, SideEdges
 from meshwright_core.domains.triangulation import triangle_areas
 
 Points = NDArray[np.float64]
@@ -20,6 +21,13 @@ Reals = NDArray[np.float64]
 
 GRID = np.linspace(0.0, 1.0, 6)
 """Fractions along both directions at which the Jacobian of the Coons map is taken."""
+
+
+_HALVINGS = 14
+_TOUCH = 0.03
+"""Share of a circle's radius that its distance from sampled sides may be short of it."""
+_SEEN = 0.15
+"""Sine of the angle at an end of an edge, from the edge to a point that sees it well."""
 
 
 class CurvedTriangles:
@@ -32,7 +40,7 @@ class CurvedTriangles:
 
     def __init__(self, edges: SideEdges, points: Points) -> None:
         self.points, self.edges = points, edges
-        bent = np.flatnonzero(edges.turnings() > STRAIGHT)
+        bent = np.flatnonzero(edges.turnings > STRAIGHT)
         low, high = np.sort(edges.ends[bent], axis=1).T
         keys = low * len(points) + high
         order = np.argsort(keys)
@@ -90,6 +98,61 @@ class CurvedTriangles:
         angles: Reals = np.degrees(np.arctan2(across, along))
         # a hair over a straight angle
         return np.where(angles < -150.0, angles + 360.0, angles)
+
+    def free_places(self, triangles: Ids, corners: Ids, edges: Ids) -> tuple[Points, Reals]:
+        """For an edge of each triangle, a point in the middle between it and what is opposite.
+
+        That is the centre of the largest circle that touches the edge in its middle, from inside
+        the triangle, and no other side of the domain.
+
+        Args:
+            triangles: (m, 3).
+            corners: (m,) the corner at which that side of the triangle begins.
+            edges: (m,) which edge it is; -1 for none.
+
+        Returns:
+            the points (m, 2) and the radii (m,) of the circles; 0 where an end of the edge does
+            not see the point.
+        """
+        radius = np.zeros(len(triangles))
+        rows = np.flatnonzero(edges >= 0)
+        if not len(rows):
+            return np.zeros((len(triangles), 2)), radius
+        own = edges[rows]
+        begin = triangles[rows, corners[rows]]
+        places = self.edges.places(own, SAMPLES)
+        backward = self.edges.ends[own, 0] != begin
+        places[backward] = places[backward][:, ::-1]
+        half = len(SAMPLES) // 2
+        way = places[:, half + 1] - places[:, half - 1]
+        normal = np.column_stack([-way[:, 1], way[:, 0]]) / np.linalg.norm(way, axis=1)[:, None]
+        shapes = self.edges.places(np.arange(len(self.edges.side)), SAMPLES)
+        tree = shapely.STRtree(shapely.linestrings(shapes))
+        low = np.zeros(len(rows))
+        high = np.full(len(rows), float(np.ptp(self.points, axis=0).max()))
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            spots = shapely.points(places[:, half] + middle[:, None] * normal)
+            (which, _), distance = tree.query_nearest(
+                spots, return_distance=True, all_matches=False
+            )
+            nearest = np.zeros(len(rows))
+            nearest[which] = distance
+            clear = nearest >= (1.0 - _TOUCH) * middle
+            low, high = np.where(clear, middle, low), np.where(clear, high, middle)
+        found = np.zeros((len(triangles), 2))
+        found[rows] = places[:, half] + low[:, None] * normal
+        # both ends see it if it is on the inner side of the tangents there
+        seen = np.ones(len(rows), bool)
+        for end, inner in ((0, 1), (-1, -2)):
+            tangent = (places[:, inner] - places[:, end]) * (1.0 if end == 0 else -1.0)
+            to = found[rows] - places[:, end]
+            height = (tangent[:, 0] * to[:, 1] - tangent[:, 1] * to[:, 0]) / (
+                np.linalg.norm(tangent, axis=1) * np.maximum(np.linalg.norm(to, axis=1), 1e-300)
+            )
+            seen &= height > _SEEN
+        radius[rows] = np.where(seen, low, 0.0)
+        return found, radius
 
     def _halves(self, triangles: Ids, sides: Ids) -> tuple[Points, Points]:
         """Points (m, 3, 2, g, 2) of the halves of sides at GRID, from corners to middles, and the

@@ -57,7 +57,7 @@ def refined(edges: SideEdges, size: float, bounds: Bounds, seed: int) -> SidedEl
 
 def _cut(edges: SideEdges, turn: float, longest: float | None) -> None:
     """Cut edges that turn by more than so many degrees or are longer than `longest`."""
-    count = np.ceil(np.degrees(edges.turnings()) / turn - 1e-9)
+    count = np.ceil(np.degrees(edges.turnings) / turn - 1e-9)
     bent = count > 0
     if longest is not None:
         count = np.maximum(count, np.where(bent, np.ceil(np.diff(edges.span)[:, 0] / longest), 1))

@@ -39,6 +39,7 @@ class SideEdges:
         span: (e, 2) the parameters of its ends, ascending; the last one of a loop may be its
             length.
         ends: (e, 2) its vertices.
+        turnings: (e,) radians by which it turns.
     """
 
     def __init__(self, sides: RegionLoops) -> None:
@@ -51,7 +52,7 @@ class SideEdges:
         self._tables = [self._turning_table(number) for number in range(len(every))]
         self.curve, self.parameter, self.node = (np.zeros(0, int), np.zeros(0), np.zeros(0, int))
         self.side, self.ends = np.zeros(0, int), np.zeros((0, 2), int)
-        self.span = np.zeros((0, 2))
+        self.span, self.turnings = np.zeros((0, 2)), np.zeros(0)
         self._known: dict[int, int] = {}
         rows: list[tuple[int, float, float, int, int]] = []
         for number, side in enumerate(every):
@@ -107,15 +108,6 @@ class SideEdges:
         t, total = self._tables[side]
         margin = 2.0 * _INSIDE * self.starts[side][-1]
         return float(np.interp(high - margin, t, total) - np.interp(low + margin, t, total))
-
-    def turnings(self) -> Reals:
-        """(e,) radians by which each edge turns."""
-        return np.array(
-            [
-                self.turning(side, low, high)
-                for side, (low, high) in zip(self.side.tolist(), self.span.tolist(), strict=True)
-            ]
-        )
 
     def _cuts(self, side: int, low: float, high: float, count: int) -> list[float]:
         """Parameters that cut a stretch of a side in `count` parts, alike in turning and length."""
@@ -177,9 +169,11 @@ class SideEdges:
         self.side = np.append(self.side, np.array(table[0], int))
         self.span = np.vstack([self.span, np.column_stack(table[1:3])])
         self.ends = np.vstack([self.ends, np.column_stack(table[3:5]).astype(int)])
+        turn = [self.turning(side, low, high) for side, low, high, _, _ in rows]
+        self.turnings = np.append(self.turnings, turn)
 
     def cut(self, edges: Ids, counts: Ids | None = None) -> None:
-        """Cut edges in two, or in so many, alike in turning and length."""
+        """Cut edges in two, or in so many, alike in turning and length; new ones come last."""
         numbers = np.full(len(edges), 2) if counts is None else counts
         rows = []
         for edge, count in zip(edges.tolist(), numbers.tolist(), strict=True):
@@ -191,6 +185,7 @@ class SideEdges:
         kept = np.ones(len(self.side), bool)
         kept[edges] = False
         self.side, self.span, self.ends = self.side[kept], self.span[kept], self.ends[kept]
+        self.turnings = self.turnings[kept]
         self._append(rows)
 
     # Places
@@ -219,12 +214,18 @@ class SideEdges:
 
     def left_right(self) -> tuple[Ids, Ids]:
         """(e,) the regions on the left and on the right of each edge; -1 outside."""
-        left, right = np.empty(len(self.side), int), np.empty(len(self.side), int)
-        for number, side in enumerate(self.sides.all_sides):
-            own = np.flatnonzero(self.side == number)
-            middle = self.span[own].mean(axis=1) % self.starts[number][-1]
-            piece = np.searchsorted(self.starts[number], middle, side="right") - 1
-            piece = np.clip(piece, 0, len(side.pieces) - 1)
-            left[own] = np.array([p.left for p in side.pieces])[piece]
-            right[own] = np.array([p.right for p in side.pieces])[piece]
-        return left, right
+        every = self.sides.all_sides
+        counts = [len(side.pieces) for side in every]
+        first = np.cumsum([0, *counts])
+        # sides laid end to end, so that one search finds the pieces of all edges
+        shift = np.cumsum([0.0, *(starts[-1] for starts in self.starts)])
+        begin = np.concatenate(
+            [np.array(starts[:-1]) + shift[i] for i, starts in enumerate(self.starts)]
+        )
+        length = np.diff(shift)[self.side]
+        middle = self.span.mean(axis=1) % length + shift[self.side]
+        piece = np.searchsorted(begin, middle, side="right") - 1
+        piece = np.clip(piece, first[self.side], first[self.side + 1] - 1)
+        left = np.array([piece.left for side in every for piece in side.pieces])
+        right = np.array([piece.right for side in every for piece in side.pieces])
+        return left[piece], right[piece]

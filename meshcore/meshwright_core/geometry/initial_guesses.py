@@ -10,7 +10,6 @@ from collections.abc import Callable
 import numpy as np
 
 from meshwright_core.geometry.movable_part import MovablePart
-from meshwright_core.geometry.sharp_bends import bends_between
 
 TANGLED = 0.1
 """Share of inverted elements above which the present positions are not tried first."""
@@ -87,7 +86,7 @@ def hold_single_quads(part: MovablePart) -> MovablePart:
             continue
         now = t[run.members] + run.shift
         curve = int(part.seats.curve[run.members[0]])
-        bends = bends_between(part, curve, run.low, run.high)
+        bends = part.bends(curve, run.low, run.high)
         corners = np.flatnonzero(single[run.members])
         chosen = _nearest_in_order(now[corners], bends)
         corners = corners[: len(chosen)]
@@ -110,7 +109,7 @@ def _first_on_closed_sides(part: MovablePart, single: np.ndarray) -> MovablePart
         if not part.sliding[i] or not part.encircles(i):
             continue
         curve, half = int(part.seats.curve[i]), 0.5 * float(np.ptp(part.seats.reach[i]))
-        bends = bends_between(part, curve, t[i] - half, t[i] + half)
+        bends = part.bends(curve, t[i] - half, t[i] + half)
         if len(bends):
             t[i] = bends[np.argmin(np.abs(bends - t[i]))]
             part.settle()

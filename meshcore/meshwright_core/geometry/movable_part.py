@@ -22,6 +22,7 @@ from meshwright_core.geometry.edge_curves import EdgePlaces, ends_of
 from meshwright_core.geometry.planes import plane_normal
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
 from meshwright_core.geometry.seats import Seats, find_seats, home_places, no_seats, place_seats
+from meshwright_core.geometry.sharp_bends import kinks_between
 from meshwright_core.geometry.turning import BENDS, CurveTurning, Turning, turnings
 
 if TYPE_CHECKING:
@@ -103,6 +104,14 @@ class MovablePart:
             points + seats.offset[members] + parameters[:, None] * seats.slope[members]
         )
         return offset
+
+    def bends(self, curve: int, low: float, high: float) -> np.ndarray:
+        """(b,) parameters between low and high at which a boundary loop has a kink to the outside,
+        an interface one to either side.
+        """
+        assert self.frame is not None
+        both = not self.is_loop[curve]
+        return kinks_between(self.curves, self.turning, self.frame[2], curve, low, high, both)
 
     def fork(self) -> MovablePart:
         """The same part with a copy of the positions."""
@@ -189,19 +198,25 @@ class MovablePart:
         moved = (self.points != mesh.points[self.vertices]).any(axis=1) & self.movable
         rows = np.flatnonzero(moved)
         vertices, positions = self.vertices[rows], self.points[rows]
-        parameters = mesh.parameters()[vertices]
+        parameters = self.parameters(mesh)[rows]
         slid = np.flatnonzero(self.seats.curve[rows] >= 0)
         if len(slid):
-            members = rows[slid]
-            t, curve = self.seats.parameter[members], self.seats.curve[members]
+            there = home_places(self.curves, self.seats, rows[slid], parameters[slid])
+            positions[slid] = there
+        return vertices, positions, parameters
+
+    def parameters(self, mesh: HalfEdgeMesh) -> np.ndarray:
+        """(n,) the parameters of all vertices in [0, length) of their curves; those that have not
+        slid keep theirs in `mesh`.
+        """
+        found = mesh.arrays.parameter[self.vertices]
+        slid = np.flatnonzero(self.sliding & (self.seats.parameter != self.home))
+        if len(slid):
+            t, curve = self.seats.parameter[slid], self.seats.curve[slid]
             length = mesh.boundary_info.lengths()[curve]
             t = np.where(self.curves.closed[curve], np.mod(t, length), np.clip(t, 0.0, length))
-            t = np.where(t < length, t, 0.0)
-            parameters[slid] = np.where(
-                self.seats.parameter[members] == self.home[members], parameters[slid], t
-            )
-            positions[slid] = home_places(self.curves, self.seats, members, parameters[slid])
-        return vertices, positions, parameters
+            found[slid] = np.where(t < length, t, 0.0)
+        return found
 
 
 def chosen(mesh: HalfEdgeMesh, vertices: Iterable[int] | None) -> MovablePart:

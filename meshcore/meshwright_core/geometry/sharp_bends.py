@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
-from meshwright_core.core.composite_curves import curve_length, place_in_span
-from meshwright_core.geometry.movable_part import MovablePart
-from meshwright_core.geometry.quality import TOLERANCE
+from meshwright_core.core.composite_curves import Curves, curve_length, place_in_span
+from meshwright_core.geometry.turning import Turning
+
+SHARP = 1e-9
+"""Radians of turning at a joint above which it is a kink."""
 
 
 @kernel
@@ -26,26 +28,40 @@ def _turns_to_left(curves, spans, previous, normal):
     return found
 
 
-def bends_between(part: MovablePart, curve: int, low: float, high: float) -> np.ndarray:
-    """(b,) parameters between low and high at which a boundary curve turns to the outside, that is
-    to the left; of interfaces those at which it turns to either side.
+def kinks_between(
+    curves: Curves,
+    turning: Turning,
+    normal: np.ndarray,
+    curve: int,
+    low: float,
+    high: float,
+    both: bool = False,
+) -> np.ndarray:
+    """(b,) parameters, ascending, between low and high at which a curve has a kink to the left:
+    on a boundary loop to the outside.
+
+    Args:
+        curves: the curves.
+        turning: of these.
+        normal: (3,) of the plane.
+        curve: which of them.
+        low: parameter, on a closed curve up to one round below 0.
+        high: parameter, likewise up to one round above the length.
+        both: kinks to either side, as on an interface.
     """
-    assert part.frame is not None
-    curves = part.curves
     first, last = int(curves.first_span[curve]), int(curves.first_span[curve + 1])
-    kinks = np.flatnonzero(part.turning.joint[first:last] > TOLERANCE) + first
+    kinks = np.flatnonzero(turning.joint[first:last] > SHARP) + first
     length = float(curve_length(curves, curve))
     starts = curves.start[kinks]
     rounds = [-length, 0.0, length] if curves.closed[curve] else [0.0]
     inside = [kinks[(starts + x > low) & (starts + x < high)] for x in rounds]
     shifted = [curves.start[rows] + x for rows, x in zip(inside, rounds, strict=True)]
-    places = np.concatenate(shifted)
-    spans = np.concatenate(inside)
+    places, spans = np.concatenate(shifted), np.concatenate(inside)
     if not len(spans):
         return places
-    previous = np.where(spans > first, spans - 1, last - 1)
-    left = _turns_to_left(curves, spans, previous, np.ascontiguousarray(part.frame[2]))
-    if not part.is_loop[curve]:
-        left = np.abs(left)
-    found: np.ndarray = np.sort(places[left > TOLERANCE])
+    if not both:
+        previous = np.where(spans > first, spans - 1, last - 1)
+        left = _turns_to_left(curves, spans, previous, np.ascontiguousarray(normal))
+        places = places[left > SHARP]
+    found: np.ndarray = np.sort(places)
     return found

@@ -14,7 +14,6 @@ from meshwright_core.geometry import movable_part
 from meshwright_core.geometry.coons import at_corners
 from meshwright_core.geometry.movable_part import MovablePart
 from meshwright_core.geometry.quality import TOLERANCE
-from meshwright_core.geometry.sharp_bends import bends_between
 from meshwright_core.geometry.turning import BENDS, turnings
 
 if TYPE_CHECKING:
@@ -117,7 +116,7 @@ def _along_curves(part: MovablePart, asked: np.ndarray) -> np.ndarray:
     for i in np.flatnonzero(slides).tolist():
         v = int(vertices[i])
         curve, (low, high) = int(part.seats.curve[v]), part.seats.reach[v]
-        outwards = bends_between(part, curve, float(low), float(high))
+        outwards = part.bends(curve, float(low), float(high))
         found[rows[i], places[i]] = not len(outwards)
     return found
 

@@ -39,12 +39,23 @@ class FaceList:
         """
         self.regions = dict(zip(map(_turned, faces), regions or [0] * len(faces), strict=True))
         self.k = len(faces[0])
+        self._directed: dict[Edge, Face] | None = None
         self.desired = dict(desired)
         self.geometric = set(geometric)
         self.locked = set(locked or ())
         if ranges is None:
             ranges = {edge: (0, 0.0, 1.0) for edge in self.curve_edges()}
         self.ranges = dict(ranges)
+
+    def replace(self, old: Sequence[Face], new: Sequence[Face], regions: Sequence[int]) -> None:
+        """Replace faces by others of the given regions; Refused if two would be equal."""
+        self._directed = None
+        for face in map(_turned, old):
+            self.regions.pop(face, None)
+        for face, region in zip(map(_turned, new), regions, strict=True):
+            if face in self.regions:
+                raise Refused("two equal faces")
+            self.regions[face] = region
 
     @property
     def faces(self) -> set[Face]:
@@ -53,7 +64,9 @@ class FaceList:
 
     def directed(self) -> dict[tuple[int, int], Face]:
         """The face on the left of each pair of vertices."""
-        return {(f[i - 1], f[i]): f for f in self.regions for i in range(self.k)}
+        if self._directed is None:
+            self._directed = {(f[i - 1], f[i]): f for f in self.regions for i in range(self.k)}
+        return self._directed
 
     def degrees(self) -> dict[int, int]:
         """Number of neighbours of each vertex."""
@@ -94,8 +107,8 @@ class FaceList:
     def euler(self) -> int:
         """V - E + F."""
         directed = self.directed()
-        edges = {frozenset(pair) for pair in directed}
-        return len({v for f in self.faces for v in f}) - len(edges) + len(self.faces)
+        edges = sum(a < b or (b, a) not in directed for a, b in directed)
+        return len({a for a, _ in directed}) - edges + len(self.regions)
 
     def delta_sum(self) -> int:
         """Sum of degree - desired degree."""
@@ -124,15 +137,16 @@ class FaceList:
         """
         seen: set[tuple[int, int]] = set()
         links: dict[int, dict[int, int]] = defaultdict(dict)
-        for f in self.faces:
+        for f in self.regions:
             if len(set(f)) < self.k:
                 raise Refused("a face repeats a vertex")
-            for i in range(self.k):
-                pair = (f[i - 1], f[i])
-                if pair in seen:
+            last, v = f[-2], f[-1]
+            for ahead in f:
+                if (v, ahead) in seen:
                     raise Refused("two edges join the same vertices")
-                seen.add(pair)
-                links[f[i]][f[(i + 1) % self.k]] = f[i - 1]
+                seen.add((v, ahead))
+                links[v][ahead] = last
+                last, v = v, ahead
         neighbours: dict[int, set[int]] = defaultdict(set)
         for a, b in seen:
             neighbours[a].add(b)
@@ -156,7 +170,10 @@ class FaceList:
         several = len(set(before.regions.values())) > 1
         if several and self.euler_of_regions() != before.euler_of_regions():
             raise Refused("a region was deleted or torn")
-        if {frozenset(edge) for edge in self.ranges} != set(map(frozenset, self.curve_edges())):
+        along = self.curve_edges()
+        both_ways = sum((b, a) in along for a, b in along)
+        kept = all(edge in along and edge[::-1] not in self.ranges for edge in self.ranges)
+        if not kept or len(self.ranges) != len(along) - both_ways // 2:
             raise Refused("an edge between two regions came or went")
 
 
@@ -209,15 +226,9 @@ class _Rewrite:
         self, old: Sequence[Face], new: Sequence[Face], regions: Sequence[int] | None = None
     ) -> None:
         """Replace faces; the new ones get the region of the first old one unless it is given."""
-        known = self.mesh.regions
         if regions is None:
-            regions = [known[_turned(old[0])]] * len(new)
-        for face in map(_turned, old):
-            known.pop(face, None)
-        for face, region in zip(map(_turned, new), regions, strict=True):
-            if face in known:
-                raise Refused("two equal faces")
-            known[face] = region
+            regions = [self.mesh.regions[_turned(old[0])]] * len(new)
+        self.mesh.replace(old, new, regions)
 
     def _halve(self, a: int, b: int, v: int) -> None:
         """Put v in the middle of the range of the edge a-b, if it has one."""
@@ -276,7 +287,7 @@ class _Rewrite:
         if not along_curve and winner in curved and loser in curved:
             raise Refused("two curves cannot merge")
         self._swap(gone, [], [])
-        touched = [f for f in mesh.faces if loser in f]
+        touched = [f for f in mesh.regions if loser in f]
         renamed = [tuple(winner if v == loser else v for v in f) for f in touched]
         self._swap(touched, renamed, [mesh.regions[f] for f in touched])
         self._close(loser, winner)

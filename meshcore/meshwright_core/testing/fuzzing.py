@@ -10,14 +10,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from meshwright_core.core.arrays import DEGREE, DESIRED, JOURNAL_TOP, RESTORED
+from meshwright_core.core.arrays import JOURNAL_TOP, ORIGIN, RESTORED
 from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.errors import MeshError
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations import catalogue
 from meshwright_core.operations.catalogue import Operation
 from meshwright_core.testing.curved_starts import bent, grid_regions, region_areas
-from meshwright_core.testing.face_list_oracle import Edge, FaceList, Range, Refused
+from meshwright_core.testing.face_list_oracle import Edge, Face, FaceList, Range, Refused
 
 _LARGEST = 60  # elements; beyond it a run starts afresh, since the face list is slow
 _RUN = 150  # operations before a run is undone to its beginning and a new one starts
@@ -38,15 +38,25 @@ def face_list(mesh: HalfEdgeMesh) -> FaceList:
     )
 
 
+def face_regions(mesh: HalfEdgeMesh) -> dict[Face, int]:
+    """The region of each element, an element written as in :class:`FaceList`."""
+    rows = mesh.elements()
+    turned = (rows.argmin(axis=1)[:, None] + np.arange(mesh.k)) % mesh.k
+    faces = map(tuple, np.take_along_axis(rows, turned, axis=1).tolist())
+    return dict(zip(faces, mesh.regions().tolist(), strict=True))
+
+
 def edge_ranges(mesh: HalfEdgeMesh) -> dict[Edge, Range]:
     """The curve and the range of each edge along a curve, in the direction of the curve."""
     halfedges = mesh.halfedges_of(mesh.element_ids()).ravel()
     curve, span = edge_places(mesh.arrays, halfedges, mesh.k)
     along = np.flatnonzero((curve >= 0) & (span[:, 0] < span[:, 1]))
-    rows = zip(halfedges[along].tolist(), curve[along].tolist(), span[along].tolist(), strict=True)
-    return {
-        (mesh.origin(h), mesh.target(h)): (number, start, stop) for h, number, (start, stop) in rows
-    }
+    halfedges = halfedges[along]
+    ahead = halfedges - halfedges % mesh.k + (halfedges + 1) % mesh.k
+    ends = mesh.arrays.edge[:, ORIGIN]
+    edges = zip(ends[halfedges].tolist(), ends[ahead].tolist(), strict=True)
+    ranges = zip(curve[along].tolist(), *span[along].T.tolist(), strict=True)
+    return dict(zip(edges, ranges, strict=True))
 
 
 def snapshot(mesh: HalfEdgeMesh) -> tuple[np.ndarray, ...]:
@@ -208,15 +218,14 @@ def _attempt(
         return oracle, False
     if not verdict:
         raise MeshError(f"{where} was refused ({verdict.reason}), without need")
-    found = face_list(mesh)
-    if after.regions != found.regions:
+    if after.regions != face_regions(mesh):
         raise MeshError(f"{where} gave other faces or regions than it should")
-    if not same_ranges(mesh, after.ranges, found.ranges):
+    if not same_ranges(mesh, after.ranges, edge_ranges(mesh)):
         raise MeshError(f"{where} put an edge in a wrong place of its curve")
-    degrees = after.degrees()
-    if any(mesh.arrays.vertex[v, DEGREE] != d for v, d in degrees.items()):
+    degrees, found, desired = after.degrees(), mesh.degree().tolist(), mesh.desired().tolist()
+    if any(found[v] != d for v, d in degrees.items()):
         raise MeshError(f"{where} left a wrong degree")
-    if any(mesh.arrays.vertex[v, DESIRED] != after.desired[v] for v in degrees):
+    if any(desired[v] != after.desired[v] for v in degrees):
         raise MeshError(f"{where} left a wrong desired degree")
     return after, True
 
@@ -227,14 +236,15 @@ def same_ranges(mesh: HalfEdgeMesh, expected: dict[Edge, Range], found: dict[Edg
     """
     if expected.keys() != found.keys():
         return False
-    lengths = mesh.boundary_info.lengths()
+    lengths = mesh.boundary_info.lengths().tolist()
+    closed = mesh.boundary_info.curves.closed.tolist()
     for edge, (curve, start, stop) in expected.items():
         other, first, last = found[edge]
         turn = (start - first) / lengths[curve]
         near = 1e-9 * lengths[curve]
         if other != curve or abs(stop - start - (last - first)) > near:
             return False
-        whole = round(turn) if mesh.boundary_info.curves.closed[curve] else 0
+        whole = round(turn) if closed[curve] else 0
         if abs(turn - whole) * lengths[curve] > near:
             return False
     return True

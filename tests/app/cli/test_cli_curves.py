@@ -173,7 +173,7 @@ def test_a_valid_mesh_stays_valid(star, greedy, monkeypatch):
     operations = []
     while not runner.finished:
         operations += runner.step()
-    assert len(operations) > 8
+    assert len(operations) > 4
     limit = star.n_elements
 
     def fails_late(mesh):

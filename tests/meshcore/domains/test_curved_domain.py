@@ -6,40 +6,16 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from curved_domains import BAR, PLATE, SQUARE, TURN, circle, ring, turned, two_materials
 
 from meshwright_core import MeshError
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.domain import Domain
 
-TURN = 2 * math.pi
-
-
-def ring(*points):
-    return [Curve.line(a, b) for a, b in pairwise([*points, points[0]])]
-
-
-def circle(x, y, radius, start=0.0, sweep=TURN):
-    return [Curve.arc((x, y), radius, start, sweep)]
-
-
-SQUARE = ring((0, 0), (100, 0), (100, 100), (0, 100))
-PLATE = [SQUARE, circle(50, 50, 20)]
-# a bar with one rounded end
-BAR = [
-    Curve.line((0, 0), (60, 0)),
-    Curve.arc((60, 20), 20, -0.5 * math.pi, math.pi),
-    Curve.line((60, 40), (0, 40)),
-    Curve.line((0, 40), (0, 0)),
-]
-
 
 def kinds(domain):
     points = domain.sides.graph.points.values()
     return sorted((point.kind, *point.place.tolist()) for point in points)
-
-
-def turned(loop):
-    return [curve.reversed for curve in reversed(loop)]
 
 
 @pytest.mark.parametrize("way", ["as it is", "turned", "other order"])
@@ -128,12 +104,6 @@ def test_several_outlines():
     # three discs' worth of Euler characteristic less one hole
     assert domain.optimum("quad") == abs(4 - 4 * 2)
     assert domain.polygon.area == pytest.approx(domain.area, rel=1e-2)
-
-
-def two_materials():
-    left = ring((0, 0), (50, 0), (50, 40), (0, 40))
-    right = ring((50, 0), (100, 0), (100, 40), (50, 40))
-    return [("steel", [left]), ("copper", [right])]
 
 
 def test_two_materials_share_a_side():

@@ -131,9 +131,7 @@ def test_what_does_not_fit_is_said_in_one_sentence():
     with pytest.raises(MeshError, match="has 2 loops, that of the drawing 1"):
         placed(mesh, Domain.from_curves([sides(SQUARE)]))
     wide = Domain.from_curves([sides(SQUARE), [Curve.arc((0, 0), 1.5, 0.3, 2 * np.pi)]])
-    with pytest.raises(
-        MeshError, match=r"^Vertex \d+ of the mesh at .* lies 0\.5"
-    ):
+    with pytest.raises(MeshError, match=r"^Vertex \d+ of the mesh at .* lies 0\.5"):
         placed(mesh, wide)
     high = Domain.from_curves([sides(np.array(SQUARE) * [1, 2]), list(plate().boundary[1])])
     with pytest.raises(MeshError, match=r"at the corner \(-?2, -?4\) .*the nearest one is"):
