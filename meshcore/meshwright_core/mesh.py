@@ -28,6 +28,7 @@ from meshwright_core.core.arrays import (
     copied,
     enlarge,
 )
+from meshwright_core.core.entry_points import entry
 from meshwright_core.core.mesh_boundary import MeshBoundary, Seats
 from meshwright_core.core.mesh_view import MeshView
 from meshwright_core.core.projected_seats import take_projected_seats
@@ -258,7 +259,12 @@ class HalfEdgeMesh(MeshView):
         self._set_vertex(vertex, DESIRED, int(degree))
 
     def set_geometric(self, vertex: int, flag: bool = True) -> None:
-        """Mark a vertex as geometric, or remove the mark: one undoable step."""
+        """Mark a vertex as geometric, or remove the mark: one undoable step.
+
+        Raises MeshError if it would be removed from a junction, where interfaces end.
+        """
+        if not flag and vertex in self.junctions():
+            raise MeshError(f"vertex {vertex} must stay geometric: an interface ends there")
         self._set_flag(vertex, GEOMETRIC, flag)
 
     def set_locked(self, vertex: int, flag: bool = True) -> None:
@@ -272,7 +278,7 @@ class HalfEdgeMesh(MeshView):
 
     def _set_vertex(self, vertex: int, column: int, value: int) -> None:
         self._make_room(16)
-        vertex_edits.set_vertex(self._arrays, vertex, column, value)
+        entry(vertex_edits.set_vertex, 3)(self._arrays, vertex, column, value)
 
     def _require_live(self, vertex: int) -> None:
         if not (0 <= vertex < self.slots and self._arrays.vertex[vertex, HALF] >= 0):
@@ -280,7 +286,7 @@ class HalfEdgeMesh(MeshView):
 
     def _make_room(self, entries: int) -> None:
         self._archive.future.clear()
-        while not journal.has_room(self._arrays, self.k, 0, 0, entries):
+        while not entry(journal.has_room, 4)(self._arrays, self.k, 0, 0, entries):
             self._enlarge()
 
     @property
@@ -304,7 +310,7 @@ class HalfEdgeMesh(MeshView):
         self._refuse_in_transaction()
         if self._archive.past and not self._arrays.counters[STEP]:
             self._arrays = self._archive.trimmed(self._archive.fetch_past(self._arrays))
-        undone = bool(journal.undo(self._arrays))
+        undone = bool(entry(journal.undo, 0)(self._arrays))
         self._project_seats()
         return undone
 
@@ -314,7 +320,7 @@ class HalfEdgeMesh(MeshView):
         counters = self._arrays.counters
         if self._archive.future and counters[STEP] == counters[STEP_END]:
             self._arrays = self._archive.trimmed(self._archive.fetch_future(self._arrays))
-        redone = bool(journal.redo(self._arrays))
+        redone = bool(entry(journal.redo, 0)(self._arrays))
         self._project_seats()
         return redone
 
@@ -378,7 +384,7 @@ class HalfEdgeMesh(MeshView):
             return
         undone = self.cut_redo()
         self._make_room(0)
-        journal.begin_step(self._arrays, _GROUP, -1)
+        entry(journal.begin_step, 2)(self._arrays, _GROUP, -1)
         before = int(self._arrays.counters[JOURNAL_TOP])
         self._arrays.counters[GROUPED] = 1
         try:
@@ -396,7 +402,7 @@ class HalfEdgeMesh(MeshView):
 
     def _close_group(self) -> None:
         self._arrays.counters[GROUPED] = 0
-        journal.end_step(self._arrays)
+        entry(journal.end_step, 0)(self._arrays)
 
     def copy(self, history: bool = False) -> HalfEdgeMesh:
         """An independent mesh with the same ids and free slots; by default without a history."""

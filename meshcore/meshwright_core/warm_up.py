@@ -13,7 +13,8 @@ import numpy as np
 
 from meshwright_core.analysis.cleanable_lines import cleanable_lines
 from meshwright_core.core.compilation import cache_folder, cache_root
-from meshwright_core.geometry.sides import Sides
+from meshwright_core.geometry.edge_curves import curved_edge_polylines, edge_points
+from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -28,13 +29,17 @@ def exercise() -> None:
     triangles.apply("flip", triangles.halfedge(0, 2))
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(3.0), np.arange(3.0)))
     corners = np.array([0, 1, 3, 4])
-    quads = HalfEdgeMesh.from_elements(
-        np.column_stack([x, y]),
-        np.column_stack([corners, corners + 1, corners + 4, corners + 3]),
-    )
+    places = np.column_stack([x, y])
+    elements = np.column_stack([corners, corners + 1, corners + 4, corners + 3])
+    halves = HalfEdgeMesh.from_elements(places, elements, regions=[0, 1, 0, 1])
+    halves.move([4], halves.points[[4]], halves.parameters()[[4]])
+    halves.off_curve()
+    quads = HalfEdgeMesh.from_elements(places, elements)
     quads.move([4], np.array([[3.0, 3.0, 0.0]]))
     relax(quads, [4])
-    Sides(quads).project(1, quads.points[1])
+    inverted(quads)
+    edge_points(quads, 0, [0.5])
+    curved_edge_polylines(quads, 0.1)
     quads.set_locked(4)
     quads.move([4], quads.points[[4]])
     while quads.undo():

@@ -105,3 +105,31 @@ def round_insert():
     return curved_mesh(
         points, quads, boundary, [k + 8, k + 4], range(8, 12), regions=[1] * 5 + [0] * 4
     )
+
+
+def fan(pieces=5):
+    """Triangles from the centre of a circle to it."""
+    points = np.vstack([polar(1.0, 360.0 * np.arange(pieces) / pieces), [[0.0, 0.0]]])
+    k = np.arange(pieces)
+    triangles = np.column_stack([k, (k + 1) % pieces, np.full(pieces, pieces)])
+    return curved_mesh(points, triangles, boundary_of([[circle(1.0)]]), [k], [])
+
+
+def dragged_plate(rows=3, columns=3):
+    """A plate with an arc for its upper side, in quads; its upper right corner dragged outwards."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(columns + 1), np.arange(rows + 1)))
+    points = np.column_stack([x, y]).astype(float)
+    a = np.array([i + (columns + 1) * j for j in range(rows) for i in range(columns)])
+    quads = np.column_stack([a, a + 1, a + columns + 2, a + columns + 1])
+    corners = np.array([0, columns, len(points) - 1, len(points) - 1 - columns])
+    low, right, top, left = points[corners]
+    loop = [
+        Curve.line(low, right),
+        Curve.line(right, top),
+        Curve.arc_by_bulge(top, left, 0.3),
+        Curve.line(left, low),
+    ]
+    around = np.flatnonzero((x == 0) | (y == 0) | (x == columns) | (y == rows))
+    mesh = curved_mesh(points, quads, boundary_of([loop]), [around], corners)
+    mesh.move(corners[[2]], mesh.points[corners[[2]]] + [0.7, 0.4, 0.0])
+    return mesh

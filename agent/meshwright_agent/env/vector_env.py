@@ -90,8 +90,9 @@ def stack(meshes: list[HalfEdgeMesh], task: Task) -> MeshArrays:
         curves += len(mesh.arrays.interface)
         for field, name in zip(fields, _OWN_FIELDS, strict=True):
             field.append(getattr(room, name))
+    own = {name: np.stack(field) for name, field in zip(_OWN_FIELDS, fields, strict=True)}
     return MeshArrays(
-        *(np.stack(field) for field in fields),
+        **own,
         curves=chained_curves([mesh.arrays.curves for mesh in meshes]),
         interface=np.concatenate([mesh.arrays.interface for mesh in meshes]),
     )
@@ -307,11 +308,9 @@ class Batch:
         self.best_step = np.zeros(size, int)
         self.active = np.ones(size, np.bool_)
         self.scratch = Scratch(task, self.pool.edge.shape[1], self.pool.vertex.shape[1])
-        self.meshes = MeshArrays(
-            *(getattr(self.pool, name)[np.zeros(size, int)].copy() for name in _OWN_FIELDS),
-            curves=self.pool.curves,
-            interface=self.pool.interface,
-        )
+        first = np.zeros(size, int)
+        copies = {name: getattr(self.pool, name)[first].copy() for name in _OWN_FIELDS}
+        self.meshes = self.pool._replace(**copies)
         rows = min(LARGEST, self.pool.edge.shape[1])
         self._features = np.zeros((size * rows, task.channels), np.int8)
         self._reads = np.zeros((size * rows, task.k + 1), np.int16)

@@ -27,7 +27,6 @@ from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
 from meshwright_agent.search.shortening import shorten as shorter
 from meshwright_core.domains.meshing import benchmark_mesh
-from meshwright_core.geometry.boundary_spacing import anchors
 from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
@@ -119,7 +118,6 @@ def solve(
     require_kind(policy, mesh.kind)
     if seconds is not None:
         prepare(policy)  # so that loading the kernels takes none of the time
-    mesh = _anchored(mesh)
     if is_large(mesh):
         go_on = partial(solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten)
         return _patch_by_patch(mesh, policy, seconds, max_steps, seed, progress, cancelled, go_on)
@@ -140,20 +138,6 @@ def solve(
             break
     best.rollouts, best.seconds = search.done, time.perf_counter() - search.began
     return best
-
-
-def _anchored(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
-    """A copy with vertices locked on curved sides, so that a disc does not become a square.
-
-    Locks only forbid operations: what is allowed on the copy is allowed on the mesh itself.
-    """
-    held = anchors(mesh).tolist() if mesh.n_elements <= SIDE_BY_SIDE else []
-    if not held:
-        return mesh
-    copy = mesh.copy()
-    for vertex in held:
-        copy.set_locked(vertex)
-    return copy
 
 
 def _patch_by_patch(

@@ -388,10 +388,18 @@ class Document:
         mesh = self._need()
         return self._do("untangle", "Untangle", -1, by, lambda: repair(mesh))
 
-    def move(self, vertices: np.ndarray, positions: np.ndarray, by: str = YOU) -> None:
-        """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step."""
+    def move(
+        self,
+        vertices: np.ndarray,
+        positions: np.ndarray,
+        by: str = YOU,
+        parameters: np.ndarray | None = None,
+    ) -> None:
+        """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step; ``parameters`` (n,) as in
+        :meth:`HalfEdgeMesh.move`.
+        """
         mesh = self._need()
-        self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions))
+        self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions, parameters))
 
     def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
         """Set the desired degree of one vertex or several (n,), as one step.
@@ -405,10 +413,14 @@ class Document:
         self._do("desired", title, -1, YOU, lambda: _each(wanted, mesh.set_desired, degree))
 
     def set_geometric(self, vertices: int | np.ndarray, flag: bool) -> None:
-        """Set or clear the corner flag of one vertex or several (n,), as one step."""
+        """Set or clear the corner flag of one vertex or several (n,), as one step.
+
+        Junctions of interfaces keep it.
+        """
         mesh = self._need()
         now = mesh.geometric()
-        wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
+        kept = mesh.junctions()
+        wanted = [v for v in _ids(vertices) if bool(now[v]) != flag and v not in kept]
         title = _counted("Make corner" if flag else "Free corner", wanted)
         self._do("geometric", title, -1, YOU, lambda: _each(wanted, mesh.set_geometric, flag))
 

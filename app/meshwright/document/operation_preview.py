@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh, Operation, Verdict
 from meshwright_core.analysis.dry_run import dry_run
 from meshwright_core.analysis.dry_run import score_change as tried_change
+from meshwright_core.geometry.edge_parts import EdgeParts
 from meshwright_core.operations.catalogue import CODES, OperationInfo, of_kind, score_change
 
 BARRED = -1
@@ -47,10 +49,12 @@ class Ghost:
     halfedge: int
     change: int
     """Change of s."""
-    added: np.ndarray
-    """(n, 2, 2) ends of the new edges."""
-    removed: np.ndarray
-    """(m, 2, 2) ends of the removed edges."""
+    added_edges: EdgeParts
+    """The n new edges."""
+    removed_edges: EdgeParts
+    """The m removed edges."""
+    fresh: np.ndarray
+    """(q, 2) positions of the new vertices, those on a curve exactly there."""
     gone: np.ndarray
     """(g, 2) positions of the removed vertices."""
     places: np.ndarray
@@ -59,9 +63,20 @@ class Ghost:
     """(p,) their new Delta, 0 for those that become regular. New regular vertices are left out."""
 
     @property
+    def added(self) -> np.ndarray:
+        """(n, 2, 2) ends of the new edges."""
+        return self.added_edges.ends[:, :, :2]
+
+    @property
+    def removed(self) -> np.ndarray:
+        """(m, 2, 2) ends of the removed edges."""
+        return self.removed_edges.ends[:, :, :2]
+
+    @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
         """Bounding box as least x, least y, largest x, largest y; zeros if it is empty."""
-        seen = np.concatenate([self.added.reshape(-1, 2), self.removed.reshape(-1, 2), self.places])
+        edges = [part for part in (self.added_edges, self.removed_edges) if len(part)]
+        seen = np.concatenate([*(part.box[:, :2] for part in edges), self.places, self.fresh])
         if not len(seen):
             return 0.0, 0.0, 0.0, 0.0
         (x, y), (right, top) = seen.min(axis=0).tolist(), seen.max(axis=0).tolist()
@@ -79,8 +94,9 @@ def ghost(mesh: HalfEdgeMesh, operation: Operation | str, halfedge: int) -> Ghos
         operation=seen.operation,
         halfedge=halfedge,
         change=seen.score_change,
-        added=seen.added[:, :, :2],
-        removed=seen.removed[:, :, :2],
+        added_edges=seen.added_edges,
+        removed_edges=seen.removed_edges,
+        fresh=seen.new_places[:, :2],
         gone=seen.gone[:, :2],
         places=seen.places[shown, :2],
         delta=seen.delta[shown],

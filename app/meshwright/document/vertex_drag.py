@@ -1,8 +1,9 @@
 """Dragging vertices with the mouse: their positions, and the shapes of the elements around them.
 
-Inner vertices follow the mouse, boundary vertices slide along their side between their neighbours
-on it, corners and locked vertices stay. The mesh is not changed: the caller submits
-:attr:`Drag.vertices` and :attr:`Drag.places` to the document at the end.
+Inner vertices follow the mouse, those on the boundary or an interface slide along its true curve
+between their neighbours there, corners and locked vertices stay. The mesh is not changed: the
+caller submits :attr:`Drag.vertices`, :attr:`Drag.places` and :attr:`Drag.parameters` to the
+document at the end.
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ import numpy as np
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import FLAGS, GEOMETRIC, LOCKED
-from meshwright_core.geometry.outline import place_all
-from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
-from meshwright_core.geometry.region import elements_at
-from meshwright_core.geometry.sides import Sides
+from meshwright_core.core.composite_curves import nearest_between
+from meshwright_core.geometry.edge_parts import EdgeParts
+from meshwright_core.geometry.movable_part import around
+from meshwright_core.geometry.seats import place_seats
 
 KEPT = 0.02
 """Distance that a sliding vertex keeps from its neighbours, as a fraction of their distance."""
@@ -35,96 +36,114 @@ def refusal(mesh: HalfEdgeMesh, vertex: int) -> str:
 class Drag:
     """One drag of ``vertices``, of which ``grabbed`` is under the mouse.
 
-    Corners and locked vertices among them stay. Attributes: ``vertices`` (n,) ids of those that
-    move, ``places`` (n, 3) where they are now.
+    Corners and locked vertices among them stay. ``vertices`` (n,) are the ids of those that move.
     """
 
     def __init__(self, mesh: HalfEdgeMesh, vertices: Sequence[int], grabbed: int) -> None:
-        ids = np.unique(np.asarray(vertices, np.int64))
-        flags = mesh.arrays.vertex[ids, FLAGS]
-        self.vertices = ids[(flags & (GEOMETRIC | LOCKED)) == 0]
-        self._start = mesh.points[self.vertices].copy()
-        self.places = self._start.copy()
+        self._mesh = mesh
+        self._part = part = around(mesh, np.asarray(vertices, np.int64))
+        self._rows = np.flatnonzero(part.movable)
+        self.vertices: np.ndarray = part.vertices[self._rows]
+        self._start = part.points[self._rows].copy()
         self._origin = mesh.points[grabbed].copy()
-        self._slides = np.flatnonzero(mesh.boundary()[self.vertices])
-        self._sides = Sides(mesh, self.vertices[self._slides]) if len(self._slides) else None
-        self._parameters: dict[int, np.ndarray] = {}
-        self._measure(mesh)
+        self._slides = np.flatnonzero(part.seats.curve[self._rows] >= 0)
+        self._lengths = mesh.boundary_info.lengths()
+        self._ranges = np.array([self._range(row) for row in self._rows[self._slides]])
+        halfedges = mesh.halfedges_of(part.element_ids).ravel()
+        self._sides = EdgeParts.of(mesh.arrays, halfedges, mesh.k)
+        corners = part.elements
+        self._ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
+        moves = part.movable[self._ends].any(axis=1)
+        _, once = np.unique(np.sort(self._ends, axis=1), axis=0, return_index=True)
+        self._edges = once[moves[once]]
 
-    def _measure(self, mesh: HalfEdgeMesh) -> None:
-        """Collect the surrounding elements in small arrays with local indices."""
-        self._elements = elements_at(mesh, self.vertices)
-        near, local = np.unique(mesh.corners(self._elements), return_inverse=True)
-        self._corners = local.reshape(-1, mesh.k)
-        self._points = mesh.points[near].copy()
-        self._rows = np.searchsorted(near, self.vertices)
-        moves = np.zeros(len(near), bool)
-        moves[self._rows] = True
-        a, b = self._corners.ravel(), np.roll(self._corners, -1, axis=1).ravel()
-        pairs = np.column_stack([np.minimum(a, b), np.maximum(a, b)])
-        self._edges = np.unique(pairs[moves[pairs].any(axis=1)], axis=0)
-        flat = np.ptp(self._points[:, 2]) == 0.0 if len(near) else True
-        normal = np.array([0.0, 0.0, 1.0]) if flat else None
-        self._reference = reference_normals(self._points, self._corners, normal)
-        if flat and len(near):
-            areas = corner_sines(self._points, self._corners, self._reference).sum()
-            self._reference *= 1.0 if areas >= 0 else -1.0
+    def _range(self, row: int) -> tuple[float, float]:
+        """The parameters between which a sliding vertex may go, apart from its neighbours; half-way
+        to a neighbour that moves too.
+        """
+        seats = self._part.seats
+        here = float(seats.parameter[row])
+        bounds = []
+        for other, shift in (
+            (seats.before[row], seats.low[row]),
+            (seats.after[row], seats.high[row]),
+        ):
+            there = float(shift + (seats.parameter[other] if other >= 0 else 0.0))
+            bounds.append(here + (0.5 if other >= 0 else 1.0) * (there - here))
+        margin = KEPT * (bounds[1] - bounds[0])
+        return bounds[0] + margin, bounds[1] - margin
 
     def to(self, x: float, y: float) -> None:
         """Move the grabbed vertex to (x, y), and the others with it."""
-        step = np.array([x - self._origin[0], y - self._origin[1], 0.0])
-        self.places = self._start + step
-        for row in self._slides.tolist():
-            self.places[row] = self._on_side(row)
-        self._points[self._rows] = self.places
+        part = self._part
+        places = self._start + np.array([x - self._origin[0], y - self._origin[1], 0.0])
+        part.points[self._rows] = places
+        rows = self._rows[self._slides]
+        for row, place, bounds in zip(
+            rows.tolist(), places[self._slides], self._ranges.tolist(), strict=True
+        ):
+            seats = part.seats  # the side may lie off its curve
+            goal = place - seats.offset[row] - seats.parameter[row] * seats.slope[row]
+            seats.parameter[row] = self._nearest(int(seats.curve[row]), goal, *bounds)
+        if len(rows):
+            part.points[rows] = place_seats(part.curves, part.seats, rows)
 
-    def _on_side(self, row: int) -> np.ndarray:
-        """The position of a sliding vertex: on its side, between its neighbours."""
-        assert self._sides is not None
-        vertex = int(self.vertices[row])
-        side, seat = self._sides.seat(vertex)
-        _, wanted = self._sides.project(vertex, self.places[row])
-        low, high = self._room(side, seat)
-        length = self._sides.length(side)
-        if self._sides.polylines.closed[side]:
-            middle = 0.5 * (low + high)
-            wanted += length * np.round((middle - wanted) / length)
-        at = float(np.clip(wanted, low, high))
-        return np.asarray(place_all(self._sides.polylines, np.array([side]), np.array([at]))[0])
+    def _nearest(self, curve: int, place: np.ndarray, low: float, high: float) -> float:
+        """The parameter in [low, high] of the point of a curve nearest to ``place``; a range on a
+        closed curve may lie beyond its ends.
+        """
+        curves, length = self._part.curves, float(self._lengths[curve])
+        if not curves.closed[curve]:
+            return float(nearest_between(curves, curve, place, max(low, 0.0), min(high, length))[0])
+        found = []
+        for turn in range(int(np.floor(low / length)), int(np.floor(high / length)) + 1):
+            first, last = max(low - turn * length, 0.0), min(high - turn * length, length)
+            t, squared = nearest_between(curves, curve, place, first, last)
+            found.append((squared, t + turn * length))
+        return float(min(found)[1])
 
-    def _room(self, side: int, seat: int) -> tuple[float, float]:
-        """The range of arc length for a vertex; half-way to a neighbour that moves too."""
-        assert self._sides is not None
-        if side not in self._parameters:
-            self._parameters[side] = self._sides.parameters(side)
-        t = self._parameters[side]
-        closed = bool(self._sides.polylines.closed[side])
-        length, count = self._sides.length(side), len(t)
-        here, chain = float(t[seat]), self._sides.chains[side]
-        bounds = []
-        for step in (-1, 1):
-            turns, other = divmod(seat + step, count) if closed else (0, seat + step)
-            there = float(t[other]) + turns * length
-            share = 0.5 if int(chain[other]) in self.vertices else 1.0
-            bounds.append(here + share * (there - here))
-        margin = KEPT * (bounds[1] - bounds[0])
-        return bounds[0] + margin, bounds[1] - margin
+    @property
+    def places(self) -> np.ndarray:
+        """(n, 3) where the vertices are now; those on curves exactly there."""
+        return self._part.points[self._rows].copy()
+
+    @property
+    def parameters(self) -> np.ndarray:
+        """(n,) the parameters of those on curves, as :meth:`HalfEdgeMesh.move` takes them."""
+        found: np.ndarray = self._part.parameters(self._mesh)[self._rows]
+        return found
 
     @property
     def moved(self) -> bool:
         """Whether any vertex has moved."""
-        return bool((self.places != self._start).any())
+        return bool((self._part.points[self._rows] != self._start).any())
+
+    @property
+    def edges(self) -> EdgeParts:
+        """The m edges that move, as they are now."""
+        return self._moved(self._edges)
 
     @property
     def segments(self) -> np.ndarray:
-        """(m, 2, 2) the moving edges at their present positions."""
-        segments: np.ndarray = self._points[self._edges][:, :, :2]
-        return segments
+        """(m, 2, 2) their ends."""
+        return self.edges.ends[:, :, :2]
 
     @property
     def folded(self) -> np.ndarray:
         """(f, k, 2) the corners of the elements that would be inverted."""
-        sines = corner_sines(self._points, self._corners, self._reference)
-        bad = sines.min(axis=1) <= TOLERANCE if len(sines) else np.zeros(0, bool)
-        corners: np.ndarray = self._points[self._corners[bad]][:, :, :2]
+        bad = self._part.inverted_rows()
+        corners: np.ndarray = self._part.points[self._part.elements[bad]][:, :, :2]
         return corners
+
+    @property
+    def folded_sides(self) -> EdgeParts:
+        """Their sides, k for each of the f elements in turn."""
+        sides = np.arange(len(self._ends)).reshape(self._part.elements.shape)
+        return self._moved(sides[self._part.inverted_rows()].ravel())
+
+    def _moved(self, rows: np.ndarray) -> EdgeParts:
+        """Sides of elements at the present positions and parameters."""
+        part, ends = self._part, self._ends[rows]
+        before = self._sides.take(rows)
+        shift = part.seats.parameter[ends] - part.home[ends]
+        return EdgeParts(part.curves, before.curve, before.span + shift, part.points[ends])

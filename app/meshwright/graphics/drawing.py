@@ -14,8 +14,12 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-SAMPLES = 3
+SAMPLES = 4
 """Images are drawn at this many times their size and scaled down, for smooth lines."""
+THINNEST = 3
+"""Lines of fewer pixels before scaling down are left to Pillow."""
+SHARP = 0.1
+"""Radians by which a line turns where its outer side has a gap to be filled."""
 FAMILIES = "'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif"
 MIDDLE = 0.36
 """Distance from the middle of a line of text down to its baseline, relative to the font size."""
@@ -158,14 +162,14 @@ def raster(drawing: Drawing, samples: int = SAMPLES) -> Any:
 def _paint(image: Any, painter: Any, shape: Shape, scale: int) -> None:
     if isinstance(shape, Segments):
         ends = _dashed(shape.ends, shape.dash) if shape.dash else shape.ends
-        width = max(1, round(shape.width * scale))
-        for row in (np.asarray(ends).reshape(-1, 4) * scale).tolist():
-            painter.line(row, fill=shape.colour, width=width)
+        pixels = np.asarray(ends, dtype=float).reshape(-1, 2, 2) * scale
+        _stroke_segments(painter, pixels, shape.colour, shape.width * scale)
     elif isinstance(shape, Line):
-        points = (np.asarray(shape.points) * scale).ravel().tolist()
-        if len(points) > 2:
-            width = max(1, round(shape.width * scale))
-            painter.line(points, fill=shape.colour, width=width, joint="curve")
+        points = np.asarray(shape.points, dtype=float) * scale
+        if len(points) > 1:
+            segments = np.stack([points[:-1], points[1:]], axis=1)
+            _stroke_segments(painter, segments, shape.colour, shape.width * scale)
+            _round_joints(painter, points, shape.colour, shape.width * scale)
     elif isinstance(shape, Polygon):
         painter.polygon((np.asarray(shape.points) * scale).ravel().tolist(), fill=shape.colour)
     elif isinstance(shape, Disc):
@@ -191,6 +195,38 @@ def _paint(image: Any, painter: Any, shape: Shape, scale: int) -> None:
         image.paste(shape.image(scale * shape.scale), (round(x * scale), round(y * scale)))
     else:
         _fill(image, painter, shape, scale)
+
+
+def _stroke_segments(painter: Any, ends: np.ndarray, colour: str, width: float) -> None:
+    """Paint segments (n, 2, 2) as polygons: Pillow's lines are thinner the more they slant."""
+    across = max(round(width), 1)
+    if across < THINNEST:
+        for row in ends.reshape(-1, 4).tolist():
+            painter.line(row, fill=colour, width=across)
+        return
+    # a polygon includes the pixels on its edges
+    way = ends[:, 1] - ends[:, 0]
+    length = np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    side = 0.5 * (width - 1.0) * np.column_stack([-way[:, 1], way[:, 0]]) / length
+    corners = (ends[:, 0] + side, ends[:, 1] + side, ends[:, 1] - side, ends[:, 0] - side)
+    for row in np.rint(np.stack(corners, axis=1)).reshape(-1, 8).tolist():
+        painter.polygon(row, fill=colour)
+
+
+def _round_joints(painter: Any, points: np.ndarray, colour: str, width: float) -> None:
+    """Discs where a line (m, 2) turns, and at its start if it is closed."""
+    if round(width) < THINNEST:
+        return
+    inner = points[1:-1]
+    if (points[0] == points[-1]).all():
+        points = np.vstack([points, points[1:2]])
+        inner = points[1:-1]
+    come, go = inner - points[:-2], points[2:] - inner
+    turn = np.arctan2(come[:, 0] * go[:, 1] - come[:, 1] * go[:, 0], (come * go).sum(axis=1))
+    half = 0.5 * (width - 1.0)
+    places = np.rint(inner[np.abs(turn) > SHARP])
+    for row in np.column_stack([places - half, places + half]).tolist():
+        painter.ellipse(row, fill=colour)
 
 
 def _fill(image: Any, painter: Any, area: Area, scale: int) -> None:

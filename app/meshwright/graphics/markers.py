@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.irregularity import usual_desired_degree
 
 BASE_RADIUS = 10.0
 """Radius in pixels of the disc of a vertex with |delta| = 1, where there is room."""
@@ -22,8 +23,11 @@ READABLE = 6.0
 @dataclass(frozen=True)
 class Markers:
     """Irregular vertices (n,), with their delta (n,), places (n, 2), length of their shortest edges
-    ``reach`` (n,), and whether they are corners (n,); places of all corners and of locked vertices;
-    boundary loops (m, 2), each ending with its first point.
+    ``reach`` (n,), and whether they are corners or anchors (n,); places of all corners, anchors and
+    locked vertices; boundary loops (m, 2), each ending with its first point.
+
+    Anchors are vertices that an operation keeps as it keeps corners, but where the side goes
+    straight on: the tangent point of a line and an arc.
     """
 
     vertices: np.ndarray
@@ -31,7 +35,9 @@ class Markers:
     places: np.ndarray
     reach: np.ndarray
     corners: np.ndarray
+    anchors: np.ndarray
     corner_places: np.ndarray
+    anchor_places: np.ndarray
     locked_places: np.ndarray
     loops: tuple[np.ndarray, ...]
 
@@ -47,15 +53,19 @@ def markers(mesh: HalfEdgeMesh) -> Markers:
     delta = mesh.irregularity()
     points = mesh.points[:, :2]
     vertices = np.flatnonzero(delta)
-    corners = mesh.vertices()[mesh.geometric()[mesh.vertices()]]
+    fixed = mesh.vertices()[mesh.geometric()[mesh.vertices()]]
+    usual = [usual_desired_degree(mesh.k, boundary) for boundary in (True, False)]
+    anchors = mesh.desired()[fixed] == np.where(mesh.boundary()[fixed], *usual)
     locked = mesh.vertices()[mesh.locked()[mesh.vertices()]]
     return Markers(
         vertices=vertices,
         delta=delta[vertices],
         places=points[vertices],
         reach=_shortest_edges(mesh.elements(), points, vertices),
-        corners=mesh.geometric()[vertices],
-        corner_places=points[corners],
+        corners=np.isin(vertices, fixed[~anchors]),
+        anchors=np.isin(vertices, fixed[anchors]),
+        corner_places=points[fixed[~anchors]],
+        anchor_places=points[fixed[anchors]],
         locked_places=points[locked],
         loops=tuple(points[np.append(loop, loop[0])] for loop in mesh.boundary_loops()),
     )

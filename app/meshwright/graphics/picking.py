@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from meshwright.graphics.true_edges import TrueEdges
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.geometry.polygons import contains
 
@@ -13,12 +14,15 @@ class Picker:
 
     The elements with the nearest centres are candidates, and a point-in-polygon test decides. If
     none contains the point more candidates are tried, since elements may differ much in size.
+    ``edges`` are the true edges of the same state, for elements with curved sides: a point between
+    a curve and its chord belongs to the element on its side of the curve.
     """
 
-    def __init__(self, mesh: HalfEdgeMesh) -> None:
+    def __init__(self, mesh: HalfEdgeMesh, edges: TrueEdges | None = None) -> None:
         from scipy.spatial import cKDTree  # imported at the first hover, as it takes time
 
         self._mesh = mesh
+        self._edges = edges or None  # of no use if all are straight
         self._elements = mesh.elements()
         self._ids = mesh.element_ids()
         self._corners = mesh.points[:, :2][self._elements]  # (m, k, 2)
@@ -33,20 +37,34 @@ class Picker:
                 break
             rows = np.atleast_1d(self._tree.query((x, y), k=min(near, count))[1])
             inside = contains(self._corners[rows], x, y)
+            self._correct(inside, rows, x, y)
             if inside.any():
                 return int(rows[np.argmax(inside)])
             if near >= count:
                 break
         return -1
 
+    def _correct(self, inside: np.ndarray, rows: np.ndarray, x: float, y: float) -> None:
+        """Decide again for those of the candidates that have curved sides."""
+        if self._edges is None:
+            return
+        for at in np.flatnonzero(np.isin(self._ids[rows], self._edges.elements)).tolist():
+            outline = self._edges.outline(int(self._ids[rows[at]]))
+            inside[at] = bool(contains(outline, x, y))
+
     def halfedge(self, x: float, y: float) -> int:
         """The half-edge of the element at (x, y) whose edge is nearest, -1 outside the mesh."""
         row = self.element_row(x, y)
         if row < 0:
             return -1
-        start = self._corners[row]
-        side = int(np.argmin(_distances(start, np.roll(start, -1, axis=0), x, y)))
-        return self._mesh.k * int(self._ids[row]) + side
+        element = int(self._ids[row])
+        if self._edges is not None and element in self._edges.elements:
+            sides = self._edges.sides(element)
+            away = [float(_distances(line[:-1], line[1:], x, y).min()) for line in sides]
+        else:
+            start = self._corners[row]
+            away = _distances(start, np.roll(start, -1, axis=0), x, y).tolist()
+        return self._mesh.k * element + int(np.argmin(away))
 
     def vertex(self, x: float, y: float, reach: float) -> int:
         """The vertex nearest to (x, y) within ``reach`` units of length, -1 if none is."""

@@ -45,6 +45,11 @@ class Theme:
     warning: str
     warning_soft: str
 
+    @property
+    def tints(self) -> tuple[str, ...]:
+        """Pale fills of neighbouring areas, by which regions and blocks differ."""
+        return self.fill, self.accent_soft, self.warning_soft, self.pressed
+
 
 LIGHT = Theme(
     name="light",
@@ -118,6 +123,39 @@ def theme(name: str, colours: str = "vermilion") -> Theme:
         raise ValueError(f"There is no theme '{name}'; choose one of {', '.join(THEMES)}.")
     _, plus, minus = COLOURS[colours]
     return replace(THEMES[name], plus=plus, minus=minus)
+
+
+REGION_HUES = ("#c58b2a", "#3f78c9", "#4c9a57", "#9560b8", "#bf5670")
+"""Fills of regions are mixed with these hues, in turn."""
+REGION_SHARE = 0.14
+"""Share of the hue in a region's fill: enough to tell neighbours apart, light enough for marks."""
+
+
+SWATCH_SHARE = 0.55
+"""The same in the small squares beside names of regions."""
+
+
+def region_fills(theme: Theme, count: int) -> list[str]:
+    """The fill of each region of a mesh; the plain fill if there is only one."""
+    return _region_colours(theme, count, REGION_SHARE)
+
+
+def region_swatches(theme: Theme, count: int) -> list[str]:
+    """The colours of the same regions where they cover a few pixels only."""
+    return _region_colours(theme, count, SWATCH_SHARE)
+
+
+def _region_colours(theme: Theme, count: int, share: float) -> list[str]:
+    if count < 2:
+        return [theme.fill] * count
+    hues = (REGION_HUES[i % len(REGION_HUES)] for i in range(count))
+    return [_mixed(theme.fill, hue, share) for hue in hues]
+
+
+def _mixed(one: str, other: str, share: float) -> str:
+    """A colour ``share`` of the way from one to another, all as six hexadecimal digits."""
+    a, b = bytes.fromhex(one[1:]), bytes.fromhex(other[1:])
+    return "#" + bytes(round(x + share * (y - x)) for x, y in zip(a, b, strict=True)).hex()
 
 
 def style_sheet(theme: Theme) -> str:
@@ -210,10 +248,10 @@ QHeaderView::section {{ padding: 4px 12px; }}
 #LicenceText {{ background: {t.background}; border: 1px solid {t.line}; border-radius: 6px;
                padding: 4px; font-family: monospace; font-size: 12px; }}
 QCheckBox {{ spacing: 8px; }}
-QCheckBox::indicator {{ width: 16px; height: 16px; border-radius: 4px;
+QCheckBox::indicator, #Table::indicator {{ width: 16px; height: 16px; border-radius: 4px;
                        border: 1px solid {t.faint}; background: {t.raised}; }}
-QCheckBox::indicator:checked {{ background: {t.accent}; border-color: {t.accent};
-                               image: url({icons}/check-{t.name}.svg); }}
+QCheckBox::indicator:checked, #Table::indicator:checked {{
+    background: {t.accent}; border-color: {t.accent}; image: url({icons}/check-{t.name}.svg); }}
 QCheckBox::indicator:hover, QCheckBox:focus::indicator {{ border-color: {t.accent}; }}
 QPushButton#Segment {{ border-radius: 0; padding: 6px 16px; }}
 QPushButton#Segment:checked {{ background: {t.accent_soft}; border-color: {t.accent};

@@ -2,6 +2,8 @@
 
 VTK draws elements and long outlines. The window draws markers and numbers over them by QPainter,
 which is sharper; only if there are very many does VTK draw the discs too (:attr:`Scene.crowd`).
+Elements with curved sides are polygons of many points, cut into triangles here because VTK would
+fill concave ones beyond their rim; their edges are lines, and both follow the zoom.
 Pictures and films do not use VTK: see :mod:`meshwright.graphics.mesh_figure`.
 """
 
@@ -10,9 +12,11 @@ from typing import Any
 import numpy as np
 
 from meshwright.graphics.markers import Markers, markers
-from meshwright.graphics.theme import Theme
+from meshwright.graphics.theme import Theme, region_fills
+from meshwright.graphics.true_edges import TrueEdges
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.arrays import TWIN
 
 CROWD = 1200
 """If more irregular vertices are visible, VTK draws their discs, without numbers."""
@@ -39,6 +43,7 @@ class Scene:
         self._short_outlines = short_outlines
         self._surface: Any = None
         self._outline: Any = None
+        self._curved: tuple[Any, Any] | None = None  # fill and edges of elements with curved sides
         self._discs: dict[int, Any] = {}
         self._depth = 1.0
         self.markers: Markers | None = None
@@ -56,56 +61,59 @@ class Scene:
         """True if VTK draws the boundary, False if the caller does."""
         return self._outline is not None
 
-    def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None) -> None:
+    def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None, edges: TrueEdges | None) -> None:
         """Change all colours."""
         self._theme = theme
         self._plotter.set_background(theme.background)
-        self.show(mesh)
+        self.show(mesh, edges)
 
-    def show(self, mesh: HalfEdgeMesh | None) -> None:
-        """Show another mesh or none; all actors are replaced."""
-        for actor in (self._surface, self._outline, *self._discs.values()):
+    def show(self, mesh: HalfEdgeMesh | None, edges: TrueEdges | None) -> None:
+        """Show another mesh with its edges, or none; all actors are replaced."""
+        actors = (self._surface, self._outline, *(self._curved or ()), *self._discs.values())
+        for actor in actors:
             if actor is not None:
                 self._plotter.remove_actor(actor, render=False, reset_camera=False)
-        self._surface = self._outline = self.markers = None
+        self._surface = self._outline = self._curved = self.markers = None
         self._discs = {}
-        if mesh is None:
+        if mesh is None or edges is None:
             return
         self.markers = markers(mesh)
-        self._surface = self._plotter.add_mesh(
-            _surface(mesh),
-            color=self._theme.fill,
+        self._surface = self._add(
+            self._straight(mesh, edges),
             show_edges=True,
             edge_color=self._theme.edge,
             line_width=self._width,
-            lighting=False,
-            reset_camera=False,
-            render=False,
-            pickable=False,
         )
+        if edges:
+            fill, lines = self._bent(mesh, edges)
+            line = {"color": self._theme.edge, "line_width": self._width}
+            self._curved = self._add(fill), self._add(lines, **line)
         if self._draws_outline(self.markers):
-            self._outline = self._plotter.add_mesh(
-                _outline(self.markers),
-                color=self._theme.boundary,
-                line_width=2.0 * self._width,
-                lighting=False,
-                reset_camera=False,
-                render=False,
-                pickable=False,
+            self._outline = self._add(
+                _outline(edges), color=self._theme.boundary, line_width=2.0 * self._width
             )
         self._measure(mesh)
         self._mark_crowd(mesh)
 
-    def update(self, mesh: HalfEdgeMesh) -> None:
+    def update(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
         """Update the actors to the present state of the mesh that is shown."""
         self.markers = markers(mesh)
-        if self._surface is None or self.outlined != self._draws_outline(self.markers):
-            self.show(mesh)
+        drawn = self.outlined, self._curved is not None
+        if self._surface is None or drawn != (self._draws_outline(self.markers), bool(edges)):
+            self.show(mesh, edges)
             return
-        self._surface.mapper.dataset = _surface(mesh)
-        if self._outline is not None:
-            self._outline.mapper.dataset = _outline(self.markers)
+        self._surface.mapper.dataset = self._straight(mesh, edges)
+        self.update_edges(mesh, edges)
         self._mark_crowd(mesh)
+
+    def update_edges(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
+        """Update what follows the polylines of the edges, which have changed with the view."""
+        if self._curved is not None:
+            datasets = self._bent(mesh, edges)
+            for actor, dataset in zip(self._curved, datasets, strict=True):
+                actor.mapper.dataset = dataset
+        if self._outline is not None:
+            self._outline.mapper.dataset = _outline(edges)
 
     def look(self, viewport: Viewport) -> None:
         """Set the camera to the viewport."""
@@ -128,6 +136,8 @@ class Scene:
     def _measure(self, mesh: HalfEdgeMesh) -> None:
         heights = np.abs(mesh.points[mesh.vertices()])
         self._depth = float(heights.max()) if heights.size else 1.0
+        if self._curved is not None:
+            self._curved[1].SetPosition(0.0, 0.0, 1.2 * self._depth)
         if self._outline is not None:
             self._outline.SetPosition(0.0, 0.0, 1.5 * self._depth)
 
@@ -151,23 +161,75 @@ class Scene:
             self._discs[value].SetVisibility(len(places) > 0)
 
     def _add_discs(self, places: np.ndarray, value: int) -> Any:
-        return self._plotter.add_mesh(
+        return self._add(
             _points(places),
             color=self._theme.plus if value > 0 else self._theme.minus,
             style="points",
             point_size=self._width * (3.0 + 2.0 * abs(value)),
             render_points_as_spheres=True,
-            lighting=False,
-            reset_camera=False,
-            render=False,
-            pickable=False,
         )
 
+    def _add(self, dataset: Any, **look: Any) -> Any:
+        """Add an actor; without ``color`` it is filled, in the colours of its regions if it has
+        them.
+        """
+        if "color" not in look:
+            tinted = _TINT in dataset.cell_data
+            colours = {"scalars": _TINT, "rgb": True} if tinted else {"color": self._theme.fill}
+            look = {**colours, **look}
+        return self._plotter.add_mesh(
+            dataset, **look, lighting=False, reset_camera=False, render=False, pickable=False
+        )
 
-def _surface(mesh: HalfEdgeMesh) -> Any:
-    import pyvista
+    def _straight(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> Any:
+        """The elements without curved sides."""
+        import pyvista
 
-    return pyvista.PolyData.from_regular_faces(mesh.points, mesh.elements())
+        elements = mesh.elements()
+        rows = np.arange(len(elements))
+        if edges:
+            rows = np.flatnonzero(~np.isin(mesh.element_ids(), edges.elements))
+            elements = elements[rows]
+        surface = pyvista.PolyData.from_regular_faces(mesh.points, elements)
+        self._tint(surface, mesh, rows)
+        return surface
+
+    def _bent(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> tuple[Any, Any]:
+        """The elements with curved sides: triangles that fill them, and their inner edges."""
+        import pyvista
+
+        polygons = edges.outlines(edges.elements)
+        faces = pyvista.PolyData(_flat(np.concatenate(polygons)), faces=_cells(polygons))
+        self._tint(faces, mesh, np.searchsorted(mesh.element_ids(), edges.elements))
+        halfedges = mesh.halfedges_of(edges.elements).ravel()
+        inner = halfedges[mesh.arrays.edge[halfedges, TWIN] >= 0]
+        sides = [edges.line(halfedge) for halfedge in inner.tolist()]
+        sides = sides or [polygons[0][[0, 0]]]  # an actor needs something to draw
+        lines = pyvista.PolyData(_flat(np.concatenate(sides)), lines=_cells(sides))
+        return faces.triangulate(), lines
+
+    def _tint(self, surface: Any, mesh: HalfEdgeMesh, rows: np.ndarray) -> None:
+        """Colour cells, the elements ``rows`` of the mesh, by their region if there are several."""
+        if len(mesh.region_names) > 1:
+            fills = region_fills(self._theme, len(mesh.region_names))
+            colours = np.array([tuple(bytes.fromhex(fill[1:])) for fill in fills], np.uint8)
+            surface.cell_data[_TINT] = colours[mesh.regions()[rows]]
+            surface.set_active_scalars(_TINT, "cell")
+
+
+_TINT = "tint"
+
+
+def _flat(points: np.ndarray) -> np.ndarray:
+    return np.column_stack((points, np.zeros(len(points))))
+
+
+def _cells(parts: list[np.ndarray]) -> np.ndarray:
+    """VTK's cells of polygons or polylines whose points follow one another."""
+    sizes = np.array([len(part) for part in parts])
+    ends = np.cumsum(sizes)
+    cells = np.insert(np.arange(ends[-1]), ends - sizes, sizes)
+    return cells
 
 
 def _points(places: np.ndarray) -> Any:
@@ -176,14 +238,8 @@ def _points(places: np.ndarray) -> Any:
     return pyvista.PolyData(places)
 
 
-def _outline(marks: Markers) -> Any:
+def _outline(edges: TrueEdges) -> Any:
     import pyvista
 
-    points = np.concatenate(marks.loops)
-    cells, first = [], 0
-    for loop in marks.loops:
-        cells.append(np.concatenate(([len(loop)], np.arange(first, first + len(loop)))))
-        first += len(loop)
-    return pyvista.PolyData(
-        np.column_stack((points, np.zeros(len(points)))), lines=np.concatenate(cells)
-    )
+    loops = edges.loops()
+    return pyvista.PolyData(_flat(np.concatenate(loops)), lines=_cells(loops))

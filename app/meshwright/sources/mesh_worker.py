@@ -2,24 +2,31 @@
 
 Triangle and the readers of foreign files hold the interpreter lock until they are done, so that a
 thread would block the window. The process runs `serve`: it reads requests from stdin, one JSON
-object a line, and writes a frame for each to stdout (`frame`, `unframed`).
+object a line, and writes a frame for each to stdout (:mod:`meshwright.sources.new_mesh`).
 """
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
+from meshwright.document.document import Document
+from meshwright.document.storage.document_file import is_drawing
 from meshwright.document.storage.project_file import is_project
+from meshwright.sources.new_mesh import Answer, DrawingContents, NewMesh, frame
+from meshwright.sources.resolve import resolve
+from meshwright_core.core.arrays import TWIN
+from meshwright_core.core.irregularity import usual_desired_degree
 from meshwright_core.errors import MeshError
+from meshwright_core.geometry.edge_curves import curve_halfedges, ends_of
+from meshwright_core.geometry.edge_parts import EdgeParts
+from meshwright_core.io import snapshot
 
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh
@@ -32,95 +39,68 @@ MOST = 2_000_000
 _PER_AREA = {"tri": 4.9, "quad": 3.7, "pairing": 2.6}
 """Elements per area of max_edge squared, measured on shapes of the gallery."""
 
-_LENGTH = 8
-"""Bytes at the start of a frame that give its length."""
 
-
-@dataclass(frozen=True)
-class NewMesh:
-    """A new mesh as arrays, with what the dialog shows and draws of it.
-
-    Attributes:
-        name: name of the mesh.
-        path: the mesh file that it was read from, empty for a mesh that was made.
-        kind: "tri" or "quad".
-        score, optimum: s and s*.
-        low, high: (2,) the corners of its bounding box, in the plane.
-        points: (n, 3).
-        elements: (m, 3 or 4).
-        geometric: (n,) whether a vertex is a corner.
-        desired: (n,) desired degrees.
-        delta: (n,) degree less desired degree.
-        reach: (n,) length of the shortest edge at a vertex, in the plane.
-        edges: (e, 2) vertices of the inner edges.
-        rim: (b,) boundary vertices, loop after loop.
-        sizes: (l,) how many of them each loop has.
-    """
-
-    name: str
-    path: str
-    kind: str
-    score: int
-    optimum: int
-    low: np.ndarray
-    high: np.ndarray
-    points: np.ndarray
-    elements: np.ndarray
-    geometric: np.ndarray
-    desired: np.ndarray
-    delta: np.ndarray
-    reach: np.ndarray
-    edges: np.ndarray
-    rim: np.ndarray
-    sizes: np.ndarray
-
-    @property
-    def extent(self) -> float:
-        """The longer side of its bounding box."""
-        return float((self.high - self.low).max())
-
-    @property
-    def loops(self) -> list[np.ndarray]:
-        """Vertices of each loop of the boundary, in order."""
-        return np.split(self.rim, np.cumsum(self.sizes)[:-1])
-
-    def mesh(self) -> HalfEdgeMesh:
-        """Build the mesh from the arrays."""
-        from meshwright_core import HalfEdgeMesh
-
-        return HalfEdgeMesh.from_elements(self.points, self.elements, self.geometric, self.desired)
-
-
-def make(request: Mapping[str, Any]) -> NewMesh:
-    """Return the requested mesh.
+def make(request: Mapping[str, Any]) -> Answer:
+    """Return the requested mesh, or why there is none.
 
     Args:
         request: ``"source"`` is one of ``{"shape": name}``, ``{"polygon": sides, "seed": n}``,
             ``{"part": corners, "seed": n}``, ``{"domain": as in Domain.to_json}`` and
-            ``{"file": path, "corner_angle": degrees, "curve_step": degrees}``; besides there are
-            ``"kind"``, and, each null for the default, ``"max_edge"``, ``"min_angle"``
-            (degrees) and ``"quads"`` ("catmull-clark" or "pairing"). A mesh file is read as it is.
-
-    Raises:
-        MeshError: one sentence.
+            ``{"file": path, "corner_angle": degrees, "curve_step": degrees, "region": choice,
+            "fit": "arcs" or "splines"}``; besides there are ``"kind"``, and, each null for the
+            default, ``"max_edge"``, ``"min_angle"`` (degrees) and ``"quads"`` ("catmull-clark" or
+            "pairing"). ``"region"`` is as in :func:`meshwright_core.io.drawings.read_domain`; null
+            for those that touch the largest one. A mesh file is read as it is.
     """
-    from meshwright.sources.resolve import resolve
-    from meshwright_core.domains import meshing
-    from meshwright_core.domains.domain import Domain
+    contents = None
+    try:
+        source = request["source"]
+        path = source.get("file", "")
+        if is_project(path):
+            raise MeshError(f"{path}: a project is opened by Open, not here.")
+        if path and is_drawing(path):
+            contents, region = _contents(source)
+            return Answer(_meshed(_drawn(source, region), request), "", contents)
+        if path:
+            found = resolve(Path(path), corner_angle=source["corner_angle"])
+            assert isinstance(found, Document)
+            assert found.mesh is not None
+            _refuse_many(found.mesh.n_elements, "has")
+            return Answer(_made(found.mesh, found.name, path))
+        return Answer(_meshed(_domain(source), request))
+    except MeshError as error:
+        return Answer(None, str(error), contents)
+    except MemoryError:
+        return Answer(None, "There is not enough memory for this mesh.", contents)
 
-    source = request["source"]
-    path = source.get("file", "")
-    if is_project(path):
-        raise MeshError(f"{path}: a project is opened by Open, not here.")
-    if path:
-        angles = {"corner_angle": source["corner_angle"], "curve_step": source["curve_step"]}
-        domain = resolve(Path(path), **angles)
-    else:
-        domain = _domain(source)
-    if not isinstance(domain, Domain):
-        assert domain.mesh is not None
-        _refuse_many(domain.mesh.n_elements, "has")
-        return _made(domain.mesh, domain.name, path)
+
+def _contents(source: Mapping[str, Any]) -> tuple[DrawingContents, str]:
+    """What a drawing holds, and the regions of it that are meshed, as a choice of numbers."""
+    from meshwright_core.io import drawings
+
+    report = drawings.read_regions(source["file"], source["corner_angle"])
+    choice = source["region"]
+    rows = report.groups()[0] if choice is None else [int(one) - 1 for one in choice.split(",")]
+    rows = [row for row in rows if row < len(report.regions)] or [0]
+    region = ",".join(str(row + 1) for row in rows)
+    return DrawingContents.of(report, tuple(rows)), region
+
+
+def _drawn(source: Mapping[str, Any], region: str) -> Domain:
+    domain = resolve(
+        Path(source["file"]),
+        corner_angle=source["corner_angle"],
+        curve_step=source["curve_step"],
+        region=region,
+        fit=source["fit"],
+    )
+    assert not isinstance(domain, Document)
+    return domain
+
+
+def _meshed(domain: Domain, request: Mapping[str, Any]) -> NewMesh:
+    from meshwright_core.domains import meshing
+
     kind, max_edge = request["kind"], request["max_edge"]
     quads: Quads = request["quads"] or "catmull-clark"
     if max_edge:
@@ -129,37 +109,6 @@ def make(request: Mapping[str, Any]) -> NewMesh:
     mesh = meshing.mesh_domain(domain, kind, max_edge, request["min_angle"], quads=quads)
     _refuse_many(mesh.n_elements, "would have")
     return _made(mesh, domain.name or "drawing", "")
-
-
-def frame(result: NewMesh | str) -> bytes:
-    """Return a mesh, or the sentence of a refusal, as bytes with their length."""
-    arrays: dict[str, Any] = {}
-    if isinstance(result, str):
-        arrays["refusal"] = np.array(result)
-    else:
-        arrays = {field.name: np.asarray(getattr(result, field.name)) for field in fields(NewMesh)}
-    content = io.BytesIO()
-    np.savez(content, **arrays)
-    whole = content.getvalue()
-    return len(whole).to_bytes(_LENGTH, "little") + whole
-
-
-def length(content: bytes | bytearray) -> int:
-    """Return the length of a frame in bytes, read from its beginning."""
-    return _LENGTH + int.from_bytes(content[:_LENGTH], "little")
-
-
-def unframed(content: bytes | bytearray) -> NewMesh | str:
-    """Return the mesh, or the refusal, in a complete frame."""
-    with np.load(io.BytesIO(memoryview(content)[_LENGTH:]), allow_pickle=False) as arrays:
-        if "refusal" in arrays:
-            return str(arrays["refusal"])
-        values = {name: array[()] for name, array in arrays.items()}
-    for name in ("name", "path", "kind"):
-        values[name] = str(values[name])
-    for name in ("score", "optimum"):
-        values[name] = int(values[name])
-    return NewMesh(**values)
 
 
 def serve() -> None:
@@ -172,13 +121,7 @@ def serve() -> None:
 
 def _answer(requests: BinaryIO, answers: BinaryIO) -> None:
     for line in requests:
-        try:
-            result: NewMesh | str = make(json.loads(line))
-        except MeshError as error:
-            result = str(error)
-        except MemoryError:
-            result = "There is not enough memory for this mesh."
-        answers.write(frame(result))
+        answers.write(frame(make(json.loads(line))))
         answers.flush()
 
 
@@ -206,34 +149,61 @@ def _refuse_many(count: int, verb: str) -> None:
 
 
 def _made(mesh: HalfEdgeMesh, name: str, path: str) -> NewMesh:
-    elements = mesh.elements().astype(np.int32)
-    ends = np.stack([elements, np.roll(elements, -1, axis=1)], axis=2).reshape(-1, 2)
-    ends.sort(axis=1)
-    key = ends[:, 0].astype(np.int64) * len(mesh.points) + ends[:, 1]
-    _, first, uses = np.unique(key, return_index=True, return_counts=True)
-    steps = mesh.points[ends[first, 0], :2] - mesh.points[ends[first, 1], :2]
+    halfedges = mesh.halfedges_of(mesh.element_ids()).ravel()
+    ends = ends_of(mesh, halfedges)
+    steps = mesh.points[ends[:, 0], :2] - mesh.points[ends[:, 1], :2]
     reach = np.full(len(mesh.points), np.inf)
     for side in (0, 1):
-        np.minimum.at(reach, ends[first, side], np.hypot(*steps.T))
-    loops = [np.asarray(loop, np.int64) for loop in mesh.boundary_loops()]
+        np.minimum.at(reach, ends[:, side], np.hypot(*steps.T))
+    rim, sizes, owners = _region_loops(mesh)
+    inner = ~np.isin(halfedges, rim) & (halfedges > mesh.arrays.edge[halfedges, TWIN])
+    parts = EdgeParts.of(mesh.arrays, rim, mesh.k)
+    fixed = np.flatnonzero(mesh.geometric())
+    usual = [usual_desired_degree(mesh.k, boundary) for boundary in (True, False)]
+    straight = mesh.desired()[fixed] == np.where(mesh.boundary()[fixed], *usual)
+    box = np.concatenate([mesh.points[mesh.vertices()], parts.box])
     return NewMesh(
         name=name,
         path=path,
         kind=mesh.kind,
         score=mesh.score,
         optimum=mesh.optimum,
-        low=mesh.points[:, :2].min(axis=0),
-        high=mesh.points[:, :2].max(axis=0),
-        points=mesh.points,
-        elements=elements,
-        geometric=mesh.geometric(),
-        desired=mesh.desired(),
+        low=box[:, :2].min(axis=0),
+        high=box[:, :2].max(axis=0),
         delta=mesh.irregularity().astype(np.int32),
         reach=reach,
-        edges=ends[first[uses == 2]],
-        rim=np.concatenate(loops) if loops else np.empty(0, np.int64),
-        sizes=np.array([len(loop) for loop in loops], np.int64),
+        edges=ends[inner],
+        corners=fixed[~straight],
+        anchors=fixed[straight],
+        rim_curve=parts.curve,
+        rim_span=parts.span,
+        rim_ends=parts.ends,
+        sizes=sizes,
+        owners=owners,
+        stored=snapshot.to_arrays(mesh),
     )
+
+
+def _region_loops(mesh: HalfEdgeMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The half-edges around each region, loop after loop; how many each loop has; its region."""
+    rim = curve_halfedges(mesh)
+    region = mesh.arrays.region[rim // mesh.k].tolist()
+    origin, target = ends_of(mesh, rim).T.tolist()
+    leaving: dict[tuple[int, int], list[int]] = {}
+    for row in range(len(rim) - 1, -1, -1):
+        leaving.setdefault((region[row], origin[row]), []).append(row)
+    order: list[int] = []
+    sizes, owners = [], []
+    for (owner, start), rows in leaving.items():
+        while rows:  # from a point where a region touches itself several loops may leave
+            before, row = len(order), rows.pop()
+            order.append(row)
+            while target[row] != start:
+                row = leaving[owner, target[row]].pop()
+                order.append(row)
+            sizes.append(len(order) - before)
+            owners.append(owner)
+    return rim[order], np.array(sizes, np.int64), np.array(owners, np.int64)
 
 
 if __name__ == "__main__":

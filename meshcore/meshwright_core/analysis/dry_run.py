@@ -31,6 +31,7 @@ from meshwright_core.core.arrays import (
     corners_of,
 )
 from meshwright_core.errors import OperationRefused
+from meshwright_core.geometry.edge_parts import EdgeParts
 from meshwright_core.history import journal
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations import catalogue, refusals
@@ -38,7 +39,8 @@ from meshwright_core.operations.catalogue import Operation
 
 Result = TypeVar("Result")
 
-_WRITE_KINDS = 1 + journal.LIST_WRITE
+_SAME = 1e-9
+"""Distance, relative to an edge, within which a new vertex lies at its middle."""
 _ENTRIES = 1024
 """Room for journal entries at the first attempt."""
 
@@ -54,10 +56,10 @@ class DryRun:
     operation: Operation
     halfedge: int
     score_change: int
-    added: np.ndarray
-    """(n, 2, 3) ends of each added edge, new vertices at their initial positions."""
-    removed: np.ndarray
-    """(m, 2, 3) ends of each removed edge."""
+    added_edges: EdgeParts
+    """The n added edges, new vertices at their initial positions."""
+    removed_edges: EdgeParts
+    """The m removed edges."""
     vertices: np.ndarray
     """(p,) vertices whose Delta changes, new ones included."""
     places: np.ndarray
@@ -66,8 +68,20 @@ class DryRun:
     """(p,) their Delta after the operation."""
     new_vertices: np.ndarray
     """(q,) ids of the vertices that the operation creates."""
+    new_places: np.ndarray
+    """(q, 3) their initial positions."""
     gone: np.ndarray
     """(g, 3) positions of the vertices that the operation deletes."""
+
+    @property
+    def added(self) -> np.ndarray:
+        """(n, 2, 3) ends of each added edge."""
+        return self.added_edges.ends
+
+    @property
+    def removed(self) -> np.ndarray:
+        """(m, 2, 3) ends of each removed edge."""
+        return self.removed_edges.ends
 
 
 class _State(NamedTuple):
@@ -77,8 +91,8 @@ class _State(NamedTuple):
     """(n,) the edges of the elements as sorted numbers, one for each pair of vertices."""
     ends: np.ndarray
     """(n, 2) their vertex ids."""
-    segments: np.ndarray
-    """(n, 2, 3) the positions of their ends."""
+    edges: EdgeParts
+    """Their shape."""
     alive: np.ndarray
     """(p,) which of the vertices are live."""
     delta: np.ndarray
@@ -153,7 +167,7 @@ def _make_room(mesh: HalfEdgeMesh, vertices: int, elements: int) -> None:
 def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> DryRun:
     """Undo the operation and compare the states before and after it."""
     entries = aside.journal[: aside.counters[JOURNAL_TOP], 0]
-    index, kind = entries // _WRITE_KINDS, entries % _WRITE_KINDS
+    index, kind = entries // journal.WRITE_KINDS, entries % journal.WRITE_KINDS
     k = int(aside.counters[SIDES])
     elements = np.unique(index[kind == journal.EDGE_WRITE] // (2 * k))
     vertices = np.unique(index[kind == journal.VERTEX_WRITE] // VERTEX_COLUMNS)
@@ -176,19 +190,23 @@ def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> DryRu
         operation=operation,
         halfedge=h,
         score_change=change,
-        added=after.segments[added],
-        removed=before.segments[removed],
+        added_edges=after.edges.take(added),
+        removed_edges=before.edges.take(removed),
         vertices=vertices[differs],
         places=after.places[differs],
         delta=after.delta[differs],
         new_vertices=new,
+        new_places=new_places,
         gone=before.places[before.alive & ~after.alive],
     )
 
 
 def _state(m: MeshArrays, elements: np.ndarray, vertices: np.ndarray) -> _State:
+    k = int(m.counters[SIDES])
     corners = corners_of(m, elements)
-    corners = corners[corners[:, 0] >= 0]
+    alive = corners[:, 0] >= 0
+    corners = corners[alive]
+    halfedges = (k * elements[alive, None] + np.arange(k)).ravel()
     a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
     low, high = np.minimum(a, b), np.maximum(a, b)
     keys, first = np.unique(low * len(m.vertex) + high, return_index=True)
@@ -197,7 +215,7 @@ def _state(m: MeshArrays, elements: np.ndarray, vertices: np.ndarray) -> _State:
     return _State(
         keys=keys,
         ends=ends,
-        segments=m.points[ends],
+        edges=EdgeParts.of(m, halfedges[first], k),
         alive=rows[:, HALF] >= 0,
         delta=(rows[:, DEGREE] - rows[:, DESIRED]).astype(np.int64),
         places=m.points[vertices],
@@ -213,14 +231,16 @@ def _halve(
     places: np.ndarray,
 ) -> None:
     """Drop edges that a new vertex splits from `removed`, and their halves from `added`."""
-    rows = np.flatnonzero(removed).tolist()
-    middles = 0.5 * (before.segments[rows, 0] + before.segments[rows, 1])
-    halved = {middle.tobytes(): row for row, middle in zip(rows, middles, strict=True)}
+    rows = np.flatnonzero(removed)
+    ends = before.edges.ends[rows]
+    sizes = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    middles = before.edges.points(rows, np.full(len(rows), 0.5))
     fresh = _rows_of(after, added)
     for v, place in zip(new.tolist(), places, strict=True):
-        row = halved.get(place.tobytes())
-        if row is None:
+        near = np.linalg.norm(middles - place, axis=1) <= _SAME * sizes
+        if not near.any():
             continue
+        row = int(rows[np.argmax(near)])
         x, y = before.ends[row].tolist()
         halves = fresh.get((min(x, v), max(x, v))), fresh.get((min(y, v), max(y, v)))
         if halves[0] is not None and halves[1] is not None:

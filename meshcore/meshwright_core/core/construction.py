@@ -26,6 +26,7 @@ from meshwright_core.core.arrays import (
     MeshArrays,
     allocate,
 )
+from meshwright_core.core.curve_corners import corners, desired_by_sectors, sectors
 from meshwright_core.core.irregularity import (
     CORNER_ANGLE,
     QUAD_INSIDE,
@@ -151,6 +152,12 @@ def boundary_chain(elements: np.ndarray, twin: np.ndarray) -> tuple[np.ndarray, 
     return flat[open_edges], flat[open_edges + 1 - k * ((open_edges + 1) % k == 0)]
 
 
+def is_flat(points: np.ndarray) -> bool:
+    """Whether points (n, 3) lie in a plane z = const."""
+    z = points[:, 2]
+    return bool(z.max() - z.min() <= 1e-12 * max(1.0, float(np.abs(points).max())))
+
+
 def boundary_angles(
     points: np.ndarray,
     elements: np.ndarray,
@@ -161,8 +168,7 @@ def boundary_angles(
     """Angle in degrees of the domain at boundary vertices: by the boundary's directions in a plane
     z = const, else the sum of the elements' angles there.
     """
-    z = points[elements.ravel(), 2]
-    if z.max() - z.min() <= 1e-12 * max(1.0, float(np.abs(points[elements.ravel()]).max())):
+    if is_flat(points[elements.ravel()]):
         return planar_boundary_angles(points[vertices], points[before], points[after])
     corner = points[elements]
     back = np.roll(corner, 1, axis=1) - corner
@@ -194,52 +200,67 @@ def build(
     before, after = np.full(n, -1), np.full(n, -1)
     after[start], before[end] = end, start
     regions = checked_regions(regions, m)
-    chains, junctions = interface_chains(elements, twin, regions)
+    chains: list[Chain] = []
+    drawn = boundary is not None and seats is not None
+    if boundary is not None:
+        ends = [v for one in boundary.interfaces for v in one[3:] if 0 <= v < n]
+        junctions = np.array(ends, np.int64)
+    else:
+        chains, junctions = interface_chains(elements, twin, regions)
 
     flags = np.zeros(n, np.int32)
-    if geometric is None:
+    if geometric is not None:
+        flags[np.asarray(geometric, bool)] = GEOMETRIC
+        flags[half < 0] = 0
+    elif not drawn:
         turn = turning_angles(points[start], points[before[start]], points[after[start]])
         flags[start[turn > corner_angle]] = GEOMETRIC
         for chain in chains:
             flags[_corners(points, chain, corner_angle)] = GEOMETRIC
-    else:
-        flags[np.asarray(geometric, bool)] = GEOMETRIC
-        flags[half < 0] = 0
     flags[junctions] |= GEOMETRIC
     if boundary is None or seats is None:
         loops = [Chain(loop, True) for loop in trace_loops(start, end)]
         names = ("",) * (int(regions.max()) + 1)
         boundary, seats = polyline_boundary(points, [*loops, *chains], flags > 0, names)
 
-    degree = np.bincount(elements.ravel(), minlength=n)
-    degree[start] += 1
-    if desired_degree is None:
-        desired = np.where(half >= 0, TRIANGLE_INSIDE if k == 3 else QUAD_INSIDE, 0)
-        angle = boundary_angles(points, elements, start, before[start], after[start])
-        desired[start] = desired_on_boundary(angle, k)
-    else:
-        desired = np.where(half >= 0, np.asarray(desired_degree, np.int64), 0)
-        if len(desired) != n or (desired[half >= 0] < 1).any():
-            raise MeshError("desired_degree must hold one positive number for each point")
-
     arrays = allocate(k, n + n // 4 + 64, m + m // 4 + 64)
     arrays.edge[: k * m, ORIGIN] = elements.ravel()
     arrays.edge[: k * m, TWIN] = twin
     arrays.points[:n] = points
     arrays.vertex[:n, HALF] = half
-    arrays.vertex[:n, DEGREE] = degree
-    arrays.vertex[:n, DESIRED] = desired
-    arrays.vertex[:n, FLAGS] = flags
     arrays.vertex[:n, CURVE] = np.where(half >= 0, seats.curve, -1)
     arrays.parameter[:n] = np.where(arrays.vertex[:n, CURVE] >= 0, seats.parameter, 0.0)
     arrays.region[:m] = regions
     arrays = arrays._replace(curves=boundary.curves, interface=boundary.table())
+    arrays.counters[ELEMENT_SLOTS] = m
+
+    degree = np.bincount(elements.ravel(), minlength=n)
+    degree[start] += 1
+    curved = drawn or len(chains) > 0
+    found = sectors(arrays) if curved and (geometric is None or desired_degree is None) else None
+    if found is not None and drawn and geometric is None:
+        flags[corners(found, arrays, boundary, corner_angle)[:n]] = GEOMETRIC
+    if desired_degree is None:
+        desired = np.where(half >= 0, TRIANGLE_INSIDE if k == 3 else QUAD_INSIDE, 0)
+        if found is not None and is_flat(points[elements.ravel()]):
+            there = np.unique(found.vertex)
+            desired[there] = desired_by_sectors(found, k, n)[there]
+        else:
+            angle = boundary_angles(points, elements, start, before[start], after[start])
+            desired[start] = desired_on_boundary(angle, k)
+    else:
+        desired = np.where(half >= 0, np.asarray(desired_degree, np.int64), 0)
+        if len(desired) != n or (desired[half >= 0] < 1).any():
+            raise MeshError("desired_degree must hold one positive number for each point")
+    arrays.vertex[:n, DEGREE] = degree
+    arrays.vertex[:n, DESIRED] = desired
+    arrays.vertex[:n, FLAGS] = flags
     delta = degree - desired
     irregular = np.flatnonzero(delta)
     arrays.irregular[: len(irregular)] = irregular
     arrays.vertex[irregular, PLACE] = np.arange(len(irregular))
     counters = arrays.counters
-    counters[VERTEX_SLOTS], counters[ELEMENT_SLOTS] = n, m
+    counters[VERTEX_SLOTS] = n
     counters[VERTICES], counters[ELEMENTS] = int((half >= 0).sum()), m
     counters[BOUNDARY_EDGES] = len(start)
     counters[SCORE], counters[DELTA_SUM] = int(np.abs(delta).sum()), int(delta.sum())

@@ -122,6 +122,13 @@ def _check_interfaces(m: MeshArrays, boundary: MeshBoundary, slots: int) -> None
     whole = (ends < 0).all(axis=1)
     _require((whole | (ends >= 0).all(axis=1)).all(), "an interface lacks an end")
     _require(closed[~loop][whole].all(), "an interface without ends is not closed")
+    straight = inner[~whole]
+    turned = straight[:, (RIGHT, LEFT, END, START)]
+    both = np.concatenate([straight, turned])
+    _require(
+        len(np.unique(both, axis=0)) == len(both),
+        "two interfaces of the same regions join the same two vertices",
+    )
     ends = ends[~whole]
     _require((ends < slots).all(), "an interface ends at a vertex that does not exist")
     rows = m.vertex[ends.ravel()]

@@ -21,7 +21,8 @@ def interface_chains(
 
     Returns:
         the chains, and the ids of the vertices where they end: on the boundary, and where other
-        than two edges between the same two regions meet.
+        than two edges between the same two regions meet. If two chains would have the same ends
+        and regions, they are cut at one more junction in the middle.
     """
     k = elements.shape[1]
     across = regions.repeat(k)
@@ -62,4 +63,32 @@ def interface_chains(
         if i not in left:
             continue
         chains.append(Chain(np.array(walked(i)[:-1]), True, *pair[i]))
-    return chains, np.array(sorted(junctions), np.int64)
+    chains, more = _told_apart(chains)
+    return chains, np.array(sorted(junctions | more), np.int64)
+
+
+def _told_apart(chains: list[Chain]) -> tuple[list[Chain], set[int]]:
+    """Chains of which no two lie between the same regions and junctions, and the added junctions.
+
+    An edge between two junctions names its interface by them alone. Where two chains have the same
+    ends, those of more than one edge are cut in the middle.
+    """
+    alike: dict[tuple[int, int, int, int], int] = defaultdict(int)
+    for chain in chains:
+        alike[_key(chain)] += 1
+    apart, more = [], set()
+    for chain in chains:
+        line = chain.vertices
+        if chain.closed or alike[_key(chain)] == 1 or len(line) < 3:
+            apart.append(chain)
+            continue
+        middle = len(line) // 2
+        more.add(int(line[middle]))
+        apart.append(chain._replace(vertices=line[: middle + 1]))
+        apart.append(chain._replace(vertices=line[middle:]))
+    return apart, more
+
+
+def _key(chain: Chain) -> tuple[int, int, int, int]:
+    ends = (-1, -1) if chain.closed else (int(chain.vertices[0]), int(chain.vertices[-1]))
+    return chain.left, chain.right, *ends

@@ -20,14 +20,13 @@ from numpy.typing import ArrayLike, NDArray
 from meshwright_core.core.composite_curves import (
     Curves,
     halves,
-    joined_curves,
     nearest_parameters,
     place_all,
     span_points,
     tangents,
 )
 from meshwright_core.curves import bezier_spans, curve_json
-from meshwright_core.curves.bezier_spans import evened, homogeneous, segment
+from meshwright_core.curves.bezier_spans import evened, homogeneous, segment, span_lengths
 from meshwright_core.curves.part_data import image_of_conic, part_of_conic, spline_of_spans
 from meshwright_core.errors import MeshError
 
@@ -59,7 +58,7 @@ class Curve:
 
     def __init__(self, kind: str, data: dict[str, Any], spans: list[Array]) -> None:
         """For the class methods below."""
-        if not spans or not all(np.isfinite(span).all() for span in spans):
+        if not spans or not np.isfinite(np.concatenate(spans)).all():
             raise MeshError(f"a curve ({kind}) has a number that is not finite, or no length")
         for span in spans:
             span.flags.writeable = False
@@ -226,7 +225,15 @@ class Curve:
     @cached_property
     def flat(self) -> Curves:
         """The curve as arrays for compiled kernels; curve 0."""
-        return joined_curves([self.spans], [self.closed])
+        stop = np.cumsum(span_lengths(self.spans))
+        return Curves(
+            control=np.concatenate(self.spans),
+            first_control=np.cumsum([0, *map(len, self.spans)]).astype(np.int64),
+            start=np.concatenate([[0.0], stop[:-1]]),
+            stop=stop,
+            first_span=np.array([0, len(self.spans)]),
+            closed=np.array([self.closed]),
+        )
 
     @property
     def closed(self) -> bool:

@@ -244,6 +244,20 @@ class Domain:
         return Domain(points[0], points[1:], corners[0], corners[1:], self.name)
 
     @property
+    def curve_step(self) -> float | None:
+        """Degrees that an edge of a mesh turns along a curve, at most; None: about 90, and less
+        where the shape demands it.
+        """
+        return None if self.sides is None else self.sides.curve_step
+
+    @curve_step.setter
+    def curve_step(self, degrees: float | None) -> None:
+        if degrees is not None and not degrees > 0.0:
+            raise MeshError(f"Curves cannot turn by {degrees:g} degrees along an edge.")
+        if self.sides is not None:
+            self.sides.curve_step = degrees
+
+    @property
     def outline(self) -> Points:
         """The largest outline."""
         return self.loops[0]

@@ -11,29 +11,36 @@ from numpy.typing import ArrayLike
 
 from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN, TWIN
 from meshwright_core.core.compilation import kernel
+from meshwright_core.core.composite_curves import Curves, place_all
 from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.geometry.edge_kernels import (
     NODES,
     WEIGHTS,
     bulges,
     edge_offsets,
+    end_tangents,
     place_on_edge,
 )
 from meshwright_core.geometry.planes import plane_normal, vector_areas
-from meshwright_core.geometry.turning import BENDS, CurveTurning, span_towards, turnings
+from meshwright_core.geometry.turning import (
+    BENDS,
+    CurveTurning,
+    Turning,
+    span_towards,
+    turnings,
+)
 
 if TYPE_CHECKING:
-    from meshwright_core.core.composite_curves import Curves
     from meshwright_core.mesh import HalfEdgeMesh
 
 _SAFETY = 1.5
-"""Pieces of a polyline more than a circle of the same length and turning needs, for other curves."""
+"""Factor of the pieces that an arc of the same length and turning needs, for other curves."""
 _STEEPEST = np.radians(30.0)
 """The most that a curve turns in one piece of a polyline, whatever the tolerance."""
 
 
 @kernel
-def _edge_points(curves, curve, span, ends, w):
+def points_of_edge(curves, curve, span, ends, w):
     """(n, 3) points of one edge at w (n,)."""
     offsets, slope = np.zeros((2, 3)), np.zeros(3)
     edge_offsets(curves, curve, span, ends, offsets)
@@ -133,6 +140,11 @@ class EdgePlaces:
         """(n, 2, 3) positions of the ends."""
         return self._mesh.points[ends_of(self._mesh, self.halfedges)]
 
+    def tangents(self) -> np.ndarray:
+        """(n, 2, 3) derivatives of the edges at both ends; all must lie on curves."""
+        curves = self._mesh.boundary_info.curves
+        return end_tangents(curves, self.curve, self.span, self.ends)
+
     def bulges(self) -> np.ndarray:
         """(n, 3) vector areas between the edges and their chords."""
         curves = self._mesh.boundary_info.curves
@@ -189,7 +201,7 @@ def edge_points(mesh: HalfEdgeMesh, h: int, w: ArrayLike) -> np.ndarray:
         points[shares == 1.0] = ends[1]
         return points
     curves = mesh.boundary_info.curves
-    return _edge_points(curves, int(places.curve[0]), places.span[0], ends, shares)
+    return points_of_edge(curves, int(places.curve[0]), places.span[0], ends, shares)
 
 
 def edge_polyline(mesh: HalfEdgeMesh, h: int, tolerance: float) -> np.ndarray:
@@ -229,6 +241,18 @@ def _polylines_of(
         curves, CurveTurning.of(mesh), places.curve, places.span, places.ends, float(tolerance)
     )
     return points, first
+
+
+def loop_polyline(curves: Curves, turning: Turning, loop: int, turn: float) -> np.ndarray:
+    """(n, 3) points around a closed curve, so close that it turns by no more than `turn` radians
+    between them; the first is not repeated.
+    """
+    spans = np.arange(curves.first_span[loop], curves.first_span[loop + 1])
+    pieces = np.maximum(np.ceil(turning.inside[spans] / turn), 1).astype(np.int64)
+    share = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    start, stop = curves.start[spans], curves.stop[spans]
+    t = np.repeat(start, pieces) + share * np.repeat((stop - start) / pieces, pieces)
+    return place_all(curves, np.full(len(t), loop, np.int64), t)
 
 
 def element_areas(mesh: HalfEdgeMesh) -> np.ndarray:

@@ -51,6 +51,18 @@ def place_on_edge(curves, curve, span, offsets, w, point, slope):
 
 
 @kernel
+def end_tangents(curves, curve, span, ends):
+    """(n, 2, 3) derivatives by w at both ends of edges, given as in :func:`bulges`."""
+    found, place = np.zeros((len(curve), 2, 3)), np.zeros(3)
+    offsets = np.zeros((2, 3))
+    for i in range(len(curve)):
+        edge_offsets(curves, curve[i], span[i], ends[i], offsets)
+        for end in range(2):
+            place_on_edge(curves, curve[i], span[i], offsets, float(end), place, found[i, end])
+    return found
+
+
+@kernel
 def bulge(curves, curve, span, ends, nodes, weights, area):
     """Write the vector area (3,) between an edge with these ends (2, 3) and its chord.
 

@@ -70,7 +70,9 @@ def plane_normal(
         own: see above.
     """
     if points is None:
-        points = mesh.points if len(mesh.points) == mesh.n_vertices else mesh.points[mesh.vertices()]
+        points = mesh.points
+        if len(points) != mesh.n_vertices:
+            points = points[mesh.vertices()]
     if not len(points):
         return None
     outline = OutlineArea.of(mesh)

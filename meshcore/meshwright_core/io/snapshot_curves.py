@@ -14,7 +14,7 @@ from meshwright_core.core.mesh_boundary import CurvePiece, Interface, MeshBounda
 from meshwright_core.errors import MeshError
 from meshwright_core.io.stored_arrays import Arrays, stored
 
-_FIELDS = (
+_FIELDS: tuple[tuple[str, type, tuple[int, ...]], ...] = (
     ("control", np.float64, (-1, 4)),
     ("first_control", np.int64, (-1,)),
     ("start", np.float64, (-1,)),
@@ -47,7 +47,9 @@ def stored_boundary(arrays: Mapping[str, np.ndarray]) -> tuple[MeshBoundary, boo
 
     That the vertices fit the curves, and the ends of interfaces are junctions, is not checked.
     """
-    curves = Curves(*(stored(arrays, f"curves.{name}", *form) for name, *form in _FIELDS))
+    curves = Curves(
+        *(stored(arrays, f"curves.{name}", kind, shape) for name, kind, shape in _FIELDS)
+    )
     _require_curves(curves)
     count = len(curves.closed)
     table = stored(arrays, "interface", np.int32, (count, 4))
@@ -62,8 +64,9 @@ def stored_boundary(arrays: Mapping[str, np.ndarray]) -> tuple[MeshBoundary, boo
         for curve in np.flatnonzero(table[:, LEFT] >= 0).tolist()
     ]
     loops = tuple(np.flatnonzero(table[:, LEFT] < 0).tolist())
+    text = stored(arrays, "boundary", np.uint8, (-1,)).tobytes()
     try:
-        known = json.loads(stored(arrays, "boundary", np.uint8, (-1,)).tobytes())
+        known = json.loads(text)
         names, recorded = known["regions"], bool(known["recorded"])
         pieces = tuple(tuple(map(_piece, some)) for some in known["pieces"])
         if len(pieces) != count or not names or not all(isinstance(name, str) for name in names):

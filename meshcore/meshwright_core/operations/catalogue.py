@@ -8,11 +8,9 @@ dispatched by code, and :data:`CATALOGUE` lists everything else that is known of
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cache
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -27,9 +25,9 @@ from meshwright_core.core.arrays import (
     TRACE_IDS,
     TWIN,
     MeshArrays,
-    allocate,
 )
 from meshwright_core.core.compilation import bare_kernel, bare_shared_kernel
+from meshwright_core.core.entry_points import entry
 from meshwright_core.history.journal import begin_step, end_step
 from meshwright_core.operations import (
     chord_collapse,
@@ -365,22 +363,11 @@ def _apply(m, operation, h, cap):
     )
 
 
-@cache
-def _entry(kernel: Any) -> Callable[..., Any]:
-    """What runs a kernel of (MeshArrays, int, int, int) without a look-up by argument types.
-
-    That look-up takes 1.2 microseconds for a MeshArrays, several times as long as an edit.
-    """
-    whole = numba.int64
-    types = (numba.typeof(allocate(3, 1, 1)), whole, whole, whole)
-    return cast(Callable[..., Any], kernel.compile(types))
-
-
 def check_once(m: MeshArrays, operation: int, h: int, cap: int) -> int:
     """:func:`check` for callers in Python."""
-    return int(_entry(check)(m, operation, h, cap))
+    return int(entry(check, 3)(m, operation, h, cap))
 
 
 def apply_once(m: MeshArrays, operation: int, h: int, cap: int) -> Applied:
     """:func:`check`, then :func:`rewrite` where it is allowed, for callers in Python."""
-    return Applied(*_entry(_apply)(m, operation, h, cap))
+    return Applied(*entry(_apply, 3)(m, operation, h, cap))

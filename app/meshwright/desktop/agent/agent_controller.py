@@ -49,7 +49,7 @@ class AgentController(Controller):
     ) -> None:
         super().__init__(theme)
         self._document, self._assistant, self._settings = document, assistant, settings
-        self._panel, self._hints = panel, hints
+        self._canvas, self._panel, self._hints = canvas, panel, hints
         self._status, self._notice, self._parent = status, notice, parent
         self._region: tuple[HalfEdgeMesh, np.ndarray] | None = None  # mesh, elements outside
         overlay = canvas.overlay
@@ -173,7 +173,8 @@ class AgentController(Controller):
         if mesh is None or insight is None:
             self.field.show(None)
         else:
-            self.field.show(sight(insight, mesh, self._words(insight, mesh.kind)))
+            words = self._words(insight, mesh.kind)
+            self.field.show(sight(insight, mesh, words, self._canvas.edges))
 
     def _words(self, insight: Insight, kind: str) -> tuple[str, ...]:
         """The legend of what the policy sees, in three lines."""

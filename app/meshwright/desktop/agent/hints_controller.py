@@ -20,6 +20,7 @@ from meshwright.document.document import Document, title_of
 from meshwright.document.operation_preview import ghost
 from meshwright.graphics.theme import Theme
 from meshwright_core import HalfEdgeMesh, MeshError, OperationRefused
+from meshwright_core.geometry.edge_curves import edge_points
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import PolicyAction
@@ -138,8 +139,7 @@ class HintsController(Controller):
             seen = ghost(mesh, choice.operation, choice.halfedge)
         except OperationRefused:
             return None  # the mesh has a degree cap that the policy does not take into account
-        ends = [mesh.origin(choice.halfedge), mesh.target(choice.halfedge)]
-        place = mesh.points[ends, :2].mean(axis=0)
+        place = edge_points(mesh, choice.halfedge, 0.5)[0, :2]
         title = title_of(choice.operation, mesh.kind)
         return Hint(0, title, choice.probability, seen, place)
 

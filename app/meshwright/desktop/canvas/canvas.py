@@ -16,6 +16,7 @@ from meshwright.document.document import Document
 from meshwright.graphics.markers import Markers, label
 from meshwright.graphics.picking import Picker
 from meshwright.graphics.theme import Theme
+from meshwright.graphics.true_edges import TrueEdges
 from meshwright.graphics.viewport import Viewport
 from meshwright.graphics.vtk_scene import CROWD
 
@@ -49,6 +50,7 @@ class Canvas(QWidget):
         self.view = CanvasView(self)
         self.overlay = Overlay(self, theme)
         self._theme = theme
+        self._edges: TrueEdges | None = None
         self._picker: Picker | None = None
         self._delta = np.empty(0, dtype=int)  # irregularities of the picker's mesh
         self._fitted = True
@@ -91,6 +93,17 @@ class Canvas(QWidget):
         """The markers that are drawn; None without a mesh and before :meth:`build`."""
         return self.view.markers
 
+    @property
+    def edges(self) -> TrueEdges | None:
+        """The true edges of the mesh in its present state, as fine as the view demands; None
+        without a mesh.
+        """
+        mesh = self.document.mesh
+        if self._edges is None and mesh is not None:
+            self._edges = TrueEdges(mesh)
+            self._edges.look(self.viewport)
+        return self._edges
+
     def build(self) -> None:
         """Import VTK and show the mesh; needs a display and takes about a second."""
         self.view = VtkView(self, self._theme, self)
@@ -116,17 +129,16 @@ class Canvas(QWidget):
         """Draw in the colours of ``theme``."""
         self._theme = theme
         self.overlay.set_theme(theme)
-        self.view.set_theme(theme, self.document.mesh)
+        self.view.set_theme(theme, self.document.mesh, self.edges)
         self._look()
 
     # Camera
 
     def fit(self) -> None:
         """Fit the view to the mesh, and refit it when the canvas is resized."""
-        mesh = self.document.mesh
         self._fitted = True
-        if mesh is not None:
-            self.viewport = self.viewport.fitted(mesh.points[mesh.vertices()])
+        if self.edges is not None:
+            self.viewport = self.viewport.fitted(self.edges.points)
             self._look()
 
     def see(self, viewport: Viewport) -> None:
@@ -145,7 +157,10 @@ class Canvas(QWidget):
             at = self.viewport.to_screen(marks.places)
             seen = ((at > 0) & (at < self.viewport.size)).all(axis=1).sum() if len(at) else 0
             view.show_crowd(mesh, bool(seen > CROWD))
-        self.overlay.show_markers(marks, self.viewport, view.crowd, view.outlined)
+        edges = self.edges
+        if mesh is not None and edges is not None and edges.look(self.viewport):
+            view.update_edges(mesh, edges)
+        self.overlay.show_markers(marks, edges, self.viewport, view.crowd, view.outlined)
         self._show_hover()
         self.plotter.update()
 
@@ -154,27 +169,27 @@ class Canvas(QWidget):
     def _on_replaced(self) -> None:
         self.mouse.cancel()
         self._pinned = -1
-        self._picker = None
+        self._edges = self._picker = None
         self._stale = False
         if self.built:
-            self.view.show(self.document.mesh)
+            self.view.show(self.document.mesh, self.edges)
             self.fit()
             self._look()
 
     def _on_changed(self) -> None:
         self.mouse.interrupt()
-        self._picker = None
+        self._edges = self._picker = None
         self.overlay.card.hide()
         if not self._stale:  # all changes in one turn of the event loop are drawn in one frame
             self._stale = True
             self._refresh.emit()
 
     def _on_refresh(self) -> None:
-        mesh = self.document.mesh
-        if not self._stale or not self.built or mesh is None:
+        mesh, edges = self.document.mesh, self.edges
+        if not self._stale or not self.built or mesh is None or edges is None:
             return
         self._stale = False
-        self.view.update(mesh)
+        self.view.update(mesh, edges)
         if mesh.n_elements <= QUICK:
             self._on_point_again()
         else:
@@ -227,7 +242,7 @@ class Canvas(QWidget):
     def _pick(self) -> Picker | None:
         mesh = self.document.mesh
         if self._picker is None and mesh is not None:
-            self._picker = Picker(mesh)
+            self._picker = Picker(mesh, self.edges)
             self._delta = mesh.irregularity()
         return self._picker
 
@@ -280,15 +295,13 @@ class Canvas(QWidget):
             self._show_hover()
 
     def _show_hover(self) -> None:
-        mesh, halfedge = self.document.mesh, self.document.hover
-        if mesh is None or halfedge < 0 or not mesh.live(halfedge):
+        mesh, edges, halfedge = self.document.mesh, self.edges, self.document.hover
+        if mesh is None or edges is None or halfedge < 0 or not mesh.live(halfedge):
             self.overlay.show_hover(None, 0)
             return
-        first = halfedge - halfedge % mesh.k
-        corners = [mesh.origin(first + side) for side in range(mesh.k)]
-        self.overlay.show_hover(
-            self.viewport.to_screen(mesh.points[np.array(corners)]), halfedge % mesh.k
-        )
+        element, side = divmod(halfedge, mesh.k)
+        sides = [self.viewport.to_screen(line) for line in edges.sides(element)]
+        self.overlay.show_hover(sides, side)
 
     # Qt events
 

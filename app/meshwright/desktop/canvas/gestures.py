@@ -114,13 +114,13 @@ class MoveVertices(Gesture):
         self._offset = grabbed - start  # from the mouse to the vertex, kept during the drag
         self._drag = drag
         self._done = done
-        layer.begin(drag.segments, drag.places[:, :2].copy())
+        layer.begin(drag)
 
     def move(self, at: QPointF) -> None:
         """Move the vertices."""
         drag, place = self._drag, at + self._offset
         drag.to(*self._canvas.viewport.to_plane(place.x(), place.y()))
-        self._layer.show(drag.segments, drag.folded, drag.places[:, :2])
+        self._layer.show(drag)
 
     def end(self, at: QPointF) -> None:
         """Finish the drag."""

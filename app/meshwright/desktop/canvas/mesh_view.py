@@ -7,6 +7,7 @@ from qtpy.QtWidgets import QWidget
 
 from meshwright.graphics.markers import Markers
 from meshwright.graphics.theme import Theme
+from meshwright.graphics.true_edges import TrueEdges
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 
@@ -35,14 +36,17 @@ class CanvasView:
         """Whether the view draws the boundary."""
         return True
 
-    def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None) -> None:
+    def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None, edges: TrueEdges | None) -> None:
         """Draw in the colours of ``theme``."""
 
-    def show(self, mesh: HalfEdgeMesh | None) -> None:
-        """Show another mesh."""
+    def show(self, mesh: HalfEdgeMesh | None, edges: TrueEdges | None) -> None:
+        """Show another mesh, with its edges."""
 
-    def update(self, mesh: HalfEdgeMesh) -> None:
+    def update(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
         """Show the same mesh after a change."""
+
+    def update_edges(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
+        """Draw curved edges by other polylines."""
 
     def look(self, viewport: Viewport) -> None:
         """Move the camera."""
@@ -94,17 +98,21 @@ class VtkView(CanvasView):
         """Whether VTK draws the boundary."""
         return self._scene.outlined
 
-    def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None) -> None:
+    def set_theme(self, theme: Theme, mesh: HalfEdgeMesh | None, edges: TrueEdges | None) -> None:
         """Draw in the colours of ``theme``."""
-        self._scene.set_theme(theme, mesh)
+        self._scene.set_theme(theme, mesh, edges)
 
-    def show(self, mesh: HalfEdgeMesh | None) -> None:
-        """Show another mesh."""
-        self._scene.show(mesh)
+    def show(self, mesh: HalfEdgeMesh | None, edges: TrueEdges | None) -> None:
+        """Show another mesh, with its edges."""
+        self._scene.show(mesh, edges)
 
-    def update(self, mesh: HalfEdgeMesh) -> None:
+    def update(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
         """Show the same mesh after a change."""
-        self._scene.update(mesh)
+        self._scene.update(mesh, edges)
+
+    def update_edges(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
+        """Draw curved edges by other polylines."""
+        self._scene.update_edges(mesh, edges)
 
     def look(self, viewport: Viewport) -> None:
         """Move the camera."""

@@ -4,6 +4,7 @@ It is a transparent widget whose layers are painted by QPainter: a hover repaint
 pixels, whatever the size of the mesh.
 """
 
+from collections.abc import Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -12,11 +13,12 @@ from qtpy.QtGui import QPainter, QPaintEvent
 from qtpy.QtWidgets import QWidget
 
 from meshwright.desktop.canvas.layers.base import Layer
-from meshwright.desktop.canvas.layers.hover import ArrowLayer, ElementLayer, polygon
+from meshwright.desktop.canvas.layers.hover import ArrowLayer, ElementLayer
 from meshwright.desktop.canvas.layers.markers import MarkersLayer
 from meshwright.desktop.canvas.layers.text_card import CardLayer
 from meshwright.graphics.markers import Markers
 from meshwright.graphics.theme import Theme
+from meshwright.graphics.true_edges import TrueEdges
 from meshwright.graphics.viewport import Viewport
 
 AnyLayer = TypeVar("AnyLayer", bound=Layer)
@@ -60,17 +62,23 @@ class Overlay(QWidget):
         self.update()
 
     def show_markers(
-        self, marks: Markers | None, viewport: Viewport, crowd: bool, outlined: bool
+        self,
+        marks: Markers | None,
+        edges: TrueEdges | None,
+        viewport: Viewport,
+        crowd: bool,
+        outlined: bool,
     ) -> None:
         """Paint these markers as seen through ``viewport``; see :class:`MarkersLayer`."""
-        self.markers.show(marks, viewport, crowd, outlined)
+        self.markers.show(marks, edges, viewport, crowd, outlined)
         self.look(viewport)
 
-    def show_hover(self, corners: np.ndarray | None, side: int) -> None:
-        """Show the arrow along edge ``side`` of the element with ``corners`` (k, 2) pixels."""
-        element = None if corners is None else polygon(corners)
-        self.element.show(element)
-        self.arrow.show(element, side)
+    def show_hover(self, sides: Sequence[np.ndarray] | None, side: int) -> None:
+        """Show the arrow along edge ``side`` of the element with these ``sides``, each (n, 2) in
+        pixels; None for no element.
+        """
+        self.element.show(sides)
+        self.arrow.show(sides, side)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Paint the part inside the region that Qt requests."""

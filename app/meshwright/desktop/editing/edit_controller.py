@@ -13,7 +13,7 @@ from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.operation_menu import OperationMenu
 from meshwright.desktop.levels.level_controller import LevelController
 from meshwright.desktop.widgets.status_bar import StatusBar
-from meshwright.desktop.widgets.wording import plural, step_message
+from meshwright.desktop.widgets.wording import halfedge_words, plural, step_message
 from meshwright.document.document import Document
 from meshwright.document.operation_preview import choices
 from meshwright.graphics.theme import Theme
@@ -143,8 +143,7 @@ class EditController(Controller):
         if mesh is None or halfedge < 0:
             self._status.show_halfedge("")
             return
-        ends = f"{mesh.origin(halfedge)} \u2192 {mesh.target(halfedge)}"
-        self._status.show_halfedge(f"Half-edge {halfedge}:  {ends}")
+        self._status.show_halfedge(halfedge_words(mesh, halfedge))
 
     def clean_all(self) -> None:
         """Remove all global lines that can be removed."""

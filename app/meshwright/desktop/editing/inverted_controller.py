@@ -23,7 +23,7 @@ class InvertedController(Controller):
         self, document: Document, canvas: Canvas, monitor: QualityMonitor, theme: Theme
     ) -> None:
         super().__init__(theme)
-        self._document, self._monitor = document, monitor
+        self._document, self._canvas, self._monitor = document, canvas, monitor
         self._elements = np.zeros(0, np.int64)
         self.layer = HatchLayer(theme)
         canvas.overlay.add(self.layer, below=canvas.overlay.markers)
@@ -43,9 +43,11 @@ class InvertedController(Controller):
     def _show(self) -> None:
         mesh = self._document.mesh
         if mesh is None or not len(self._elements):
-            self.layer.show(np.zeros((0, 3, 2)))
+            self.layer.show(np.zeros((0, 3, 2)), np.zeros(0, np.int64), None)
             return
         halfedges = mesh.halfedges_of(self._elements)
         halfedges = halfedges[halfedges[:, -1] < len(mesh.arrays.edge)]
         corners = mesh.arrays.edge[halfedges, ORIGIN]
-        self.layer.show(mesh.points[corners[corners[:, 0] >= 0], :2])
+        alive = corners[:, 0] >= 0
+        elements = halfedges[alive, 0] // mesh.k
+        self.layer.show(mesh.points[corners[alive], :2], elements, self._canvas.edges)

@@ -183,7 +183,7 @@ class SelectionController(Controller):
         if not drag.moved:
             return
         folded = len(drag.folded)
-        self._document.move(drag.vertices, drag.places)
+        self._document.move(drag.vertices, drag.places, parameters=drag.parameters)
         moved = f"Moved {plural(len(drag.vertices), 'vertex', 'vertices')}."
         if folded:
             verb = "is" if folded == 1 else "are"
@@ -226,11 +226,12 @@ class SelectionController(Controller):
     def _show(self) -> None:
         mesh, selection = self._document.mesh, self._document.selection
         if mesh is None:
-            self.region.show(np.zeros((0, 4, 2)))
+            self.region.show(np.zeros((0, 4, 2)), np.zeros(0, np.int64), None)
             self.layer.show(np.zeros((0, 2)), self._radii)
             return
         points = mesh.points[:, :2]
-        self.region.show(points[mesh.corners(selection.elements)])
+        elements = selection.elements
+        self.region.show(points[mesh.corners(elements)], elements, self._canvas.edges)
         self.layer.show(points[selection.vertices], self._radii)
 
     def _radii(self, viewport: Viewport) -> np.ndarray:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QApplication, QFileDialog, QWidget
@@ -23,12 +23,17 @@ from meshwright.desktop.files.unsaved_work import Guard, NoGuard, UnsavedWorkGua
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.desktop.widgets.wording import plural
 from meshwright.document.document import Document
+from meshwright.document.storage.document_file import is_drawing
 from meshwright.document.storage.project_file import ENDING, is_project
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import FARTHEST, NEAREST
 from meshwright_core.errors import sentence
 from meshwright_core.io import formats, mesh_files
+
+if TYPE_CHECKING:
+    from meshwright_core.io.drawings import DrawingReport
 
 MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"
 USUAL = ".vtk"
@@ -115,10 +120,12 @@ class FileController(Controller):
 
     def new(self, file: str = "") -> None:
         """Show the dialog for new meshes, on ``file`` if one is given."""
+        if self.may_drop():
+            self._new(file)
+
+    def _new(self, file: str) -> None:
         from meshwright.desktop.files.new_mesh import NewMeshDialog
 
-        if not self.may_drop():
-            return
         dialog = NewMeshDialog(self._document.kind, self._theme, self._window, file)
         if dialog.exec() and dialog.made is not None:
             made = dialog.made
@@ -149,20 +156,40 @@ class FileController(Controller):
             self.open(chosen)
 
     def open(self, path: str | Path) -> None:
-        """Open a mesh file, a project, or the shape in a geometry file."""
+        """Open a mesh file, a project, or the shape in a drawing.
+
+        Of a drawing whose regions lie apart, some have to be chosen: the dialog for new meshes
+        shows them.
+        """
         place = Path(path).absolute()
         if not self.may_drop():
             return
         try:
             with waiting():
-                self._document.open(place)
+                report = self._report(place)
+                if report is None or len(report.groups()) == 1:
+                    self._document.open(place)
         except (ValueError, OSError) as error:
             if not place.exists():
                 self._forget(place)
             self._notice.show_message(one_line(error))
             return
+        if report is not None and len(report.groups()) > 1:
+            self._new(str(place))
+            return
         self._remember(place)
         self.show_all()
+        if report is not None:
+            self._status.show_message(_found(report))
+
+    def _report(self, place: Path) -> DrawingReport | None:
+        """What is in a drawing; None for other files, and for domains, which need no search."""
+        if not is_drawing(place):
+            return None
+        from meshwright_core.io import drawings
+
+        report = drawings.read_regions(place)
+        return report if report.regions else None
 
     def show_all(self) -> None:
         """Restore view and policy saved in a project; else fit the view to the mesh."""
@@ -258,6 +285,17 @@ def left_out(path: Path) -> str:
         return ""
     title = formats.of(path).title
     return f" {title} files store no corners, desired degrees or history; projects do."
+
+
+def _found(report: DrawingReport) -> str:
+    """What was found in a drawing, in a line."""
+    count = len(report.regions)
+    words = [f"{plural(count, 'region')} in the drawing."] if count > 1 else []
+    words += [sentence(text) for text in (*report.repairs[:1], *report.ignored[:1])]
+    more = len(report.repairs) + len(report.ignored) + (count > 1) - len(words)
+    if more > 0:
+        words.append(f"The dialog New mesh lists {more:,} more.")
+    return " ".join(words)
 
 
 def _is_length(value: Any) -> bool:

@@ -95,8 +95,9 @@ class QualityController(Controller):
         self._element = element
         first = element * mesh.k
         corners = mesh.points[[mesh.origin(first + side) for side in range(mesh.k)]]
+        canvas = self._canvas
         self._look_at(corners)
-        self.highlight.show(corners)
+        self.highlight.show(corners, element, canvas.edges)
         self._status.show_message(f"Element {element}.")
 
     def _look_at(self, places: np.ndarray) -> None:

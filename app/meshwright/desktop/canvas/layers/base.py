@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from qtpy.QtCore import QRect, QRectF, Qt
-from qtpy.QtGui import QColor, QPainter, QPen
+from qtpy.QtCore import QPointF, QRect, QRectF, Qt
+from qtpy.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import Viewport
@@ -58,6 +58,11 @@ def pen(colour: str, width: float, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -
     """A pen with round ends and corners."""
     cap, join = Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin
     return QPen(QColor(colour), width, style, cap, join)
+
+
+def polyline(points: np.ndarray) -> QPolygonF:
+    """Points (n, 2) in pixels for Qt: a polyline, or a polygon where they are filled."""
+    return QPolygonF([QPointF(x, y) for x, y in points.tolist()])
 
 
 def inside(rows: np.ndarray, viewport: Viewport, slack: float = 24.0) -> np.ndarray:

@@ -1,12 +1,13 @@
-"""The preview of an operation: new edges dashed, removed edges faded, new irregularities, change of
-s.
+"""The preview of an operation: new edges dashed, removed edges faded, new vertices, new
+irregularities, change of s.
 """
 
 import numpy as np
-from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, QSizeF, Qt
+from qtpy.QtCore import QPointF, QRect, QRectF, QSizeF, Qt
 from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from meshwright.desktop.canvas.layers.base import Layer, pen
+from meshwright.desktop.canvas.layers.edge_strokes import EdgeStrokes
 from meshwright.document.operation_preview import Ghost
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import Theme
@@ -18,6 +19,8 @@ ROOM = 26.0
 """Numbers are written where the edges at the half-edge are longer than this, in pixels."""
 CROSS = 5.0
 """Half the size in pixels of the cross on a vertex that would be removed."""
+RING = 3.5
+"""Radius in pixels of the ring at a vertex that would be made."""
 GAP = 14.0
 """Pixels between the tag and the hovered element."""
 HIDES = 60.0
@@ -32,6 +35,7 @@ class GhostLayer(Layer):
     def __init__(self, theme: Theme, font: QFont) -> None:
         super().__init__(theme)
         self.ghost: Ghost | None = None
+        self._added, self._removed = EdgeStrokes(), EdgeStrokes()
         self.numbers = GhostNumbers(theme, font, self)
 
     def show(
@@ -48,6 +52,8 @@ class GhostLayer(Layer):
             return
         before = self.rect().united(self.numbers.rect())
         self.ghost = ghost
+        self._added = EdgeStrokes(ghost.added_edges if ghost is not None else None)
+        self._removed = EdgeStrokes(ghost.removed_edges if ghost is not None else None)
         self.numbers.show(title if ghost is not None else "", around, marks)
         self.changed(before.united(self.rect()).united(self.numbers.rect()))
 
@@ -71,24 +77,27 @@ class GhostLayer(Layer):
         fading = pen(self.theme.fill, 4.0)
         fading.setColor(over)
         painter.setPen(fading)
-        painter.drawLines(self._lines(self.ghost.removed))
+        self._removed.draw(painter, self.viewport)
         halo = QColor(self.theme.background)
         halo.setAlpha(200)
         under = QPen(halo, 4.0, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap)
         dashed = QPen(QColor(self.theme.arrow), 1.75, Qt.PenStyle.CustomDashLine)
         dashed.setCapStyle(Qt.PenCapStyle.FlatCap)
         dashed.setDashPattern(DASHES)
-        lines = self._lines(self.ghost.added)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
         for each in (under, dashed):
             painter.setPen(each)
-            painter.drawLines(lines)
+            self._added.draw(painter, self.viewport)
+        self._paint_fresh(painter, self.ghost)
 
-    def _lines(self, segments: np.ndarray) -> list[QLineF]:
-        ends = self.viewport.to_screen(segments.reshape(-1, 2)).reshape(-1, 4)
-        x, y = np.sort(ends[:, ::2], axis=1), np.sort(ends[:, 1::2], axis=1)
-        width, height = self.viewport.size
-        seen = (x[:, 1] > 0) & (x[:, 0] < width) & (y[:, 1] > 0) & (y[:, 0] < height)
-        return [QLineF(*line) for line in ends[seen].tolist()]
+    def _paint_fresh(self, painter: QPainter, ghost: Ghost) -> None:
+        """Paint a small ring where a vertex would be made."""
+        if len(ghost.fresh) > MOST:
+            return
+        painter.setPen(pen(self.theme.arrow, 1.5))
+        painter.setBrush(QColor(self.theme.background))
+        for x, y in self.viewport.to_screen(ghost.fresh).tolist():
+            painter.drawEllipse(QPointF(x, y), RING, RING)
 
 
 class GhostNumbers(Layer):

@@ -2,10 +2,11 @@
 
 import numpy as np
 from qtpy.QtCore import QObject, QPointF, QRect, QRectF, Qt, QTimer
-from qtpy.QtGui import QPainter, QPolygonF
+from qtpy.QtGui import QPainter
 
-from meshwright.desktop.canvas.layers.base import Layer, pen
+from meshwright.desktop.canvas.layers.base import Layer, pen, polyline
 from meshwright.graphics.theme import Theme
+from meshwright.graphics.true_edges import TrueEdges, polygons
 
 SECONDS = 4.0
 _RING = 20.0
@@ -18,6 +19,8 @@ class SpotLayer(Layer):
     def __init__(self, theme: Theme, parent: QObject) -> None:
         super().__init__(theme)
         self._places: np.ndarray | None = None
+        self._element = -1
+        self._edges: TrueEdges | None = None
         self._timer = QTimer(parent)
         self._timer.setSingleShot(True)
         self._timer.timeout.connect(self.clear)
@@ -27,10 +30,13 @@ class SpotLayer(Layer):
         """(n, 2) the highlighted point, or the corners of the highlighted element, in the plane."""
         return self._places
 
-    def show(self, places: np.ndarray) -> None:
-        """Highlight ``places`` (n, 2 or 3) in the plane."""
+    def show(self, places: np.ndarray, element: int = -1, edges: TrueEdges | None = None) -> None:
+        """Highlight ``places`` (n, 2 or 3) in the plane: one point, or the corners of an element
+        with its true edges.
+        """
         before = self._rect()
         self._places = np.asarray(places, dtype=float)[:, :2]
+        self._element, self._edges = element, edges
         self._timer.start(int(SECONDS * 1000))
         self.changed(before.united(self._rect()))
 
@@ -47,17 +53,23 @@ class SpotLayer(Layer):
         if self._places is None:
             return
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        points = [QPointF(x, y) for x, y in self.viewport.to_screen(self._places).tolist()]
+        points = self._outline()
         for colour, width in ((self.theme.background, 6.0), (self.theme.accent, 2.5)):
             painter.setPen(pen(colour, width))
             if len(points) == 1:
-                painter.drawEllipse(points[0], _RING, _RING)
+                painter.drawEllipse(QPointF(*points[0].tolist()), _RING, _RING)
             else:
-                painter.drawPolygon(QPolygonF(points))
+                painter.drawPolygon(polyline(points))
+
+    def _outline(self) -> np.ndarray:
+        """(n, 2) the point, or the polygon, in pixels."""
+        assert self._places is not None
+        (shape,) = polygons(self._places[None], np.array([self._element]), self._edges)
+        return self.viewport.to_screen(shape)
 
     def _rect(self) -> QRectF:
         if self._places is None:
             return QRectF()
-        at = self.viewport.to_screen(self._places)
+        at = self._outline()
         low, high = at.min(axis=0) - _RING - _SLACK, at.max(axis=0) + _RING + _SLACK
         return QRectF(QPointF(*low.tolist()), QPointF(*high.tolist()))

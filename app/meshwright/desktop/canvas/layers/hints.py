@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from qtpy.QtCore import QLineF, QPointF, QRect, QRectF, Qt
+from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from meshwright.desktop.canvas.layers.base import Layer, inside, pen
+from meshwright.desktop.canvas.layers.edge_strokes import EdgeStrokes
 from meshwright.desktop.canvas.layers.ghost import DASHES, change_colour
 from meshwright.document.operation_preview import Ghost
 from meshwright.graphics.markers import label
@@ -35,6 +37,11 @@ class Hint:
     ghost: Ghost
     place: np.ndarray
     """(2,) the middle of its half-edge."""
+
+    @cached_property
+    def strokes(self) -> tuple[EdgeStrokes, EdgeStrokes]:
+        """The edges that it adds, and those that it removes."""
+        return EdgeStrokes(self.ghost.added_edges), EdgeStrokes(self.ghost.removed_edges)
 
     @property
     def chance(self) -> str:
@@ -76,27 +83,23 @@ class HintsLayer(Layer):
             return
         for index, hint in enumerate(self.hints):
             if index != self.meant:
-                self._paint_added(painter, hint.ghost, 1.5, PALE)
+                self._paint_added(painter, hint, 1.5, PALE)
         meant = self.hints[self.meant]
         over = QColor(self.theme.fill)
         over.setAlpha(215)
         fading = pen(self.theme.fill, 4.0)
         fading.setColor(over)
         painter.setPen(fading)
-        painter.drawLines(self._lines(meant.ghost.removed))
-        self._paint_added(painter, meant.ghost, 2.25, 255)
+        meant.strokes[1].draw(painter, self.viewport)
+        self._paint_added(painter, meant, 2.25, 255)
 
-    def _paint_added(self, painter: QPainter, ghost: Ghost, width: float, alpha: int) -> None:
+    def _paint_added(self, painter: QPainter, hint: Hint, width: float, alpha: int) -> None:
         colour = QColor(self.theme.accent)
         colour.setAlpha(alpha)
         dashed = QPen(colour, width, Qt.PenStyle.CustomDashLine, Qt.PenCapStyle.FlatCap)
         dashed.setDashPattern(DASHES)
         painter.setPen(dashed)
-        painter.drawLines(self._lines(ghost.added))
-
-    def _lines(self, segments: np.ndarray) -> list[QLineF]:
-        ends = self.viewport.to_screen(segments.reshape(-1, 2)).reshape(-1, 4)
-        return [QLineF(*line) for line in ends.tolist()]
+        hint.strokes[0].draw(painter, self.viewport)
 
 
 class HintBadges(Layer):

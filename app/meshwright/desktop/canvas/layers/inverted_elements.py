@@ -1,11 +1,16 @@
 """The layer of inverted elements, which are hatched."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, Qt
 from qtpy.QtGui import QBrush, QColor, QPainter, QPolygonF
 
-from meshwright.desktop.canvas.layers.base import Layer, inside, pen
+from meshwright.desktop.canvas.layers.base import Layer, inside, pen, polyline
 from meshwright.graphics.theme import Theme
+from meshwright.graphics.true_edges import TrueEdges, polygons
 from meshwright.graphics.viewport import Viewport
 
 SMALLEST = 9.0
@@ -22,7 +27,9 @@ class HatchLayer(Layer):
     def __init__(self, theme: Theme) -> None:
         super().__init__(theme)
         self._corners = np.zeros((0, 3, 2))
-        self._seen = np.zeros((0, 3, 2))
+        self._elements = np.zeros(0, np.int64)
+        self._edges: TrueEdges | None = None
+        self._seen: list[np.ndarray] = []  # polygons in pixels
         self._low = self._high = np.zeros((0, 2))  # boxes around what each of them paints
 
     @property
@@ -30,10 +37,10 @@ class HatchLayer(Layer):
         """Elements that are hatched where they are in view."""
         return len(self._corners)
 
-    def show(self, corners: np.ndarray) -> None:
-        """Hatch the elements with these corners (n, k, 2) in the plane."""
+    def show(self, corners: np.ndarray, elements: np.ndarray, edges: TrueEdges | None) -> None:
+        """Hatch elements (n,) with these corners (n, k, 2) in the plane and true edges."""
         if len(corners) or len(self._corners):
-            self._corners = corners
+            self._corners, self._elements, self._edges = corners, elements, edges
             self.look(self.viewport)
             self.changed()
 
@@ -43,33 +50,36 @@ class HatchLayer(Layer):
         corners = viewport.to_screen(self._corners)
         middles = corners.mean(axis=1) if len(corners) else np.zeros((0, 2))
         rows = np.column_stack([middles, np.arange(len(middles))])
-        self._seen = corners[inside(rows, viewport, 200.0)[:MOST, 2].astype(int)]
-        self._low = self._seen.min(axis=1) - SLACK if len(self._seen) else np.zeros((0, 2))
-        self._high = self._seen.max(axis=1) + SLACK if len(self._seen) else np.zeros((0, 2))
+        seen = inside(rows, viewport, 200.0)[:MOST, 2].astype(int)
+        shapes = polygons(self._corners[seen], self._elements[seen], self._edges)
+        self._seen = [viewport.to_screen(shape) for shape in shapes]
+        self._low = np.array([shape.min(axis=0) for shape in self._seen]).reshape(-1, 2) - SLACK
+        self._high = np.array([shape.max(axis=0) for shape in self._seen]).reshape(-1, 2) + SLACK
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
         """Hatching, and a sign where the element is too small to see it."""
         low, high = (rect.left(), rect.top()), (rect.right(), rect.bottom())
         near = ((self._low <= high) & (self._high >= low)).all(axis=1)
-        if near.any():
-            paint_hatched(painter, self._seen[near], self.theme)
+        rows = np.flatnonzero(near).tolist()
+        if rows:
+            paint_hatched(painter, [self._seen[row] for row in rows], self.theme)
 
 
-def paint_hatched(painter: QPainter, corners: np.ndarray, theme: Theme) -> None:
-    """Hatch polygons (n, k, 2) in pixels; small ones also carry an exclamation mark."""
+def paint_hatched(painter: QPainter, shapes: Sequence[np.ndarray], theme: Theme) -> None:
+    """Hatch polygons, each (n, 2) in pixels; small ones also carry an exclamation mark."""
     painter.save()
     strokes = QBrush(QColor(theme.warning), Qt.BrushStyle.BDiagPattern)
     tint = QColor(theme.warning)
     tint.setAlpha(46)
     painter.setPen(pen(theme.warning, 1.5))
-    for polygon in corners.tolist():
-        shape = QPolygonF([QPointF(x, y) for x, y in polygon])
+    for shape in shapes:
+        polygon = polyline(shape)
         for brush in (QBrush(tint), strokes):
             painter.setBrush(brush)
-            painter.drawPolygon(shape)
-    sizes = np.ptp(corners, axis=1).min(axis=1) if len(corners) else np.zeros(0)
-    for polygon in corners[sizes < SMALLEST].tolist():
-        _paint_sign(painter, np.mean(polygon, axis=0), theme)
+            painter.drawPolygon(polygon)
+    for shape in shapes:
+        if np.ptp(shape, axis=0).min() < SMALLEST:
+            _paint_sign(painter, np.mean(shape, axis=0), theme)
     painter.restore()
 
 

@@ -2,15 +2,18 @@
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
-from qtpy.QtGui import QColor, QFont, QPainter, QPainterPath, QPen, QPolygonF
+from qtpy.QtGui import QColor, QFont, QPainter, QPainterPath, QPen
 
-from meshwright.desktop.canvas.layers.base import Layer, inside, pen
+from meshwright.desktop.canvas.layers.base import Layer, inside, pen, polyline
 from meshwright.graphics.markers import READABLE, Markers, label
 from meshwright.graphics.theme import Theme
+from meshwright.graphics.true_edges import TrueEdges
 from meshwright.graphics.viewport import Viewport
 
 MOST_CORNERS = 5000
 """Corners are not drawn if more than this are visible."""
+CORNER, ANCHOR = 8.0, 5.5
+"""Sides in pixels of the full square of a corner, and of the hollow one of an anchor."""
 
 
 class MarkersLayer(Layer):
@@ -20,11 +23,14 @@ class MarkersLayer(Layer):
         super().__init__(theme)
         self._font = QFont(font)
         self._font.setWeight(QFont.Weight.DemiBold)
-        self._discs = np.empty((0, 5))  # x, y, radius, delta, corner? of visible irregular vertices
+        # x, y, radius, delta, corner?, anchor? of visible irregular vertices
+        self._discs = np.empty((0, 6))
         self._numbers = True
         self._corners = np.empty((0, 2))
+        self._anchors = np.empty((0, 2))
         self._rings = np.empty((0, 2))
         self._outline = QPainterPath()
+        self._interfaces = QPainterPath()
 
     @property
     def numbers(self) -> bool:
@@ -37,30 +43,41 @@ class MarkersLayer(Layer):
             self._numbers = shown
             self.changed()
 
-    def show(self, marks: Markers | None, viewport: Viewport, crowd: bool, outlined: bool) -> None:
-        """Paint these markers as seen through ``viewport``.
+    def show(
+        self,
+        marks: Markers | None,
+        edges: TrueEdges | None,
+        viewport: Viewport,
+        crowd: bool,
+        outlined: bool,
+    ) -> None:
+        """Paint these markers, and the boundary and interfaces, as seen through ``viewport``.
 
         Discs are VTK's where ``crowd``, the boundary is where ``outlined``.
         """
         self.viewport = viewport
-        self._discs = np.empty((0, 5))
-        self._corners = self._rings = np.empty((0, 2))
-        self._outline = QPainterPath()
-        if marks is not None:
+        self._discs = np.empty((0, 6))
+        self._corners = self._anchors = self._rings = np.empty((0, 2))
+        self._outline, self._interfaces = QPainterPath(), QPainterPath()
+        if marks is not None and edges is not None:
             if not outlined:
-                for loop in marks.loops:
-                    points = viewport.to_screen(loop).tolist()
-                    self._outline.addPolygon(QPolygonF([QPointF(x, y) for x, y in points]))
+                for loop in edges.loops():
+                    self._outline.addPolygon(polyline(viewport.to_screen(loop)))
+            for line in edges.interfaces():
+                self._interfaces.addPolygon(polyline(viewport.to_screen(line)))
             self._rings = inside(viewport.to_screen(marks.locked_places), viewport)
             if not crowd:
                 corners = inside(viewport.to_screen(marks.corner_places), viewport)
                 self._corners = corners if len(corners) < MOST_CORNERS else self._corners
+                anchors = inside(viewport.to_screen(marks.anchor_places), viewport)
+                self._anchors = anchors if len(anchors) < MOST_CORNERS else self._anchors
                 discs = np.column_stack(
                     (
                         viewport.to_screen(marks.places),
                         marks.radii(viewport),
                         marks.delta,
                         marks.corners,
+                        marks.anchors,
                     )
                 )
                 self._discs = inside(discs, viewport)
@@ -68,6 +85,8 @@ class MarkersLayer(Layer):
     def paint(self, painter: QPainter, rect: QRect) -> None:
         """Paint the boundary, then the marks on vertices."""
         painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(pen(self.theme.boundary, 1.5))
+        painter.drawPath(self._interfaces)
         painter.setPen(pen(self.theme.boundary, 1.75))
         painter.drawPath(self._outline)
         near = QRectF(rect).adjusted(-24, -24, 24, 24)
@@ -75,7 +94,12 @@ class MarkersLayer(Layer):
         painter.setBrush(QColor(self.theme.corner))
         for x, y in self._corners.tolist():
             if near.contains(x, y):
-                painter.drawRect(QRectF(x - 4.0, y - 4.0, 8.0, 8.0))
+                painter.drawRect(QRectF(x - CORNER / 2, y - CORNER / 2, CORNER, CORNER))
+        painter.setPen(QPen(QColor(self.theme.corner), 1.25))
+        painter.setBrush(QColor(self.theme.background))
+        for x, y in self._anchors.tolist():
+            if near.contains(x, y):
+                painter.drawRect(QRectF(x - ANCHOR / 2, y - ANCHOR / 2, ANCHOR, ANCHOR))
         self._paint_discs(painter, near)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(QColor(self.theme.boundary), 1.5))
@@ -87,12 +111,16 @@ class MarkersLayer(Layer):
         plus, minus = QColor(self.theme.plus), QColor(self.theme.minus)
         halo = QPen(QColor(self.theme.background), 1.25)
         font = QFont(self._font)
-        for x, y, r, delta, corner in self._discs.tolist():
+        for x, y, r, delta, corner, anchor in self._discs.tolist():
             if not near.contains(x, y):
                 continue
             if corner:
                 painter.setPen(Qt.PenStyle.NoPen)
                 painter.setBrush(QColor(self.theme.corner))
+                painter.drawRect(QRectF(x - r, y - r, 2 * r, 2 * r))
+            elif anchor:
+                painter.setPen(QPen(QColor(self.theme.corner), 1.25))
+                painter.setBrush(QColor(self.theme.background))
                 painter.drawRect(QRectF(x - r, y - r, 2 * r, 2 * r))
             painter.setPen(halo if r > 4 else Qt.PenStyle.NoPen)
             painter.setBrush(plus if delta > 0 else minus)

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
-from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen
+from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
-from meshwright.desktop.canvas.layers.base import Layer, pen
+from meshwright.desktop.canvas.layers.base import Layer, pen, polyline
 from meshwright.desktop.canvas.layers.hints import percent
-from meshwright.desktop.canvas.layers.hover import arrow, polygon
+from meshwright.desktop.canvas.layers.hover import Sides, arrow, head, lengths, part
 from meshwright.graphics.theme import Theme
+from meshwright.graphics.true_edges import TrueEdges, polygons
 from meshwright_core import HalfEdgeMesh
 
 if TYPE_CHECKING:
@@ -34,14 +35,18 @@ FAINT = 0.004
 class PolicyLayerContent:
     """Coordinates and probabilities of an insight, for painting."""
 
+    edges: TrueEdges | None
+    """The true edges of the mesh."""
+    seen: np.ndarray
+    """(M,) the elements in the field of view, the nearest first."""
     field: np.ndarray
-    """(M, k, 2) corners of the elements in the field of view, the nearest first."""
+    """(M, k, 2) their corners."""
     blocks: np.ndarray
     """(M,) the convolution block that first includes each element."""
+    halfedges: np.ndarray
+    """(K,) the candidate half-edges, the most probable last."""
     elements: np.ndarray
-    """(K, k, 2) corners of the elements of the candidate half-edges, the most probable last."""
-    sides: np.ndarray
-    """(K,) which of its sides the half-edge is."""
+    """(K, k, 2) corners of their elements."""
     weights: np.ndarray
     """(K,) their probabilities."""
     wanted: int
@@ -56,15 +61,22 @@ class PolicyLayerContent:
     """The legend, line by line."""
 
 
-def sight(insight: Insight, mesh: HalfEdgeMesh, words: tuple[str, ...] = ()) -> PolicyLayerContent:
-    """What to paint for an insight about ``mesh`` in its current state."""
+def sight(
+    insight: Insight,
+    mesh: HalfEdgeMesh,
+    words: tuple[str, ...] = (),
+    edges: TrueEdges | None = None,
+) -> PolicyLayerContent:
+    """What to paint for an insight about ``mesh`` in its current state, with its true edges."""
     order = np.argsort(insight.weights, kind="stable")
     halfedges = insight.halfedges[order]
     return PolicyLayerContent(
+        edges=edges,
+        seen=insight.field[:, 0],
         field=_corners(mesh, insight.field[:, 0]),
         blocks=insight.field[:, 1],
+        halfedges=halfedges,
         elements=_corners(mesh, halfedges // mesh.k),
-        sides=halfedges % mesh.k,
         weights=insight.weights[order],
         wanted=int(np.flatnonzero(halfedges == insight.wanted.halfedge)[0]),
         places=mesh.points[insight.template[:, 0], :2],
@@ -98,13 +110,12 @@ class FieldLayer(Layer):
             return
         painter.setPen(Qt.PenStyle.NoPen)
         most = max(1, int(self.sight.blocks.max(initial=1)))
-        corners = self.viewport.to_screen(self.sight.field.reshape(-1, 2))
-        corners = corners.reshape(self.sight.field.shape)
-        for element, block in zip(corners, self.sight.blocks.tolist(), strict=True):
+        shapes = polygons(self.sight.field, self.sight.seen, self.sight.edges)
+        for shape, block in zip(shapes, self.sight.blocks.tolist(), strict=True):
             tint = QColor(self.theme.accent)
             tint.setAlpha(round(84 - 56 * block / most))
             painter.setBrush(tint)
-            painter.drawPolygon(polygon(element))
+            painter.drawPolygon(polyline(self.viewport.to_screen(shape)))
 
 
 class InsightLayer(Layer):
@@ -121,27 +132,29 @@ class InsightLayer(Layer):
         seen = self._below.sight
         if seen is None:
             return
-        corners = self.viewport.to_screen(seen.elements.reshape(-1, 2))
-        corners = corners.reshape(seen.elements.shape)
         heaviest = float(seen.weights.max(initial=FAINT))
-        for row, (element, side, weight) in enumerate(
-            zip(corners, seen.sides.tolist(), seen.weights.tolist(), strict=True)
-        ):
+        for row, weight in enumerate(seen.weights.tolist()):
             if weight >= FAINT and row != seen.wanted:
-                self._paint_halfedge(painter, element, side, weight, heaviest)
+                self._paint_halfedge(painter, self._arrow(seen, row), weight, heaviest)
         self._paint_template(painter, seen)
-        row = seen.wanted
-        weight = float(seen.weights[row])
-        side = int(seen.sides[row])
-        self._paint_halfedge(painter, corners[row], side, weight, heaviest, wanted=True)
+        weight = float(seen.weights[seen.wanted])
+        line = self._arrow(seen, seen.wanted)
+        self._paint_halfedge(painter, line, weight, heaviest, wanted=True)
         self._paint_place(painter, seen)
         self._paint_words(painter, seen.words)
+
+    def _arrow(self, seen: PolicyLayerContent, row: int) -> np.ndarray:
+        """(n, 2) the arrow of a candidate half-edge in pixels."""
+        corners = seen.elements[row]
+        element, side = divmod(int(seen.halfedges[row]), len(corners))
+        straight: Sides = list(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1))
+        sides = seen.edges.sides(element) if seen.edges else straight
+        return arrow([self.viewport.to_screen(line) for line in sides], side)
 
     def _paint_halfedge(
         self,
         painter: QPainter,
-        element: np.ndarray,
-        side: int,
+        line: np.ndarray,
         weight: float,
         heaviest: float,
         wanted: bool = False,
@@ -149,36 +162,31 @@ class InsightLayer(Layer):
         """Paint an arrow whose width shows the probability of the half-edge, and the
         probability.
         """
-        tail, head = arrow(polygon(element), side)
-        along = head - tail
-        length = float(np.hypot(along.x(), along.y()))
+        length = float(lengths(line)[-1])
         if length < 1.0:
             return
-        along /= length
-        normal = QPointF(-along.y(), along.x())
         share = float(np.sqrt(weight / heaviest))
         width = min(1.0 + 3.0 * share, 1.0 + 0.06 * length)
         size = min(5.0 + width * 1.6, 0.45 * length)
-        path = QPainterPath(head)
-        path.lineTo(head - along * size + normal * (0.5 * size))
-        path.lineTo(head - along * size - normal * (0.5 * size))
-        path.closeSubpath()
-        end = head - along * (0.8 * size)
+        shaft = polyline(part(line, 0.0, length - 0.8 * size))
         colour = QColor(self.theme.arrow)
         colour.setAlpha(255 if wanted else round(70 + 130 * share))
         if wanted:
             painter.setPen(pen(self.theme.background, width + 3.5))
-            painter.drawLine(tail, end)
-        line = QPen(colour, width)
-        line.setCapStyle(Qt.PenCapStyle.FlatCap)
-        painter.setPen(line)
-        painter.drawLine(tail, end)
+            painter.drawPolyline(shaft)
+        stroke = QPen(colour, width)
+        stroke.setCapStyle(Qt.PenCapStyle.FlatCap)
+        painter.setPen(stroke)
+        painter.drawPolyline(shaft)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(colour)
-        painter.drawPath(path)
+        painter.drawPath(head(line, size))
         if (weight >= READ or wanted) and length > ROOM:
             # on the left of the arrow, which is inside the element
-            self._paint_number(painter, (tail + head) / 2.0, normal, percent(weight), wanted)
+            middle = part(line, 0.0, 0.5 * length)[-1]
+            along = (line[-1] - line[0]) / max(float(np.hypot(*(line[-1] - line[0]))), 1e-9)
+            normal = QPointF(-float(along[1]), float(along[0]))
+            self._paint_number(painter, QPointF(*middle.tolist()), normal, percent(weight), wanted)
 
     def _paint_number(
         self, painter: QPainter, at: QPointF, normal: QPointF, text: str, wanted: bool

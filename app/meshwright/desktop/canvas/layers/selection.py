@@ -4,11 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 from qtpy.QtCore import QPointF, Qt
-from qtpy.QtGui import QColor, QImage, QPainter, QPainterPath, QPolygonF
+from qtpy.QtGui import QColor, QImage, QPainter, QPainterPath
 
-from meshwright.desktop.canvas.layers.base import inside, pen
+from meshwright.desktop.canvas.layers.base import inside, pen, polyline
 from meshwright.desktop.canvas.layers.cached_layer import PictureLayer
 from meshwright.graphics.theme import Theme
+from meshwright.graphics.true_edges import TrueEdges, polygons
 from meshwright.graphics.viewport import Viewport
 
 MANY = 1500
@@ -25,16 +26,18 @@ class RegionLayer(PictureLayer):
     def __init__(self, theme: Theme) -> None:
         super().__init__(theme)
         self._corners = np.zeros((0, 4, 2))
+        self._elements = np.zeros(0, np.int64)
+        self._edges: TrueEdges | None = None
 
     @property
     def empty(self) -> bool:
         """Whether there is no region."""
         return not len(self._corners)
 
-    def show(self, corners: np.ndarray) -> None:
-        """Tint the elements with these corners (m, k, 2)."""
+    def show(self, corners: np.ndarray, elements: np.ndarray, edges: TrueEdges | None) -> None:
+        """Tint elements (m,) with these corners (m, k, 2) and true edges."""
         if len(corners) or not self.empty:
-            self._corners = corners
+            self._corners, self._elements, self._edges = corners, elements, edges
             self.forget()
 
     def draw(self, painter: QPainter) -> None:
@@ -44,10 +47,10 @@ class RegionLayer(PictureLayer):
         seen = inside(rows, self.viewport, 200.0)[:, 2].astype(int)
         if len(seen) > MANY:
             return
-        corners = self.viewport.to_screen(self._corners[seen])
         path = QPainterPath()
-        for polygon in corners.tolist():
-            path.addPolygon(QPolygonF([QPointF(x, y) for x, y in (*polygon, polygon[0])]))
+        for polygon in polygons(self._corners[seen], self._elements[seen], self._edges):
+            path.addPolygon(polyline(self.viewport.to_screen(polygon)))
+            path.closeSubpath()
         tint = QColor(self.theme.accent)
         tint.setAlpha(38)
         painter.fillPath(path, tint)

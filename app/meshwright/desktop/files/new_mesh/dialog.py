@@ -30,7 +30,7 @@ from meshwright.desktop.files.new_mesh.random_page import RandomPage
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID, Theme
-from meshwright.sources.mesh_worker import NewMesh
+from meshwright.sources.new_mesh import DrawingContents, NewMesh
 from meshwright_core.errors import sentence
 
 PAGES = (("gallery", "Gallery"), ("random", "Random"), ("draw", "Draw"), ("file", "File"))
@@ -124,6 +124,7 @@ class NewMeshDialog(QDialog):
             page.message.connect(self._on_message)
         for pictures in (self.gallery.shapes, self.random.pictures):
             pictures.itemDoubleClicked.connect(self.accept)
+        self.maker.found.connect(self._on_found)
         self.maker.made.connect(self._on_made)
         self.maker.failed.connect(self._on_failed)
         self.cancel.clicked.connect(self.reject)
@@ -198,6 +199,12 @@ class NewMeshDialog(QDialog):
                 self.maker.ask(request)
                 self.options.show_words(WORKING, stale=True)
         self._refresh()
+
+    def _on_found(self, contents: DrawingContents | None) -> None:
+        if self.page is self.file:
+            self.file.show_contents(contents)
+            if self._asked is not None:  # the choice of regions is part of the request
+                self._asked = {**self._asked, "source": self.file.source}
 
     def _on_made(self, made: NewMesh) -> None:
         self.made = made

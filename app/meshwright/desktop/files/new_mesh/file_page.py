@@ -19,17 +19,21 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from meshwright.desktop.files.new_mesh.controls import SegmentedButtons
+from meshwright.desktop.files.new_mesh.found_regions import NONE_CHOSEN, FoundRegions
 from meshwright.desktop.files.new_mesh.page_base import Page
 from meshwright.desktop.widgets.basic import named
 from meshwright.desktop.widgets.number_box import DecimalBox
 from meshwright.graphics.theme import GRID, Theme
+from meshwright.sources.new_mesh import DrawingContents
 from meshwright_core.domains.domain import CORNER_ANGLE
 from meshwright_core.io import drawings, mesh_files
-from meshwright_core.io.drawings.curves import CURVE_STEP
 
 NO_FILE = "Choose a file, or drop one here."
 MESH_WORDS = "A mesh is opened unchanged."
-SHAPE_WORDS = "The shape in the file is meshed."
+SHAPE_WORDS = "The shape in the file is meshed, between its true curves."
+FITS = (("", "As drawn"), ("arcs", "Arcs"), ("splines", "Splines"))
+"""What polylines are taken for."""
 
 
 class FilePage(Page):
@@ -44,7 +48,10 @@ class FilePage(Page):
         self.choose = QPushButton("Choose\u2026")
         self.choose.setAutoDefault(False)
         self.corner_angle = _angle(CORNER_ANGLE, 0.0, 180.0, 2, "Corner angle")
-        self.curve_step = _angle(CURVE_STEP, 0.5, 45.0, 1, "Curve step")
+        self.curve_step = _angle(0.0, 0.0, 90.0, 1, "Curve step")
+        self.curve_step.setSpecialValueText("automatic")
+        self.fit = SegmentedButtons(FITS, "Polylines")
+        self.found = FoundRegions(theme)
         self.words_label = named(NO_FILE, "Hint")
         self.words_label.setWordWrap(True)
         self._arrange()
@@ -52,6 +59,8 @@ class FilePage(Page):
         self.choose.clicked.connect(self._ask)
         for field in (self.corner_angle, self.curve_step):
             field.valueChanged.connect(self._on_reading)
+        self.fit.changed.connect(self._on_reading)
+        self.found.changed.connect(self._on_reading)
         self._asked = ""
         self._refresh()
 
@@ -67,14 +76,19 @@ class FilePage(Page):
         line.addWidget(self.choose)
         inner.addLayout(line)
         inner.addWidget(self.words_label)
-        shapes, meshes = drawings.endings(), mesh_files.endings()
+        self.kinds = QWidget()
+        kinds = QVBoxLayout(self.kinds)
+        kinds.setContentsMargins(0, 0, 0, 0)
+        kinds.setSpacing(3 * GRID)
+        kinds.addWidget(_kinds("Shapes, to be meshed", drawings.endings()))
+        kinds.addWidget(_kinds("Meshes, opened unchanged", mesh_files.endings()))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(3 * GRID)
         layout.addWidget(self.zone)
         layout.addWidget(self._readings())
-        layout.addWidget(_kinds("Shapes, to be meshed", shapes))
-        layout.addWidget(_kinds("Meshes, opened unchanged", meshes))
+        layout.addWidget(self.kinds)
+        layout.addWidget(self.found)
         layout.addStretch(1)
 
     def _readings(self) -> QWidget:
@@ -90,9 +104,14 @@ class FilePage(Page):
                 "Increase it if curved sides are drawn as short straight pieces.",
             ),
             (
-                "Curves turn at each point by",
+                "Edges turn along a curve by",
                 self.curve_step,
-                "Decrease it to follow arcs and splines more closely.",
+                "At most; automatic is as much as the shape allows.",
+            ),
+            (
+                "Polylines are read",
+                self.fit,
+                "Arcs or splines are found in polylines that stand for curves.",
             ),
         )
         for row, (title, field, hint) in enumerate(rows):
@@ -107,23 +126,35 @@ class FilePage(Page):
     @property
     def source(self) -> dict[str, Any] | None:
         """The file and the options for reading it."""
-        if not self._asked:
+        if not self._asked or self.found.choice == "":
             return None
         return {
             "file": self._asked,
             "corner_angle": self.corner_angle.value(),
-            "curve_step": self.curve_step.value(),
+            "curve_step": self.curve_step.value() or None,
+            "fit": self.fit.key or None,
+            "region": self.found.choice,
         }
 
     @property
     def words(self) -> str:
-        """A request to choose a file; empty once there is one."""
-        return "" if self._asked else NO_FILE
+        """A request to choose a file, or regions in it; empty once there are some."""
+        if not self._asked:
+            return NO_FILE
+        return NONE_CHOSEN if self.found.choice == "" else ""
 
     @property
     def takes_settings(self) -> bool:
         """False for mesh files, which are opened unchanged."""
         return not self._asked or drawings.is_geometry(self._asked)
+
+    def show_contents(self, contents: DrawingContents | None) -> None:
+        """Show what was found in the file; None if it is no drawing, or cannot be read."""
+        self.found.show_contents(contents)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Draw in the colours of ``theme``."""
+        self.found.set_theme(theme)
 
     def take(self, path: str) -> None:
         """Read this file."""
@@ -134,6 +165,7 @@ class FilePage(Page):
         asked = self.path.text().strip()
         if asked != self._asked:
             self._asked = asked
+            self.found.show_contents(None)
             self._refresh()
             self.changed.emit()
 
@@ -144,7 +176,9 @@ class FilePage(Page):
         is_shape = bool(self._asked) and self.takes_settings
         words = SHAPE_WORDS if is_shape else MESH_WORDS if self._asked else NO_FILE
         self.words_label.setText(words)
+        self.kinds.setVisible(not self._asked)
         self.curve_step.setEnabled(is_shape)
+        self.fit.setEnabled(is_shape)
         self.corner_angle.setEnabled(bool(self._asked))
 
     def _ask(self) -> None:
@@ -187,7 +221,7 @@ def _angle(value: float, low: float, high: float, decimals: int, name: str) -> Q
     made.setValue(value)
     made.setSuffix("\u00b0")
     made.setAlignment(Qt.AlignmentFlag.AlignRight)
-    made.setFixedWidth(10 * GRID)
+    made.setFixedWidth(14 * GRID)
     made.setKeyboardTracking(False)
     made.setAccessibleName(name)
     return made

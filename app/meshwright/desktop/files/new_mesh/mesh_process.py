@@ -10,7 +10,7 @@ from typing import Any
 
 from qtpy.QtCore import QByteArray, QObject, QProcess, QProcessEnvironment, QTimer, Signal
 
-from meshwright.sources import mesh_worker
+from meshwright.sources import mesh_worker, new_mesh
 
 PAUSE = 120
 """Milliseconds without a further change after which a request is sent."""
@@ -21,12 +21,14 @@ GONE = "Meshing failed: the process ended unexpectedly, perhaps for lack of memo
 
 
 class MeshProcess(QObject):
-    """Sends requests to the process, and emits ``made(NewMesh)`` or ``failed(sentence)``.
+    """Sends requests to the process, and emits ``made(NewMesh)`` or ``failed(sentence)``; before
+    either ``found(DrawingContents)``, with None if no drawing was read.
 
     Requests are as :func:`meshwright.sources.mesh_worker.make` takes them. A new one replaces the
     previous one.
     """
 
+    found = Signal(object)
     made = Signal(object)
     failed = Signal(str)
 
@@ -119,19 +121,20 @@ class MeshProcess(QObject):
         if self._process is None:
             return
         self._received += self._process.readAllStandardOutput().data()
-        if len(self._received) < mesh_worker.length(self._received):
+        if len(self._received) < new_mesh.length(self._received):
             return
-        result, self._received = mesh_worker.unframed(self._received), bytearray()
+        answer, self._received = new_mesh.unframed(self._received), bytearray()
         asked, self._asked = self._asked, None
         self._patience.stop()
         if asked is not self._wanted:
             self._send()
             return
         self._wanted = None
-        if isinstance(result, str):
-            self.failed.emit(result)
+        self.found.emit(answer.contents)
+        if answer.mesh is None:
+            self.failed.emit(answer.refusal)
         else:
-            self.made.emit(result)
+            self.made.emit(answer.mesh)
 
     def _on_ended(self) -> None:
         """Handle an unexpected end of the process."""

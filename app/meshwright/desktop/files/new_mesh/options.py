@@ -11,7 +11,7 @@ from meshwright.desktop.files.new_mesh.controls import OptionalNumber, Segmented
 from meshwright.desktop.files.new_mesh.preview import Preview
 from meshwright.desktop.widgets.basic import named, tabular
 from meshwright.graphics.theme import GRID, Theme
-from meshwright.sources.mesh_worker import NewMesh
+from meshwright.sources.new_mesh import NewMesh
 
 WIDTH = 352
 KINDS = (("quad", "Quads"), ("tri", "Triangles"))

@@ -18,9 +18,10 @@ from meshwright.graphics.markers import (
     SMALLEST,
     label,
 )
-from meshwright.graphics.theme import Theme
+from meshwright.graphics.theme import Theme, region_fills
+from meshwright.graphics.true_edges import polylines
 from meshwright.graphics.viewport import Viewport
-from meshwright.sources.mesh_worker import NewMesh
+from meshwright.sources.new_mesh import NewMesh
 
 LINES = 40_000
 """The area is tinted instead if more edges than this are visible."""
@@ -50,23 +51,34 @@ def paint_mesh(painter: QPainter, view: Viewport, made: NewMesh, theme: Theme) -
     """Draw a mesh with its irregular vertices; False if it is too fine for its edges to show."""
     inner = _in_sight(made, view)
     fine = len(inner) > LINES
-    rim = QPainterPath()
-    for loop in made.loops:
-        rim.addPolygon(polygon(view.to_screen(made.points[loop])))
-        rim.closeSubpath()
-    fill = blend(theme.fill, theme.edge, _TINT) if fine else QColor(theme.fill)
-    painter.fillPath(rim, fill)
+    regions = _region_paths(made, view)
+    for rim, fill in zip(regions, region_fills(theme, len(regions)), strict=True):
+        painter.fillPath(rim, blend(fill, theme.edge, _TINT) if fine else QColor(fill))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     if not fine:
         painter.setPen(_pen(theme.edge, 1.0))
         ends = view.to_screen(made.points[inner]).reshape(-1, 4).tolist()
         painter.drawLines([QLineF(a, b, c, d) for a, b, c, d in ends])
     painter.setPen(_pen(theme.boundary, 1.75))
-    painter.drawPath(rim)
+    for rim in regions:
+        painter.drawPath(rim)
     if not fine:
-        squares(painter, view.to_screen(made.points[made.geometric]), theme)
+        squares(painter, view.to_screen(made.points[made.corners]), theme)
+        squares(painter, view.to_screen(made.points[made.anchors]), theme, hollow=True)
         _discs(painter, made, view, theme)
     return not fine
+
+
+def _region_paths(made: NewMesh, view: Viewport) -> list[QPainterPath]:
+    """The regions between their curves, in pixels."""
+    lines = polylines(made.rim, view)
+    paths = [QPainterPath() for _ in range(int(made.owners.max(initial=-1)) + 1)]
+    ends = np.cumsum(made.sizes).tolist()
+    for owner, size, end in zip(made.owners.tolist(), made.sizes.tolist(), ends, strict=True):
+        loop = np.concatenate([line[:-1] for line in lines[end - size : end]])
+        paths[owner].addPolygon(polygon(view.to_screen(loop)))
+        paths[owner].closeSubpath()
+    return paths
 
 
 def _in_sight(made: NewMesh, view: Viewport) -> np.ndarray:
@@ -81,10 +93,17 @@ def _in_sight(made: NewMesh, view: Viewport) -> np.ndarray:
     return found
 
 
-def squares(painter: QPainter, places: np.ndarray, theme: Theme, side: float = CORNER) -> None:
-    """Draw corners, whose places are pixels (n, 2)."""
-    painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(QColor(theme.corner))
+def squares(
+    painter: QPainter,
+    places: np.ndarray,
+    theme: Theme,
+    side: float = CORNER,
+    hollow: bool = False,
+) -> None:
+    """Draw corners, whose places are pixels (n, 2), or anchors, which are ``hollow``."""
+    painter.setPen(_pen(theme.corner, 1.0) if hollow else Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(theme.background if hollow else theme.corner))
+    side -= 1.0 if hollow else 0.0
     for x, y in places.tolist():
         painter.drawRect(QRectF(x - side / 2, y - side / 2, side, side))
 

@@ -20,7 +20,7 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 from meshwright.desktop.files.new_mesh.painting import paint_mesh
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.graphics.viewport import Viewport
-from meshwright.sources.mesh_worker import NewMesh
+from meshwright.sources.new_mesh import NewMesh
 
 MARGIN = 20.0
 ROUND = 8.0
@@ -28,7 +28,7 @@ TOO_FINE = "Too fine to draw: zoom in to see it"
 
 
 class Preview(QWidget):
-    """Shows a :class:`meshwright.sources.mesh_worker.NewMesh`; an old one is paler while a new one
+    """Shows a :class:`meshwright.sources.new_mesh.NewMesh`; an old one is paler while a new one
     is made.
     """
 
