@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -224,20 +225,22 @@ class RegionLoops:
         """Raise MeshError if a region lies in another one; no two curves cross."""
         if len(self.regions) < 2:
             return
-        for i, region in enumerate(self.regions):
-            spot = shapely.Point(region.inside)
-            for j, other in enumerate(self.regions):
-                if i == j:
-                    continue
-                around = sum(
-                    shapely.Polygon(sampled_chain(loop)).contains(spot) for loop in other.loops
+        owner = [j for j, region in enumerate(self.regions) for _ in region.loops]
+        rings = [
+            shapely.make_valid(shapely.Polygon(sampled_chain(loop)))
+            for region in self.regions
+            for loop in region.loops
+        ]
+        spots = shapely.points([region.inside for region in self.regions])
+        inner, outer = shapely.STRtree(rings).query(spots, predicate="within")
+        around = Counter(zip(inner.tolist(), [owner[k] for k in outer.tolist()], strict=True))
+        for (i, j), times in sorted(around.items()):
+            if i != j and times % 2:
+                names = [self.region_names[k] or f"region {k}" for k in (i, j)]
+                x, y = self.regions[i].inside
+                raise MeshError(
+                    f"The regions overlap: {names[0]} lies in {names[1]} near ({x:.6g}, {y:.6g})."
                 )
-                if around % 2:
-                    names = [self.region_names[k] or f"region {k}" for k in (i, j)]
-                    raise MeshError(
-                        f"The regions overlap: {names[0]} lies in {names[1]} near"
-                        f" ({spot.x:.6g}, {spot.y:.6g})."
-                    )
 
     def polyline(self, side: Side, turn_degrees: float) -> tuple[Points, Flags]:
         """Points (n, 2) along a boundary loop, and which of them are corners or junctions."""
