@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 
 import numpy as np
-from meshwright_core.geometry.boundary_spacing import anchors
 
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
