@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import count
 from typing import Any
 
@@ -12,7 +13,51 @@ from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet, Slot
 from meshwright.notebook.session import Session
 from meshwright_core import HalfEdgeMesh
 
-TYPES = ("<f4", "i1", "u1", "<i4", "<i4")
+TYPES = ("<f4", "i1", "u1", "<i4", "<i4", "<i4", "<i4", "<f8", "<i2")
+"""Of a state's arrays: places, delta, flags, origin, twin; vertices on curves with curve and
+parameter; regions of elements, none where all are 0."""
+CURVE_TYPES = ("<f8", "<i4", "<f8", "<f8", "<i4", "u1", "<i4")
+"""Of the curves after them."""
+PATCH_TYPES = ("<i4", "<f4", "i1", "u1", *3 * ("<i4",), "<i4", "<i4", "<f8", "<i4", "<i2")
+"""Of a patch's arrays: vertices with places, delta and flags; half-edges with origin and twin;
+vertices with curve and parameter; elements with region."""
+
+
+def whole_slots(content: dict[str, Any], arrays: Sequence[np.ndarray]) -> SlotArrays:
+    """The slots that the arrays of a state message describe."""
+    places, delta, flags, origin, twin, seated, curve, parameter, region = arrays[: len(TYPES)]
+    curves, parameters = np.full(len(flags), -1, "<i4"), np.zeros(len(flags), "<f8")
+    curves[seated], parameters[seated] = curve, parameter
+    if not len(region):
+        region = np.zeros(len(origin) // content["k"], "<i2")
+    values = (places.reshape(-1, 2), delta, flags, origin, twin, curves, parameters, region)
+    return SlotArrays(*(value.copy() for value in values))
+
+
+def patched_slots(
+    old: SlotArrays, content: dict[str, Any], arrays: Sequence[np.ndarray]
+) -> SlotArrays:
+    """The slots after a patch message with these arrays."""
+    v, places, delta, flags, h, origin, twin, seats, curve, parameter, e, region = arrays
+    vertices, halfedges = content["vertices"], content["halfedges"]
+    k = len(old.origin) // len(old.region)
+
+    def grown(before: np.ndarray, size: int, at: np.ndarray, value: np.ndarray, new: float) -> Any:
+        after = np.full((size, *before.shape[1:]), new, before.dtype)
+        after[: len(before)] = before
+        after[at] = value
+        return after
+
+    return SlotArrays(  # new slots must be set by the patch where the last number is 99
+        grown(old.places, vertices, v, places.reshape(-1, 2), 99),
+        grown(old.delta, vertices, v, delta, 99),
+        grown(old.flags, vertices, v, flags, 99),
+        grown(old.origin, halfedges, h, origin, 99),
+        grown(old.twin, halfedges, h, twin, 99),
+        grown(old.curve, vertices, seats, curve, -1),
+        grown(old.parameter, vertices, seats, parameter, 0),
+        grown(old.region, halfedges // k, e, region, 0),
+    )
 
 
 class Replica:
@@ -34,29 +79,18 @@ class Replica:
             self.scores[track["from"] :] = track["scores"]
 
     def _state(self, packet: Packet) -> None:
-        arrays = [np.frombuffer(b, t) for b, t in zip(packet.buffers, TYPES, strict=True)]
-        self.slots = SlotArrays(arrays[0].reshape(-1, 2).copy(), *(a.copy() for a in arrays[1:]))
+        types = (*TYPES, *CURVE_TYPES)
+        arrays = [np.frombuffer(b, t) for b, t in zip(packet.buffers, types, strict=True)]
+        self.slots = whole_slots(packet.content, arrays)
         self.revision = packet.content["revision"]
         assert len(self.slots.flags) == packet.content["vertices"]
         assert len(self.slots.origin) == packet.content["halfedges"]
 
     def _patch(self, packet: Packet) -> None:
-        types = ("<i4", "<f4", "i1", "u1", "<i4", "<i4", "<i4")
-        v, places, delta, flags, h, origin, twin = (
-            np.frombuffer(b, t) for b, t in zip(packet.buffers, types, strict=True)
-        )
+        arrays = [np.frombuffer(b, t) for b, t in zip(packet.buffers, PATCH_TYPES, strict=True)]
         assert packet.content["from"] == self.revision
         self.revision = packet.content["to"]
-        old, new = self.slots, []
-        sizes = [packet.content["vertices"]] * 3 + [packet.content["halfedges"]] * 2
-        olds = (old.places, old.delta, old.flags, old.origin, old.twin)
-        values = (places.reshape(-1, 2), delta, flags, origin, twin)
-        for before, size, value, at in zip(olds, sizes, values, (v, v, v, h, h), strict=True):
-            grown = np.full((size, *before.shape[1:]), 99, before.dtype)
-            grown[: len(before)] = before
-            grown[at] = value
-            new.append(grown)
-        self.slots = SlotArrays(*new)
+        self.slots = patched_slots(self.slots, packet.content, arrays)
 
     def shows(self, mesh: HalfEdgeMesh, frame: CoordinateFrame) -> bool:
         """Whether it equals this mesh, to the bit."""

@@ -245,7 +245,7 @@ class Session:
             require_operation(self.mesh.kind, operation)
         self.document.hover = halfedge
         frame, bar = self.broadcaster.mesh_sync.frame, self.document.bar
-        packet = ghost_packet(self.mesh, frame, halfedge, operation, bar)
+        packet = ghost_packet(self.mesh, frame, halfedge, operation, bar, request.tolerance)
         self.broadcaster.post(port, packet, request)
 
     def _prepare(self, port: Port, request: Request) -> None:

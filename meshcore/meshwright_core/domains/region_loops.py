@@ -79,6 +79,7 @@ class RegionLoops:
         MeshError: as :meth:`.domain.Domain.from_regions`.
 
     Attributes:
+        curve_step: degrees that an edge of a mesh turns along a curve, at most; None: as it comes.
         graph: all sides, and the geometric points.
         size: diagonal of the box around everything.
         loop_sides: the boundary loops: outlines, the largest first, then holes.
@@ -97,6 +98,7 @@ class RegionLoops:
         if not regions or not any(len(loops) for _, loops in regions):
             raise MeshError("A domain needs at least one loop of curves.")
         self.corner_angle = corner_angle
+        self.curve_step: float | None = None
         self.region_names = tuple(str(name) for name, _ in regions)
         self.size = extent([loop for _, loops in regions for loop in loops])
         self._labels: list[list[str]] = []

@@ -145,7 +145,9 @@ class SideEdges:
     ) -> list[tuple[int, float, float, int, int]]:
         """Edges along a stretch between geometric points, or around a whole loop."""
         turn = np.degrees(self.turning(side, *span))
-        count = max(1, int(np.ceil(turn / TURN_OF_EDGE - _SPARE)))
+        step = self.sides.curve_step
+        share = turn / TURN_OF_EDGE - _SPARE if step is None else turn / step - 1e-9
+        count = max(1, int(np.ceil(share)))
         if ends[0] == ends[1]:
             count = max(count, 3)
         return self._row(side, span, ends, self._cuts(side, *span, count))

@@ -288,3 +288,37 @@ def test_card_reports_a_restarted_kernel(lab, star):
     star = lab.card(STAR)
     star.click(spot)
     assert not notice.is_visible()
+
+
+BENT = (
+    "root => { const { replica } = root.meshwright;"
+    " return [...Array(replica.halfedges).keys()]"
+    ".filter((h) => replica.live(h) && replica.edgeCurves.get(h)); }"
+)
+
+
+@pytest.mark.parametrize("shape", ["filleted-bracket", "plate-with-insert"])
+def test_curved_edges_follow_edits_in_the_kernel(lab, shape, tmp_path):
+    card = lab.card(
+        f"{SETUP}from meshwright_core.geometry.edge_curves import curved_halfedges\n"
+        f"widget = MeshWidget({shape!r})\nwidget"
+    )
+    bent = "curved_halfedges(widget.mesh).tolist()"
+    before = card.look(BENT)
+    assert before and before == lab.ask(bent)
+    card.aside()
+    picture = card.layer("lower")
+    card.page.screenshot(path=tmp_path / f"{shape}.png")
+    spot = lab.spot("global_split")
+    card.arm("global_split")
+    card.hover(spot)
+    card.until("root => root.dataset.meant === 'global_split'")
+    card.page.screenshot(path=tmp_path / f"{shape}-hover.png")
+    card.click(spot)
+    card.await_head(cursor=1)
+    assert card.look(BENT) == lab.ask(bent) != before
+    card.button("Undo").click()
+    card.await_head(cursor=0)
+    card.aside()
+    assert card.look(BENT) == before
+    assert differing(picture, card.layer("lower")) == 0

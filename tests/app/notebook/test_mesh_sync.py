@@ -1,15 +1,17 @@
 """State and patch messages: a replica that applies them equals the mesh."""
 
+import curved_meshes
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from porting import Replica, allowed
+from porting import CURVE_TYPES, TYPES, Replica, allowed
 
 from meshwright.document.document import Document
 from meshwright.notebook.protocol.document_status import DocumentStatus
 from meshwright.notebook.protocol.mesh_sync import (
     ALIVE,
+    ANCHOR,
     BOUNDARY,
     CORNER,
     FIXED,
@@ -52,7 +54,7 @@ def test_a_patch_holds_the_differences(star):
     sync, replica = follow(star)
     star.set_locked(3)
     packet = sync.patch(star)
-    assert [len(b) for b in packet.buffers] == [4, 8, 1, 1, 0, 0, 0]
+    assert [len(b) for b in packet.buffers] == [4, 8, 1, 1, *8 * [0]]
     replica.take(packet)
     assert replica.slots.flags[3] & FIXED
     nothing = sync.patch(star)
@@ -144,6 +146,69 @@ def test_bytes_of_a_local_operation_do_not_grow_with_the_mesh():
         sizes.append((mesh.n_elements, largest))
     (small, few), (large, many) = sizes
     assert large > 5 * small and 0 < many < 4 * few
+
+
+def test_a_state_holds_curves_regions_and_anchors():
+    mesh = curved_meshes.insert()
+    sync, replica = follow(mesh)
+    packet, frame = sync.state(), sync.frame
+    assert packet.content["regions"] == list(curved_meshes.INSERT)
+    assert replica.slots.region.tolist() == [1] * 5 + [0] * 4
+    assert replica.slots.curve.tolist() == [-1] * 4 + [1] * 4 + [0] * 4
+    np.testing.assert_array_equal(replica.slots.parameter, mesh.arrays.parameter[: mesh.slots])
+    buffers = zip(packet.buffers[len(TYPES) :], CURVE_TYPES, strict=True)
+    control, first, start, stop, spans, closed, interfaces = (
+        np.frombuffer(buffer, kind) for buffer, kind in buffers
+    )
+    curves = mesh.boundary_info.curves
+    x, y, weight = control.reshape(-1, 3).T
+    np.testing.assert_allclose(frame.scale * x + frame.cx * weight, curves.control[:, 0])
+    np.testing.assert_allclose(frame.scale * y + frame.cy * weight, curves.control[:, 1])
+    for sent, true in (
+        (weight, curves.control[:, 3]),
+        (first, curves.first_control),
+        (start, curves.start),
+        (stop, curves.stop),
+        (spans, curves.first_span),
+        (closed, curves.closed),
+        (interfaces.reshape(-1, 4), mesh.boundary_info.table()),
+    ):
+        np.testing.assert_array_equal(sent, true)
+    plate = curved_meshes.plate()
+    _, replica = follow(plate)
+    anchors = np.flatnonzero(replica.slots.flags & ANCHOR)
+    places = np.sort(np.abs(plate.points[anchors, :2]))
+    assert len(anchors) == 8 and (places == (3.0, 4.0)).all()  # the ends of the fillets
+
+
+@pytest.mark.parametrize("name", ["disc", "ring", "plate", "insert"])
+def test_a_replica_follows_edits_along_curves(name):
+    mesh = getattr(curved_meshes, name)()
+    document = Document(mesh)
+    sync, replica = follow(mesh)
+    rng = np.random.default_rng(3)
+    names = [info.operation for info in of_kind("quad")]
+    for _ in range(300):
+        operation = names[rng.integers(len(names))]
+        halfedge = 4 * int(rng.choice(mesh.element_ids())) + int(rng.integers(4))
+        if mesh.check(operation, halfedge):
+            document.submit(operation, halfedge)
+            packet = sync.patch(mesh)
+            replica.take(packet)
+            assert replica.shows(mesh, sync.frame)
+        if len(document.history) == 12:
+            break
+    assert document.history
+    document.go_to(0)
+    replica.take(sync.patch(mesh))
+    assert replica.shows(mesh, sync.frame)
+
+
+def test_a_patch_inside_has_no_bytes_for_curves(star):
+    sync, _ = follow(star)
+    inside = star.vertices()[~star.boundary()[star.vertices()]][:1]
+    star.move(inside, star.points[inside] + 1e-3)
+    assert [len(b) for b in sync.patch(star).buffers] == [4, 8, 1, 1, *8 * [0]]
 
 
 def test_coordinates_are_normalised_at_any_position_and_scale(star):

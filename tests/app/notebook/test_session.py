@@ -5,10 +5,13 @@ import threading
 import time
 import weakref
 
+import curved_meshes
+import numpy as np
 import pytest
 from porting import Port, allowed, script_agent
 
 from meshwright.assistant.assistant import State
+from meshwright.document import operation_preview
 from meshwright.document.document import Document
 from meshwright.notebook import thread_loop as loops
 from meshwright.notebook.protocol import broadcaster, requests
@@ -136,6 +139,27 @@ def test_hover_shows_the_best_or_the_armed_operation(port):
     [away] = port.ask("hover", halfedge=-1, operation=None)
     assert away["halfedge"] == -1 and away["offers"] == []
     assert seen == [halfedge, -1]
+
+
+def test_previews_follow_curves():
+    mesh = curved_meshes.plate()
+    port = Port(Session.of(Document(mesh)))
+    port.ask("hello")
+    points = {}
+    for tolerance in (1e-2, 1e-4):
+        [ghost] = port.ask("hover", halfedge=0, operation="chord_collapse", tolerance=tolerance)
+        assert ghost["operation"] == "chord_collapse"
+        removed = np.frombuffer(port.packets[-1].buffers[1], "<f4").reshape(-1, 2, 2)
+        scale = frame(port).scale
+        plain = np.abs(removed * scale).reshape(-1, 2)
+        # the rounded corners have their centres at (3, 3) and radius 1
+        fillet = plain[(plain > 3.0).all(axis=1)]
+        away = np.abs(np.hypot(*(fillet - 3.0).T) - 1.0)
+        assert len(fillet) and away.max() < 1e-6
+        points[tolerance] = len(removed)
+    whole = operation_preview.ghost(mesh, "chord_collapse", 0).removed
+    assert points[1e-4] > points[1e-2] > len(whole)
+    assert port.ask("hover", halfedge=0, operation=None, tolerance=0.0)[0]["type"] == "notice"
 
 
 def test_only_the_last_of_queued_hovers_of_a_view_is_answered(port, monkeypatch):

@@ -10,6 +10,7 @@ from meshwright.document.document import Document
 from meshwright.document.score_series import ScoreSeries
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN
+from meshwright_core.geometry.edge_curves import bent_edges
 from meshwright_core.geometry.planes import plane_normal
 from meshwright_core.geometry.quality import Measure, inverted
 
@@ -26,6 +27,15 @@ class InvertedElements:
 
     def __len__(self) -> int:
         return int(self._inverted.sum())
+
+    def curved(self, mesh: HalfEdgeMesh) -> list[int]:
+        """Those with a side that is not straight, which the browser does not test itself."""
+        ids = np.flatnonzero(self._inverted)
+        if not len(ids):
+            return []
+        bent = bent_edges(mesh, mesh.halfedges_of(ids).ravel()).halfedges
+        found: list[int] = np.unique(bent // mesh.k).tolist()
+        return found
 
     def reset(self, mesh: HalfEdgeMesh) -> None:
         """Test all elements."""
@@ -89,6 +99,7 @@ class DocumentStatus:
             "vertices": mesh.n_vertices if mesh is not None else 0,
             "irregular": mesh.irregular_count if mesh is not None else 0,
             "inverted": len(self.inverted),
+            "inverted_curved": self.inverted.curved(mesh) if mesh is not None else [],
             "cursor": history.cursor,
             "length": len(history),
             "can_undo": document.can_undo,

@@ -7,6 +7,10 @@ about -1 to 1.
 
 Arrays are indexed by slots of the mesh: vertex v, half-edge h. Flags of a dead vertex are 0, the
 origin of a dead half-edge is -1. The number of slots never decreases: an undo leaves dead slots.
+
+The curves of boundary and interfaces are constant: they are part of the state alone. Curves and
+parameters of vertices are sent for the vertices on curves, or where they have changed; regions of
+elements where there are several.
 """
 
 from __future__ import annotations
@@ -19,6 +23,7 @@ import numpy as np
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import (
+    CURVE,
     DEGREE,
     DESIRED,
     ELEMENT_SLOTS,
@@ -29,10 +34,15 @@ from meshwright_core.core.arrays import (
     ORIGIN,
     TWIN,
 )
+from meshwright_core.core.composite_curves import Curves
+from meshwright_core.core.irregularity import usual_desired_degree
+from meshwright_core.core.mesh_boundary import MeshBoundary
 
-VERSION = 1
-ALIVE, BOUNDARY, CORNER, FIXED = 1, 2, 4, 8
-"""Bits of a vertex's flags; FIXED is a vertex locked by the user."""
+VERSION = 2
+ALIVE, BOUNDARY, CORNER, FIXED, ANCHOR = 1, 2, 4, 8, 16
+"""Bits of a vertex's flags; FIXED is a vertex locked by the user, ANCHOR with CORNER a geometric
+vertex whose desired degree is that of a straight side.
+"""
 
 
 @dataclass
@@ -71,6 +81,12 @@ class CoordinateFrame:
         moved = (places[..., :2] - (self.cx, self.cy)) / self.scale
         return moved.astype("<f4")
 
+    def control(self, curves: Curves) -> np.ndarray:
+        """(c, 3) float64 homogeneous control points w x', w y', w of curves in the plane."""
+        weight = curves.control[:, 3:]
+        moved = (curves.control[:, :2] - weight * (self.cx, self.cy)) / self.scale
+        return np.hstack([moved, weight])
+
 
 @dataclass(frozen=True)
 class SlotArrays:
@@ -86,6 +102,12 @@ class SlotArrays:
     """(H,) int32."""
     twin: np.ndarray
     """(H,) int32."""
+    curve: np.ndarray
+    """(V,) int32, the curve that a vertex lies on; -1 for none."""
+    parameter: np.ndarray
+    """(V,) float64, its parameter there; 0 for none."""
+    region: np.ndarray
+    """(E,) int16, the region of an element; 0 for dead ones."""
 
     @classmethod
     def of(
@@ -97,12 +119,17 @@ class SlotArrays:
         rows, edges = arrays.vertex[:used], arrays.edge[:held]
         half = rows[:, HALF]
         alive = half >= 0
+        on_boundary = arrays.edge[np.maximum(half, 0), TWIN] < 0
+        geometric = (rows[:, FLAGS] & GEOMETRIC) > 0
+        usual = [usual_desired_degree(mesh.k, boundary) for boundary in (True, False)]
+        straight = rows[:, DESIRED] == np.where(on_boundary, *usual)
         flags = np.zeros(max(used, vertices), np.uint8)
         flags[:used] = np.where(
             alive,
             ALIVE
-            + BOUNDARY * (arrays.edge[np.maximum(half, 0), TWIN] < 0)
-            + CORNER * ((rows[:, FLAGS] & GEOMETRIC) > 0)
+            + BOUNDARY * on_boundary
+            + CORNER * geometric
+            + ANCHOR * (geometric & straight)
             + FIXED * ((rows[:, FLAGS] & LOCKED) > 0),
             0,
         )
@@ -114,7 +141,13 @@ class SlotArrays:
         origin[:held] = np.maximum(edges[:, ORIGIN], -1)
         twin = np.full(len(origin), -1, "<i4")
         twin[:held] = np.where(edges[:, ORIGIN] >= 0, edges[:, TWIN], -1)
-        return cls(places, delta, flags, origin, twin)
+        curve = np.full(len(flags), -1, "<i4")
+        curve[:used][alive] = rows[alive, CURVE]
+        parameter = np.zeros(len(flags), "<f8")
+        parameter[:used] = np.where(curve[:used] >= 0, arrays.parameter[:used], 0.0)
+        region = np.zeros(len(origin) // mesh.k, "<i2")
+        region[: held // mesh.k] = arrays.region[: held // mesh.k] * (origin[: held : mesh.k] >= 0)
+        return cls(places, delta, flags, origin, twin, curve, parameter, region)
 
     @classmethod
     def none(cls) -> SlotArrays:
@@ -125,12 +158,26 @@ class SlotArrays:
             np.zeros(0, np.uint8),
             np.zeros(0, "<i4"),
             np.zeros(0, "<i4"),
+            np.full(0, -1, "<i4"),
+            np.zeros(0, "<f8"),
+            np.zeros(0, "<i2"),
         )
 
     @property
     def buffers(self) -> list[bytes]:
-        """All arrays, in the order of a state message."""
-        arrays = (self.places, self.delta, self.flags, self.origin, self.twin)
+        """All arrays, in the order of a state message; no regions where all are the same."""
+        seated = np.flatnonzero(self.curve >= 0)
+        arrays = (
+            self.places,
+            self.delta,
+            self.flags,
+            self.origin,
+            self.twin,
+            seated.astype("<i4"),
+            self.curve[seated],
+            self.parameter[seated],
+            self.region if self.region.any() else self.region[:0],
+        )
         return [array.tobytes() for array in arrays]
 
 
@@ -146,15 +193,17 @@ class MeshSync:
         self.moved = self.turned = np.zeros(0, np.int64)
         """Ids of the vertices and the half-edges in the last patch."""
         self._k = 3
+        self._boundary = MeshBoundary()
         self._sent = SlotArrays.none()
 
     def reset(self, mesh: HalfEdgeMesh | None) -> None:
         """Start again with another mesh, or None; views need :meth:`state` next."""
         self.revision += 1
         self.frame, self._k = CoordinateFrame(), 3
-        self._sent = SlotArrays.none()
+        self._boundary, self._sent = MeshBoundary(), SlotArrays.none()
         if mesh is not None:
             self.frame, self._k = CoordinateFrame.of(mesh), mesh.k
+            self._boundary = mesh.boundary_info
             self._sent = SlotArrays.of(mesh, self.frame)
 
     def state(self) -> Packet:
@@ -168,8 +217,9 @@ class MeshSync:
             "vertices": len(sent.flags),
             "halfedges": len(sent.origin),
             "frame": {"cx": self.frame.cx, "cy": self.frame.cy, "scale": self.frame.scale},
+            "regions": list(self._boundary.region_names),
         }
-        return Packet(content, sent.buffers)
+        return Packet(content, [*sent.buffers, *_curve_buffers(self._boundary, self.frame)])
 
     def patch(self, mesh: HalfEdgeMesh | None) -> Packet:
         """The message with all changes since the last message.
@@ -182,6 +232,8 @@ class MeshSync:
             new = SlotArrays.of(mesh, self.frame, len(old.flags), len(old.origin))
         changed = _differing((new.places, new.delta, new.flags), (old.places, old.delta, old.flags))
         turned = _differing((new.origin, new.twin), (old.origin, old.twin))
+        reseated = _differing((new.curve, new.parameter), (old.curve, old.parameter), (-1, 0.0))
+        renamed = _differing((new.region,), (old.region,), (0,))
         self._sent, self.moved, self.turned = new, changed, turned
         self.revision += 1
         buffers = [
@@ -192,6 +244,11 @@ class MeshSync:
             turned.astype("<i4").tobytes(),
             new.origin[turned].tobytes(),
             new.twin[turned].tobytes(),
+            reseated.astype("<i4").tobytes(),
+            new.curve[reseated].tobytes(),
+            new.parameter[reseated].tobytes(),
+            renamed.astype("<i4").tobytes(),
+            new.region[renamed].tobytes(),
         ]
         content = {
             "type": "patch",
@@ -201,18 +258,47 @@ class MeshSync:
             "halfedges": len(new.origin),
         }
         packet = Packet(content, buffers)
+        if mesh is not None and mesh.boundary_info is not self._boundary:
+            self._boundary = mesh.boundary_info  # another mesh, or one that was renumbered
+            return self.state()
         whole = 10 * len(new.flags) + 8 * len(new.origin)
         return self.state() if packet.size > whole else packet
 
 
-def _differing(new: Sequence[np.ndarray], old: Sequence[np.ndarray]) -> np.ndarray:
-    """Indices where any array differs from the older one, to the bit; new slots always differ."""
+def _curve_buffers(boundary: MeshBoundary, frame: CoordinateFrame) -> list[bytes]:
+    """The curves in the order of a state message, and the regions and ends of interfaces."""
+    curves = boundary.curves
+    return [
+        frame.control(curves).tobytes(),
+        curves.first_control.astype("<i4").tobytes(),
+        curves.start.astype("<f8").tobytes(),
+        curves.stop.astype("<f8").tobytes(),
+        curves.first_span.astype("<i4").tobytes(),
+        curves.closed.astype(np.uint8).tobytes(),
+        boundary.table().astype("<i4").tobytes(),
+    ]
+
+
+def _differing(
+    new: Sequence[np.ndarray], old: Sequence[np.ndarray], unset: Sequence[float] | None = None
+) -> np.ndarray:
+    """Indices where any array differs from the older one, to the bit.
+
+    New slots always differ; with ``unset`` where they do from these values.
+    """
     count = len(old[0])
     differs = np.ones(len(new[0]), dtype=bool)
     differs[:count] = False
+    if unset is not None:
+        pairs = [now[count:] != value for now, value in zip(new, unset, strict=True)]
+        differs[count:] = np.any(pairs, axis=0)
     for now, before in zip(new, old, strict=True):
         # floats are compared as bits, so that NaN equals itself
-        a, b = (x.view("<u4") if x.dtype.kind == "f" else x for x in (now[:count], before))
+        a, b = (_bits(x) for x in (now[:count], before))
         unlike = a != b
         differs[:count] |= unlike.any(axis=1) if unlike.ndim == 2 else unlike
     return np.flatnonzero(differs)
+
+
+def _bits(values: np.ndarray) -> np.ndarray:
+    return values.view(f"<u{values.itemsize}") if values.dtype.kind == "f" else values

@@ -10,6 +10,10 @@ import numpy as np
 from meshwright.document.operation_preview import OperationOffer, best, choices, ghost
 from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry.edge_parts import EdgeParts
+
+FINEST = 1e-7
+"""The smallest tolerance of curved edges, in the browser's frame."""
 
 
 def ghost_packet(
@@ -18,11 +22,13 @@ def ghost_packet(
     halfedge: int,
     operation: str | None,
     bar: Callable[[str], str] | None = None,
+    tolerance: float = 1e-4,
 ) -> Packet:
     """All operations at a live half-edge, and the preview of one of them.
 
     The preview is of ``operation``, or where that is None of the best one that is allowed. There is
-    none where the operation is refused, by the mesh or by the document's ``bar``.
+    none where the operation is refused, by the mesh or by the document's ``bar``. Edges along
+    curves are polylines within ``tolerance``, in the browser's frame.
     """
     offered = choices(mesh, halfedge, bar)
     if operation is None:
@@ -39,7 +45,9 @@ def ghost_packet(
     if meant is None:
         return Packet(content, [b""] * 5)
     seen = ghost(mesh, meant.operation, halfedge)
-    places = (seen.added, seen.removed, seen.gone, seen.places)
+    fine = max(tolerance, FINEST) * frame.scale
+    edges = [_segments(part, fine) for part in (seen.added_edges, seen.removed_edges)]
+    places = (*edges, seen.gone, seen.places)
     buffers = [frame.normalised(np.asarray(part)).tobytes() for part in places]
     delta = np.clip(seen.delta, -127, 127).astype(np.int8)
     return Packet(content, [*buffers, delta.tobytes()])
@@ -55,6 +63,15 @@ def no_ghost() -> Packet:
         "change": None,
     }
     return Packet(content, [b""] * 5)
+
+
+def _segments(edges: EdgeParts, tolerance: float) -> np.ndarray:
+    """(n, 2, 2) edges as segments; those of one edge follow each other."""
+    if (edges.curve < 0).all():
+        return edges.ends[:, :, :2]
+    points, first = edges.polylines(tolerance)
+    begins = np.delete(np.arange(len(points)), first[1:] - 1)
+    return np.stack([points[begins, :2], points[begins + 1, :2]], axis=1)
 
 
 def _offer(offer: OperationOffer) -> dict[str, Any]:

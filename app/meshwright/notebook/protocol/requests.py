@@ -56,10 +56,13 @@ class Hello(Request, frozen=True, tag="hello"):
 class Hover(Request, frozen=True, tag="hover"):
     """The pointer is over a half-edge, -1 for none; requests a preview of an operation there, by
     default of the best one.
+
+    ``tolerance`` is how far the preview of a curved edge may lie off it, in the browser's frame.
     """
 
     halfedge: IdOrNone
     operation: Text | None
+    tolerance: Annotated[float, Meta(gt=0.0, le=1.0)] = 1e-4
 
 
 class Operate(Request, frozen=True, tag="operate"):

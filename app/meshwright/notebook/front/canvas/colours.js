@@ -1,6 +1,6 @@
 // The colours of the card, read from its CSS variables after each change of theme.
 
-import { COLOUR_NAMES } from "../generated/constants.js";
+import { COLOUR_NAMES, REGION_HUES, REGION_SHARE } from "../generated/constants.js";
 
 export class Colours {
   constructor() {
@@ -15,6 +15,16 @@ export class Colours {
       this[name] = style.getPropertyValue(`--mw-${name.replace(/_/g, "-")}`).trim();
     }
     this.font = style.fontFamily;
+  }
+
+  /** The fill of a region of a mesh with several, as meshwright.graphics.theme.region_fills. */
+  ofRegion(region) {
+    const hue = REGION_HUES[region % REGION_HUES.length];
+    const parts = [1, 3, 5].map((at) => {
+      const [a, b] = [this.fill, hue].map((colour) => parseInt(colour.slice(at, at + 2), 16));
+      return Math.round(a + REGION_SHARE * (b - a));
+    });
+    return `rgb(${parts.join(", ")})`;
   }
 
   /** The colour of a change of s: accent for an improvement, warning otherwise. */

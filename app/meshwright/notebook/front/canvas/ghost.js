@@ -1,7 +1,7 @@
 // The preview of an operation ("ghost"): new edges dashed, removed edges faded, new irregularities.
 
-import { arrayOf } from "../mesh/mesh_replica.js";
 import { middleOf } from "../mesh/picking.js";
+import { arrayOf } from "../mesh/typed_arrays.js";
 import { clamp, signed } from "../numbers.js";
 
 const GHOST_DASHES = [7, 4.5];
@@ -202,15 +202,19 @@ export class GhostPainter {
   }
 }
 
-/** Begin a path of flat segments [x, y, x, y, ...] of the plane; those out of view are left out. */
+/** Begin a path of flat segments [x, y, x, y, ...] of the plane; those out of view are left out.
+ * Segments that begin where the one before ends are one line, with one row of dashes.
+ */
 function segmentsPath(pen, view, segments) {
+  let [lastX, lastY] = [NaN, NaN];
   pen.beginPath();
   for (let i = 0; i < segments.length; i += 4) {
     const [ax, ay] = view.toScreen(segments[i], segments[i + 1]);
     const [bx, by] = view.toScreen(segments[i + 2], segments[i + 3]);
     if (Math.max(ax, bx) < 0 || Math.min(ax, bx) > view.width) continue;
     if (Math.max(ay, by) < 0 || Math.min(ay, by) > view.height) continue;
-    pen.moveTo(ax, ay);
+    if (ax !== lastX || ay !== lastY) pen.moveTo(ax, ay);
+    [lastX, lastY] = [bx, by];
     pen.lineTo(bx, by);
   }
 }

@@ -1,8 +1,7 @@
 // Hints on the mesh: an arrow along each half-edge, and a numbered badge that can be clicked.
 
-import { middleOf } from "../mesh/picking.js";
 import { clamp, signed } from "../numbers.js";
-import { arrowOf, paintArrow } from "./arrow.js";
+import { arrowMiddle, arrowOf, paintArrow } from "./arrow.js";
 
 const BADGE_HEIGHT = 22;
 const BADGE_GAP = 4;
@@ -45,13 +44,13 @@ export class HintBadges {
     this._boxes = [];
     const roots = hints.slice(0, MOST_HINTS).map((hint) => {
       if (!replica.live(hint.halfedge)) return null;
-      const [tail, head] = arrowOf(replica, view, hint.halfedge);
-      return { tail, head, middle: middleOf([tail, head]) };
+      const points = arrowOf(replica, view, hint.halfedge);
+      return { points, middle: arrowMiddle(points) };
     });
     roots.forEach((root, i) => {
       if (!root) return;
       pen.globalAlpha = i === selected ? 1 : 0.6;
-      paintArrow(pen, root.tail, root.head, colours.accent, colours.background);
+      paintArrow(pen, root.points, colours.accent, colours.background);
     });
     pen.globalAlpha = 1;
     roots.forEach((root, i) => this._boxes.push(root && this._place(pen, view, root, hints[i], marks)));

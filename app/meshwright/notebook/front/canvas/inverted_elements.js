@@ -1,6 +1,8 @@
 // Paints inverted elements: tinted, hatched, and with a warning sign where they are small.
 
+import { overlap } from "../mesh/boxes.js";
 import { middleOf } from "../mesh/picking.js";
+import { boxOf, outlineFrom } from "../mesh/sides.js";
 
 const HATCH_GAP = 6;
 const MOST_HATCHED = 1500;
@@ -19,13 +21,14 @@ export class InvertedElementsPainter {
     this._tile = null;
   }
 
-  /** Paint these elements in `view`. */
-  paint(pen, ratio, view, replica, elements) {
+  /** Paint these elements in `view`; curves are followed within `tolerance`. */
+  paint(pen, ratio, view, replica, elements, tolerance) {
     const seen = [];
+    const window = view.box(16);
     for (const e of elements) {
-      const corners = replica.corners(e).map(([x, y]) => view.toScreen(x, y));
-      const inside = corners.some(([x, y]) => x > -200 && x < view.width + 200 && y > -200 && y < view.height + 200);
-      if (inside) seen.push(corners);
+      const box = boxOf(replica, e);
+      if (!box || !overlap(box, window)) continue;
+      seen.push(outlineFrom(replica, replica.k * e, tolerance).map(([x, y]) => view.toScreen(x, y)));
       if (seen.length >= MOST_HATCHED) break;
     }
     if (!seen.length) return;

@@ -3,7 +3,7 @@
 // Sizes are those of meshwright.graphics.markers. In crowded places a disc keeps its number as long as
 // it does not cover the next one; otherwise it is a plain dot until the view is zoomed in.
 
-import { FLAG_CORNER } from "../mesh/mesh_replica.js";
+import { FLAG_ANCHOR, FLAG_CORNER } from "../mesh/mesh_replica.js";
 import { clamp, signed } from "../numbers.js";
 
 const BASE_RADIUS = 10;
@@ -15,6 +15,9 @@ const CROWDED_DISCS = 0.58;
 const READABLE = 5.5;
 const READABLE_BEST = 7;
 const CORNER_HALF = 4;
+/** An anchor, where a straight side meets a curve without a corner, has a small hollow mark. */
+const ANCHOR_HALF = 2.75;
+const ANCHOR_LINE = 1.25;
 const FEW_CORNERS = 64;
 const LOCK_RADIUS = 12.5;
 /** Extent of a marker in pixels, and the margin of repainted regions. */
@@ -26,6 +29,11 @@ function discRadius(delta, reach, apart) {
   const wanted = Math.min(BASE_RADIUS + RADIUS_GROWTH * (Math.abs(delta) - 1), LARGEST_RADIUS);
   const room = Math.max(CROWDED * reach, Math.min(READABLE_BEST, CROWDED_DISCS * apart));
   return Math.max(Math.min(wanted, room), SMALLEST_RADIUS);
+}
+
+/** Whether a vertex of these flags has the large mark of a corner. */
+function isCorner(flags) {
+  return (flags & FLAG_CORNER) !== 0 && (flags & FLAG_ANCHOR) === 0;
 }
 
 export class Markers {
@@ -78,18 +86,30 @@ export class Markers {
   }
 
   _paintCorners(pen, view, derived, inside) {
-    const many = derived.corners.length > FEW_CORNERS;
+    const many = derived.corners.length + derived.anchors.length > FEW_CORNERS;
     const half = many ? clamp(0.3 * derived.typical * view.pixels, 1, CORNER_HALF) : CORNER_HALF;
     pen.fillStyle = this._colours.corner;
     for (const v of derived.corners) {
       const at = inside(v);
       if (at) pen.fillRect(at[0] - half, at[1] - half, 2 * half, 2 * half);
     }
+    const small = Math.min(half, ANCHOR_HALF);
+    pen.fillStyle = this._colours.background;
+    pen.strokeStyle = this._colours.corner;
+    pen.lineWidth = Math.min(ANCHOR_LINE, small);
+    pen.lineJoin = "miter";
+    for (const v of derived.anchors) {
+      const at = inside(v);
+      if (!at) continue;
+      pen.fillRect(at[0] - small, at[1] - small, 2 * small, 2 * small);
+      pen.strokeRect(at[0] - small, at[1] - small, 2 * small, 2 * small);
+    }
+    pen.lineJoin = "round";
   }
 
   _paintDisc(pen, view, replica, derived, v, [x, y]) {
     const radius = Math.round(2 * this.radius(view, replica, derived, v)) / 2;
-    const sprite = this._sprite(replica.delta[v], radius, (replica.flags[v] & FLAG_CORNER) !== 0);
+    const sprite = this._sprite(replica.delta[v], radius, isCorner(replica.flags[v]));
     const ratio = this._ratio;
     const [left, top] = [x - sprite.width / ratio / 2, y - sprite.height / ratio / 2];
     pen.drawImage(

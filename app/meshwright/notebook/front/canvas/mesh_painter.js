@@ -2,6 +2,8 @@
 // come into view, an edit repaints the tiles it touches, and zooming a large mesh stretches the pixels
 // until the zoom ends.
 
+import { overlap } from "../mesh/boxes.js";
+import { COARSE } from "../mesh/edge_curves.js";
 import { InvertedElementsPainter } from "./inverted_elements.js";
 import { MARK_SLACK } from "./markers.js";
 
@@ -12,6 +14,9 @@ const SETTLED = 90;
 const FEW_RECTANGLES = 3;
 const EDGE_WIDTH = 1.1;
 const BOUNDARY_WIDTH = 1.75;
+const INTERFACE_WIDTH = 1.5;
+/** Device pixels by which a painted curve may deviate. */
+export const DEVIATION = 0.2;
 
 export class MeshPainter {
   constructor(canvas, colours, marks, afterwards) {
@@ -184,10 +189,16 @@ export class MeshPainter {
     this._ground(pen);
     const elements = this._elementsIn(rectangles.map((r) => r.map((value) => value / ratio)));
     this._paintEdges(pen, elements);
-    this._invertedPainter.paint(pen, ratio, view, this._replica, this._derived.inverted);
-    pen.lineWidth = Math.max(BOUNDARY_WIDTH, 1.3 * this._edgeWidth);
+    const { inverted, interfaces, loops } = this._derived;
+    this._invertedPainter.paint(pen, ratio, view, this._replica, inverted, this._tolerance);
     pen.strokeStyle = this._colours.boundary;
-    this._outline(pen);
+    if (interfaces.length) {
+      pen.lineWidth = Math.max(INTERFACE_WIDTH, 1.2 * this._edgeWidth);
+      this._path(pen, interfaces.map((h) => [h]), false);
+      pen.stroke();
+    }
+    pen.lineWidth = Math.max(BOUNDARY_WIDTH, 1.3 * this._edgeWidth);
+    this._path(pen, loops);
     pen.stroke();
     this._markers.paint(pen, ratio, view, this._replica, this._derived, boxesOf(rectangles, ratio));
     pen.restore();
@@ -202,21 +213,45 @@ export class MeshPainter {
     pen.lineJoin = "round";
     pen.lineCap = "round";
     pen.fillStyle = this._colours.fill;
-    this._outline(pen);
+    this._path(pen, this._derived.loops);
     pen.fill("evenodd");
+    this._derived.regionLoops.forEach((loops, region) => {
+      pen.fillStyle = this._colours.ofRegion(region);
+      this._path(pen, loops);
+      pen.fill("evenodd");
+    });
   }
 
-  /** Begin a path of all boundary loops. */
-  _outline(pen) {
-    const { places } = this._replica;
+  /** Greatest deviation of painted curves, in the plane. */
+  get _tolerance() {
+    return DEVIATION / (this.view.pixels * this._ratio);
+  }
+
+  /** Begin a path of chains of half-edges, closed ones by default. What is out of view is coarse. */
+  _path(pen, chains, closed = true) {
+    const replica = this._replica;
+    const { origin, places, edgeCurves } = replica;
+    const { pixels, width, height, x, y } = this.view;
+    const [shiftX, shiftY] = [width / 2 - x * pixels, height / 2 + y * pixels];
+    const window = this.view.box(4);
+    const fine = Math.min(this._tolerance, COARSE);
     pen.beginPath();
-    for (const loop of this._derived.loops) {
-      loop.forEach((v, i) => {
-        const at = this.view.toScreen(places[2 * v], places[2 * v + 1]);
-        if (i) pen.lineTo(...at);
-        else pen.moveTo(...at);
-      });
-      pen.closePath();
+    for (const chain of chains) {
+      const first = 2 * origin[chain[0]];
+      pen.moveTo(places[first] * pixels + shiftX, shiftY - places[first + 1] * pixels);
+      for (const h of chain) {
+        const edge = edgeCurves.get(h);
+        if (!edge) {
+          const end = 2 * replica.target(h);
+          pen.lineTo(places[end] * pixels + shiftX, shiftY - places[end + 1] * pixels);
+          continue;
+        }
+        const path = edge.path(overlap(edge.box, window) ? fine : COARSE);
+        for (let i = 2; i < path.length; i += 2) {
+          pen.lineTo(path[i] * pixels + shiftX, shiftY - path[i + 1] * pixels);
+        }
+      }
+      if (closed) pen.closePath();
     }
   }
 
@@ -229,11 +264,12 @@ export class MeshPainter {
     return found.length === 1 ? found[0] : new Set(found.flat());
   }
 
-  /** Every inner edge of these elements once. */
+  /** Every inner edge of these elements once; all are straight but interfaces, painted later. */
   _paintEdges(pen, elements) {
-    const { k, origin, twin, places } = this._replica;
+    const { k, origin, twin, places, regions, region } = this._replica;
     const { pixels, width, height, x, y } = this.view;
     const [shiftX, shiftY] = [width / 2 - x * pixels, height / 2 + y * pixels];
+    const several = regions.length > 1;
     pen.strokeStyle = this._colours.edge;
     pen.lineWidth = this._edgeWidth;
     pen.beginPath();
@@ -241,6 +277,7 @@ export class MeshPainter {
     for (const e of elements) {
       for (let h = k * e, last = h + k - 1; h <= last; h += 1) {
         if (twin[h] < h) continue; // the boundary, and edges painted from the other side
+        if (several && region[e] !== region[Math.floor(twin[h] / k)]) continue; // an interface
         const a = 2 * origin[h];
         const b = 2 * origin[h === last ? k * e : h + 1];
         pen.moveTo(places[a] * pixels + shiftX, shiftY - places[a + 1] * pixels);

@@ -1,10 +1,11 @@
 // Paints the upper canvas: current half-edge, preview, hints. Hovering repaints this canvas only;
 // markers of the mesh under the preview are painted again above it.
 
-import { middleOf } from "../mesh/picking.js";
-import { arrowOf, cornersFrom, paintArrow } from "./arrow.js";
+import { outlineFrom } from "../mesh/sides.js";
+import { arrowMiddle, arrowOf, cornersFrom, lengthOf, paintArrow } from "./arrow.js";
 import { ghostBounds, GhostPainter } from "./ghost.js";
 import { HintBadges } from "./hint_badges.js";
+import { DEVIATION } from "./mesh_painter.js";
 
 const SMALL_ARROW = 10;
 const RING_RADIUS = 10;
@@ -60,16 +61,16 @@ export class Overlay {
     pen.globalAlpha = 0.11;
     pen.fillStyle = colours.arrow;
     pen.beginPath();
-    corners.forEach((at, i) => (i ? pen.lineTo(...at) : pen.moveTo(...at)));
+    const outline = outlineFrom(replica, halfedge, DEVIATION / (view.pixels * this._ratio));
+    outline.forEach(([x, y], i) => (i ? pen.lineTo(...view.toScreen(x, y)) : pen.moveTo(...view.toScreen(x, y))));
     pen.closePath();
     pen.fill();
     pen.globalAlpha = 1;
     if (ghost) this._ghosts.paintEdges(pen, view, ghost);
     this._markers.paint(pen, this._ratio, view, replica, derived, [ghostBounds(view, ghost, corners)]);
-    const [tail, head] = arrowOf(replica, view, halfedge);
-    paintArrow(pen, tail, head, colours.arrow, colours.background);
-    const length = Math.hypot(head[0] - tail[0], head[1] - tail[1]);
-    if (length < SMALL_ARROW) this._paintRing(pen, middleOf([tail, head]));
+    const arrow = arrowOf(replica, view, halfedge);
+    paintArrow(pen, arrow, colours.arrow, colours.background);
+    if (lengthOf(arrow) < SMALL_ARROW) this._paintRing(pen, arrowMiddle(arrow));
   }
 
   /** A ring around an arrow that is too small to be seen. */

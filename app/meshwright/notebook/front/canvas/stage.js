@@ -2,17 +2,19 @@
 
 import { node } from "../dom.js";
 import { MeshState } from "../mesh/mesh_state.js";
-import { halfedgeAt, middleOf, vertexAt } from "../mesh/picking.js";
+import { halfedgeAt, vertexAt } from "../mesh/picking.js";
 import { clamp } from "../numbers.js";
-import { arrowOf } from "./arrow.js";
+import { arrowMiddle, arrowOf } from "./arrow.js";
 import { Markers } from "./markers.js";
-import { MeshPainter } from "./mesh_painter.js";
+import { DEVIATION, MeshPainter } from "./mesh_painter.js";
 import { Overlay } from "./overlay.js";
 import { Viewport } from "./viewport.js";
 
 const FIT_SHARE = 0.08;
 const FIT_MOST = 48;
 const FIT_LEAST = 22;
+/** Pixels by which a curve may deviate where it is pointed at. */
+const PICKED = 0.25;
 
 export class Stage {
   constructor(element, colours, painted) {
@@ -113,6 +115,11 @@ export class Stage {
     this.paint(); // resizing clears a canvas
   }
 
+  /** Greatest deviation of painted curves, in the plane. */
+  get tolerance() {
+    return DEVIATION / (this.view.pixels * (this._ratio || 1));
+  }
+
   pan(dx, dy) {
     this.see(this.view.panned(dx, dy));
   }
@@ -138,7 +145,7 @@ export class Stage {
 
   /** The middle of a half-edge's arrow on the canvas. */
   middle(halfedge) {
-    return middleOf(arrowOf(this.meshState.replica, this.view, halfedge));
+    return arrowMiddle(arrowOf(this.meshState.replica, this.view, halfedge));
   }
 
   // Painting
@@ -172,7 +179,8 @@ export class Stage {
   /** The half-edge at [x, y] of the canvas, or of the boundary within `reach` pixels; or -1. */
   pick([x, y], reach) {
     const [px, py] = this.view.toPlane(x, y);
-    return halfedgeAt(this.meshState.replica, this.meshState.grid, px, py, reach / this.view.pixels);
+    const { pixels } = this.view;
+    return halfedgeAt(this.meshState.replica, this.meshState.grid, px, py, reach / pixels, PICKED / pixels);
   }
 
   /** A half-edge that starts at the vertex within `reach` pixels of [x, y]; or -1. */

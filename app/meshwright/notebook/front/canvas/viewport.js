@@ -29,6 +29,13 @@ export class Viewport {
     ];
   }
 
+  /** The box of the plane that is seen, with `margin` pixels around it. */
+  box(margin = 0) {
+    const [left, top] = this.toPlane(-margin, -margin);
+    const [right, bottom] = this.toPlane(this.width + margin, this.height + margin);
+    return { left, bottom, right, top };
+  }
+
   /** Zoomed in by `factor`; the point at (x, y) stays there. */
   zoomed(factor, x, y) {
     const pixels = Math.min(Math.max(this.pixels * factor, NEAREST_PIXELS), FARTHEST_PIXELS);

@@ -26,6 +26,15 @@ export const COLOUR_NAMES = [
   "warning",
   "warning_soft"
 ];
+/** Hues of regions, and their share in a fill, of the same module. */
+export const REGION_HUES = [
+  "#c58b2a",
+  "#3f78c9",
+  "#4c9a57",
+  "#9560b8",
+  "#bf5670"
+];
+export const REGION_SHARE = 0.14;
 /** Paths of meshwright.graphics.icon_paths, on a square of 20. */
 export const ICON_STROKES = {
   "new": "M3 3h14v14H3z M10 3v14 M3 10h14",

@@ -5,7 +5,8 @@
 
 import { ghostOf } from "../canvas/ghost.js";
 import { asSentence } from "../dom.js";
-import { halfedgeNear, middleOf } from "../mesh/picking.js";
+import { halfedgeNear } from "../mesh/picking.js";
+import { middleOfElement } from "../mesh/sides.js";
 
 const ANSWER_TIMEOUT = 3000;
 const ANTICIPATE = { after: 14, times: 3 };
@@ -32,7 +33,7 @@ export class HoverState {
     this.pinned = pinned && halfedge >= 0;
     if (halfedge === this.halfedge) return;
     this.halfedge = halfedge;
-    this._place = halfedge < 0 ? null : middleOf(this._card.replica.corners(this._card.replica.element(halfedge)));
+    this._place = halfedge < 0 ? null : middleOfElement(this._card.replica, this._card.replica.element(halfedge));
     this._picked = this._previewed = null;
     this._applyWhenKnown = false;
     this._forget();
@@ -131,7 +132,9 @@ export class HoverState {
     if (this._key() === this._answered) return;
     const now = performance.now();
     if (this._pending && now - this._pending.at < ANSWER_TIMEOUT) return;
-    const fields = { halfedge: this.halfedge, operation: this.wanted };
+    const fields = {
+      halfedge: this.halfedge, operation: this.wanted, tolerance: Math.min(card.stage.tolerance, 1),
+    };
     this._pending = { id: card.link.send("hover", fields), at: now, ...fields };
   }
 

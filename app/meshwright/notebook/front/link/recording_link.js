@@ -6,6 +6,9 @@
 import { MeshReplica } from "../mesh/mesh_replica.js";
 import { viewName } from "./kernel_link.js";
 
+/** Kinds of ids in a patch. */
+const CHANGED = ["vertices", "halfedges", "seats", "elements"];
+
 export class RecordingLink {
   constructor(recording) {
     this.readOnly = true;
@@ -68,9 +71,9 @@ export class RecordingLink {
     this._deliver(changed === null ? this._whole() : this._patch(from, changed), id);
   }
 
-  /** Go to a state; returns the changed ids, {vertices, halfedges} as sets, null for all. */
+  /** Go to a state; returns the changed ids as sets by kind, null for all. */
   _travel(state) {
-    const changed = { vertices: new Set(), halfedges: new Set() };
+    const changed = Object.fromEntries(CHANGED.map((name) => [name, new Set()]));
     let whole = false;
     while (this._state !== state) {
       const message = this._state < state ? this._forward() : this._backward();
@@ -79,8 +82,7 @@ export class RecordingLink {
         continue;
       }
       const ids = this._replica.idsOf(message.buffers);
-      ids.vertices.forEach((v) => changed.vertices.add(v));
-      ids.halfedges.forEach((h) => changed.halfedges.add(h));
+      for (const name of CHANGED) ids[name].forEach((id) => changed[name].add(id));
     }
     return whole ? null : changed;
   }
@@ -110,38 +112,24 @@ export class RecordingLink {
   /** The present state as a message. */
   _whole() {
     const { _replica: replica, _recording: recording } = this;
-    const { vertices, halfedges } = replica;
-    const arrays = [
-      replica.places.slice(0, 2 * vertices), replica.delta.slice(0, vertices),
-      replica.flags.slice(0, vertices), replica.origin.slice(0, halfedges),
-      replica.twin.slice(0, halfedges),
-    ];
+    const { vertices, halfedges, frame, regions } = replica;
     const content = {
-      ...recording.state.content, revision: replica.revision, vertices, halfedges, frame: replica.frame,
+      ...recording.state.content, revision: replica.revision, vertices, halfedges, frame, regions,
       head: { ...this._heads[this._state], track: recording.track },
     };
-    return { content, buffers: arrays.map((array) => new DataView(array.buffer)) };
+    return { content, buffers: replica.wholeBuffers() };
   }
 
   /** The patch from revision `from` to the present state. */
   _patch(from, changed) {
     const replica = this._replica;
-    const vertices = Int32Array.from(changed.vertices).filter((v) => v < replica.vertices);
-    const halfedges = Int32Array.from(changed.halfedges).filter((h) => h < replica.halfedges);
-    const places = new Float32Array(2 * vertices.length);
-    vertices.forEach((v, i) => places.set(replica.places.subarray(2 * v, 2 * v + 2), 2 * i));
-    const arrays = [
-      vertices, places, Int8Array.from(vertices, (v) => replica.delta[v]),
-      Uint8Array.from(vertices, (v) => replica.flags[v]), halfedges,
-      Int32Array.from(halfedges, (h) => replica.origin[h]),
-      Int32Array.from(halfedges, (h) => replica.twin[h]),
-    ];
+    const ids = Object.fromEntries(CHANGED.map((name) => [name, Int32Array.from(changed[name])]));
     const nothing = { from: this._heads.length, scores: [], optima: [], titles: [], by: [] };
     const content = {
       type: "patch", from, to: replica.revision, vertices: replica.vertices,
       halfedges: replica.halfedges, head: { ...this._heads[this._state], track: nothing },
     };
-    return { content, buffers: arrays.map((array) => new DataView(array.buffer)) };
+    return { content, buffers: replica.buffersAt(ids) };
   }
 }
 

@@ -1,9 +1,10 @@
-// Data derived from the arrays for painting: boundary loops, irregular vertices, inverted elements.
+// Data derived from the arrays for painting: boundary loops and interfaces of regions, irregular
+// vertices, inverted elements.
 //
 // Everything is computed again after each change, in one pass over the arrays: well under a
 // millisecond for 10,000 elements, so that nothing is updated incrementally.
 
-import { FLAG_ALIVE, FLAG_CORNER, FLAG_LOCKED } from "./mesh_replica.js";
+import { FLAG_ALIVE, FLAG_ANCHOR, FLAG_CORNER, FLAG_LOCKED } from "./mesh_replica.js";
 
 const FLAT_SINE = 1e-5;
 const SAMPLES = 1500;
@@ -12,9 +13,13 @@ const NEAR_RINGS = 5;
 export class DerivedData {
   constructor(replica) {
     this.box = replica.bounds();
-    this.loops = boundaryLoops(replica);
+    this.loops = closedLoops(replica, boundaryHalfedges(replica));
+    this.interfaces = interfaceHalfedges(replica);
+    this.regionLoops = regionLoops(replica, this.interfaces);
     this.irregular = verticesWith(replica, (v) => replica.delta[v] !== 0);
-    this.corners = verticesWith(replica, (v) => (replica.flags[v] & FLAG_CORNER) !== 0);
+    const geometric = verticesWith(replica, (v) => (replica.flags[v] & FLAG_CORNER) !== 0);
+    this.corners = geometric.filter((v) => !(replica.flags[v] & FLAG_ANCHOR));
+    this.anchors = geometric.filter((v) => replica.flags[v] & FLAG_ANCHOR);
     this.locked = verticesWith(replica, (v) => (replica.flags[v] & FLAG_LOCKED) !== 0);
     this.typical = typicalEdge(replica);
     this.reach = shortestEdges(replica);
@@ -31,24 +36,61 @@ function verticesWith(replica, test) {
   return found;
 }
 
-/** Boundary loops as arrays of vertex ids. */
-function boundaryLoops(replica) {
-  const from = new Map();
+function boundaryHalfedges(replica) {
+  const found = [];
   for (let h = 0; h < replica.halfedges; h += 1) {
-    if (replica.twin[h] < 0 && replica.origin[h] >= 0) from.set(replica.origin[h], h);
+    if (replica.twin[h] < 0 && replica.origin[h] >= 0) found.push(h);
+  }
+  return found;
+}
+
+/** Every edge between two regions once, as a half-edge. */
+function interfaceHalfedges(replica) {
+  const found = [];
+  if (replica.regions.length < 2) return found;
+  for (let h = 0; h < replica.halfedges; h += 1) {
+    if (replica.origin[h] >= 0 && replica.twin[h] > h && replica.constrained(h)) found.push(h);
+  }
+  return found;
+}
+
+/** Half-edges that form closed loops, as arrays of one loop each. */
+function closedLoops(replica, halfedges) {
+  const from = new Map();
+  const left = new Set(halfedges);
+  for (const h of halfedges) {
+    const at = from.get(replica.origin[h]);
+    if (at) at.push(h);
+    else from.set(replica.origin[h], [h]);
   }
   const loops = [];
-  while (from.size) {
+  for (const first of halfedges) {
+    if (!left.has(first)) continue;
     const loop = [];
-    let h = from.values().next().value;
-    while (h !== undefined) {
-      from.delete(replica.origin[h]);
-      loop.push(replica.origin[h]);
-      h = from.get(replica.target(h));
+    let h = first;
+    while (h !== undefined && left.has(h)) {
+      left.delete(h);
+      loop.push(h);
+      // where a region touches itself, either way gives the same area
+      h = (from.get(replica.target(h)) || []).find((other) => left.has(other));
     }
     loops.push(loop);
   }
   return loops;
+}
+
+/** For each region the loops around it; empty if there is only one. */
+function regionLoops(replica, interfaces) {
+  const count = replica.regions.length;
+  if (count < 2) return [];
+  const around = Array.from({ length: count }, () => []);
+  const regionOf = (h) => replica.region[replica.element(h)];
+  for (const h of boundaryHalfedges(replica)) around[regionOf(h)].push(h);
+  for (const h of interfaces) {
+    around[regionOf(h)].push(h);
+    around[regionOf(replica.twin[h])].push(replica.twin[h]);
+  }
+  return around.map((halfedges) => closedLoops(replica, halfedges));
 }
 
 /** The median edge length of a sample. */
@@ -127,12 +169,14 @@ function distancesApart(replica, vertices, typical, box) {
   return apart;
 }
 
-/** Elements with a flat or reflex corner, as meshwright_core.geometry.quality.inverted. */
+/** Elements with straight sides and a flat or reflex corner, as the corner measure of
+ * meshwright_core.geometry.quality; those with curved sides are told by Python.
+ */
 function invertedElements(replica) {
-  const { k, places, origin } = replica;
-  const found = [];
+  const { k, places, origin, edgeCurves } = replica;
+  const found = [...((replica.head && replica.head.inverted_curved) || [])];
   for (let e = 0; e < replica.elements; e += 1) {
-    if (origin[k * e] < 0) continue;
+    if (origin[k * e] < 0 || edgeCurves.bends(e)) continue;
     for (let i = 0; i < k; i += 1) {
       const a = 2 * origin[k * e + ((i + k - 1) % k)];
       const b = 2 * origin[k * e + i];

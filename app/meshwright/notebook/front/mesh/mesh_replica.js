@@ -1,26 +1,27 @@
 // The browser's copy of the mesh: flat arrays, set by a state message and updated by patches.
 //
 // Element e owns the half-edges k*e .. k*e+k-1, counter-clockwise. origin -1: the slot is dead.
-// Coordinates are in the normalised frame of the state message, y up.
+// Coordinates are in the normalised frame of the state message, y up. Vertices on the boundary or on
+// an interface of regions know their curve and their parameter on it.
+
+import { enlarge } from "./boxes.js";
+import { CURVE_BUFFERS, Curves } from "./curves.js";
+import { EdgeCurves } from "./edge_curves.js";
+import { arrayOf, withRoom } from "./typed_arrays.js";
 
 export const FLAG_ALIVE = 1;
 const FLAG_BOUNDARY = 2;
 export const FLAG_CORNER = 4;
 export const FLAG_LOCKED = 8;
+/** With FLAG_CORNER: a geometric vertex on a straight side. */
+export const FLAG_ANCHOR = 16;
 
-/** A typed array over a copy of a message's buffer (buffers may begin at odd addresses). */
-export function arrayOf(Type, view) {
-  const start = view.byteOffset;
-  return new Type(view.buffer.slice(start, start + view.byteLength));
-}
-
-/** `array`, or a longer copy if it is shorter than `length`. */
-export function withRoom(array, length) {
-  if (length <= array.length) return array;
-  const longer = new array.constructor(Math.max(length, Math.ceil(1.5 * array.length)));
-  longer.set(array);
-  return longer;
-}
+/** Buffers of a state message: five of vertices and half-edges, vertices on curves with curve and
+ * parameter, regions of elements (empty: all are of one), then the curves.
+ */
+const SEATS = 5;
+const REGIONS = 8;
+const CURVES = 9;
 
 export class MeshReplica {
   constructor() {
@@ -37,6 +38,12 @@ export class MeshReplica {
     this.flags = new Uint8Array(0);
     this.origin = new Int32Array(0);
     this.twin = new Int32Array(0);
+    this.curve = new Int32Array(0);
+    this.parameter = new Float64Array(0);
+    this.region = new Int16Array(0);
+    this.regions = [""];
+    this.curves = new Curves();
+    this.edgeCurves = new EdgeCurves();
   }
 
   /** Load a whole state. */
@@ -52,13 +59,33 @@ export class MeshReplica {
     this.flags = arrayOf(Uint8Array, buffers[2]);
     this.origin = arrayOf(Int32Array, buffers[3]);
     this.twin = arrayOf(Int32Array, buffers[4]);
+    this.curve = new Int32Array(this.vertices).fill(-1);
+    this.parameter = new Float64Array(this.vertices);
+    this._seat(buffers, SEATS);
+    this.regions = content.regions;
+    this.region = buffers[REGIONS].byteLength
+      ? arrayOf(Int16Array, buffers[REGIONS]) : new Int16Array(this.elements);
+    this.curves = new Curves(buffers.slice(CURVES, CURVES + CURVE_BUFFERS));
     this.head = content.head;
     this.revision = content.revision;
   }
 
-  /** The ids that a patch changes: {vertices, halfedges}, as typed arrays. */
+  /** Set curves and parameters: buffers of ids, curves and parameters from `at` on. */
+  _seat(buffers, at) {
+    const curve = arrayOf(Int32Array, buffers[at + 1]);
+    const parameter = arrayOf(Float64Array, buffers[at + 2]);
+    arrayOf(Int32Array, buffers[at]).forEach((v, i) => {
+      this.curve[v] = curve[i];
+      this.parameter[v] = parameter[i];
+    });
+  }
+
+  /** The ids that a patch changes: {vertices, halfedges, seats, elements}, as typed arrays: seats
+   * are vertices whose place on a curve changes, elements those whose region does.
+   */
   idsOf(buffers) {
-    return { vertices: arrayOf(Int32Array, buffers[0]), halfedges: arrayOf(Int32Array, buffers[4]) };
+    const [vertices, halfedges, seats, elements] = [0, 4, 7, 10].map((i) => arrayOf(Int32Array, buffers[i]));
+    return { vertices, halfedges, seats, elements };
   }
 
   /** Apply a patch; returns false, unchanged, if it is not for this revision. */
@@ -81,6 +108,9 @@ export class MeshReplica {
       this.origin[h] = origin[i];
       this.twin[h] = twin[i];
     });
+    this._seat(buffers, 7);
+    const region = arrayOf(Int16Array, buffers[11]);
+    ids.elements.forEach((e, i) => (this.region[e] = region[i]));
     this.head = content.head;
     this.revision = content.to;
     return true;
@@ -88,24 +118,47 @@ export class MeshReplica {
 
   /** The inverse {content, buffers} of a patch; to be called before the patch is applied. */
   inverse(content, buffers) {
-    const ids = this.idsOf(buffers);
-    const vertices = ids.vertices.filter((v) => v < this.vertices);
-    const halfedges = ids.halfedges.filter((h) => h < this.halfedges);
-    const places = new Float32Array(2 * vertices.length);
-    vertices.forEach((v, i) => places.set(this.places.subarray(2 * v, 2 * v + 2), 2 * i));
-    const back = [
-      vertices, places, Int8Array.from(vertices, (v) => this.delta[v]),
-      Uint8Array.from(vertices, (v) => this.flags[v]), halfedges,
-      Int32Array.from(halfedges, (h) => this.origin[h]),
-      Int32Array.from(halfedges, (h) => this.twin[h]),
-    ];
     return {
       content: {
         type: "patch", from: content.to, to: content.from, vertices: this.vertices,
         halfedges: this.halfedges, head: this.head,
       },
-      buffers: back.map((array) => new DataView(array.buffer)),
+      buffers: this.buffersAt(this.idsOf(buffers)),
     };
+  }
+
+  /** The buffers of a patch that sets the present values at these ids, {vertices, halfedges, seats,
+   * elements} in typed arrays; those beyond the ends are left out.
+   */
+  buffersAt(ids) {
+    const [vertices, seats] = [ids.vertices, ids.seats].map((some) => some.filter((v) => v < this.vertices));
+    const halfedges = ids.halfedges.filter((h) => h < this.halfedges);
+    const elements = ids.elements.filter((e) => e < this.elements);
+    const places = new Float32Array(2 * vertices.length);
+    vertices.forEach((v, i) => places.set(this.places.subarray(2 * v, 2 * v + 2), 2 * i));
+    return [
+      vertices, places, Int8Array.from(vertices, (v) => this.delta[v]),
+      Uint8Array.from(vertices, (v) => this.flags[v]), halfedges,
+      Int32Array.from(halfedges, (h) => this.origin[h]),
+      Int32Array.from(halfedges, (h) => this.twin[h]),
+      seats, Int32Array.from(seats, (v) => this.curve[v]),
+      Float64Array.from(seats, (v) => this.parameter[v]),
+      elements, Int16Array.from(elements, (e) => this.region[e]),
+    ].map((array) => new DataView(array.buffer));
+  }
+
+  /** The buffers of a state with everything as it is now. */
+  wholeBuffers() {
+    const { vertices, halfedges } = this;
+    const seats = Int32Array.from(this.curve.subarray(0, vertices).keys()).filter((v) => this.curve[v] >= 0);
+    const arrays = [
+      this.places.slice(0, 2 * vertices), this.delta.slice(0, vertices), this.flags.slice(0, vertices),
+      this.origin.slice(0, halfedges), this.twin.slice(0, halfedges),
+      seats, Int32Array.from(seats, (v) => this.curve[v]),
+      Float64Array.from(seats, (v) => this.parameter[v]),
+      this.region.slice(0, this.regions.length > 1 ? this.elements : 0),
+    ];
+    return [...arrays.map((array) => new DataView(array.buffer)), ...this.curves.buffers];
   }
 
   _resize(vertices, halfedges) {
@@ -114,6 +167,11 @@ export class MeshReplica {
     this.flags = withRoom(this.flags, vertices);
     this.origin = withRoom(this.origin, halfedges);
     this.twin = withRoom(this.twin, halfedges);
+    this.curve = withRoom(this.curve, vertices);
+    this.parameter = withRoom(this.parameter, vertices);
+    this.region = withRoom(this.region, halfedges / this.k);
+    this.curve.fill(-1, Math.min(this.vertices, vertices));
+    this.region.fill(0, Math.min(this.halfedges, halfedges) / this.k);
     this.origin.fill(-1, halfedges);
     this.twin.fill(-1, halfedges);
     this.flags.fill(0, vertices);
@@ -147,16 +205,15 @@ export class MeshReplica {
     return this.origin[this.next(h)];
   }
 
+  /** Whether the edge of h lies between two regions. */
+  constrained(h) {
+    const { twin, region, k } = this;
+    return twin[h] >= 0 && region[Math.floor(h / k)] !== region[Math.floor(twin[h] / k)];
+  }
+
   /** [x, y] of a vertex. */
   place(v) {
     return [this.places[2 * v], this.places[2 * v + 1]];
-  }
-
-  /** [[x, y], ...] the corners of element e. */
-  corners(e) {
-    const corners = [];
-    for (let h = this.k * e; h < this.k * e + this.k; h += 1) corners.push(this.place(this.origin[h]));
-    return corners;
   }
 
   /** The half-edges with the origin of h, h first; traversals are capped. */
@@ -183,7 +240,7 @@ export class MeshReplica {
     return this.around(h).length + (boundary ? 1 : 0);
   }
 
-  /** {left, bottom, right, top} of all live vertices; null for none. */
+  /** {left, bottom, right, top} of the mesh; null if it is empty. */
   bounds() {
     let left = Infinity;
     let bottom = Infinity;
@@ -198,6 +255,9 @@ export class MeshReplica {
       if (y < bottom) bottom = y;
       if (y > top) top = y;
     }
-    return left > right ? null : { left, bottom, right, top };
+    if (left > right) return null;
+    const box = { left, bottom, right, top };
+    for (const edge of this.edgeCurves.all()) enlarge(box, edge.box);
+    return box;
   }
 }

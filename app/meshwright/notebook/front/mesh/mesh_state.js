@@ -2,6 +2,7 @@
 
 import { DerivedData } from "./derived.js";
 import { MeshReplica } from "./mesh_replica.js";
+import { boxOf } from "./sides.js";
 import { SpatialGrid } from "./spatial_grid.js";
 
 const DIRTY_SHARE = 0.4;
@@ -16,6 +17,7 @@ export class MeshState {
   /** Load a state. */
   load(content, buffers) {
     this.replica.loadState(content, buffers);
+    this.replica.edgeCurves.follow(this.replica, true);
     this.derived = new DerivedData(this.replica);
     this.grid = new SpatialGrid(this.replica);
   }
@@ -31,6 +33,7 @@ export class MeshState {
     const boxes = many ? null : touched.map((e) => boxOf(replica, e));
     if (!many) touched.forEach((e) => this.grid.remove(e));
     replica.applyPatch(content, buffers);
+    replica.edgeCurves.follow(replica);
     if (many) this.grid = new SpatialGrid(replica);
     else {
       for (const e of touched) {
@@ -47,8 +50,10 @@ export class MeshState {
     const { k, origin, halfedges } = this.replica;
     const changed = new Uint8Array(Math.max(content.vertices, this.replica.vertices));
     ids.vertices.forEach((v) => (changed[v] = 1));
+    ids.seats.forEach((v) => (changed[v] = 1));
     const touched = new Uint8Array(Math.max(content.halfedges, halfedges) / k);
     ids.halfedges.forEach((h) => (touched[Math.floor(h / k)] = 1));
+    ids.elements.forEach((e) => (touched[e] = 1));
     for (let h = 0; h < halfedges; h += 1) {
       if (origin[h] >= 0 && changed[origin[h]]) touched[Math.floor(h / k)] = 1;
     }
@@ -56,14 +61,4 @@ export class MeshState {
     touched.forEach((is, e) => is && found.push(e));
     return found;
   }
-}
-
-/** {left, bottom, right, top} of an element, null if it is dead. */
-function boxOf(replica, e) {
-  if (!replica.live(replica.k * e)) return null;
-  const corners = replica.corners(e);
-  const [xs, ys] = [corners.map((at) => at[0]), corners.map((at) => at[1])];
-  return {
-    left: Math.min(...xs), right: Math.max(...xs), bottom: Math.min(...ys), top: Math.max(...ys),
-  };
 }

@@ -1,19 +1,20 @@
 // Finds the half-edge or vertex at a point of the plane.
 
-import { clamp } from "../numbers.js";
+import { awayFromChord, COARSE } from "./edge_curves.js";
+import { middleOfElement, sidePath } from "./sides.js";
 
 /** The nearest half-edge of the element at (x, y); outside of the mesh the nearest boundary half-edge
- * within distance `reach`; -1 for none.
+ * within distance `reach`; -1 for none. Curves are followed within `tolerance`.
  */
-export function halfedgeAt(replica, grid, x, y, reach) {
+export function halfedgeAt(replica, grid, x, y, reach, tolerance) {
   for (const e of grid.near(x, y, x, y)) {
-    if (contains(replica, e, x, y)) return nearestSide(replica, e, x, y).halfedge;
+    if (contains(replica, e, x, y, tolerance)) return nearestSide(replica, e, x, y, tolerance).halfedge;
   }
   let best = { halfedge: -1, away: reach };
   for (const e of grid.near(x - reach, y - reach, x + reach, y + reach)) {
     for (let h = replica.k * e; h < replica.k * (e + 1); h += 1) {
       if (replica.twin[h] >= 0) continue;
-      const away = distanceToEdge(replica, h, x, y);
+      const away = distanceToEdge(replica, h, x, y, tolerance);
       if (away < best.away) best = { halfedge: h, away };
     }
   }
@@ -40,38 +41,41 @@ export function halfedgeNear(replica, x, y) {
   let least = Infinity;
   for (let e = 0; e < replica.elements; e += 1) {
     if (replica.origin[replica.k * e] < 0) continue;
-    const [px, py] = middleOf(replica.corners(e));
+    const [px, py] = middleOfElement(replica, e);
     const away = Math.hypot(px - x, py - y);
     if (away < least) [best, least] = [replica.k * e, away];
   }
   return best < 0 ? -1 : nearestSide(replica, best / replica.k, x, y).halfedge;
 }
 
-function contains(replica, e, x, y) {
+function contains(replica, e, x, y, tolerance) {
   let inside = false;
   for (let h = replica.k * e; h < replica.k * (e + 1); h += 1) {
-    const [ax, ay] = replica.place(replica.origin[h]);
-    const [bx, by] = replica.place(replica.target(h));
-    if (ay > y !== by > y && x < ax + ((y - ay) * (bx - ax)) / (by - ay)) inside = !inside;
+    const path = sidePath(replica, h, tolerance);
+    for (let i = 3; i < path.length; i += 2) {
+      const [ax, ay, bx, by] = [path[i - 3], path[i - 2], path[i - 1], path[i]];
+      if (ay > y !== by > y && x < ax + ((y - ay) * (bx - ax)) / (by - ay)) inside = !inside;
+    }
   }
   return inside;
 }
 
-function nearestSide(replica, e, x, y) {
+function nearestSide(replica, e, x, y, tolerance = COARSE) {
   let best = { halfedge: replica.k * e, away: Infinity };
   for (let h = replica.k * e; h < replica.k * (e + 1); h += 1) {
-    const away = distanceToEdge(replica, h, x, y);
+    const away = distanceToEdge(replica, h, x, y, tolerance);
     if (away < best.away) best = { halfedge: h, away };
   }
   return best;
 }
 
-function distanceToEdge(replica, h, x, y) {
-  const [ax, ay] = replica.place(replica.origin[h]);
-  const [bx, by] = replica.place(replica.target(h));
-  const [ux, uy] = [bx - ax, by - ay];
-  const share = clamp(((x - ax) * ux + (y - ay) * uy) / Math.max(ux * ux + uy * uy, 1e-30), 0, 1);
-  return Math.hypot(ax + share * ux - x, ay + share * uy - y);
+function distanceToEdge(replica, h, x, y, tolerance) {
+  const path = sidePath(replica, h, tolerance);
+  let least = Infinity;
+  for (let i = 3; i < path.length; i += 2) {
+    least = Math.min(least, awayFromChord(path[i - 3], path[i - 2], path[i - 1], path[i], x, y));
+  }
+  return least;
 }
 
 /** The mean of some points. */

@@ -1,7 +1,8 @@
 // A uniform grid of cells with the elements that touch them; updated incrementally by patches.
 
 import { clamp } from "../numbers.js";
-import { withRoom } from "./mesh_replica.js";
+import { boxOf } from "./sides.js";
+import { withRoom } from "./typed_arrays.js";
 
 export class SpatialGrid {
   /** All live elements of `replica`, about one per cell. */
@@ -25,17 +26,9 @@ export class SpatialGrid {
 
   /** Add an element at its present position; dead ones are ignored. */
   add(e) {
-    const { k, origin, places } = this._replica;
-    if (k * e >= this._replica.halfedges || origin[k * e] < 0) return;
-    let [left, bottom, right, top] = [Infinity, Infinity, -Infinity, -Infinity];
-    for (let h = k * e; h < k * e + k; h += 1) {
-      const [x, y] = [places[2 * origin[h]], places[2 * origin[h] + 1]];
-      if (x < left) left = x;
-      if (x > right) right = x;
-      if (y < bottom) bottom = y;
-      if (y > top) top = y;
-    }
-    const range = this._range(left, bottom, right, top);
+    const box = boxOf(this._replica, e);
+    if (!box) return;
+    const range = this._range(box.left, box.bottom, box.right, box.top);
     this._ranges.set(e, range);
     this._each(range, (cell) => cell.push(e));
   }
