@@ -32,12 +32,12 @@ def test_the_numbers_are_those_of_the_operations(kind, star, triangles):
 
 
 def test_a_ghost_of_a_split_shows_the_new_vertices_on_their_curves():
-    mesh = curved_meshes.ring()
-    halfedge = next(h for h in range(16) if mesh.twin(h) < 0)
-    seen = ghost(mesh, "global_split", halfedge)
-    assert sorted(np.hypot(*seen.fresh.T).round(12).tolist()) == [1.0, 2.0]
-    assert len(seen.added) == 1
-    assert len(seen.removed) == 0
+    seen = ghost(curved_meshes.ring(), "global_split", 0)  # along the spoke at 45 degrees
+    assert np.abs(np.hypot(*seen.fresh.T) - 2.0).max() < 1e-14
+    assert np.sort(np.arctan2(seen.fresh[:, 1], seen.fresh[:, 0])) == pytest.approx(
+        [0.0, np.pi / 2], abs=1e-12
+    )
+    assert (len(seen.added), len(seen.removed)) == (2, 1)  # halves of arcs are neither
 
 
 def test_the_bounds_of_a_ghost_hold_its_curved_edges():

@@ -1,5 +1,7 @@
 """Edges as parts of curves: their points and polylines, in view and out of it."""
 
+from itertools import pairwise
+
 import curved_meshes
 import numpy as np
 import pytest
@@ -29,7 +31,7 @@ def test_polylines_of_a_circle_deviate_by_less_than_the_tolerance():
     _, parts = rim(curved_meshes.disc())
     for tolerance in (0.1, 1e-3, 1e-6):
         points, first = parts.polylines(tolerance)
-        for begin, end in zip(first[:-1], first[1:], strict=True):
+        for begin, end in pairwise(first):
             line = points[begin:end, :2]
             middles = 0.5 * (line[1:] + line[:-1])
             assert np.abs(np.hypot(*line.T) - 1.0).max() < 1e-14
