@@ -27,6 +27,11 @@ export class Colours {
     return `rgb(${parts.join(", ")})`;
   }
 
+  /** The fill of a half-edge's element. */
+  fillOf(replica, halfedge) {
+    return replica.regions.length > 1 ? this.ofRegion(replica.region[replica.element(halfedge)]) : this.fill;
+  }
+
   /** The colour of a change of s: accent for an improvement, warning otherwise. */
   ofChange(change) {
     if (!change) return this.muted;

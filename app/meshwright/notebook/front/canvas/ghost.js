@@ -53,8 +53,8 @@ export class GhostPainter {
     this._colours = colours;
   }
 
-  /** Paint the edges; they lie below the markers. */
-  paintEdges(pen, view, ghost) {
+  /** Paint the edges; they lie below the markers. `fill`: the colour that fades removed ones. */
+  paintEdges(pen, view, ghost, fill) {
     const colours = this._colours;
     const stroke = (colour, width, alpha, dashes, segments) => {
       pen.globalAlpha = alpha;
@@ -65,7 +65,7 @@ export class GhostPainter {
       pen.stroke();
     };
     pen.lineCap = "round";
-    stroke(colours.fill, 4, 0.86, [], ghost.removed);
+    stroke(fill, 4, 0.86, [], ghost.removed);
     pen.lineCap = "butt";
     stroke(colours.background, 4, 0.8, [], ghost.added);
     stroke(colours.arrow, 1.9, 1, GHOST_DASHES, ghost.added);

@@ -66,7 +66,7 @@ export class Overlay {
     pen.closePath();
     pen.fill();
     pen.globalAlpha = 1;
-    if (ghost) this._ghosts.paintEdges(pen, view, ghost);
+    if (ghost) this._ghosts.paintEdges(pen, view, ghost, colours.fillOf(replica, halfedge));
     this._markers.paint(pen, this._ratio, view, replica, derived, [ghostBounds(view, ghost, corners)]);
     const arrow = arrowOf(replica, view, halfedge);
     paintArrow(pen, arrow, colours.arrow, colours.background);
