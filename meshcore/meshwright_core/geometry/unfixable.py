@@ -63,8 +63,8 @@ def unfixable_corners(part: MovablePart) -> np.ndarray:
     both: np.ndarray = sides & np.roll(sides, 1, axis=1)
     if k == 3:
         # the corners of a straight triangle all have one determinant
-        flat = ~sides.any(axis=1)[:, None]
-        folded = np.where(flat, folded.any(axis=1)[:, None], folded)
+        bent = np.any(sides, axis=1, keepdims=True)
+        folded = np.where(bent, folded, np.any(folded, axis=1, keepdims=True))
     found |= _straight(part, folded & bound & ~sides & ~np.roll(sides, 1, axis=1))
     found |= _along_curves(part, folded & both)
     return found
@@ -78,7 +78,7 @@ def _straight(part: MovablePart, asked: np.ndarray) -> np.ndarray:
     found = np.zeros(elements.shape, bool)
     if k == 3:
         # the corners of a straight triangle all have one determinant
-        asked = asked.all(axis=1)[:, None] & (np.arange(3) == 0)
+        asked = np.all(asked, axis=1, keepdims=True) & (np.arange(3) == 0)
     rows, places = np.nonzero(asked)
     if not len(rows):
         return found
