@@ -82,7 +82,9 @@ def test_relaxing_makes_corners_at_circles_square():
     at[:, 1] -= turned * at[:, 0]
     ring.move(slides, at)
     smoothing.relax(ring)
-    assert np.abs(quality.angles(ring) - 90.0).max() < 3.0
+    # the edges between the two rows are straight, so only those at the circles can be square
+    at_circles = ring.boundary()[ring.elements()]
+    assert np.abs(quality.angles(ring)[at_circles] - 90.0).max() < 3.0
     disc = round_disc()
     smoothing.relax(disc)
     corner = quality.angles(disc)[1:]
