@@ -46,7 +46,8 @@ def settle(mesh: HalfEdgeMesh) -> list[int]:
     An element is named by its row in ``mesh.elements()``, which is its place in a written file,
     counted from 0.
     """
-    still_inverted = relax(mesh)
+    relax(mesh)
+    still_inverted = inverted(mesh)
     return [int(row) for row in np.flatnonzero(np.isin(mesh.element_ids(), still_inverted))]
 
 
