@@ -95,7 +95,7 @@ class FoundRegions(QWidget):
 
     def show_contents(self, contents: DrawingContents | None) -> None:
         """Show what was found in a drawing; None for no drawing."""
-        self._contents = contents
+        before, self._contents = self._contents, contents
         self.setVisible(contents is not None)
         if contents is None:
             return
@@ -108,9 +108,10 @@ class FoundRegions(QWidget):
             apart = ", which touch"
         self.title.setText(f"{plural(count, 'region')} in the drawing{apart}")
         with QSignalBlocker(self.table):
-            self.table.setRowCount(count)
-            for row, region in enumerate(contents.regions):
-                self._fill(row, region, row in contents.chosen, count > 1)
+            if before is None or before.regions != contents.regions:
+                self.table.setRowCount(count)
+                for row, region in enumerate(contents.regions):
+                    self._fill(row, region, row in contents.chosen, count > 1)
         self.table.setColumnHidden(4, not any(row.layer for row in contents.regions))
         height = self.table.horizontalHeader().sizeHint().height() + 2
         self.table.setFixedHeight(height + _ROW * min(max(count, 1), MOST_ROWS))
