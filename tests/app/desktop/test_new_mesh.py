@@ -373,6 +373,8 @@ def test_regions_of_a_drawing_are_listed_and_chosen(qtbot, dialog, tmp_path):
     rows = found.table.rowCount()
     assert found.isVisible() and rows > 1
     assert f"{rows} regions in the drawing" in found.title.text()
+    qtbot.wait(300)
+    assert dialog.made is made  # showing them asks for no other mesh
     areas = [float(found.table.item(row, 1).text().replace(",", "")) for row in range(rows)]
     assert areas == sorted(areas, reverse=True)
     first = found.choice
