@@ -14,7 +14,7 @@ import numpy as np
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import HALF, TWIN
-from meshwright_core.geometry.edge_curves import bent_edges, curve_halfedges
+from meshwright_core.geometry.edge_curves import bent_edges, curve_halfedges, ends_of
 from meshwright_core.geometry.edge_parts import EdgeParts
 
 TOLERANCE = 0.1
@@ -124,16 +124,50 @@ class TrueEdges:
         return self._interfaces
 
     def _closed_lines(self) -> list[np.ndarray]:
-        mesh, found = self._mesh, []
-        curved = set(self.halfedges.tolist())
-        for loop in mesh.boundary_loops():
-            halfedges = mesh.arrays.vertex[loop, HALF].tolist()
-            if curved.isdisjoint(halfedges):
-                found.append(mesh.points[np.append(loop, loop[0]), :2])
-            else:
-                lines = [self.line(halfedge)[:-1] for halfedge in halfedges]
-                found.append(np.concatenate([*lines, lines[0][:1]]))
-        return found
+        mesh = self._mesh
+        loops = mesh.boundary_loops()
+        halfedges = mesh.arrays.vertex[np.concatenate(loops), HALF].astype(np.int64)
+        points, first = _without_last(*self.lines(halfedges))
+        ends = first[np.cumsum([len(loop) for loop in loops])[:-1]]
+        return [np.concatenate([loop, loop[:1]]) for loop in np.split(points, ends)]
+
+    def lines(self, halfedges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The edges of half-edges (n,), one after the other: points (p, 2), and the first of each
+        edge (n + 1,).
+        """
+        mesh = self._mesh
+        ends = mesh.points[ends_of(mesh, halfedges), :2]
+        rows = np.searchsorted(self.halfedges, halfedges)
+        inside = np.minimum(rows, len(self.halfedges) - 1)
+        bent = np.zeros(len(halfedges), bool)
+        if len(self._points):
+            bent = self.halfedges[inside] == halfedges
+        begin = np.zeros(len(halfedges), np.int64)
+        begin[bent] = self._first[rows[bent]]
+        counts = np.full(len(halfedges), 2)
+        counts[bent] = self._first[rows[bent] + 1] - begin[bent]
+        first = np.concatenate([[0], np.cumsum(counts)])
+        owner = np.repeat(np.arange(len(halfedges)), counts)
+        step = np.arange(len(owner)) - first[owner]
+        pool = np.concatenate([ends.reshape(-1, 2), self._points])
+        place = np.where(bent[owner], 2 * len(halfedges) + begin[owner], 2 * owner) + step
+        return pool[place], first
+
+    def curved_outlines(self) -> tuple[np.ndarray, np.ndarray]:
+        """All of ``elements`` as polygons, one after the other: points (p, 2), and the first of
+        each (e + 1,).
+        """
+        k = self._mesh.k
+        halfedges = (k * self.elements[:, None] + np.arange(k)).ravel()
+        points, first = _without_last(*self.lines(halfedges))
+        return points, first[::k]
+
+
+def _without_last(points: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Polylines, as :meth:`TrueEdges.lines` gives them, without the last point of each."""
+    kept = np.ones(len(points), bool)
+    kept[first[1:] - 1] = False
+    return points[kept], first - np.arange(len(first))
 
 
 def polygons(

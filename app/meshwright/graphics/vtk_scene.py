@@ -198,14 +198,15 @@ class Scene:
         """The elements with curved sides: triangles that fill them, and their inner edges."""
         import pyvista
 
-        polygons = edges.outlines(edges.elements)
-        faces = pyvista.PolyData(_flat(np.concatenate(polygons)), faces=_cells(polygons))
+        points, first = edges.curved_outlines()
+        faces = pyvista.PolyData(_flat(points), faces=_cells(np.diff(first)))
         self._tint(faces, mesh, np.searchsorted(mesh.element_ids(), edges.elements))
         halfedges = mesh.halfedges_of(edges.elements).ravel()
         inner = halfedges[mesh.arrays.edge[halfedges, TWIN] >= 0]
-        sides = [edges.line(halfedge) for halfedge in inner.tolist()]
-        sides = sides or [polygons[0][[0, 0]]]  # an actor needs something to draw
-        lines = pyvista.PolyData(_flat(np.concatenate(sides)), lines=_cells(sides))
+        points, first = edges.lines(inner)
+        if not len(inner):  # an actor needs something to draw
+            points, first = np.repeat(edges.points[:1], 2, axis=0), np.array([0, 2])
+        lines = pyvista.PolyData(_flat(points), lines=_cells(np.diff(first)))
         return faces.triangulate(), lines
 
     def _tint(self, surface: Any, mesh: HalfEdgeMesh, rows: np.ndarray) -> None:
@@ -224,9 +225,8 @@ def _flat(points: np.ndarray) -> np.ndarray:
     return np.column_stack((points, np.zeros(len(points))))
 
 
-def _cells(parts: list[np.ndarray]) -> np.ndarray:
-    """VTK's cells of polygons or polylines whose points follow one another."""
-    sizes = np.array([len(part) for part in parts])
+def _cells(sizes: np.ndarray) -> np.ndarray:
+    """VTK's cells of polygons or polylines of so many points each, which follow one another."""
     ends = np.cumsum(sizes)
     cells = np.insert(np.arange(ends[-1]), ends - sizes, sizes)
     return cells
@@ -242,4 +242,5 @@ def _outline(edges: TrueEdges) -> Any:
     import pyvista
 
     loops = edges.loops()
-    return pyvista.PolyData(_flat(np.concatenate(loops)), lines=_cells(loops))
+    sizes = np.array([len(loop) for loop in loops])
+    return pyvista.PolyData(_flat(np.concatenate(loops)), lines=_cells(sizes))

@@ -95,7 +95,7 @@ class FoundRegions(QWidget):
 
     def show_contents(self, contents: DrawingContents | None) -> None:
         """Show what was found in a drawing; None for no drawing."""
-        self._contents = contents
+        before, self._contents = self._contents, contents
         self.setVisible(contents is not None)
         if contents is None:
             return
@@ -108,9 +108,10 @@ class FoundRegions(QWidget):
             apart = ", which touch"
         self.title.setText(f"{plural(count, 'region')} in the drawing{apart}")
         with QSignalBlocker(self.table):
-            self.table.setRowCount(count)
-            for row, region in enumerate(contents.regions):
-                self._fill(row, region, row in contents.chosen, count > 1)
+            if before is None or before.regions != contents.regions:
+                self.table.setRowCount(count)
+                for row, region in enumerate(contents.regions):
+                    self._fill(row, region, row in contents.chosen, count > 1)
         self.table.setColumnHidden(4, not any(row.layer for row in contents.regions))
         height = self.table.horizontalHeader().sizeHint().height() + 2
         self.table.setFixedHeight(height + _ROW * min(max(count, 1), MOST_ROWS))
@@ -122,8 +123,7 @@ class FoundRegions(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Draw in the colours of ``theme``."""
         self._theme = theme
-        with QSignalBlocker(self.table):
-            self._mark()
+        self._mark()
 
     def _fill(self, row: int, region: RegionRow, ticked: bool, several: bool) -> None:
         counts = str(region.holes), str(region.corners)
@@ -145,12 +145,13 @@ class FoundRegions(QWidget):
         """Give the chosen regions the colours that they have in the preview."""
         chosen = self.chosen
         swatches = region_swatches(self._theme, len(chosen))
-        for row in range(self.table.rowCount()):
-            icon = QIcon()
-            if len(chosen) > 1:
-                colour = swatches[chosen.index(row)] if row in chosen else ""
-                icon = _swatch(colour, self._theme, self.devicePixelRatioF())
-            self.table.item(row, 0).setIcon(icon)
+        with QSignalBlocker(self.table):  # an icon counts as a change of its item
+            for row in range(self.table.rowCount()):
+                icon = QIcon()
+                if len(chosen) > 1:
+                    colour = swatches[chosen.index(row)] if row in chosen else ""
+                    icon = _swatch(colour, self._theme, self.devicePixelRatioF())
+                self.table.item(row, 0).setIcon(icon)
 
     def _say(self, contents: DrawingContents) -> None:
         while self._words.count():
@@ -182,8 +183,7 @@ class FoundRegions(QWidget):
         self._on_ticked()
 
     def _on_ticked(self) -> None:
-        with QSignalBlocker(self.table):
-            self._mark()
+        self._mark()
         self.changed.emit()
 
     def _on_double_click(self, row: int, column: int) -> None:
