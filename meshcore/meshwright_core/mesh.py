@@ -259,7 +259,12 @@ class HalfEdgeMesh(MeshView):
         self._set_vertex(vertex, DESIRED, int(degree))
 
     def set_geometric(self, vertex: int, flag: bool = True) -> None:
-        """Mark a vertex as geometric, or remove the mark: one undoable step."""
+        """Mark a vertex as geometric, or remove the mark: one undoable step.
+
+        Raises MeshError if it would be removed from a junction, where interfaces end.
+        """
+        if not flag and vertex in self.junctions():
+            raise MeshError(f"vertex {vertex} must stay geometric: an interface ends there")
         self._set_flag(vertex, GEOMETRIC, flag)
 
     def set_locked(self, vertex: int, flag: bool = True) -> None:

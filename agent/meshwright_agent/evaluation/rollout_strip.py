@@ -11,7 +11,7 @@ import numpy as np
 from meshwright_agent.evaluation.figures import BLUE, DOTS, GREEN, INK, MUTED, VERMILION
 from meshwright_agent.policy.rollout import PolicyStep
 from meshwright_core.geometry import smoothing
-from meshwright_core.geometry.true_edges import TrueEdges
+from meshwright_core.geometry.edge_lines import EdgeLines
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -64,11 +64,11 @@ def draw_mesh(axes: Any, mesh: HalfEdgeMesh) -> None:
 
     points, ids = mesh.points[:, :2], mesh.vertices()
     extent = float(np.ptp(points[ids], axis=0).max())
-    true = TrueEdges(mesh, _FINENESS * extent)
-    outlines = true.outlines(mesh.element_ids())
+    edges = EdgeLines(mesh, _FINENESS * extent)
+    outlines = edges.outlines(mesh.element_ids())
     axes.add_collection(PolyCollection(outlines, facecolor=_FILL, edgecolor=_EDGE, linewidth=0.7))
-    lines = [np.vstack([line, line[:1]]) for line in map(true.chained, true.rims())]
-    for collection, width in ((true.interfaces(), 1.0), (lines, 1.5)):
+    rims = [np.vstack([line, line[:1]]) for line in map(edges.chained, edges.rims())]
+    for collection, width in ((edges.interfaces(), 1.0), (rims, 1.5)):
         axes.add_collection(
             LineCollection(collection, colors=_OUTLINE, linewidths=width, capstyle="round")
         )

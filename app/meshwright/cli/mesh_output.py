@@ -72,21 +72,28 @@ def measures(mesh: HalfEdgeMesh) -> dict[str, Any]:
     return values
 
 
-def measure_rows(values: dict[str, Any], noun: str) -> list[tuple[str, str]]:
-    """Rows of a report for what :func:`measures` returned; ``noun``: of elements, in the plural."""
+def counted(number: int, kind: str) -> str:
+    """``1 quad``, ``24 triangles``."""
+    from meshwright_core.core.kinds import ELEMENT_NOUN
+
+    return f"{number:,} {ELEMENT_NOUN[kind]}{'' if number == 1 else 's'}"
+
+
+def measure_rows(values: dict[str, Any]) -> list[tuple[str, str]]:
+    """Rows of a report for what :func:`measures` returned; ``values`` has the kind too."""
     rows = [
         ("area", f"{values['area']:.10g}"),
         ("shape", f"worst scaled Jacobian {values['worst_scaled_jacobian']:.2f}"),
     ]
-    regions = region_words(values, noun)
+    regions = region_words(values)
     return [*rows, ("regions", regions)] if regions else rows
 
 
-def region_words(values: dict[str, Any], noun: str) -> str:
+def region_words(values: dict[str, Any]) -> str:
     """``steel 12 quads, copper 8 quads``; empty unless :func:`measures` found several regions."""
     regions = values.get("regions", [])
     words = [
-        f"{region['name'] or f'region {number}'} {region['elements']:,} {noun}"
+        f"{region['name'] or f'region {number}'} {counted(region['elements'], values['kind'])}"
         for number, region in enumerate(regions[:SHOWN_REGIONS], start=1)
     ]
     if len(regions) > SHOWN_REGIONS:

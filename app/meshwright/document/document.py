@@ -413,10 +413,14 @@ class Document:
         self._do("desired", title, -1, YOU, lambda: _each(wanted, mesh.set_desired, degree))
 
     def set_geometric(self, vertices: int | np.ndarray, flag: bool) -> None:
-        """Set or clear the corner flag of one vertex or several (n,), as one step."""
+        """Set or clear the corner flag of one vertex or several (n,), as one step.
+
+        Junctions of interfaces keep it.
+        """
         mesh = self._need()
         now = mesh.geometric()
-        wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
+        kept = mesh.junctions()
+        wanted = [v for v in _ids(vertices) if bool(now[v]) != flag and v not in kept]
         title = _counted("Make corner" if flag else "Free corner", wanted)
         self._do("geometric", title, -1, YOU, lambda: _each(wanted, mesh.set_geometric, flag))
 

@@ -17,7 +17,7 @@ from meshwright_core import HalfEdgeMesh
 from meshwright_core.analysis.block_grids import Grid, grids
 from meshwright_core.analysis.blocks import separatrices
 from meshwright_core.core.arrays import TWIN
-from meshwright_core.geometry.true_edges import TrueEdges
+from meshwright_core.geometry.edge_lines import EdgeLines
 
 SIZE = 480
 FOOT = 40.0
@@ -81,10 +81,10 @@ class BlockView(Picture):
         view = Viewport(size=size).fitted(mesh.points[mesh.vertices()], MARGIN)
         picture = figure(mesh, options, None, view)
         drawing = Drawing((SIZE, round(tall + FOOT)), theme.background, repr(self))
-        true = TrueEdges(mesh, view.tolerance)
+        lines = EdgeLines(mesh, view.tolerance)
         edges = below_edges(picture)
-        drawing.add(*self._tints(theme, view, true), picture.shapes[edges])
-        drawing.add(self._lines(theme, view, true), *picture.shapes[edges + 1 :])
+        drawing.add(*self._tints(theme, view, lines), picture.shapes[edges])
+        drawing.add(self._lines(theme, view, lines), *picture.shapes[edges + 1 :])
         single = all(grid.elements.size == 1 for grid in self.grids)
         for i, grid in enumerate(self.grids, 1):
             words = str(i) if single else _size(grid)
@@ -99,13 +99,13 @@ class BlockView(Picture):
         )  # fmt: skip
         return drawing
 
-    def _tints(self, theme: Theme, view: Viewport, true: TrueEdges) -> list[Polygon]:
-        tints = theme.tints
+    def _tints(self, theme: Theme, view: Viewport, lines: EdgeLines) -> list[Polygon]:
+        tints = (theme.fill, theme.accent_soft, theme.pressed, theme.warning_soft)
         chosen = self._chosen(len(tints))
         return [
             Polygon(view.to_screen(outline), tints[tint])
             for grid, tint in zip(self.grids, chosen, strict=True)
-            for outline in true.outlines(grid.elements.ravel())
+            for outline in lines.outlines(grid.elements.ravel())
         ]
 
     def _chosen(self, tints: int) -> list[int]:
@@ -123,9 +123,9 @@ class BlockView(Picture):
             chosen.append(free[0] if free else i % tints)
         return chosen
 
-    def _lines(self, theme: Theme, view: Viewport, true: TrueEdges) -> Segments:
+    def _lines(self, theme: Theme, view: Viewport, lines: EdgeLines) -> Segments:
         """The edges between blocks."""
-        pieces = true.pieces(np.flatnonzero(self._cut))
+        pieces = lines.pieces(np.flatnonzero(self._cut))
         return Segments(view.to_screen(pieces), theme.accent, 3.0)
 
     def _middle(self, grid: Grid) -> np.ndarray:

@@ -21,7 +21,7 @@ from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.arguments import whole_number
 from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.errors import sentence
-from meshwright_core.geometry.true_edges import TrueEdges
+from meshwright_core.geometry.edge_lines import EdgeLines
 from meshwright_core.operations.catalogue import CATALOGUE, Operation
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ class PolicyView(Picture):
         view = Viewport(size=MESH).fitted(window, MARGIN + 16.0)
         drawing = thumbnail(mesh, MESH, theme, _box(view))
         screen = view.to_screen(corners)
-        outlines = TrueEdges(mesh, view.tolerance).outlines(self.field[:, 0])
+        outlines = EdgeLines(mesh, view.tolerance).outlines(self.field[:, 0])
         tints = [Polygon(view.to_screen(outline), theme.accent_soft) for outline in outlines]
         edges = below_edges(drawing)
         drawing.shapes[edges:edges] = tints

@@ -6,7 +6,6 @@ Pictures and films consist of figures; the window draws the same things in the s
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import cycle
 
 import numpy as np
 
@@ -23,12 +22,12 @@ from meshwright.graphics.drawing import (
     text_width,
 )
 from meshwright.graphics.markers import READABLE, Markers, label, markers
-from meshwright.graphics.theme import Theme, theme
+from meshwright.graphics.theme import Theme, region_fills, region_swatches, theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ORIGIN, TWIN
 from meshwright_core.geometry import quality
-from meshwright_core.geometry.true_edges import TrueEdges
+from meshwright_core.geometry.edge_lines import EdgeLines
 
 REFERENCE = 800.0
 """Lines and letters have their nominal size in a figure whose shorter side has these pixels."""
@@ -121,22 +120,22 @@ def figure(
     colours, unit = options.palette, _unit(options)
     drawing = Drawing(options.size, colours.background, summary(mesh))
     marks = markers(mesh)
-    true = TrueEdges(mesh, view.tolerance)
-    rims = true.rims()
-    width = _edge_width(mesh, true, view, unit)
-    drawing.add(*_fills(true, rims, view, colours))
+    lines = EdgeLines(mesh, view.tolerance)
+    rims = lines.rims()
+    width = _edge_width(mesh, lines, view, unit)
+    drawing.add(*_fills(lines, rims, view, colours))
     if options.changes and moment is not None and len(moment.removed):
         gone = view.to_screen(moment.removed)
         drawing.add(Segments(gone, colours.faint, 1.3 * unit, dash=5.0 * unit))
-    drawing.add(edge_lines(true, view, colours.edge, width))
+    drawing.add(edge_lines(lines, view, colours.edge, width))
     if options.changes and moment is not None and len(moment.added):
         drawing.add(Segments(view.to_screen(moment.added), colours.accent, 2.6 * unit))
-    _add_inverted(drawing, mesh, true, view, colours, unit)
+    _add_inverted(drawing, mesh, lines, view, colours, unit)
     thick = max(2.0 * unit, 1.3 * width)
-    for line in true.interfaces():
+    for line in lines.interfaces():
         drawing.add(Line(view.to_screen(line), colours.boundary, INTERFACE * thick))
     for rim in rims:
-        drawing.add(Line(view.to_screen(_ring(true.chained(rim))), colours.boundary, thick))
+        drawing.add(Line(view.to_screen(_ring(lines.chained(rim))), colours.boundary, thick))
     _add_markers(drawing, marks, view, colours, unit, options.numbers)
     if options.score:
         _add_head(drawing, mesh, moment, colours, unit)
@@ -151,9 +150,9 @@ def below_edges(drawing: Drawing) -> int:
     return next(i for i, shape in enumerate(drawing.shapes) if not isinstance(shape, Area))
 
 
-def edge_lines(true: TrueEdges, view: Viewport, colour: str, width: float) -> Segments:
+def edge_lines(lines: EdgeLines, view: Viewport, colour: str, width: float) -> Segments:
     """All edges, along their curves."""
-    return Segments(view.to_screen(true.pieces(true.once())), colour, width)
+    return Segments(view.to_screen(lines.pieces(lines.once())), colour, width)
 
 
 def summary(mesh: HalfEdgeMesh) -> str:
@@ -175,14 +174,13 @@ def _has_curve(options: FigureOptions, moment: HistoryMoment | None) -> bool:
     return options.curve and moment is not None and len(moment.scores) > 1
 
 
-def _fills(true: TrueEdges, rims: list[np.ndarray], view: Viewport, colours: Theme) -> list[Area]:
+def _fills(lines: EdgeLines, rims: list[np.ndarray], view: Viewport, colours: Theme) -> list[Area]:
     """The area of the mesh, or those of its regions in different tints."""
-    loops = [rims]
-    if true.region_count > 1:
-        loops = [true.rims(region) for region in range(true.region_count)]
+    count = lines.region_count
+    loops = [rims] if count == 1 else [lines.rims(region) for region in range(count)]
     return [
-        Area([view.to_screen(true.chained(rim)) for rim in around], tint)
-        for around, tint in zip(loops, cycle(colours.tints), strict=False)
+        Area([view.to_screen(lines.chained(rim)) for rim in around], fill)
+        for around, fill in zip(loops, region_fills(colours, count), strict=True)
     ]
 
 
@@ -190,9 +188,9 @@ def _ring(points: np.ndarray) -> np.ndarray:
     return np.vstack([points, points[:1]])
 
 
-def _edge_width(mesh: HalfEdgeMesh, true: TrueEdges, view: Viewport, unit: float) -> float:
+def _edge_width(mesh: HalfEdgeMesh, lines: EdgeLines, view: Viewport, unit: float) -> float:
     """Line width of edges in pixels: thinner where edges are short."""
-    pairs = true.ends(true.once())
+    pairs = lines.ends(lines.once())
     if len(pairs) == 0:
         return unit
     some = mesh.points[pairs[:: max(1, len(pairs) // 2000)], :2]
@@ -203,7 +201,7 @@ def _edge_width(mesh: HalfEdgeMesh, true: TrueEdges, view: Viewport, unit: float
 def _add_inverted(
     drawing: Drawing,
     mesh: HalfEdgeMesh,
-    true: TrueEdges,
+    lines: EdgeLines,
     view: Viewport,
     colours: Theme,
     unit: float,
@@ -212,7 +210,7 @@ def _add_inverted(
     ids = quality.inverted(mesh)[:MOST_INVERTED]
     if len(ids) == 0:
         return
-    outlines = [view.to_screen(outline) for outline in true.outlines(ids)]
+    outlines = [view.to_screen(outline) for outline in lines.outlines(ids)]
     lines = np.concatenate([hatching(one, 6.0 * unit) for one in outlines])
     rims = np.concatenate([np.stack([one, np.roll(one, -1, 0)], 1) for one in outlines])
     drawing.add(Segments(lines, colours.warning, 0.9 * unit))
@@ -269,7 +267,7 @@ def _add_head(
 def _add_legend(
     drawing: Drawing, mesh: HalfEdgeMesh, moment: HistoryMoment | None, colours: Theme, unit: float
 ) -> None:
-    """The names of several regions, each beside its tint, in the second line of the head."""
+    """The names of several regions, each beside its colour, in the second line of the head."""
     names = mesh.region_names
     if len(names) < 2:
         return
@@ -278,8 +276,8 @@ def _add_legend(
     if moment is not None and moment.detail:
         left += text_width(moment.detail, size) + 1.5 * gap
     room = drawing.size[0] - (MARGIN + 150.0) * unit
-    tints = cycle(colours.tints)
-    for number, (name, tint) in enumerate(zip(names, tints, strict=False), start=1):
+    swatches = region_swatches(colours, len(names))
+    for number, (name, swatch) in enumerate(zip(names, swatches, strict=True), start=1):
         words = name or f"region {number}"
         width = 17.0 * unit + text_width(words, size)
         last = number == len(names)
@@ -287,11 +285,9 @@ def _add_legend(
             words = f"and {len(names) - number + 1:,} more"
             drawing.add(Text(words, (left, y), size, colours.muted))
             return
-        half = 5.5 * unit
-        place = (left + half, y)
+        half = 5.0 * unit
         drawing.add(
-            Square(place, half, colours.boundary),
-            Square(place, half - 1.0 * unit, tint),
+            Square((left + half, y), half, swatch),
             Text(words, (left + 17.0 * unit, y), size, colours.muted),
         )
         left += width + gap

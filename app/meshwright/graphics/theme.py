@@ -45,11 +45,6 @@ class Theme:
     warning: str
     warning_soft: str
 
-    @property
-    def tints(self) -> tuple[str, ...]:
-        """Pale fills of neighbouring areas, by which regions and blocks differ."""
-        return self.fill, self.accent_soft, self.warning_soft, self.pressed
-
 
 LIGHT = Theme(
     name="light",
@@ -153,7 +148,11 @@ def _region_colours(theme: Theme, count: int, share: float) -> list[str]:
 
 
 def _mixed(one: str, other: str, share: float) -> str:
-    """A colour ``share`` of the way from one to another, all as six hexadecimal digits."""
+    """A colour ``share`` of the way from one to another, which has six hexadecimal digits; a mix
+    for the browser if the first is a CSS variable.
+    """
+    if not one.startswith("#"):
+        return f"color-mix(in srgb,{other} {share:.0%},{one})"
     a, b = bytes.fromhex(one[1:]), bytes.fromhex(other[1:])
     return "#" + bytes(round(x + share * (y - x)) for x, y in zip(a, b, strict=True)).hex()
 

@@ -75,6 +75,10 @@ class MeshView:
         """The curves between two regions."""
         return self._boundary.interfaces
 
+    def junctions(self) -> set[int]:
+        """The vertices where interfaces start or end; they are geometric."""
+        return {v for one in self.interfaces for v in (one.start, one.end) if v >= 0}
+
     @property
     def region_names(self) -> tuple[str, ...]:
         """The name of each region, "" where it has none."""

@@ -11,7 +11,7 @@ from meshwright_core.curves.fitting import fit_arcs
 from meshwright_core.domains.domain import Domain, turning_angles
 from meshwright_core.domains.mesh_on_domain import placed
 from meshwright_core.errors import MeshError
-from meshwright_core.geometry.true_edges import TrueEdges
+from meshwright_core.geometry.edge_lines import EdgeLines
 from meshwright_core.mesh import HalfEdgeMesh
 
 Points = NDArray[np.float64]
@@ -39,7 +39,7 @@ def mesh_with_arcs(
     if live[:, 2].any():
         raise MeshError("arcs are found only in meshes in the plane z = 0")
     size = float(np.linalg.norm(np.ptp(live, axis=0)))
-    edges = TrueEdges(mesh, size)
+    edges = EdgeLines(mesh, size)
     angle = CORNER_ANGLE if corner_angle is None else corner_angle
     regions = []
     for number in range(edges.region_count):

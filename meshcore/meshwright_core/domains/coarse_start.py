@@ -6,6 +6,7 @@ from copy import copy
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from meshwright_core.domains import chord_conflicts
 from meshwright_core.domains.curved_quads import CurvedTriangles
@@ -22,6 +23,7 @@ GOOD = 0.01
 """Scaled Jacobian that the quads of a triangle with curved sides should have at least."""
 _ROUNDS = 10
 _SWEEPS = 8
+_MANY_BAD = 1 << 60
 _MANY = 400
 """Edges of sides beyond which the second way is not tried where the first one is good."""
 _FLAT = 165.0
@@ -44,7 +46,7 @@ def coarse(edges: SideEdges, size: float, seed: int) -> SidedElements:
         size: diameter of the domain.
         seed: as for :func:`.triangulation.triangulated`.
     """
-    best: tuple[int, int] | None = None
+    best = (_MANY_BAD, 0)
     for insert in (True, False):
         trial, inner, settled = copy(edges), np.empty((0, 2)), 0
         for _ in range(_ROUNDS):
@@ -55,7 +57,7 @@ def coarse(edges: SideEdges, size: float, seed: int) -> SidedElements:
             walls = edge_keys(trial.ends, len(points))
             quality = _flipped(shape, triangles, walls)
             bad = int((quality < GOOD).sum())
-            if best is None or (bad, len(triangles)) < best:
+            if (bad, len(triangles)) < best:
                 best = (bad, len(triangles))
                 found = SidedElements.of(trial, points, triangles, regions)
             if not bad or (best[0] == 0 and len(triangles) > best[1]):
@@ -148,20 +150,18 @@ def _remedy(
     if insert:
         spots, clear = shape.free_places(corners, bends, sides[rows, bends])
     points: list[Points] = []
-    room: list[float] = []
     cuts: set[int] = set()
     done: set[int] = set()
+    near = cKDTree(spots).query_ball_point(spots, _APART * clear)
+    chosen, covered = np.zeros(len(bad), bool), np.zeros(len(bad), bool)
     for i in rows.tolist():
         if not flat[i] and bent[i]:
-            if clear[i] > 0.0:
-                if all(
-                    np.hypot(*(spots[i] - other)) > _APART * max(clear[i], far)
-                    for other, far in zip(points, room, strict=True)
-                ):
-                    points.append(spots[i])
-                    room.append(float(clear[i]))
-            else:
+            if clear[i] <= 0.0:
                 cuts.add(int(sides[i, bends[i]]))
+            elif not covered[i] and not chosen[near[i]].any():
+                points.append(spots[i])
+                chosen[i] = True
+                covered[near[i]] = True
             continue
         if any(int(v) in done for v in corners[i]):
             continue  # the triangles around a new point are looked at again first
@@ -170,5 +170,4 @@ def _remedy(
         ends = corners[i][[start, (start + 1) % 3]]
         on_wall = np.isin(edge_keys(ends[None], len(shape.points)), walls)[0]
         points.append(shape.points[ends if flat[i] and not on_wall else corners[i]].mean(axis=0))
-        room.append(0.0)
     return np.array(points).reshape(-1, 2), np.array(sorted(cuts), int)

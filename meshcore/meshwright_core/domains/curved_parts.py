@@ -207,6 +207,6 @@ def _holes(
         room = radius + max(CLEAR * unit, 0.3 * radius)
         disc = shapely.Point(place).buffer(room)
         if part.contains(disc):
-            holes.append(circle(*place.tolist(), radius))
+            holes.append(circle(float(place[0]), float(place[1]), radius))
             part = part.difference(shapely.Point(place).buffer(radius))
     return holes

@@ -77,7 +77,8 @@ def pipe() -> Domain:
 
 def airfoil_in_box() -> Domain:
     """The flow around a NACA 2412 airfoil, a spline with a sharp trailing edge."""
-    wing = [curve.transformed([[1, 0, -0.5], [0, 1, 0]]) for curve in airfoil_curves("2412")]
+    ahead = [[1.0, 0.0, -0.5], [0.0, 1.0, 0.0]]
+    wing = [curve.transformed(ahead) for curve in airfoil_curves("2412")]
     return Domain.from_curves([box(-1, -0.6, 1, 0.6), wing])
 
 

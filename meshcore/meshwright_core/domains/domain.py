@@ -109,8 +109,6 @@ class Domain:
         for array in (*loops, *corners):
             array.flags.writeable = False
         self.name = name
-        self.curve_step: float | None = None
-        """Degrees that an edge of a mesh turns along a curve, at most; None: as it comes."""
         self.outlines = outlines
         """How many of the loops are outlines: the components of the domain."""
         self.loops: tuple[Points, ...] = tuple(loops)
@@ -244,6 +242,20 @@ class Domain:
         loops = [self.sides.polyline(side, turn_degrees) for side in self.sides.loop_sides]
         points, corners = [row for row, _ in loops], [flags for _, flags in loops]
         return Domain(points[0], points[1:], corners[0], corners[1:], self.name)
+
+    @property
+    def curve_step(self) -> float | None:
+        """Degrees that an edge of a mesh turns along a curve, at most; None: about 90, and less
+        where the shape demands it.
+        """
+        return None if self.sides is None else self.sides.curve_step
+
+    @curve_step.setter
+    def curve_step(self, degrees: float | None) -> None:
+        if degrees is not None and not degrees > 0.0:
+            raise MeshError(f"Curves cannot turn by {degrees:g} degrees along an edge.")
+        if self.sides is not None:
+            self.sides.curve_step = degrees
 
     @property
     def outline(self) -> Points:

@@ -16,7 +16,7 @@ Points = NDArray[np.float64]
 
 TOUCH = 1e-8
 """Distance, relative to the size of the domain, below which two curves touch."""
-_TURN = 5.0
+_TURN = 15.0
 _SUBDIVISIONS = 16
 _DEEPEST = 12
 
@@ -84,6 +84,9 @@ class _Edges:
 def _sagitta(curve: Curve, t: NDArray[np.float64], place: Points) -> NDArray[np.float64]:
     """(n - 1,) distance of the curve from the chords between parameters t (n,), about."""
     found = np.zeros(len(t) - 1)
+    if curve.kind == "arc":
+        angle = 0.5 * abs(curve.data["sweep"]) / len(found)
+        return found + 1.1 * curve.data["radius"] * (1.0 - np.cos(angle))
     for share in (0.25, 0.5, 0.75):
         between = curve.point(t[:-1] + share * np.diff(t))
         off = between - (place[:-1] + share * np.diff(place, axis=0))

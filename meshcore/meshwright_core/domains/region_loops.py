@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -79,6 +80,7 @@ class RegionLoops:
         MeshError: as :meth:`.domain.Domain.from_regions`.
 
     Attributes:
+        curve_step: degrees that an edge of a mesh turns along a curve, at most; None: as it comes.
         graph: all sides, and the geometric points.
         size: diagonal of the box around everything.
         loop_sides: the boundary loops: outlines, the largest first, then holes.
@@ -97,6 +99,7 @@ class RegionLoops:
         if not regions or not any(len(loops) for _, loops in regions):
             raise MeshError("A domain needs at least one loop of curves.")
         self.corner_angle = corner_angle
+        self.curve_step: float | None = None
         self.region_names = tuple(str(name) for name, _ in regions)
         self.size = extent([loop for _, loops in regions for loop in loops])
         self._labels: list[list[str]] = []
@@ -222,20 +225,22 @@ class RegionLoops:
         """Raise MeshError if a region lies in another one; no two curves cross."""
         if len(self.regions) < 2:
             return
-        for i, region in enumerate(self.regions):
-            spot = shapely.Point(region.inside)
-            for j, other in enumerate(self.regions):
-                if i == j:
-                    continue
-                around = sum(
-                    shapely.Polygon(sampled_chain(loop)).contains(spot) for loop in other.loops
+        owner = [j for j, region in enumerate(self.regions) for _ in region.loops]
+        rings = [
+            shapely.make_valid(shapely.Polygon(sampled_chain(loop)))
+            for region in self.regions
+            for loop in region.loops
+        ]
+        spots = shapely.points([region.inside for region in self.regions])
+        inner, outer = shapely.STRtree(rings).query(spots, predicate="within")
+        around = Counter(zip(inner.tolist(), [owner[k] for k in outer.tolist()], strict=True))
+        for (i, j), times in sorted(around.items()):
+            if i != j and times % 2:
+                names = [self.region_names[k] or f"region {k}" for k in (i, j)]
+                x, y = self.regions[i].inside
+                raise MeshError(
+                    f"The regions overlap: {names[0]} lies in {names[1]} near ({x:.6g}, {y:.6g})."
                 )
-                if around % 2:
-                    names = [self.region_names[k] or f"region {k}" for k in (i, j)]
-                    raise MeshError(
-                        f"The regions overlap: {names[0]} lies in {names[1]} near"
-                        f" ({spot.x:.6g}, {spot.y:.6g})."
-                    )
 
     def polyline(self, side: Side, turn_degrees: float) -> tuple[Points, Flags]:
         """Points (n, 2) along a boundary loop, and which of them are corners or junctions."""

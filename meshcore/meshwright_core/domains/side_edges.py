@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwright_core.core.composite_curves import Curves, joined_curves, place_all, tangents
+from meshwright_core.core.composite_curves import Curves, place_all, tangents
+from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.region_loops import RegionLoops
 
 Points = NDArray[np.float64]
@@ -46,8 +48,7 @@ class SideEdges:
         """The edges that a coarse start has where nothing else is near."""
         self.sides = sides
         every = sides.all_sides
-        chains = [[span for piece in side.pieces for span in piece.curve.spans] for side in every]
-        self.curves: Curves = joined_curves(chains, [side.closed for side in every])
+        self.curves = _composite([side.curves for side in every], [side.closed for side in every])
         self.starts = [self._piece_starts(number) for number in range(len(every))]
         self._tables = [self._turning_table(number) for number in range(len(every))]
         self.curve, self.parameter, self.node = (np.zeros(0, int), np.zeros(0), np.zeros(0, int))
@@ -145,7 +146,9 @@ class SideEdges:
     ) -> list[tuple[int, float, float, int, int]]:
         """Edges along a stretch between geometric points, or around a whole loop."""
         turn = np.degrees(self.turning(side, *span))
-        count = max(1, int(np.ceil(turn / TURN_OF_EDGE - _SPARE)))
+        step = self.sides.curve_step
+        share = turn / TURN_OF_EDGE - _SPARE if step is None else turn / step - 1e-9
+        count = max(1, int(np.ceil(share)))
         if ends[0] == ends[1]:
             count = max(count, 3)
         return self._row(side, span, ends, self._cuts(side, *span, count))
@@ -227,3 +230,24 @@ class SideEdges:
         left = np.array([piece.left for side in every for piece in side.pieces])
         right = np.array([piece.right for side in every for piece in side.pieces])
         return left[piece], right[piece]
+
+
+def _composite(chains: Sequence[Sequence[Curve]], closed: Sequence[bool]) -> Curves:
+    """The composite curves of chains of pieces, from the lengths of spans that these know."""
+    pieces = [curve for chain in chains for curve in chain]
+    counts = np.concatenate([np.diff(curve.flat.first_control) for curve in pieces])
+    spans = [sum(len(curve.spans) for curve in chain) for chain in chains]
+    first = np.concatenate([[0], np.cumsum(spans)]).astype(np.int64)
+    lengths = np.concatenate([np.diff(curve.stops) for curve in pieces])
+    start, stop = np.zeros(len(lengths)), np.zeros(len(lengths))
+    for a, b in pairwise(first.tolist()):
+        stop[a:b] = np.cumsum(lengths[a:b])
+        start[a + 1 : b] = stop[a : b - 1]
+    return Curves(
+        control=np.concatenate([curve.flat.control for curve in pieces]),
+        first_control=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        start=start,
+        stop=stop,
+        first_span=first,
+        closed=np.array(closed, np.bool_),
+    )

@@ -185,11 +185,11 @@ class SidedElements:
             spans = self.curves.first_span[number] + counts
             stops = self.curves.stop[spans[1:] - 1].tolist()
             row: list[CurvePiece] = []
-            start = 0.0
+            begin = 0.0
             for piece, stop in zip(side.pieces, stops, strict=True):
                 data = piece.curve.to_json()
-                row.append(CurvePiece(start, stop, piece.curve.kind, piece.name, data))
-                start = stop
+                row.append(CurvePiece(begin, stop, piece.curve.kind, piece.name, data))
+                begin = stop
             pieces.append(tuple(row))
         return MeshBoundary(
             self.curves, tuple(range(loops)), tuple(interfaces), sides.region_names, tuple(pieces)

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from meshwright_core.geometry.coons import curved_corners
+from meshwright_core.core.compilation import kernel
+from meshwright_core.geometry.coons import curved_corners, determinant
 from meshwright_core.geometry.curved_elements import curved_elements
 from meshwright_core.geometry.planes import plane_normal, unit, vector_areas
 
@@ -82,9 +83,24 @@ def straight_corners(p: np.ndarray, reference: np.ndarray) -> Corners:
     return Corners(area / lengths, np.arctan2(area, along))
 
 
-def corner_sines(points: np.ndarray, elements: np.ndarray, reference: np.ndarray) -> np.ndarray:
+@kernel
+def corner_sines(points, elements, reference):
     """(m, k) sine of the angle at each corner of straight elements, as in :class:`Corners`."""
-    return straight_corners(points[elements], reference).sine
+    count, k = elements.shape
+    sines = np.zeros((count, k))
+    p, q = np.zeros(3), np.zeros(3)
+    for e in range(count):
+        for i in range(k):
+            o, s, t = elements[e, i], elements[e, (i + 1) % k], elements[e, (i + k - 1) % k]
+            pp = qq = 0.0
+            for c in range(3):
+                p[c], q[c] = points[s, c] - points[o, c], points[t, c] - points[o, c]
+                pp += p[c] * p[c]
+                qq += q[c] * q[c]
+            lengths = np.sqrt(pp) * np.sqrt(qq)
+            if lengths > 0.0:
+                sines[e, i] = determinant(p, q, reference[e]) / lengths
+    return sines
 
 
 class Measure:

@@ -56,7 +56,8 @@ class Seats(NamedTuple):
     high: np.ndarray
     """(n,) likewise for `after`: the upper bound."""
     reach: np.ndarray
-    """(n, 2) the parameters of the vertices that stay before and after it."""
+    """(n, 2) the parameters of the vertices that stay before and after it; half a round to either
+    side where all vertices of a closed curve slide."""
     offset: np.ndarray
     """(n, 3) of its side: how far the point at t = 0 would lie off the curve."""
     slope: np.ndarray
@@ -235,7 +236,8 @@ def find_seats(m, vertices, slides, seats, k):
         # reach: from the last one that stays to the next, around a closed side
         if held < 0:
             for i in range(count):
-                seats.reach[members[i], 0], seats.reach[members[i], 1] = t[0], t[0] + length
+                seats.reach[members[i], 0] = t[i] - 0.5 * length
+                seats.reach[members[i], 1] = t[i] + 0.5 * length
             continue
         last = count if whole else count - 1
         low = t[held]

@@ -97,12 +97,16 @@ def span_towards(curves, curve, t, other):
 
 @bare_kernel
 def turning_between(curves, turning, curve, low, high):
-    """The absolute turning of a curve strictly between low <= high.
+    """The absolute turning of a curve strictly between low <= high; of a whole closed curve also
+    that at the joint where it closes.
 
     On closed curves high - low may be up to the length; both may be beyond the ends.
     """
     if not high > low:
         return 0.0
+    if curves.closed[curve] and high - low >= (1.0 - NEAR) * curve_length(curves, curve):
+        first, last = curves.first_span[curve], curves.first_span[curve + 1] - 1
+        return turning.joint[first] + turning.before[last] + turning.inside[last]
     a, u = span_towards(curves, curve, low, high)
     b, v = span_towards(curves, curve, high, low)
     start = turning.before[a] + u * turning.inside[a]

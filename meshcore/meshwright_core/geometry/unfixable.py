@@ -52,13 +52,21 @@ def unfixable_corners(part: MovablePart) -> np.ndarray:
     uses = np.bincount(elements.ravel(), minlength=len(part.vertices))
     if k == 4:
         found |= (part.free & (uses == 2))[elements]
+    # what no position unfolds is folded now
+    folded: np.ndarray = part.folded()
+    if not folded.any():
+        return found & folded
     bound = ~part.free[elements]
     bound &= np.roll(bound, 1, axis=1) & np.roll(bound, -1, axis=1)
     sides = np.zeros(elements.shape, bool)
     sides[part.curved.element] = part.curved.sides >= 0
-    both = sides & np.roll(sides, 1, axis=1)
-    found |= _straight(part, bound & ~sides & ~np.roll(sides, 1, axis=1))
-    found |= _along_curves(part, both)
+    both: np.ndarray = sides & np.roll(sides, 1, axis=1)
+    if k == 3:
+        # the corners of a straight triangle all have one determinant
+        flat = ~sides.any(axis=1)[:, None]
+        folded = np.where(flat, folded.any(axis=1)[:, None], folded)
+    found |= _straight(part, folded & bound & ~sides & ~np.roll(sides, 1, axis=1))
+    found |= _along_curves(part, folded & both)
     return found
 
 

@@ -57,3 +57,15 @@ def test_seconds_option_is_refused_by_suites_without_search(capsys):
     assert "has no search time" in capsys.readouterr().err
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--meshes", "2"]) == 2
     assert "has fixed meshes" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_curved_parts_suite_prints_a_table(capsys):
+    command = ["bench", "--suite", "curved_parts", "--quick", "--seconds", "2"]
+    assert cli.main([*command, "--json"]) == 0
+    results = json.loads(capsys.readouterr().out)["results"]
+    assert results["meshes"] == len(results["shapes"]) == 2
+    for row in results["shapes"].values():
+        assert row["s*"] <= row["s"] <= row["s start"] < row["15 degrees: s"]
+        assert row["quads start"] < row["15 degrees: quads"]
+        assert row["area error"] < 1e-6

@@ -153,6 +153,28 @@ def test_file_errors_are_reported_in_one_sentence(qtbot, open_window, star, tmp_
     assert window.document.mesh is star
 
 
+def test_a_drawing_of_separate_parts_opens_in_the_dialog(
+    qtbot, open_window, star, tmp_path, monkeypatch
+):
+    window = open_window(star)
+    parts = tmp_path / "parts.svg"
+    shape = '<circle cx="{}" cy="5" r="5"/>'
+    form = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
+    parts.write_text(form.format(shape.format(5) + shape.format(50)))
+    asked = []
+    monkeypatch.setattr(window.files, "_new", asked.append)
+    window.files.open(parts)
+    assert asked == [str(parts)]
+    assert window.document.mesh is star
+    alone = tmp_path / "alone.svg"
+    alone.write_text(form.format(shape.format(5) + '<text x="1" y="2">5 mm</text>'))
+    window.files.open(alone)
+    assert asked == [str(parts)]
+    assert window.document.name == "alone"
+    assert window.document.mesh.off_curve().max() < 1e-12
+    assert "left out" in window.status.message
+
+
 def test_recent_files(qtbot, open_window, star, tmp_path):
     window = open_window(star)
     assert not window.actions_by_id["recent"].isEnabled()

@@ -11,10 +11,12 @@ from qtpy.QtGui import QDropEvent
 from qtpy.QtWidgets import QApplication
 
 from meshwright.desktop.files.new_mesh import NewMeshDialog
+from meshwright.desktop.files.new_mesh.found_regions import NONE_CHOSEN
 from meshwright.desktop.files.new_mesh.mesh_process import MeshProcess
 from meshwright.graphics.theme import theme
-from meshwright.sources import mesh_worker
-from meshwright_core import MeshError, read, write
+from meshwright.sources import mesh_worker, new_mesh
+from meshwright.sources.new_mesh import Answer, NewMesh
+from meshwright_core import read, write
 from meshwright_core.domains import gallery, meshing
 
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
@@ -43,7 +45,7 @@ def dialog(qtbot):
     assert not [timer for timer in made.findChildren(QTimer) if timer.isActive()]
 
 
-def wait_for_mesh(qtbot, dialog) -> mesh_worker.NewMesh:
+def wait_for_mesh(qtbot, dialog) -> NewMesh:
     qtbot.waitUntil(lambda: dialog.made is not None, timeout=WAIT)
     return dialog.made
 
@@ -211,7 +213,8 @@ def test_random_polygons_by_seed(qtbot, dialog):
     assert (again.points[:10, :2] == corners).all()
     assert page.pictures.key == 7
     page.sides.setValue(15)
-    assert wait_for_mesh(qtbot, dialog).geometric.sum() == 15
+    made = wait_for_mesh(qtbot, dialog)
+    assert len(made.corners) + len(made.anchors) == 15
     page.dice.click()
     assert page.seed.value() == page.pictures.key == 20
     page.seed.setValue(123)
@@ -238,7 +241,7 @@ def test_a_square_with_a_hole_is_drawn_with_the_mouse(qtbot, dialog, pen):
     pen.loop([(-0.2, -0.2), (0.2, -0.2), (0, 0.2)])
     assert dialog.draw.sketch.complete
     made = wait_for_mesh(qtbot, dialog)
-    assert len(made.loops) == 2
+    assert len(made.sizes) == 2
     places = {tuple(p) for p in made.points[made.geometric][:, :2].round(9).tolist()}
     assert places == {*SQUARE, (-0.2, -0.2), (0.2, -0.2), (0.0, 0.2)}
 
@@ -354,6 +357,82 @@ def test_a_drawing_is_chosen_and_meshed(qtbot, dialog, tmp_path):
     assert not dialog.make.isEnabled()
 
 
+TWO_SHAPES = """<svg xmlns="http://www.w3.org/2000/svg">
+<rect width="40" height="20"/><circle cx="20" cy="10" r="5" fill="none" stroke="black"/>
+<circle cx="70" cy="10" r="10"/><text x="3" y="40">plate</text></svg>"""
+
+
+def test_regions_of_a_drawing_are_listed_and_chosen(qtbot, dialog, tmp_path):
+    path = tmp_path / "parts.svg"
+    path.write_text(TWO_SHAPES)
+    dialog.show_page("file")
+    assert not dialog.file.found.isVisible()
+    dialog.file.take(str(path))
+    made = wait_for_mesh(qtbot, dialog)
+    found = dialog.file.found
+    rows = found.table.rowCount()
+    assert found.isVisible() and rows > 1
+    assert f"{rows} regions in the drawing" in found.title.text()
+    areas = [float(found.table.item(row, 1).text().replace(",", "")) for row in range(rows)]
+    assert areas == sorted(areas, reverse=True)
+    first = found.choice
+    last = found.table.item(rows - 1, 0)
+    qtbot.mouseClick(found.table.viewport(), LEFT, pos=found.table.visualItemRect(last).center())
+    key(qtbot, found.table, Qt.Key.Key_Space)
+    assert found.choice == f"{first},{rows}"
+    assert dialog.made is None
+    both = wait_for_mesh(qtbot, dialog)
+    assert len(both.elements) > len(made.elements)
+    qtbot.mouseDClick(found.table.viewport(), LEFT, pos=found.table.visualItemRect(last).center())
+    assert found.choice == str(rows)
+    alone = wait_for_mesh(qtbot, dialog)
+    assert len(alone.elements) < len(both.elements)
+    mesh = alone.mesh()
+    mesh.validate()
+    assert mesh.off_curve().max() < 1e-12
+    key(qtbot, found.table, Qt.Key.Key_Space)
+    assert found.choice == ""
+    assert dialog.status.text() == NONE_CHOSEN
+    assert not dialog.make.isEnabled()
+    found.all.click()
+    wait_for_mesh(qtbot, dialog)
+    assert found.choice == ",".join(str(row + 1) for row in range(rows))
+
+
+def test_repairs_and_what_is_left_out_are_told_in_sentences(qtbot, dialog, tmp_path):
+    path = tmp_path / "gap.dxf"
+    path.write_text(gap_dxf())
+    dialog.show_page("file")
+    dialog.file.take(str(path))
+    wait_for_mesh(qtbot, dialog)
+    words = " ".join(dialog.file.found.sentences)
+    assert "gap" in words and "encloses nothing" in words
+    assert all(words.endswith(".") for words in dialog.file.found.sentences)
+
+
+def gap_dxf() -> str:
+    """A square with one small gap, and a stray line."""
+    ends = [(0, 0, 10, 0), (10, 0, 10, 10), (10, 10, 0, 10), (0, 10, 0, 0.005), (20, 0, 30, 0)]
+    lines = [f"0\nLINE\n8\n0\n10\n{a}\n20\n{b}\n11\n{c}\n21\n{d}\n" for a, b, c, d in ends]
+    return "0\nSECTION\n2\nENTITIES\n" + "".join(lines) + "0\nENDSEC\n0\nEOF\n"
+
+
+def test_interfaces_stay_in_the_mesh_of_a_drawing(qtbot, dialog, tmp_path):
+    path = tmp_path / "two.wkt"
+    path.write_text(
+        "GEOMETRYCOLLECTION(POLYGON((0 0,1 0,1 1,0 1,0 0)),POLYGON((1 0,2 0,2 1,1 1,1 0)))"
+    )
+    dialog.show_page("file")
+    dialog.file.take(str(path))
+    made = wait_for_mesh(qtbot, dialog)
+    assert dialog.file.found.choice == "1,2"
+    assert sorted(made.owners.tolist()) == [0, 1]
+    mesh = made.mesh()
+    mesh.validate()
+    assert len(mesh.interfaces) == 1 and set(mesh.regions().tolist()) == {0, 1}
+    dialog.grab()  # paints the preview
+
+
 def test_mesh_file_is_opened_unchanged(qtbot, dialog, tmp_path, star):
     write(tmp_path / "star.vtk", star)
     dialog.show_page("file")
@@ -403,13 +482,18 @@ def test_dead_process_is_reported_and_replaced(qtbot):
 
 
 def test_message_frames_round_trip():
-    made = mesh_worker.make(REQUEST)
-    content = mesh_worker.frame(made)
-    assert mesh_worker.length(content[:8]) == len(content)
-    again = mesh_worker.unframed(content)
+    made = mesh_worker.make(REQUEST).mesh
+    content = new_mesh.frame(Answer(made))
+    assert new_mesh.length(content[:8]) == len(content)
+    again = new_mesh.unframed(content).mesh
     assert json.dumps([again.name, again.kind, again.score]) == '["star", "quad", 12]'
-    assert all((getattr(again, f) == getattr(made, f)).all() for f in ("points", "rim", "desired"))
-    assert mesh_worker.unframed(mesh_worker.frame("No.")) == "No."
+    same = ("points", "elements", "delta", "edges", "rim_ends", "corners")
+    assert all((getattr(again, f) == getattr(made, f)).all() for f in same)
+    mesh = again.mesh()
+    mesh.validate()
+    assert mesh.score == 12
+    refused = new_mesh.unframed(new_mesh.frame(Answer(None, "No.")))
+    assert refused == Answer(None, "No.")
 
 
 @pytest.mark.parametrize(
@@ -422,5 +506,6 @@ def test_message_frames_round_trip():
     ],
 )
 def test_invalid_requests_are_reported_in_one_sentence(change, expected):
-    with pytest.raises(MeshError, match=expected):
-        mesh_worker.make({**REQUEST, **change})
+    answer = mesh_worker.make({**REQUEST, **change})
+    assert answer.mesh is None
+    assert expected in answer.refusal

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 
+import curved_meshes
 import numpy as np
 import pytest
 
@@ -28,6 +29,30 @@ def test_the_numbers_are_those_of_the_operations(kind, star, triangles):
             local = [c for c in open_to if c.info.is_local] or open_to
             chosen = best(offered)
             assert chosen is None or chosen.change == min(c.change for c in local)
+
+
+def test_a_ghost_of_a_split_shows_the_new_vertices_on_their_curves():
+    seen = ghost(curved_meshes.ring(), "global_split", 0)  # along the spoke at 45 degrees
+    assert np.abs(np.hypot(*seen.fresh.T) - 2.0).max() < 1e-14
+    assert np.sort(np.arctan2(seen.fresh[:, 1], seen.fresh[:, 0])) == pytest.approx(
+        [0.0, np.pi / 2], abs=1e-12
+    )
+    assert (len(seen.added), len(seen.removed)) == (2, 1)  # halves of arcs are neither
+
+
+def test_the_bounds_of_a_ghost_hold_its_curved_edges():
+    mesh = curved_meshes.disc()
+    halfedge = next(
+        h
+        for h in range(4 * mesh.n_elements)
+        if mesh.check("collapse", h) and len(ghost(mesh, "collapse", h).removed)
+    )
+    seen = ghost(mesh, "collapse", halfedge)
+    bent = np.concatenate(
+        [part.polylines(0.01)[0] for part in (seen.added_edges, seen.removed_edges)]
+    )
+    low, high = np.array(seen.bounds[:2]) - 0.02, np.array(seen.bounds[2:]) + 0.02
+    assert (bent[:, :2] >= low).all() and (bent[:, :2] <= high).all()
 
 
 def test_a_ghost_lies_in_the_plane_and_within_its_bounds(star):

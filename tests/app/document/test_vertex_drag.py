@@ -1,5 +1,6 @@
 """Dragging vertices: where they may go."""
 
+import curved_meshes
 import numpy as np
 import pytest
 
@@ -54,6 +55,28 @@ def test_a_boundary_vertex_follows_a_curved_side():
     assert drag.moved
     radius = np.hypot(*mesh.points[vertex, :2])
     assert abs(np.hypot(*drag.places[0, :2]) - radius) < 0.02 * radius
+
+
+def test_vertices_slide_exactly_along_the_curve_and_over_its_seam():
+    mesh = curved_meshes.disc()
+    parameters = mesh.parameters()
+    last = int(np.argmax(parameters))
+    drag = Drag(mesh, [last], last)
+    for angle in (-1.2, -0.3, 0.4, 3.0):  # the circle begins at angle 0
+        drag.to(1.4 * np.cos(angle), 1.4 * np.sin(angle))
+        assert abs(np.hypot(*drag.places[0, :2]) - 1.0) < 1e-15
+        assert 0.0 <= drag.parameters[0] < 2 * np.pi
+    drag.to(1.4 * np.cos(0.4), 1.4 * np.sin(0.4))
+    assert drag.parameters[0] == pytest.approx(0.4, abs=1e-3)  # nearly the arc length
+    bent = drag.edges.polylines(1e-4)[0]
+    assert len(bent) > 20
+    assert len(drag.folded_sides) == mesh.k * len(drag.folded)
+    document = Document(mesh)
+    document.move(drag.vertices, drag.places, parameters=drag.parameters)
+    mesh.validate()
+    assert mesh.off_curve().max() < 1e-15
+    document.undo()
+    assert (mesh.parameters() == parameters).all()
 
 
 def test_corners_and_locked_vertices_are_refused(board):

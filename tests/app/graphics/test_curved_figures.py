@@ -4,16 +4,18 @@ import numpy as np
 import pytest
 
 from meshwright.experiments.block_view import block_view
+from meshwright.experiments.mesh_thumbnail import thumbnail
+from meshwright.experiments.picture import LIVE
 from meshwright.graphics.drawing import Area, Line, Segments, Square, Text, svg
 from meshwright.graphics.export.film import Film
 from meshwright.graphics.mesh_figure import FigureOptions, below_edges, edges, figure, fitted
-from meshwright.graphics.theme import THEMES
+from meshwright.graphics.theme import THEMES, region_fills, region_swatches
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.domain import Domain
 from meshwright_core.domains.mesh_on_domain import placed
 from meshwright_core.geometry import quality
-from meshwright_core.geometry.true_edges import TrueEdges
+from meshwright_core.geometry.edge_lines import EdgeLines
 
 SIZE = (600, 600)
 OPTIONS = FigureOptions(SIZE)
@@ -106,8 +108,8 @@ def test_hatching_fills_curved_elements(ring):
     drawing = figure(ring, OPTIONS)
     lines = shapes(drawing, Segments, colour=OPTIONS.palette.warning)
     assert len(lines) == 2
-    true = TrueEdges(ring, 1e-3)
-    count = sum(len(outline) for outline in true.outlines(quality.inverted(ring)))
+    lines = EdgeLines(ring, 1e-3)
+    count = sum(len(outline) for outline in lines.outlines(quality.inverted(ring)))
     assert count > 4 * len(quality.inverted(ring))
 
 
@@ -115,7 +117,7 @@ def test_regions_are_tinted_and_named(two):
     drawing = figure(two, OPTIONS)
     colours = OPTIONS.palette
     areas = shapes(drawing, Area)
-    assert [area.colour for area in areas] == list(colours.tints[:2])
+    assert [area.colour for area in areas] == region_fills(colours, 2)
     assert [len(area.loops) for area in areas] == [2, 2]
     assert below_edges(drawing) == 2
     lines = shapes(drawing, Line, colour=colours.boundary)
@@ -126,7 +128,8 @@ def test_regions_are_tinted_and_named(two):
     assert sum(line.width > interface.width for line in lines) == 2
     words = [text.text for text in shapes(drawing, Text)]
     assert "steel" in words and "copper" in words
-    assert [square.colour for square in shapes(drawing, Square)][-3::2] == list(colours.tints[:2])
+    squares = [square.colour for square in shapes(drawing, Square)]
+    assert squares[-2:] == region_swatches(colours, 2)
     assert ">copper<" in svg(drawing)
     single = figure(two, FigureOptions(SIZE, score=False))
     assert not shapes(single, Text, text="steel")
@@ -144,35 +147,42 @@ def test_legend_of_many_regions_is_cut(two):
     assert all(text.at[0] < SIZE[0] for text in shapes(drawing, Text))
 
 
+def test_regions_have_colours_in_pages_too(two):
+    page = thumbnail(two, SIZE, LIVE)
+    fills = [area.colour for area in shapes(page, Area)]
+    assert len(set(fills)) == 2
+    assert all(fill.startswith("color-mix(in srgb,#") and "var(--mw-fill" in fill for fill in fills)
+
+
 def test_interfaces_between_junctions_are_drawn_once():
     points = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]]
     mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 4, 3], [1, 2, 5, 4]], regions=[1, 0])
-    true = TrueEdges(mesh, 1e-3)
-    (line,) = true.interfaces()
+    lines = EdgeLines(mesh, 1e-3)
+    (line,) = lines.interfaces()
     assert sorted(line.tolist()) == [[1, 0], [1, 1]]
-    assert [len(true.rims(region)) for region in (0, 1, None)] == [1, 1, 1]
-    assert sorted(true.chained(true.rims(1)[0]).tolist()) == [[0, 0], [0, 1], [1, 0], [1, 1]]
+    assert [len(lines.rims(region)) for region in (0, 1, None)] == [1, 1, 1]
+    assert sorted(lines.chained(lines.rims(1)[0]).tolist()) == [[0, 0], [0, 1], [1, 0], [1, 1]]
 
 
 def test_true_edges_are_those_of_a_straight_mesh(star):
-    true = TrueEdges(star, 1e-3)
-    once = true.once()
+    lines = EdgeLines(star, 1e-3)
+    once = lines.once()
     assert len(once) == star.n_edges
-    assert (true.ends(once) == edges(star)).all()
-    assert (true.pieces(once) == star.points[edges(star)][:, :, :2]).all()
-    assert not true.curved(once).any()
-    for loop, rim in zip(star.boundary_loops(), true.rims(), strict=True):
-        assert set(loop.tolist()) == set(true.ends(rim)[:, 0].tolist())
-    outlines = true.outlines(star.element_ids()[:3])
+    assert (lines.ends(once) == edges(star)).all()
+    assert (lines.pieces(once) == star.points[edges(star)][:, :, :2]).all()
+    assert not lines.curved(once).any()
+    for loop, rim in zip(star.boundary_loops(), lines.rims(), strict=True):
+        assert set(loop.tolist()) == set(lines.ends(rim)[:, 0].tolist())
+    outlines = lines.outlines(star.element_ids()[:3])
     assert np.array_equal(outlines, star.points[star.elements()[:3]][:, :, :2])
 
 
 def test_true_edges_keep_their_state(ring):
-    true = TrueEdges(ring, 1e-3)
-    before = true.pieces(true.once())
+    lines = EdgeLines(ring, 1e-3)
+    before = lines.pieces(lines.once())
     h = ring.halfedge(0, 1) if ring.halfedge(0, 1) >= 0 else ring.halfedge(1, 0)
     ring.apply("split", h) if ring.check("split", h) else ring.move([0], ring.points[[1]])
-    assert (true.pieces(true.once()) == before).all()
+    assert (lines.pieces(lines.once()) == before).all()
 
 
 def test_films_show_changes_along_curves(ring):

@@ -168,8 +168,10 @@ def test_interfaces_end_at_geometric_junctions_with_summed_degrees():
     # 180 + 90 + 90 degrees in the middle, 90 + 90 on the boundary
     assert mesh.desired()[[4, 1, 5, 7]].tolist() == [4, 3, 3, 3]
     mesh.validate()
-    # slanted interfaces: 45 and 135 degrees need one and two elements
-    points[1] = [0.0 + 1e-3, 0.0]
+    assert mesh.junctions() == {1, 4, 5, 7}
+    with pytest.raises(MeshError, match="must stay geometric"):
+        mesh.set_geometric(4, False)
+    # a slanted interface: 51 and 129 degrees need one element each
     points[1] = [0.2, 0.0]
     slanted = HalfEdgeMesh.from_elements(points, quads, regions=[0, 1, 0, 2])
     assert slanted.desired()[1] == 1 + 1 + 1

@@ -1,5 +1,7 @@
 """Edges as parts of curves: their points and polylines, in view and out of it."""
 
+from itertools import pairwise
+
 import curved_meshes
 import numpy as np
 import pytest
@@ -29,7 +31,7 @@ def test_polylines_of_a_circle_deviate_by_less_than_the_tolerance():
     _, parts = rim(curved_meshes.disc())
     for tolerance in (0.1, 1e-3, 1e-6):
         points, first = parts.polylines(tolerance)
-        for begin, end in zip(first[:-1], first[1:], strict=True):
+        for begin, end in pairwise(first):
             line = points[begin:end, :2]
             middles = 0.5 * (line[1:] + line[:-1])
             assert np.abs(np.hypot(*line.T) - 1.0).max() < 1e-14
@@ -52,7 +54,7 @@ def test_a_box_limits_the_fine_part_of_a_polyline():
 def test_straight_edges_and_kinks_of_a_polyline():
     mesh = curved_meshes.plate()
     halfedges, parts = rim(mesh)
-    points, first = parts.polylines(1e-3)
+    _, first = parts.polylines(1e-3)
     loop = mesh.boundary_loops()[0]
     straight = mesh.arrays.vertex[loop[2], HALF]  # from the end of a fillet to the next one
     row = int(np.searchsorted(halfedges, straight))
@@ -64,7 +66,7 @@ def test_straight_edges_and_kinks_of_a_polyline():
 def test_an_edge_off_its_curve_keeps_its_ends():
     mesh = curved_meshes.disc()
     mesh.move([4], mesh.points[[4]] * 1.1, mesh.parameters()[[4]])
-    halfedges, parts = rim(mesh)
+    _, parts = rim(mesh)
     row = int(np.flatnonzero((parts.ends[:, 0] == mesh.points[4]).all(axis=1))[0])
     w = np.linspace(0.0, 1.0, 5)
     line = parts.points(np.full(5, row), w)

@@ -194,16 +194,14 @@ def _search(
 
 
 def _text(values: dict[str, Any]) -> str:
-    from meshwright_core.core.kinds import KIND_NOUN
-
     s = f"{values['score_before']} -> {values['score_after']}, s* = {values['optimum']}"
     if values["at_optimum"]:
         s += ", at the optimum"
-    noun = KIND_NOUN[values["kind"]]
+    elements = mesh_output.counted(values["elements"], values["kind"])
     rows = [
         ("s", s),
-        ("elements", f"{values['elements_before']} -> {values['elements']} {noun}"),
-        *mesh_output.measure_rows(values, noun),
+        ("elements", f"{values['elements_before']:,} -> {elements}"),
+        *mesh_output.measure_rows(values),
         ("inverted", mesh_output.inverted_words(values["inverted_ids"]) or "none"),
         ("operations", f"{values['operations']} (best of {values['rollouts']})"),
         ("seconds", f"{values['seconds']:.1f}"),

@@ -67,13 +67,11 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 
 
 def _text(values: dict[str, Any]) -> str:
-    from meshwright_core.core.kinds import KIND_NOUN
-
-    noun = KIND_NOUN[str(values["kind"])]
+    elements = mesh_output.counted(values["elements"], values["kind"])
     text = (
-        f"{values['output']}: {values['elements']} {noun}, {values['vertices']} vertices, "
+        f"{values['output']}: {elements}, {values['vertices']:,} vertices, "
         f"s = {values['score']}, s* = {values['optimum']}, area {values['area']:.10g}"
     )
     text += mesh_output.inverted_words(values["inverted_ids"], lead="; ")
-    regions = mesh_output.region_words(values, noun)
+    regions = mesh_output.region_words(values)
     return f"{text}\n  {regions}" if regions else text

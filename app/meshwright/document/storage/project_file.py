@@ -25,7 +25,7 @@ from meshwright_core.io.snapshot import Arrays
 ENDING = ".meshwright"
 _HEADER = "project.json"
 _FORMAT = "Meshwright project"
-_KINDS = (np.dtype(np.int32), np.dtype(np.int64), np.dtype(np.float64))
+_KINDS = tuple(map(np.dtype, (np.int32, np.int64, np.float64, np.uint8, np.bool_)))
 _MOST_BYTES = 8 << 30
 _SWIFT = 1  # compression level: higher ones take twice as long for files a tenth smaller
 _BROKEN = (

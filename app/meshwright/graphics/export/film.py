@@ -20,7 +20,7 @@ from meshwright.graphics.markers import label
 from meshwright.graphics.mesh_figure import FigureOptions, HistoryMoment, figure, fitted
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
-from meshwright_core.geometry.true_edges import TrueEdges
+from meshwright_core.geometry.edge_lines import EdgeLines
 
 SAMPLES = 2
 """Frames are drawn at this many times their size and scaled down; single pictures at more."""
@@ -113,12 +113,12 @@ class Film:
             before = state
             yield moment
 
-    def _edges(self) -> TrueEdges:
+    def _edges(self) -> EdgeLines:
         """The edges of the present state."""
         extent = np.ptp(self._mesh.points[self._mesh.vertices(), :2], axis=0).max(initial=0.0)
-        return TrueEdges(self._mesh, max(FINENESS * float(extent), 1e-300))
+        return EdgeLines(self._mesh, max(FINENESS * float(extent), 1e-300))
 
-    def _moment(self, former: TrueEdges | None, before: int) -> tuple[HistoryMoment, TrueEdges]:
+    def _moment(self, former: EdgeLines | None, before: int) -> tuple[HistoryMoment, EdgeLines]:
         """The present moment and the edges of the mesh."""
         state, present = self._state, self._edges()
         added, removed = np.empty((0, 2, 2)), np.empty((0, 2, 2))
@@ -142,7 +142,7 @@ class Film:
         )
         return moment, present
 
-    def _at_new_places(self, former: TrueEdges, gone: np.ndarray) -> np.ndarray:
+    def _at_new_places(self, former: EdgeLines, gone: np.ndarray) -> np.ndarray:
         """(n, 2, 2) ends of edges that were straight and are gone: vertices that still exist may
         have moved, so that the edges are drawn from where they are now.
         """

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from meshwright.graphics.mesh_figure import FigureOptions
-from meshwright.graphics.theme import Theme
+from meshwright.graphics.theme import REGION_HUES, Theme, region_fills
 from meshwright_core.errors import MeshError
 
 ENDINGS = (".gif", ".mp4")
@@ -134,7 +134,7 @@ def palette(colours: Theme) -> tuple[int, ...]:
         (t.fill, t.faint),
         (t.background, t.line),
         (t.fill, t.warning),
-        *((tint, t.edge) for tint in t.tints[1:]),
+        *((fill, t.edge) for fill in region_fills(t, len(REGION_HUES))),
     )
     shares = np.linspace(0.0, 1.0, LEVELS)[:, None]
     mixed = [(1 - shares) * _rgb(a) + shares * _rgb(b) for a, b in meeting]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.domain import Domain
@@ -17,6 +17,8 @@ FITS = ("arcs", "splines")
 """What may be found in polylines."""
 _SMOOTH = 30.0
 """Degrees by which a polyline that stands for a curve turns at a point, at most."""
+_LONG = 5.0
+"""Times that an edge is longer than its neighbours where it is a straight side."""
 _EXACT = 1e-4
 """Distance from a polyline, as a share of its size, of the curves that replace it."""
 
@@ -100,9 +102,33 @@ def _fitted(curve: Curve, fit: str, corner_angle: float) -> tuple[Curve, ...]:
     tolerance = _EXACT * float(np.ptp(points, axis=0).max())
     if fit == "arcs":
         return tuple(fitting.fit_arcs(points, tolerance))
-    least = max(corner_angle, _SMOOTH)
-    turns = measures.inner_turns(curve)
-    corners = [0, *(np.flatnonzero(turns > least) + 1).tolist(), len(points) - 1]
-    if all(last - first == 1 for first, last in pairwise(corners)):
+    corners = np.zeros(len(points), dtype=bool)
+    corners[1:-1] = measures.inner_turns(curve) > max(corner_angle, _SMOOTH)
+    if (points[0] == points[-1]).all():
+        leave, arrive = measures.end_directions(curve)
+        corners[[0, -1]] = measures.turn_angle(arrive, leave) > max(corner_angle, _SMOOTH)
+    else:
+        corners[[0, -1]] = True
+    corners |= _long_ends(points)
+    if corners.all():
         return (curve,)
     return tuple(fitting.fit_splines(points, corners, tolerance))
+
+
+def _long_ends(points: Points) -> NDArray[np.bool_]:
+    """Flags (n,) of the ends of edges that are much longer than both neighbours: straight sides.
+
+    A spline through points far apart would bulge between them.
+    """
+    length = np.hypot(*np.diff(points, axis=0).T)
+    closed = bool((points[0] == points[-1]).all())
+    before, after = np.roll(length, 1), np.roll(length, -1)
+    if not closed:
+        before[0], after[-1] = after[0], before[-1]
+    long = length > _LONG * np.maximum(before, after)
+    flags = np.zeros(len(points), dtype=bool)
+    flags[:-1] |= long
+    flags[1:] |= long
+    if closed:
+        flags[[0, -1]] = flags[0] | flags[-1]
+    return flags

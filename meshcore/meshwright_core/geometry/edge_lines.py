@@ -14,7 +14,7 @@ from meshwright_core.geometry.edge_curves import curved_edge_polylines
 from meshwright_core.mesh import HalfEdgeMesh
 
 
-class TrueEdges:
+class EdgeLines:
     """The edges of ``mesh`` in its present state, in the plane; they stay so when it changes.
 
     ``tolerance`` is the distance, in units of the mesh, between a curve and the polyline that is
