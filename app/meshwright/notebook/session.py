@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, TypeVar
 from weakref import WeakValueDictionary, finalize
 
+from msgspec import UNSET
+
 from meshwright.assistant.assistant import Assistant
 from meshwright.assistant.kernel_preparation import Stage
 from meshwright.document.document import NO_MESH, Document
@@ -15,7 +17,7 @@ from meshwright.notebook.kernel_warmup import DONE, WAITS
 from meshwright.notebook.protocol.agent_bridge import AgentBridge
 from meshwright.notebook.protocol.broadcaster import Broadcaster, Port
 from meshwright.notebook.protocol.mesh_sync import Packet
-from meshwright.notebook.protocol.preview_messages import ghost_packet, no_ghost
+from meshwright.notebook.protocol.preview_messages import COARSE, ghost_packet, no_ghost
 from meshwright.notebook.protocol.request_handlers import (
     HANDLERS,
     Handler,
@@ -245,7 +247,8 @@ class Session:
             require_operation(self.mesh.kind, operation)
         self.document.hover = halfedge
         frame, bar = self.broadcaster.mesh_sync.frame, self.document.bar
-        packet = ghost_packet(self.mesh, frame, halfedge, operation, bar, request.tolerance)
+        tolerance = COARSE if request.tolerance is UNSET else request.tolerance
+        packet = ghost_packet(self.mesh, frame, halfedge, operation, bar, tolerance)
         self.broadcaster.post(port, packet, request)
 
     def _prepare(self, port: Port, request: Request) -> None:

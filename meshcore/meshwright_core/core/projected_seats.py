@@ -9,7 +9,6 @@ from __future__ import annotations
 from bisect import bisect_left
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from meshwright_core.core.arrays import CURVE, VERTEX_SLOTS, MeshArrays
 from meshwright_core.core.composite_curves import nearest_parameters, place_all
@@ -36,6 +35,8 @@ def projected_seats(points: np.ndarray, loops: list[np.ndarray], boundary: MeshB
     curves, count = boundary.loops, len(loops)
     if len(curves) != count:
         raise MeshError("its outline has more or fewer loops than its boundary")
+    from scipy.optimize import linear_sum_assignment  # imported late: it imports scipy.sparse
+
     away = np.zeros((count, count))
     for i, loop in enumerate(loops):
         some = points[loop[:: max(1, len(loop) // _SAMPLE)]]

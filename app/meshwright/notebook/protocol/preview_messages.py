@@ -12,8 +12,8 @@ from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.geometry.edge_parts import EdgeParts
 
-FINEST = 1e-7
-"""The smallest tolerance of curved edges, in the browser's frame."""
+COARSE, FINEST = 1e-4, 1e-7
+"""Default and smallest tolerance of curved edges, in the browser's frame."""
 
 
 def ghost_packet(
@@ -22,7 +22,7 @@ def ghost_packet(
     halfedge: int,
     operation: str | None,
     bar: Callable[[str], str] | None = None,
-    tolerance: float = 1e-4,
+    tolerance: float = COARSE,
 ) -> Packet:
     """All operations at a live half-edge, and the preview of one of them.
 

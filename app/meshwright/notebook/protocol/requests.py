@@ -62,7 +62,7 @@ class Hover(Request, frozen=True, tag="hover"):
 
     halfedge: IdOrNone
     operation: Text | None
-    tolerance: Annotated[float, Meta(gt=0.0, le=1.0)] = 1e-4
+    tolerance: Annotated[float, Meta(gt=0.0, le=1.0)] | UnsetType = UNSET
 
 
 class Operate(Request, frozen=True, tag="operate"):

@@ -6,7 +6,7 @@ export function emptyBox() {
 }
 
 /** Enlarge a box until it holds (x, y). */
-export function take(box, x, y) {
+export function enclose(box, x, y) {
   if (x < box.left) box.left = x;
   if (x > box.right) box.right = x;
   if (y < box.bottom) box.bottom = y;
@@ -15,8 +15,8 @@ export function take(box, x, y) {
 
 /** Enlarge a box until it holds another one. */
 export function enlarge(box, other) {
-  take(box, other.left, other.bottom);
-  take(box, other.right, other.top);
+  enclose(box, other.left, other.bottom);
+  enclose(box, other.right, other.top);
 }
 
 /** Whether two boxes share a point. */

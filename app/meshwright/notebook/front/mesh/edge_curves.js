@@ -5,7 +5,7 @@
 // of one end to that of the other. Where its ends lie off the curve, their offsets are blended
 // linearly in the parameter and added.
 
-import { emptyBox, take } from "./boxes.js";
+import { emptyBox, enclose } from "./boxes.js";
 
 /** Distance below which a vertex counts as on its curve: places are rounded to float32. */
 const ROUNDING = 2e-7;
@@ -72,7 +72,7 @@ class EdgeCurve {
     if (!this._box) {
       const path = this.path(COARSE);
       const box = emptyBox();
-      for (let i = 0; i < path.length; i += 2) take(box, path[i], path[i + 1]);
+      for (let i = 0; i < path.length; i += 2) enclose(box, path[i], path[i + 1]);
       this._box = {
         left: box.left - COARSE, bottom: box.bottom - COARSE,
         right: box.right + COARSE, top: box.top + COARSE,

@@ -1,6 +1,6 @@
 // The sides of elements as they are: straight, or pieces of curves.
 
-import { emptyBox, enlarge, take } from "./boxes.js";
+import { emptyBox, enlarge, enclose } from "./boxes.js";
 import { COARSE } from "./edge_curves.js";
 
 /** Points [x, y, x, y, ...] of a half-edge from its origin to its target, within `tolerance`. */
@@ -54,7 +54,7 @@ export function boxOf(replica, e) {
   const { k, origin, places, edgeCurves } = replica;
   if (!replica.live(k * e)) return null;
   const box = emptyBox();
-  for (let h = k * e; h < k * e + k; h += 1) take(box, places[2 * origin[h]], places[2 * origin[h] + 1]);
+  for (let h = k * e; h < k * e + k; h += 1) enclose(box, places[2 * origin[h]], places[2 * origin[h] + 1]);
   if (edgeCurves.bends(e)) {
     for (let h = k * e; h < k * e + k; h += 1) {
       const edge = edgeCurves.get(h);
