@@ -211,9 +211,9 @@ def _add_inverted(
     if len(ids) == 0:
         return
     outlines = [view.to_screen(outline) for outline in lines.outlines(ids)]
-    lines = np.concatenate([hatching(one, 6.0 * unit) for one in outlines])
+    hatches = np.concatenate([hatching(one, 6.0 * unit) for one in outlines])
     rims = np.concatenate([np.stack([one, np.roll(one, -1, 0)], 1) for one in outlines])
-    drawing.add(Segments(lines, colours.warning, 0.9 * unit))
+    drawing.add(Segments(hatches, colours.warning, 0.9 * unit))
     drawing.add(Segments(rims, colours.warning, 1.5 * unit))
 
 

@@ -87,11 +87,11 @@ class EdgeLines:
     def outlines(self, elements: np.ndarray) -> list[np.ndarray]:
         """The outline (m, 2) of each of ``elements`` (n,), without its first point again."""
         h = np.asarray(elements, np.int64)[:, None] * self.k + np.arange(self.k)
-        bent = self.curved(h).any(axis=1)
+        bent: list[bool] = self.curved(h).any(axis=1).tolist()
         straight = self._points[self._origin[h]]
         return [
             self.chained(row) if curved else corners
-            for row, curved, corners in zip(h, bent.tolist(), straight, strict=True)
+            for row, curved, corners in zip(h, bent, straight, strict=True)
         ]
 
     def rims(self, region: int | None = None) -> list[np.ndarray]:
