@@ -27,6 +27,7 @@ from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ORIGIN, TWIN
 from meshwright_core.geometry import quality
+from meshwright_core.geometry.edge_curves import curved_edge_polylines
 from meshwright_core.geometry.edge_lines import EdgeLines
 
 REFERENCE = 800.0
@@ -101,8 +102,11 @@ def fitted(
     head = HEAD * unit if options.score else 0.0
     foot = FOOT * unit if _has_curve(options, moment) else 0.0
     room = (width, max(int(height - head - foot), 16))
+    places = mesh.points[mesh.vertices()]
+    # a curved side may reach far beyond the vertices on it
+    curved = curved_edge_polylines(mesh, 1e-3 * float(np.ptp(places, axis=0).max()))[2]
     view = Viewport(size=room).fitted(
-        mesh.points[mesh.vertices()], max(MARGIN * unit, 0.06 * min(room))
+        np.vstack([places, curved]), max(MARGIN * unit, 0.06 * min(room))
     )
     x, y = view.centre
     return Viewport((x, y + (head - foot) / (2.0 * view.pixels)), view.pixels, (width, height))
