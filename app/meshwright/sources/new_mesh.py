@@ -66,8 +66,14 @@ class DrawingContents:
             RegionRow(one.name, one.area, one.holes, one.corners, one.layer, group[i])
             for i, one in enumerate(report.regions)
         )
-        lists = (report.repairs, report.ignored, report.open_outlines)
-        return cls(tuple(rows), chosen, *(tuple(one) for one in lists), report.units)
+        return cls(
+            regions=tuple(rows),
+            chosen=chosen,
+            repairs=tuple(report.repairs),
+            ignored=tuple(report.ignored),
+            missed=tuple(report.open_outlines),
+            units=report.units,
+        )
 
     @classmethod
     def from_json(cls, text: str) -> DrawingContents:
@@ -192,7 +198,7 @@ def unframed(content: bytes | bytearray) -> Answer:
     if "refusal" in found:
         return Answer(None, str(found["refusal"]), contents)
     stored = {name.removeprefix(_MESH): found[name] for name in found if name.startswith(_MESH)}
-    values = {name: str(found[name]) for name in _WORDS}
-    numbers = {name: int(found[name]) for name in _NUMBERS}
-    shown = {name: found[name] for name in _ARRAYS}
-    return Answer(NewMesh(**values, **numbers, **shown, stored=stored), "", contents)
+    values: dict[str, Any] = {name: str(found[name]) for name in _WORDS}
+    values.update({name: int(found[name]) for name in _NUMBERS})
+    values.update({name: found[name] for name in _ARRAYS})
+    return Answer(NewMesh(**values, stored=stored), "", contents)

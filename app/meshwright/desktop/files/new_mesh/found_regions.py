@@ -11,6 +11,7 @@ from qtpy.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
     QHeaderView,
+    QLabel,
     QPushButton,
     QTableWidget,
     QTableWidgetItem,
@@ -50,7 +51,8 @@ class FoundRegions(QWidget):
         self.all = QPushButton("Choose all")
         self.all.setObjectName("Link")
         self.all.setAutoDefault(False)
-        self.table = _table()
+        self.table, self._head = _table()
+        self._labels: list[QLabel] = []  # a title and its sentences, in turn
         self._words = QGridLayout()
         self._words.setContentsMargins(0, 0, 0, 0)
         self._words.setHorizontalSpacing(2 * GRID)
@@ -90,8 +92,7 @@ class FoundRegions(QWidget):
     @property
     def sentences(self) -> list[str]:
         """The sentences below the table."""
-        cells = (self._words.itemAtPosition(row, 1) for row in range(self._words.rowCount()))
-        return [cell.widget().text() for cell in cells if cell is not None]
+        return [label.text() for label in self._labels[1::2]]
 
     def show_contents(self, contents: DrawingContents | None) -> None:
         """Show what was found in a drawing; None for no drawing."""
@@ -100,7 +101,7 @@ class FoundRegions(QWidget):
         if contents is None:
             return
         units = f" ({contents.units}\u00b2)" if contents.units else ""
-        self.table.horizontalHeaderItem(1).setText(f"Area{units}")
+        self._head[1].setText(f"Area{units}")
         count = len(contents.regions)
         groups = 1 + max((row.group for row in contents.regions), default=-1)
         apart = f", in {groups} parts" if groups > 1 else ""
@@ -151,13 +152,14 @@ class FoundRegions(QWidget):
                 if len(chosen) > 1:
                     colour = swatches[chosen.index(row)] if row in chosen else ""
                     icon = _swatch(colour, self._theme, self.devicePixelRatioF())
-                self.table.item(row, 0).setIcon(icon)
+                self._item(row).setIcon(icon)
 
     def _say(self, contents: DrawingContents) -> None:
-        while self._words.count():
-            widget = self._words.takeAt(0).widget()
-            widget.hide()
-            widget.deleteLater()
+        for label in self._labels:
+            self._words.removeWidget(label)
+            label.hide()
+            label.deleteLater()
+        self._labels = []
         row = 0
         for title, sentences in (
             ("Open", contents.missed), ("Mended", contents.repairs), ("Left out", contents.ignored),
@@ -170,16 +172,22 @@ class FoundRegions(QWidget):
             words.setWordWrap(True)
             words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
             self._words.addWidget(words, row, 1)
+            self._labels += [label, words]
             row += 1
 
     def _is_ticked(self, row: int) -> bool:
-        return bool(self.table.item(row, 0).checkState() == Qt.CheckState.Checked)
+        return bool(self._item(row).checkState() == Qt.CheckState.Checked)
+
+    def _item(self, row: int) -> QTableWidgetItem:
+        found = self.table.item(row, 0)
+        assert found is not None
+        return found
 
     def _tick(self, rows: Sequence[int]) -> None:
         with QSignalBlocker(self.table):
             for row in range(self.table.rowCount()):
                 state = Qt.CheckState.Checked if row in rows else Qt.CheckState.Unchecked
-                self.table.item(row, 0).setCheckState(state)
+                self._item(row).setCheckState(state)
         self._on_ticked()
 
     def _on_ticked(self) -> None:
@@ -193,7 +201,8 @@ class FoundRegions(QWidget):
         self._tick(range(self.table.rowCount()))
 
 
-def _table() -> QTableWidget:
+def _table() -> tuple[QTableWidget, list[QTableWidgetItem]]:
+    """The empty table, and the items of its header."""
     made = QTableWidget(0, len(_TITLES))
     made.setObjectName("Table")
     made.setAccessibleName("Regions in the drawing")
@@ -210,12 +219,14 @@ def _table() -> QTableWidget:
     header.setHighlightSections(False)
     header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
     header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+    head = []
     for column, title in enumerate(_TITLES):
         item = QTableWidgetItem(title)
         side = Qt.AlignmentFlag.AlignRight if column in _NUMBERS else Qt.AlignmentFlag.AlignLeft
         item.setTextAlignment(side | Qt.AlignmentFlag.AlignVCenter)
         made.setHorizontalHeaderItem(column, item)
-    return made
+        head.append(item)
+    return made, head
 
 
 def _swatch(colour: str, theme: Theme, ratio: float) -> QIcon:
