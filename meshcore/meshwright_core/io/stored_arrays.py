@@ -10,6 +10,9 @@ from meshwright_core.errors import MeshError
 
 Arrays = dict[str, np.ndarray]
 
+KINDS = tuple(map(np.dtype, (np.int32, np.int64, np.float64, np.uint8, np.bool_)))
+"""The types of numbers that snapshots consist of."""
+
 
 def stored(
     arrays: Mapping[str, np.ndarray], name: str, kind: type, shape: tuple[int, ...]

@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from meshwright_core.io.snapshot import Arrays
+from meshwright_core.io.stored_arrays import KINDS, Arrays
 
 _MARK = b"MWJR"
 _FRAME = struct.Struct("<4sQI")
 _LENGTH = struct.Struct("<I")
-_KINDS = ("<i4", "<i8", "<f8")
+_KINDS = {kind.newbyteorder("<").str for kind in KINDS}
 
 
 @dataclass(frozen=True)

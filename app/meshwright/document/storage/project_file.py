@@ -20,12 +20,11 @@ from meshwright.document.storage.document_state import DocumentState
 from meshwright_core import MeshError
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.io.file_checks import naming
-from meshwright_core.io.snapshot import Arrays
+from meshwright_core.io.stored_arrays import KINDS, Arrays
 
 ENDING = ".meshwright"
 _HEADER = "project.json"
 _FORMAT = "Meshwright project"
-_KINDS = tuple(map(np.dtype, (np.int32, np.int64, np.float64, np.uint8, np.bool_)))
 _MOST_BYTES = 8 << 30
 _SWIFT = 1  # compression level: higher ones take twice as long for files a tenth smaller
 _BROKEN = (
@@ -115,7 +114,7 @@ def _array(data: bytes) -> np.ndarray:
         raise ValueError("an array of another version")
     shape, by_columns, kind = np.lib.format.read_array_header_1_0(stream)
     native = kind.newbyteorder("=")
-    if native not in _KINDS or (by_columns and len(shape) > 1):
+    if native not in KINDS or (by_columns and len(shape) > 1):
         raise ValueError("an array of another kind")
     if math.prod(shape) * kind.itemsize != len(data) - stream.tell():
         raise ValueError("an array of another length")
