@@ -2,7 +2,7 @@
 
     python docs/make_pictures.py              all of them
     python docs/make_pictures.py operations   only these: demo, operations, gallery, parts,
-                                              window
+                                              curves, window
 
 Only the window needs a display; with a virtual screen run
 ``xvfb-run -s "-screen 0 1920x1200x24" python docs/make_pictures.py window``.
@@ -36,6 +36,10 @@ RENDER = 1500
 PANEL = (560, 460)
 GAP = 120
 PARTS_SEED, PARTS_SECONDS = 1, 10.0
+CURVED = (
+    "plate-with-round-hole", "filleted-bracket", "duct-bend", "nozzle",
+    "pipe", "airfoil-in-box", "plate-with-insert", "motor-segment",
+)  # fmt: skip
 
 
 def triangles(rings: int) -> HalfEdgeMesh:
@@ -196,6 +200,28 @@ def make_parts() -> None:
     save(whole, IMAGES / "parts.png")
 
 
+def make_curves() -> None:
+    """Shapes with curved sides as first meshed and, below, as blocks."""
+    from meshwright_agent.policy import policy_files
+    from meshwright_agent.search.solver import solve
+
+    policy = policy_files.load(policy_files.shipped("quad")[0])
+    size, columns = (300, 260), len(CURVED) // 2
+    tiles: list[list[Any]] = []
+    for number, name in enumerate(CURVED):
+        mesh = mesh_domain(gallery.shape(name), "quad")
+        if number % columns == 0:
+            tiles += [[], []]
+        tiles[-2].append(plain(mesh, size))
+        solve(mesh, policy, seconds=PARTS_SECONDS).replay(mesh)
+        smoothing.relax(mesh)
+        tiles[-1].append(plain(mesh, size))
+    whole = Image.new("RGB", (columns * size[0], len(tiles) * size[1]), LIGHT.background)
+    for row, images in enumerate(tiles):
+        whole.paste(side_by_side(images), (0, row * size[1]))
+    save(whole, IMAGES / "curves.png")
+
+
 def with_blocks(mesh: HalfEdgeMesh, size: tuple[int, int]) -> Any:
     """Return the picture of a quad mesh with the lines between its blocks drawn stronger."""
     drawn = plain(mesh, size)
@@ -256,6 +282,7 @@ MAKERS: dict[str, Callable[[], None]] = {
     "operations": make_operations,
     "gallery": make_gallery,
     "parts": make_parts,
+    "curves": make_curves,
     "window": make_window,
 }
 
