@@ -2,59 +2,78 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
 
-from meshwright_core.core.composite_curves import joined_curves
+from meshwright_core.core.composite_curves import Curves
 from meshwright_core.core.mesh_boundary import CurvePiece, Interface, MeshBoundary
-from meshwright_core.curves.curve import Curve
-from meshwright_core.domains.domain import CORNER_ANGLE, Domain, turning_angles
+from meshwright_core.domains.planar_graph import Side
+from meshwright_core.domains.region_loops import RegionLoops
 
 
-def curved_domain(domain: Domain) -> Domain:
-    """The domain with sides of curves: itself, or a polygon as polylines between its corners."""
-    if domain.sides is not None:
-        return domain
-    loops, angle = [], CORNER_ANGLE
-    for points, corners in zip(domain.loops, domain.loop_corners, strict=True):
-        if not corners.all():
-            angle = max(angle, float(turning_angles(points)[~corners].max()))
-        cuts = np.flatnonzero(corners) if corners.any() else np.array([0])
-        around = np.append(cuts, cuts[0] + len(points))
-        loops.append(
-            [
-                Curve.polyline(np.take(points, np.arange(a, b + 1), axis=0, mode="wrap"))
-                for a, b in pairwise(around.tolist())
-            ]
+def side_curves(sides: RegionLoops) -> Curves:
+    """The composite curves of all sides, in their order; the lengths of spans are those that the
+    pieces know.
+    """
+    every = sides.all_sides
+    pieces = [curve for side in every for curve in side.curves]
+    counts = np.concatenate([np.diff(curve.flat.first_control) for curve in pieces])
+    spans = [sum(len(curve.spans) for curve in side.curves) for side in every]
+    first = np.concatenate([[0], np.cumsum(spans)]).astype(np.int64)
+    lengths = np.concatenate([np.diff(curve.stops) for curve in pieces])
+    start, stop = np.zeros(len(lengths)), np.zeros(len(lengths))
+    for a, b in pairwise(first.tolist()):
+        stop[a:b] = np.cumsum(lengths[a:b])
+        start[a + 1 : b] = stop[a : b - 1]
+    return Curves(
+        control=np.concatenate([curve.flat.control for curve in pieces]),
+        first_control=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        start=start,
+        stop=stop,
+        first_span=first,
+        closed=np.array([side.closed for side in every], np.bool_),
+    )
+
+
+def piece_starts(curves: Curves, number: int, side: Side) -> list[float]:
+    """Parameters where the pieces of a side, curve `number`, begin; and its length."""
+    counts = [len(piece.curve.spans) for piece in side.pieces]
+    spans = curves.first_span[number] + np.cumsum([0, *counts])
+    starts: list[float] = curves.start[spans[:-1]].tolist()
+    return [*starts, float(curves.stop[spans[-1] - 1])]
+
+
+def mesh_boundary(
+    sides: RegionLoops, curves: Curves, vertex_at: Mapping[int, int] | None = None
+) -> MeshBoundary:
+    """The sides for a mesh.
+
+    Args:
+        sides: of the domain.
+        curves: as :func:`side_curves` makes them.
+        vertex_at: the vertex at each geometric point; None: interfaces have no junctions yet.
+    """
+    vertices = vertex_at or {}
+    interfaces, pieces = [], []
+    for number, side in enumerate(sides.all_sides):
+        rows = zip(side.pieces, pairwise(piece_starts(curves, number, side)), strict=True)
+        pieces.append(
+            tuple(
+                CurvePiece(start, stop, piece.curve.kind, piece.name, piece.curve.to_json())
+                for piece, (start, stop) in rows
+            )
         )
-    return Domain.from_curves(loops, domain.name, angle)
-
-
-def mesh_boundary(domain: Domain) -> MeshBoundary:
-    """The curves of a domain with sides, for its meshes; no interface has its junctions yet."""
-    assert domain.sides is not None
-    sides = domain.sides.all_sides
-    chains = [[span for piece in side.pieces for span in piece.curve.spans] for side in sides]
-    curves = joined_curves(chains, [side.closed for side in sides])
-    pieces = []
-    for number, side in enumerate(sides):
-        span, row = int(curves.first_span[number]), []
-        for piece in side.pieces:
-            last = span + len(piece.curve.spans) - 1
-            start, stop = float(curves.start[span]), float(curves.stop[last])
-            data = piece.curve.to_json()
-            row.append(CurvePiece(start, stop, piece.curve.kind, piece.name, data))
-            span = last + 1
-        pieces.append(tuple(row))
+        if not side.boundary:
+            ends = (-1, -1) if side.closed else (side.nodes[0], side.nodes[-1])
+            start, end = (vertices.get(node, -1) for node in ends)
+            first = side.pieces[0]
+            interfaces.append(Interface(number, first.left, first.right, start, end))
     return MeshBoundary(
         curves,
-        tuple(i for i, side in enumerate(sides) if side.boundary),
-        tuple(
-            Interface(i, side.pieces[0].left, side.pieces[0].right)
-            for i, side in enumerate(sides)
-            if not side.boundary
-        ),
-        domain.sides.region_names,
+        tuple(range(len(sides.loop_sides))),
+        tuple(interfaces),
+        sides.region_names,
         tuple(pieces),
     )
