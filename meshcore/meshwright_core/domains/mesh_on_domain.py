@@ -22,9 +22,9 @@ from meshwright_core.core.projected_seats import once_around
 from meshwright_core.core.region_interfaces import interface_chains
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.domain import CORNER_ANGLE, Domain, turning_angles
-from meshwright_core.domains.element_regions import element_regions
-from meshwright_core.domains.planar_graph import ANCHOR, PlanarGraph, Side
-from meshwright_core.domains.side_curves import mesh_boundary, side_curves
+from meshwright_core.domains.elements.element_regions import element_regions
+from meshwright_core.domains.loops.planar_graph import ANCHOR, PlanarGraph, Side
+from meshwright_core.domains.loops.side_curves import mesh_boundary, side_curves
 from meshwright_core.errors import MeshError
 from meshwright_core.mesh import HalfEdgeMesh
 

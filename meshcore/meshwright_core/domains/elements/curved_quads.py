@@ -12,8 +12,8 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import place_all
-from meshwright_core.domains.side_edges import SAMPLES, STRAIGHT, SideEdges
-from meshwright_core.domains.triangulation import triangle_areas
+from meshwright_core.domains.elements.side_edges import SAMPLES, STRAIGHT, SideEdges
+from meshwright_core.domains.elements.triangulation import triangle_areas
 from meshwright_core.geometry.coons import SAMPLES as COONS_SAMPLES
 from meshwright_core.geometry.coons import CurvedElements, curved_corners
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import place_all, tangents
-from meshwright_core.domains.region_loops import RegionLoops
-from meshwright_core.domains.side_curves import piece_starts, side_curves
+from meshwright_core.domains.loops.region_loops import RegionLoops
+from meshwright_core.domains.loops.side_curves import piece_starts, side_curves
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import Curves, place_all
 from meshwright_core.core.irregularity import desired_between, usual_desired_degree
-from meshwright_core.domains import quadrangulation
-from meshwright_core.domains.labelled_triangles import edge_keys
-from meshwright_core.domains.region_loops import RegionLoops
-from meshwright_core.domains.side_curves import mesh_boundary
-from meshwright_core.domains.side_edges import SideEdges
+from meshwright_core.domains.elements import quadrangulation
+from meshwright_core.domains.elements.labelled_triangles import edge_keys
+from meshwright_core.domains.elements.side_edges import SideEdges
+from meshwright_core.domains.loops.region_loops import RegionLoops
+from meshwright_core.domains.loops.side_curves import mesh_boundary
 from meshwright_core.mesh import HalfEdgeMesh
 
 Points = NDArray[np.float64]

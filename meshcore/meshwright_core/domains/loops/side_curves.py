@@ -9,8 +9,8 @@ import numpy as np
 
 from meshwright_core.core.composite_curves import Curves
 from meshwright_core.core.mesh_boundary import CurvePiece, Interface, MeshBoundary
-from meshwright_core.domains.planar_graph import Side
-from meshwright_core.domains.region_loops import RegionLoops
+from meshwright_core.domains.loops.planar_graph import Side
+from meshwright_core.domains.loops.region_loops import RegionLoops
 
 
 def side_curves(sides: RegionLoops) -> Curves:
