@@ -160,7 +160,7 @@ def fewest(name: str) -> HalfEdgeMesh:
 
 def cut(mesh: HalfEdgeMesh, levels: int) -> HalfEdgeMesh:
     """Each quad divided into four, several times."""
-    from meshwright_core.domains import quadrangulation
+    from meshwright_core.domains.elements import quadrangulation
     from meshwright_core.geometry import smoothing
 
     smoothing.relax(mesh)

@@ -95,7 +95,6 @@ def test_boundary_loops_have_the_domain_on_their_left():
     inner, outer = mesh.boundary_loops()
     assert inner.tolist() == [0, 4, 3, 2, 1]
     assert outer.tolist() == [5, 6, 7, 8, 9]
-    assert mesh.outline[1][1].tolist() == mesh.points[5:].tolist()
 
 
 def test_neighbours_go_round_counter_clockwise():
@@ -247,8 +246,7 @@ def test_compact_returns_the_maps_of_ids():
     assert mesh.desired()[vertices[17]] == 5
     assert (mesh.points[vertices[18]] == points[18]).all()
     assert not mesh.can_undo
-    ids, at = mesh.outline[0]
-    assert (mesh.points[ids] == at).all()
+    assert mesh.off_curve().max() == 0.0
 
 
 def _spoil_twin(m):

@@ -24,7 +24,8 @@ from meshwright.benchmarks.core import apply_all
 from meshwright.console import Update
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ELEMENT_SLOTS, JOURNALLING
-from meshwright_core.domains import meshing, quadrangulation
+from meshwright_core.domains import meshing
+from meshwright_core.domains.elements import quadrangulation
 from meshwright_core.operations import catalogue
 
 SUMMARY = "repair of scrambled meshes of up to a million elements, and polygons of many sides"

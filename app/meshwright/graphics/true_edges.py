@@ -7,15 +7,14 @@ when the view has been zoomed or moved too far.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import HALF, TWIN
 from meshwright_core.geometry.edge_curves import bent_edges, curve_halfedges, ends_of
-from meshwright_core.geometry.edge_parts import EdgeParts
+from meshwright_core.geometry.edge_lines import DrawnEdges
+from meshwright_core.geometry.edge_parts import EdgeParts, without_last
 
 TOLERANCE = 0.1
 """Pixels that a polyline may deviate from its edge when it is made."""
@@ -27,28 +26,24 @@ OUTSIDE = 0.002
 """Tolerance elsewhere, relative to the size of the mesh."""
 
 
-class TrueEdges:
+class TrueEdges(DrawnEdges):
     """The edges of one state of ``mesh`` as they are; make a new one after edits.
 
-    Attributes: ``halfedges`` (c,) half-edges that are not straight, ascending; ``elements`` (e,)
-    the elements with such a side, ascending.
+    ``elements`` (e,), ascending, are those with a side that is not straight.
     """
 
     def __init__(self, mesh: HalfEdgeMesh) -> None:
-        self._mesh = mesh
+        self.k, self._mesh = mesh.k, mesh
         on_curves = curve_halfedges(mesh)
         twins = mesh.arrays.edge[on_curves, TWIN]
         self._between = on_curves[on_curves < twins]  # one half-edge of each edge of an interface
-        bent = bent_edges(mesh, on_curves)
-        self._parts = EdgeParts(mesh.arrays.curves, bent.curve, bent.span, bent.ends)
-        self.halfedges: np.ndarray = bent.halfedges
+        self.halfedges, self._parts = bent_edges(mesh, on_curves)
         self.elements: np.ndarray = np.unique(self.halfedges // mesh.k)
-        self._corners = mesh.points[mesh.corners(self.elements), :2]
         corners = self._parts.ends.reshape(-1, 3)[:, :2]
         self._size = float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
         self._pixels = 0.0
         self._box = np.zeros((2, 2))
-        self._points = np.zeros((0, 2))
+        self._curve = np.zeros((0, 2))
         self._first = np.zeros(1, np.int64)
         self._loops: list[np.ndarray] | None = None
         self._interfaces: list[np.ndarray] | None = None
@@ -71,7 +66,7 @@ class TrueEdges:
         points, self._first = self._parts.polylines(
             tolerance, self._box, max(OUTSIDE * self._size, tolerance)
         )
-        self._points = points[:, :2]
+        self._curve = points[:, :2]
         self._loops = self._interfaces = None
         return True
 
@@ -79,37 +74,15 @@ class TrueEdges:
     def points(self) -> np.ndarray:
         """(n, 2) points that span the box around the mesh: its vertices, and those of curves."""
         mesh = self._mesh
-        return np.concatenate([mesh.points[mesh.vertices(), :2], self._points])
-
-    def line(self, halfedge: int) -> np.ndarray:
-        """(n, 2) the edge of a half-edge, from its origin to its target."""
-        row = _row(self.halfedges, halfedge)
-        if row >= 0 and len(self._points):
-            return np.asarray(self._points[self._first[row] : self._first[row + 1]])
-        element, side = divmod(halfedge, self._mesh.k)
-        corners = self.corners(element)
-        return np.asarray(corners[[side, (side + 1) % len(corners)]])
-
-    def corners(self, element: int) -> np.ndarray:
-        """(k, 2) the corners of an element."""
-        row = _row(self.elements, element)
-        if row >= 0:
-            return np.asarray(self._corners[row])
-        mesh = self._mesh
-        return np.asarray(mesh.points[mesh.corners(np.array([element]))[0], :2])
+        return np.concatenate([mesh.points[mesh.vertices(), :2], self._curve])
 
     def sides(self, element: int) -> list[np.ndarray]:
         """The sides of an element, each (n, 2), counter-clockwise."""
-        k = self._mesh.k
-        return [self.line(k * element + side) for side in range(k)]
+        return [self.line(self.k * element + side) for side in range(self.k)]
 
     def outline(self, element: int) -> np.ndarray:
         """(n, 2) an element as a polygon, counter-clockwise."""
         return np.concatenate([side[:-1] for side in self.sides(element)])
-
-    def outlines(self, elements: Iterable[int]) -> list[np.ndarray]:
-        """Elements as polygons, each (n, 2)."""
-        return [self.outline(int(element)) for element in elements]
 
     def loops(self) -> list[np.ndarray]:
         """The boundary loops, each (n, 2) and ending with its first point."""
@@ -127,47 +100,12 @@ class TrueEdges:
         mesh = self._mesh
         loops = mesh.boundary_loops()
         halfedges = mesh.arrays.vertex[np.concatenate(loops), HALF].astype(np.int64)
-        points, first = _without_last(*self.lines(halfedges))
+        points, first = without_last(*self.lines(halfedges))
         ends = first[np.cumsum([len(loop) for loop in loops])[:-1]]
         return [np.concatenate([loop, loop[:1]]) for loop in np.split(points, ends)]
 
-    def lines(self, halfedges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The edges of half-edges (n,), one after the other: points (p, 2), and the first of each
-        edge (n + 1,).
-        """
-        mesh = self._mesh
-        ends = mesh.points[ends_of(mesh, halfedges), :2]
-        rows = np.searchsorted(self.halfedges, halfedges)
-        inside = np.minimum(rows, len(self.halfedges) - 1)
-        bent = np.zeros(len(halfedges), bool)
-        if len(self._points):
-            bent = self.halfedges[inside] == halfedges
-        begin = np.zeros(len(halfedges), np.int64)
-        begin[bent] = self._first[rows[bent]]
-        counts = np.full(len(halfedges), 2)
-        counts[bent] = self._first[rows[bent] + 1] - begin[bent]
-        first = np.concatenate([[0], np.cumsum(counts)])
-        owner = np.repeat(np.arange(len(halfedges)), counts)
-        step = np.arange(len(owner)) - first[owner]
-        pool = np.concatenate([ends.reshape(-1, 2), self._points])
-        place = np.where(bent[owner], 2 * len(halfedges) + begin[owner], 2 * owner) + step
-        return pool[place], first
-
-    def curved_outlines(self) -> tuple[np.ndarray, np.ndarray]:
-        """All of ``elements`` as polygons, one after the other: points (p, 2), and the first of
-        each (e + 1,).
-        """
-        k = self._mesh.k
-        halfedges = (k * self.elements[:, None] + np.arange(k)).ravel()
-        points, first = _without_last(*self.lines(halfedges))
-        return points, first[::k]
-
-
-def _without_last(points: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Polylines, as :meth:`TrueEdges.lines` gives them, without the last point of each."""
-    kept = np.ones(len(points), bool)
-    kept[first[1:] - 1] = False
-    return points[kept], first - np.arange(len(first))
+    def _places(self, halfedges: np.ndarray) -> np.ndarray:
+        return np.asarray(self._mesh.points[ends_of(self._mesh, halfedges), :2])
 
 
 def polygons(
@@ -187,12 +125,6 @@ def polylines(parts: EdgeParts, viewport: Viewport) -> list[np.ndarray]:
     """Edges that need not be in a mesh, each (n, 2) in the plane, as fine as the view demands."""
     points, first = parts.polylines(TOLERANCE / viewport.pixels, _box(viewport, 0.0))
     return np.split(points[:, :2], first[1:-1]) if len(parts) else []
-
-
-def _row(ids: np.ndarray, wanted: int) -> int:
-    """The row of ascending ids where one stands, -1 if it does not."""
-    row = int(np.searchsorted(ids, wanted))
-    return row if row < len(ids) and ids[row] == wanted else -1
 
 
 def _box(viewport: Viewport, around: float) -> np.ndarray:

@@ -198,7 +198,7 @@ class Scene:
         """The elements with curved sides: triangles that fill them, and their inner edges."""
         import pyvista
 
-        points, first = edges.curved_outlines()
+        points, first = edges.joined_outlines(edges.elements)
         faces = pyvista.PolyData(_flat(points), faces=_cells(np.diff(first)))
         self._tint(faces, mesh, np.searchsorted(mesh.element_ids(), edges.elements))
         halfedges = mesh.halfedges_of(edges.elements).ravel()

@@ -13,7 +13,8 @@ import numpy as np
 import shapely
 
 from meshwright_core.core.arrays import CURVE, ELEMENT_SLOTS, LEFT, ORIGIN, RIGHT, TWIN
-from meshwright_core.geometry.edge_curves import EdgePlaces, loop_polyline
+from meshwright_core.geometry.edge_curves import loop_polyline
+from meshwright_core.geometry.edge_parts import EdgeParts
 from meshwright_core.geometry.sharp_bends import kinks_between
 from meshwright_core.geometry.turning import CurveTurning, turning_between
 
@@ -92,9 +93,10 @@ class Obstacles:
         corners = np.flatnonzero(mesh.geometric() & (mesh.curve_ids() >= 0)).tolist()
         fans = [mesh.outgoing(v) for v in corners]
         last = [mesh.prev(fan[-1]) for fan in fans]  # of a boundary vertex: it ends there
-        places = EdgePlaces(mesh, [h for fan in fans for h in fan] + last)
-        places = places.kept(np.flatnonzero(places.curve >= 0))
-        tangents = dict(zip(places.halfedges.tolist(), places.tangents(), strict=True))
+        halfedges = np.array([h for fan in fans for h in fan] + last, np.int64)
+        parts = EdgeParts.of(mesh.arrays, halfedges, mesh.k)
+        on = np.flatnonzero(parts.curve >= 0)
+        tangents = dict(zip(halfedges[on].tolist(), parts.take(on).tangents(), strict=True))
         found: dict[tuple[int, int], int] = {}
         for v, fan, back in zip(corners, fans, last, strict=True):
             along = [h for h in fan if h in tangents]

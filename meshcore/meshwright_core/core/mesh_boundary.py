@@ -14,15 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshwright_core.core.arrays import CURVE, MeshArrays
 from meshwright_core.core.composite_curves import SHORTEST, Curves, no_curves, polyline_curves
 
 _STRAIGHT = 1e-12
 """Sine of a turn below which a point of a polyline lies on a straight line."""
 _ON_LINE = 1e-13
 """Distance from a straight line, relative to the extent, below which points count as on it."""
-
-BoundaryLoops = list[tuple[np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True)
@@ -191,20 +188,3 @@ def _knots(points: np.ndarray, ring: bool, kept: np.ndarray) -> tuple[np.ndarray
     if np.abs(there - around).max() > _ON_LINE * np.ptp(points, axis=0).max():
         return everything, arc
     return knots, arc
-
-
-def outline_of(m: MeshArrays, boundary: MeshBoundary) -> BoundaryLoops:
-    """For each boundary loop the ends of the spans of its curve: (vertex ids, points (s, 3)).
-
-    The id is that of the vertex that lies there exactly, -1 for none.
-    """
-    loops = []
-    for loop in boundary.loops:
-        curves = boundary.curves
-        spans = slice(curves.first_span[loop], curves.first_span[loop + 1])
-        control = curves.control[curves.first_control[:-1][spans]]
-        on_it = np.flatnonzero(m.vertex[:, CURVE] == loop)
-        vertex_at = dict(zip(m.parameter[on_it].tolist(), on_it.tolist(), strict=True))
-        ids = [vertex_at.get(t, -1) for t in curves.start[spans].tolist()]
-        loops.append((np.array(ids, np.int64), control[:, :3] / control[:, 3:]))
-    return loops

@@ -29,7 +29,7 @@ from meshwright_core.core.arrays import (
     halfedges_of,
 )
 from meshwright_core.core.composite_curves import place_all
-from meshwright_core.core.mesh_boundary import BoundaryLoops, Interface, MeshBoundary, outline_of
+from meshwright_core.core.mesh_boundary import Interface, MeshBoundary
 
 _KINDS = {3: "tri", 4: "quad"}
 
@@ -50,20 +50,6 @@ class MeshView:
 
     def _take_boundary(self, boundary: MeshBoundary) -> None:
         self._boundary = boundary
-        self._outline: BoundaryLoops | None = None
-
-    @property
-    def outline(self) -> BoundaryLoops:
-        """One (vertex ids (m,), points (m, 3)) per boundary loop: the ends of the spans of its
-        curve, and the vertices that lay there when this was first read, -1 for none.
-        """
-        if self._outline is None:
-            self._outline = outline_of(self._arrays, self._boundary)
-        return self._outline
-
-    @outline.setter
-    def outline(self, loops: BoundaryLoops) -> None:
-        self._outline = loops
 
     @property
     def boundary_info(self) -> MeshBoundary:

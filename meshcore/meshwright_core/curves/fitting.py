@@ -100,10 +100,7 @@ def fit_splines(points: ArrayLike, corners: ArrayLike | None, tolerance: float) 
         marked = np.append(np.roll(marked[:-1], -first), True)
     marked[[0, -1]] = True
     stops = np.flatnonzero(marked).tolist()
-    return [
-        _spline(line[a : b + 1], tolerance, closed=False)
-        for a, b in pairwise(stops)
-    ]
+    return [_spline(line[a : b + 1], tolerance, closed=False) for a, b in pairwise(stops)]
 
 
 def _checked(points: ArrayLike, tolerance: float) -> Points:

@@ -19,8 +19,8 @@ from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.airfoils import airfoil_curves
 from meshwright_core.domains.curved_shapes import box, circle
 from meshwright_core.domains.domain import Domain
+from meshwright_core.domains.loops.side_pieces import end_directions, samples, turn_between
 from meshwright_core.domains.random_parts import random_part
-from meshwright_core.domains.side_pieces import end_directions, samples, turn_between
 
 Points = NDArray[np.float64]
 

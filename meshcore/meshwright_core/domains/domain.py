@@ -19,8 +19,8 @@ from meshwright_core.core.irregularity import (
 )
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.domain_json import CurvedContent, load_json, parsed
-from meshwright_core.domains.region_loops import DomainRegion, Interface, RegionLoops
-from meshwright_core.domains.ring_checks import (
+from meshwright_core.domains.loops.region_loops import DomainRegion, Interface, RegionLoops
+from meshwright_core.domains.loops.ring_checks import (
     Flags,
     Points,
     checked_flags,

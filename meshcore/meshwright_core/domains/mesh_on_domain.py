@@ -20,10 +20,11 @@ from meshwright_core.core.irregularity import desired_between, usual_desired_deg
 from meshwright_core.core.mesh_boundary import MeshBoundary
 from meshwright_core.core.projected_seats import once_around
 from meshwright_core.core.region_interfaces import interface_chains
-from meshwright_core.domains.domain import Domain
-from meshwright_core.domains.element_regions import element_regions
-from meshwright_core.domains.planar_graph import ANCHOR, PlanarGraph, Side
-from meshwright_core.domains.side_curves import curved_domain, mesh_boundary
+from meshwright_core.curves.curve import Curve
+from meshwright_core.domains.domain import CORNER_ANGLE, Domain, turning_angles
+from meshwright_core.domains.elements.element_regions import element_regions
+from meshwright_core.domains.loops.planar_graph import ANCHOR, PlanarGraph, Side
+from meshwright_core.domains.loops.side_curves import mesh_boundary, side_curves
 from meshwright_core.errors import MeshError
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -64,7 +65,26 @@ def placed(mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:
         MeshError: one sentence: the loops are not as many, a corner has no vertex, or a vertex
             lies farther from the curves than a thousandth of the size and a quarter of its edges.
     """
-    return _Placement(mesh, curved_domain(domain)).mesh()
+    return _Placement(mesh, _curved(domain)).mesh()
+
+
+def _curved(domain: Domain) -> Domain:
+    """The domain with sides of curves: itself, or a polygon as polylines between its corners."""
+    if domain.sides is not None:
+        return domain
+    loops, angle = [], CORNER_ANGLE
+    for points, corners in zip(domain.loops, domain.loop_corners, strict=True):
+        if not corners.all():
+            angle = max(angle, float(turning_angles(points)[~corners].max()))
+        cuts = np.flatnonzero(corners) if corners.any() else np.array([0])
+        around = np.append(cuts, cuts[0] + len(points))
+        loops.append(
+            [
+                Curve.polyline(np.take(points, np.arange(a, b + 1), axis=0, mode="wrap"))
+                for a, b in pairwise(around.tolist())
+            ]
+        )
+    return Domain.from_curves(loops, domain.name, angle)
 
 
 class _Placement:
@@ -76,7 +96,7 @@ class _Placement:
         self._points = mesh.points.copy()
         self._graph: PlanarGraph = domain.sides.graph
         self._sides: tuple[Side, ...] = domain.sides.all_sides
-        self._boundary: MeshBoundary = mesh_boundary(domain)
+        self._boundary: MeshBoundary = mesh_boundary(domain.sides, side_curves(domain.sides))
         self._curve = np.full(len(self._points), -1, np.int64)
         self._parameter = np.zeros(len(self._points))
         self._vertex_of: dict[int, int] = {}

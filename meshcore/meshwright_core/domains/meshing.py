@@ -16,19 +16,19 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.irregularity import QUAD_STRAIGHT, TRIANGLE_STRAIGHT
-from meshwright_core.domains import quadrangulation, triangulation
-from meshwright_core.domains.coarse_start import coarse
 from meshwright_core.domains.domain import Domain, Flags, Points
-from meshwright_core.domains.gallery import random_corners
-from meshwright_core.domains.refined_start import refined
-from meshwright_core.domains.side_edges import SideEdges
-from meshwright_core.domains.sided_elements import SidedElements
-from meshwright_core.domains.triangulation import (
+from meshwright_core.domains.elements import quadrangulation, triangulation
+from meshwright_core.domains.elements.coarse_start import coarse
+from meshwright_core.domains.elements.refined_start import refined
+from meshwright_core.domains.elements.side_edges import SideEdges
+from meshwright_core.domains.elements.sided_elements import SidedElements
+from meshwright_core.domains.elements.triangulation import (
     Bounds,
     plain_triangles,
     triangle_areas,
     triangulated,
 )
+from meshwright_core.domains.gallery import random_corners
 from meshwright_core.errors import MeshError
 from meshwright_core.mesh import HalfEdgeMesh
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshwright_core.geometry.coons import SAMPLES, CurvedElements
-from meshwright_core.geometry.edge_curves import EdgePlaces, bent_edges
+from meshwright_core.geometry.edge_curves import bent_edges
+from meshwright_core.geometry.edge_parts import EdgeParts
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -17,33 +18,35 @@ def table(
     mesh: HalfEdgeMesh,
     ids: np.ndarray,
     elements: np.ndarray,
-    places: EdgePlaces,
+    halfedges: np.ndarray,
+    sides: EdgeParts,
     parameter: np.ndarray,
 ) -> CurvedElements:
-    """The elements with the sides `places`.
+    """The elements with the given sides.
 
     Args:
         mesh: the mesh.
         ids: (m,) elements, ascending.
         elements: (m, k) their vertices, by any numbering.
-        places: the sides that bend, half-edges of these elements.
-        parameter: (n,) by the same numbering, what is left out of the parameters in `places`.
+        halfedges: (r,) of these elements, those that bend.
+        sides: their places.
+        parameter: (n,) by the same numbering, what is left out of the parameters in `sides`.
     """
-    rows = np.searchsorted(ids, places.halfedges // mesh.k)
+    rows = np.searchsorted(ids, halfedges // mesh.k)
     element, place = np.unique(rows, return_inverse=True)
-    sides = np.full((len(element), mesh.k), -1, np.int64)
-    sides[place.reshape(-1), places.halfedges % mesh.k] = np.arange(len(rows))
+    number = np.full((len(element), mesh.k), -1, np.int64)
+    number[place.reshape(-1), halfedges % mesh.k] = np.arange(len(rows))
     row = np.full(len(ids), -1, np.int64)
     row[element] = np.arange(len(element))
     return CurvedElements(
-        curves=mesh.boundary_info.curves,
+        curves=sides.curves,
         samples=SAMPLES[mesh.k],
         elements=elements,
         element=element,
         row=row,
-        sides=sides,
-        curve=places.curve,
-        base=np.ascontiguousarray(places.span),
+        sides=number,
+        curve=sides.curve,
+        base=np.ascontiguousarray(sides.span),
         parameter=parameter,
     )
 
@@ -56,4 +59,4 @@ def curved_elements(
 
     halfedges: those that may bend; None: all of the mesh, which must be of these elements.
     """
-    return table(mesh, ids, elements, bent_edges(mesh, halfedges), np.zeros(mesh.slots))
+    return table(mesh, ids, elements, *bent_edges(mesh, halfedges), np.zeros(mesh.slots))

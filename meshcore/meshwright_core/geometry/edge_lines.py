@@ -6,16 +6,98 @@ them round.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from itertools import pairwise
+
 import numpy as np
 
 from meshwright_core.core.arrays import ORIGIN, TWIN
 from meshwright_core.errors import MeshError
-from meshwright_core.geometry.edge_curves import curved_edge_polylines
+from meshwright_core.geometry.edge_curves import bent_edges
+from meshwright_core.geometry.edge_parts import segments, without_last
 from meshwright_core.mesh import HalfEdgeMesh
 
 
-class EdgeLines:
-    """The edges of ``mesh`` in its present state, in the plane; they stay so when it changes.
+class DrawnEdges(ABC):
+    """The edges of a mesh of ``k``-sided elements in the plane, curved ones as polylines.
+
+    ``halfedges`` (c,), ascending, are those that are not straight.
+    """
+
+    k: int
+    halfedges: np.ndarray
+    _curve: np.ndarray
+    """(p, 2) points of the polylines of ``halfedges``, and where each begins in ``_first``."""
+    _first: np.ndarray
+
+    @abstractmethod
+    def _places(self, halfedges: np.ndarray) -> np.ndarray:
+        """(n, 2, 2) positions of the ends of half-edges (n,)."""
+
+    def curved(self, halfedges: np.ndarray) -> np.ndarray:
+        """(n,) whether the edges of half-edges (n,) are curved."""
+        return self._rows(halfedges) >= 0
+
+    def line(self, halfedge: int) -> np.ndarray:
+        """(m, 2) points from the origin of a half-edge to its target."""
+        row = int(self._rows(np.array([halfedge]))[0])
+        if row < 0:
+            return np.asarray(self._places(np.array([halfedge]))[0])
+        return np.asarray(self._curve[self._first[row] : self._first[row + 1]])
+
+    def lines(self, halfedges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The edges of half-edges (n,), one after the other: points (p, 2), and the first of each
+        edge (n + 1,).
+        """
+        halfedges = np.asarray(halfedges, np.int64)
+        rows = self._rows(halfedges)
+        bent = rows >= 0
+        begin = np.zeros(len(halfedges), np.int64)
+        begin[bent] = self._first[rows[bent]]
+        counts = np.full(len(halfedges), 2)
+        counts[bent] = self._first[rows[bent] + 1] - begin[bent]
+        first = np.concatenate([[0], np.cumsum(counts)])
+        owner = np.repeat(np.arange(len(halfedges)), counts)
+        step = np.arange(len(owner)) - first[owner]
+        pool = np.concatenate([self._places(halfedges).reshape(-1, 2), self._curve])
+        place = np.where(bent[owner], 2 * len(halfedges) + begin[owner], 2 * owner) + step
+        return pool[place], first
+
+    def pieces(self, halfedges: np.ndarray) -> np.ndarray:
+        """(n, 2, 2) straight pieces that make up the edges of half-edges (m,), in order."""
+        return segments(*self.lines(halfedges))
+
+    def chained(self, halfedges: np.ndarray) -> np.ndarray:
+        """(m, 2) points along half-edges (n,), each of which begins where the last one ends.
+
+        The last point of all is left out: of a loop it is the first.
+        """
+        return without_last(*self.lines(halfedges))[0]
+
+    def outlines(self, elements: np.ndarray) -> list[np.ndarray]:
+        """The outline (m, 2) of each of ``elements`` (n,), without its first point again."""
+        points, first = self.joined_outlines(elements)
+        bounds = first.tolist()
+        return [points[a:b] for a, b in pairwise(bounds)]
+
+    def joined_outlines(self, elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The outlines of elements (n,), one after the other: points (p, 2), and the first of
+        each (n + 1,).
+        """
+        halfedges = self.k * np.asarray(elements, np.int64)[:, None] + np.arange(self.k)
+        points, first = without_last(*self.lines(halfedges.ravel()))
+        return points, first[:: self.k]
+
+    def _rows(self, halfedges: np.ndarray) -> np.ndarray:
+        """(n,) the rows of ``halfedges`` where those given stand, -1 for straight ones."""
+        if len(self._first) < 2:
+            return np.full(len(halfedges), -1)
+        rows = np.minimum(np.searchsorted(self.halfedges, halfedges), len(self.halfedges) - 1)
+        return np.where(self.halfedges[rows] == halfedges, rows, -1)
+
+
+class EdgeLines(DrawnEdges):
+    """The edges of ``mesh`` in its present state; they stay so when it changes.
 
     ``tolerance`` is the distance, in units of the mesh, between a curve and the polyline that is
     drawn for it.
@@ -32,14 +114,9 @@ class EdgeLines:
         regions = mesh.arrays.region[: len(edge) // self.k]
         self._region = np.repeat(regions, self.k)
         self.region_count = max(int(regions[mesh.element_ids()].max(initial=0)) + 1, 1)
-        curved, first, points = curved_edge_polylines(mesh, tolerance)
-        self._chain = np.full(len(edge), -1, np.int64)
-        """The polyline of each half-edge, -1 for straight ones; -2 - i: polyline i backwards."""
-        other = self._twin[curved]
-        numbers = np.arange(len(curved))
-        self._chain[other[other >= 0]] = -2 - numbers[other >= 0]
-        self._chain[curved] = numbers
-        self._first, self._curve = np.asarray(first), np.asarray(points)[:, :2]
+        self.halfedges, parts = bent_edges(mesh)
+        points, self._first = parts.polylines(tolerance)
+        self._curve = points[:, :2]
 
     def once(self) -> np.ndarray:
         """(n,) half-edges, one of each edge."""
@@ -51,48 +128,8 @@ class EdgeLines:
         """(n, 2) vertices of half-edges (n,)."""
         return np.column_stack([self._origin[halfedges], self._origin[self._next[halfedges]]])
 
-    def curved(self, halfedges: np.ndarray) -> np.ndarray:
-        """(n,) whether the edges of half-edges (n,) are curved."""
-        return self._chain[halfedges] != -1
-
-    def line(self, halfedge: int) -> np.ndarray:
-        """(m, 2) points from the origin of a half-edge to its target."""
-        chain = int(self._chain[halfedge])
-        if chain == -1:
-            return self._points[self.ends(np.array([halfedge]))[0]]
-        number = chain if chain >= 0 else -2 - chain
-        points = self._curve[self._first[number] : self._first[number + 1]]
-        return points if chain >= 0 else points[::-1]
-
-    def pieces(self, halfedges: np.ndarray) -> np.ndarray:
-        """(n, 2, 2) straight pieces that make up the edges of half-edges (m,), in no order."""
-        chain = self._chain[halfedges]
-        straight = self._points[self.ends(halfedges[chain == -1])]
-        numbers = np.where(chain >= 0, chain, -2 - chain)[chain != -1]
-        if not len(numbers):
-            return straight
-        counts = self._first[numbers + 1] - self._first[numbers] - 1
-        begin = np.repeat(self._first[numbers] - np.cumsum(counts) + counts, counts)
-        rows = begin + np.arange(len(begin))
-        bent = np.stack([self._curve[rows], self._curve[rows + 1]], axis=1)
-        return np.concatenate([straight, bent])
-
-    def chained(self, halfedges: np.ndarray) -> np.ndarray:
-        """(m, 2) points along half-edges (n,), each of which begins where the last one ends.
-
-        The last point of all is left out: of a loop it is the first.
-        """
-        return np.concatenate([self.line(h)[:-1] for h in halfedges.tolist()])
-
-    def outlines(self, elements: np.ndarray) -> list[np.ndarray]:
-        """The outline (m, 2) of each of ``elements`` (n,), without its first point again."""
-        h = np.asarray(elements, np.int64)[:, None] * self.k + np.arange(self.k)
-        bent: list[bool] = self.curved(h).any(axis=1).tolist()
-        straight = self._points[self._origin[h]]
-        return [
-            self.chained(row) if curved else corners
-            for row, curved, corners in zip(h, bent, straight, strict=True)
-        ]
+    def _places(self, halfedges: np.ndarray) -> np.ndarray:
+        return self._points[self.ends(halfedges)]
 
     def rims(self, region: int | None = None) -> list[np.ndarray]:
         """The half-edges (n,) around a region, or around the whole mesh, loop by loop in order.

@@ -1,8 +1,8 @@
-"""Edges as parts of curves, and their polylines for drawing and picking.
+"""Edges as parts of curves: their points, tangents, areas, and polylines for drawing and picking.
 
-:mod:`meshwright_core.geometry.edge_curves` knows the edges of a mesh. An :class:`EdgeParts` needs
-no mesh, so that it can stand for the edges that an operation would add, or those at a vertex that
-is being dragged, as well. Its polylines are as fine as a view demands: the tolerance holds inside a
+:mod:`meshwright_core.geometry.edge_curves` finds those of a mesh. An :class:`EdgeParts` needs no
+mesh, so that it can stand for the edges that an operation would add, or those at a vertex that is
+being dragged, as well. Its polylines are as fine as a view demands: the tolerance holds inside a
 box, a wider one outside of it, so that the number of points depends little on the zoom.
 """
 
@@ -16,6 +16,8 @@ import numpy as np
 from meshwright_core.core.arrays import ORIGIN, MeshArrays
 from meshwright_core.core.composite_curves import Curves, place_all
 from meshwright_core.core.curve_edges import edge_places
+from meshwright_core.geometry.edge_kernels import NODES, WEIGHTS, bulges, end_tangents
+from meshwright_core.geometry.turning import Turning, turnings
 
 _INNER = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Where a segment of a polyline is compared with the edge, as fractions of it."""
@@ -57,6 +59,21 @@ class EdgeParts:
         """Some of the edges, by index or mask."""
         return EdgeParts(self.curves, self.curve[rows], self.span[rows], self.ends[rows])
 
+    def turning(self, table: Turning) -> np.ndarray:
+        """(n,) radians by which each edge turns in all; `table` is that of the curves."""
+        found: np.ndarray = turnings(self.curves, table, self.curve, self.span)
+        return found
+
+    def tangents(self) -> np.ndarray:
+        """(n, 2, 3) derivatives of the edges at both ends; all must lie on curves."""
+        found: np.ndarray = end_tangents(self.curves, self.curve, self.span, self.ends)
+        return found
+
+    def bulges(self) -> np.ndarray:
+        """(n, 3) vector areas between the edges and their chords; all must lie on curves."""
+        found: np.ndarray = bulges(self.curves, self.curve, self.span, self.ends, NODES, WEIGHTS)
+        return found
+
     @cached_property
     def _offsets(self) -> np.ndarray:
         """(n, 2, 3) the ends less the points of the curve there; 0 for straight edges."""
@@ -75,7 +92,9 @@ class EdgeParts:
         found: np.ndarray = (1.0 - w) * first + w * second
         if on.any():
             low, high = self.span[rows[on], 0], self.span[rows[on], 1]
-            t = low + fractions[on] * (high - low)
+            f, extent = fractions[on], high - low
+            # from the nearer end, so that both half-edges of an edge agree
+            t = np.where(f <= 0.5, low + f * extent, high - (1.0 - f) * extent)
             off = self._offsets[rows[on]]
             found[on] = place_all(self.curves, self.curve[rows[on]], t)
             found[on] += (1.0 - w[on]) * off[:, 0] + w[on] * off[:, 1]
@@ -167,6 +186,17 @@ def _breaks(curves: Curves) -> tuple[np.ndarray, np.ndarray]:
     again = curves.closed[owner]
     first = curves.start + base[owner]
     return np.sort(np.concatenate([first, (first + length[owner])[again]])), base
+
+
+def segments(points: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """(n, 2, d) the segments of polylines, given as by :meth:`EdgeParts.polylines`, in order."""
+    begins = np.delete(np.arange(len(points)), first[1:] - 1)
+    return np.stack([points[begins], points[begins + 1]], axis=1)
+
+
+def without_last(points: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Polylines, given as by :meth:`EdgeParts.polylines`, without the last point of each."""
+    return np.delete(points, first[1:] - 1, axis=0), first - np.arange(len(first))
 
 
 def _interleaved(one: np.ndarray, other: np.ndarray) -> np.ndarray:

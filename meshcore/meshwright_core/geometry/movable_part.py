@@ -18,7 +18,8 @@ from meshwright_core.core.composite_curves import Curves, place_all
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.coons import CurvedElements, curved_corners
 from meshwright_core.geometry.curved_elements import table
-from meshwright_core.geometry.edge_curves import EdgePlaces, ends_of
+from meshwright_core.geometry.edge_curves import ends_of
+from meshwright_core.geometry.edge_parts import EdgeParts
 from meshwright_core.geometry.planes import plane_normal
 from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
 from meshwright_core.geometry.seats import Seats, find_seats, home_places, no_seats, place_seats
@@ -312,26 +313,25 @@ def _curved(
 ) -> CurvedElements:
     """The elements with sides that bend for some places of their ends."""
     halfedges = mesh.halfedges_of(ids).ravel() if flat else np.zeros(0, np.int64)
-    places = EdgePlaces(mesh, halfedges)
-    places = places.kept(np.flatnonzero(places.curve >= 0))
-    ends = np.searchsorted(vertices, ends_of(mesh, places.halfedges))
+    parts = EdgeParts.of(mesh.arrays, halfedges, mesh.k)
+    rows = np.flatnonzero(parts.curve >= 0)
+    halfedges, parts = halfedges[rows], parts.take(rows)
+    ends = np.searchsorted(vertices, ends_of(mesh, halfedges))
     slides = seats.curve[ends] >= 0
-    forward = places.span[:, 0] < places.span[:, 1]
+    forward = parts.span[:, 0] < parts.span[:, 1]
     # sliding ends have their parameters in the seats, up to whole turns
-    places.span = places.span - np.where(slides, seats.parameter[ends], 0.0)
-    reach = places.span[..., None] + np.where(slides[..., None], seats.reach[ends], 0.0)
+    parts = replace(parts, span=parts.span - np.where(slides, seats.parameter[ends], 0.0))
+    reach = parts.span[..., None] + np.where(slides[..., None], seats.reach[ends], 0.0)
     window = np.where(
         forward[:, None],
         np.column_stack([reach[:, 0, 0], reach[:, 1, 1]]),
         np.column_stack([reach[:, 1, 0], reach[:, 0, 1]]),
     )
-    length = mesh.boundary_info.lengths()[places.curve]
+    length = mesh.boundary_info.lengths()[parts.curve]
     window[:, 1] = np.minimum(window[:, 1], window[:, 0] + length)
-    places.turning = turnings(
-        mesh.boundary_info.curves, CurveTurning.of(mesh), places.curve, window
-    )
-    places = places.kept(np.flatnonzero(places.turning > BENDS))
-    return table(mesh, ids, elements, places, seats.parameter)
+    turning = turnings(parts.curves, CurveTurning.of(mesh), parts.curve, window)
+    rows = np.flatnonzero(turning > BENDS)
+    return table(mesh, ids, elements, halfedges[rows], parts.take(rows), seats.parameter)
 
 
 def _frame(mesh: HalfEdgeMesh, points: np.ndarray, elements: np.ndarray) -> np.ndarray | None:

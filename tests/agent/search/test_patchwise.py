@@ -20,7 +20,8 @@ from meshwright_agent.search.solver import solve
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import JOURNALLING, STEP_COLUMNS, allocate
 from meshwright_core.core.mesh_boundary import MeshBoundary
-from meshwright_core.domains import meshing, quadrangulation
+from meshwright_core.domains import meshing
+from meshwright_core.domains.elements import quadrangulation
 from meshwright_core.operations.catalogue import CODES, NAMES, score_change
 
 pytestmark = pytest.mark.slow

@@ -94,12 +94,12 @@ def test_zoom_makes_curves_finer_and_not_angular(ring):
     near = view.zoomed(200.0, *view.to_screen(np.array([[2.0, 0.0]]))[0])
     for viewport, most in ((view, 200), (near, 4000)):
         drawing = figure(ring, OPTIONS, None, viewport)
-        longest = max(
-            shapes(drawing, Line, colour=OPTIONS.palette.boundary), key=lambda s: len(s.points)
+        largest = max(
+            shapes(drawing, Line, colour=OPTIONS.palette.boundary), key=lambda s: np.ptp(s.points)
         )
-        x, y = viewport.to_plane(*(0.5 * (longest.points[1:] + longest.points[:-1])).T)
+        x, y = viewport.to_plane(*(0.5 * (largest.points[1:] + largest.points[:-1])).T)
         assert (np.abs(np.hypot(x, y) - 2.0) * viewport.pixels).max() < 0.1
-        assert len(longest.points) < most
+        assert len(largest.points) < most
 
 
 def test_hatching_fills_curved_elements(ring):

@@ -6,7 +6,8 @@ from tiny_meshes import grid, ring, square_of_triangles
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.analysis.blocks import block_count, block_of, separatrices
-from meshwright_core.domains import meshing, quadrangulation
+from meshwright_core.domains import meshing
+from meshwright_core.domains.elements import quadrangulation
 from meshwright_core.errors import MeshError
 
 

@@ -13,7 +13,9 @@ from meshwright_core.core.irregularity import (
 @pytest.mark.parametrize("k", [3, 4])
 @pytest.mark.parametrize("angle", [5.0, 44.0, 90.0, 135.0, 180.0, 270.0, 355.0])
 def test_one_sector_on_the_boundary_is_equation_2(k, angle):
-    assert desired_between([angle], k, boundary=True) == desired_on_boundary(np.array([angle]), k)[0]
+    assert (
+        desired_between([angle], k, boundary=True) == desired_on_boundary(np.array([angle]), k)[0]
+    )
 
 
 def test_straight_sides_and_interfaces_have_the_usual_degrees():

@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from meshwright_core import MeshError
-from meshwright_core.domains import gallery, meshing, quadrangulation, triangulation
+from meshwright_core.domains import gallery, meshing
 from meshwright_core.domains.domain import Domain
+from meshwright_core.domains.elements import quadrangulation, triangulation
 
 SQUARE = Domain([[0, 0], [1, 0], [1, 1], [0, 1]])
 WAYS = [("tri", {}), ("quad", {}), ("quad", {"quads": "pairing"}), ("quad", {"max_edge": 0.2})]

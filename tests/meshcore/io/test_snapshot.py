@@ -42,9 +42,8 @@ def test_round_trip_of_mesh_and_history(mesh):
     other = snapshot.from_arrays(copied(snapshot.to_arrays(mesh)))
     assert state(other) == state(mesh)
     assert (other.steps, other.can_redo, other.degree_cap) == (mesh.steps, True, 9)
-    for (ids, points), (ids_too, points_too) in zip(mesh.outline, other.outline, strict=True):
-        assert np.array_equal(ids, ids_too)
-        assert np.array_equal(points, points_too)
+    for own, stored in zip(mesh.boundary_info.curves, other.boundary_info.curves, strict=True):
+        assert np.array_equal(own, stored)
     for walk in ("redo", "undo", "redo"):
         while getattr(mesh, walk)():
             assert getattr(other, walk)()

@@ -33,7 +33,7 @@ class InvertedElements:
         ids = np.flatnonzero(self._inverted)
         if not len(ids):
             return []
-        bent = bent_edges(mesh, mesh.halfedges_of(ids).ravel()).halfedges
+        bent = bent_edges(mesh, mesh.halfedges_of(ids).ravel())[0]
         found: list[int] = np.unique(bent // mesh.k).tolist()
         return found
 

@@ -10,7 +10,7 @@ import numpy as np
 from meshwright.document.operation_preview import OperationOffer, best, choices, ghost
 from meshwright.notebook.protocol.mesh_sync import CoordinateFrame, Packet
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.geometry.edge_parts import EdgeParts
+from meshwright_core.geometry.edge_parts import EdgeParts, segments
 
 COARSE, FINEST = 1e-4, 1e-7
 """Default and smallest tolerance of curved edges, in the browser's frame."""
@@ -70,8 +70,7 @@ def _segments(edges: EdgeParts, tolerance: float) -> np.ndarray:
     if (edges.curve < 0).all():
         return edges.ends[:, :, :2]
     points, first = edges.polylines(tolerance)
-    begins = np.delete(np.arange(len(points)), first[1:] - 1)
-    return np.stack([points[begins, :2], points[begins + 1, :2]], axis=1)
+    return segments(points[:, :2], first)
 
 
 def _offer(offer: OperationOffer) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Files that hold a shape rather than a mesh.
 
 Drawings (DXF, SVG), geometry (GeoJSON, WKT, Triangle's .poly), coordinates of airfoils (.dat), and
-our own JSON. Each reader gives curves; :mod:`.tracing` finds the regions that they enclose.
+our own JSON. Each reader gives curves; :mod:`.tracing.regions` finds the regions that they enclose.
 """
 
 from __future__ import annotations
@@ -13,11 +13,19 @@ from typing import Any
 
 from meshwright_core.domains.domain import CORNER_ANGLE, Domain, load_json
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings import airfoil, dxf, geojson, own_json, svg, triangle_poly, wkt
 from meshwright_core.io.drawings.domains import FITS, domain_of
 from meshwright_core.io.drawings.drawn import Drawing
+from meshwright_core.io.drawings.readers import (
+    airfoil,
+    dxf,
+    geojson,
+    own_json,
+    svg,
+    triangle_poly,
+    wkt,
+)
 from meshwright_core.io.drawings.report import DrawingReport, FoundRegion
-from meshwright_core.io.drawings.tracing import traced
+from meshwright_core.io.drawings.tracing.regions import traced
 from meshwright_core.io.file_checks import naming, size_of
 from meshwright_core.io.formats import DAT, SHAPES
 

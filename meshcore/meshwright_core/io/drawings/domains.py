@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.domain import Domain
-from meshwright_core.io.drawings import measures
 from meshwright_core.io.drawings.drawn import Points
 from meshwright_core.io.drawings.report import FoundRegion, Side
+from meshwright_core.io.drawings.tracing import measures
 
 FITS = ("arcs", "splines")
 """What may be found in polylines."""

@@ -18,11 +18,11 @@ import numpy as np
 
 from meshwright_core.curves.curve import Curve
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings import svg_lengths, svg_paths
 from meshwright_core.io.drawings.drawn import Drawing, Points, counted, polyline
-from meshwright_core.io.drawings.svg_lengths import Matrix, Size, is_number, tag_of
-from meshwright_core.io.drawings.svg_paths import Subpath
-from meshwright_core.io.drawings.svg_styles import Styles
+from meshwright_core.io.drawings.readers import svg_lengths, svg_paths
+from meshwright_core.io.drawings.readers.svg_lengths import Matrix, Size, is_number, tag_of
+from meshwright_core.io.drawings.readers.svg_paths import Subpath
+from meshwright_core.io.drawings.readers.svg_styles import Styles
 
 _GROUPS = ("svg", "g", "a", "switch", "use")
 _SHAPES = ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from meshwright_core.domains.side_edges import SAMPLES, STRAIGHT, SideEdges
+from meshwright_core.domains.elements.side_edges import SAMPLES, STRAIGHT, SideEdges
 from meshwright_core.errors import MeshError
 
 Ids = NDArray[np.int64]

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from meshwright_core.curves.curve import Curve
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings import measures
 from meshwright_core.io.drawings.drawn import MAX_POINTS, Points
+from meshwright_core.io.drawings.tracing import measures
 
 Ids = NDArray[np.int64]
 Owners = tuple[int, ...]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwright_core.core.composite_curves import Curves, place_all, tangents
-from meshwright_core.curves.curve import Curve
-from meshwright_core.domains.region_loops import RegionLoops
+from meshwright_core.core.composite_curves import place_all, tangents
+from meshwright_core.domains.loops.region_loops import RegionLoops
+from meshwright_core.domains.loops.side_curves import piece_starts, side_curves
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]
@@ -48,8 +47,8 @@ class SideEdges:
         """The edges that a coarse start has where nothing else is near."""
         self.sides = sides
         every = sides.all_sides
-        self.curves = _composite([side.curves for side in every], [side.closed for side in every])
-        self.starts = [self._piece_starts(number) for number in range(len(every))]
+        self.curves = side_curves(sides)
+        self.starts = [piece_starts(self.curves, i, side) for i, side in enumerate(every)]
         self._tables = [self._turning_table(number) for number in range(len(every))]
         self.curve, self.parameter, self.node = (np.zeros(0, int), np.zeros(0), np.zeros(0, int))
         self.side, self.ends = np.zeros(0, int), np.zeros((0, 2), int)
@@ -73,13 +72,6 @@ class SideEdges:
         self._append(rows)
 
     # Measures of the sides
-
-    def _piece_starts(self, number: int) -> list[float]:
-        """Parameters where the pieces of a side begin, and its length."""
-        counts = [len(piece.curve.spans) for piece in self.sides.all_sides[number].pieces]
-        spans = self.curves.first_span[number] + np.cumsum([0, *counts])
-        starts: list[float] = self.curves.start[spans[:-1]].tolist()
-        return [*starts, float(self.curves.stop[spans[-1] - 1])]
 
     def _turning_table(self, number: int) -> tuple[Reals, Reals]:
         """Parameters, and the turning in radians up to there."""
@@ -230,24 +222,3 @@ class SideEdges:
         left = np.array([piece.left for side in every for piece in side.pieces])
         right = np.array([piece.right for side in every for piece in side.pieces])
         return left[piece], right[piece]
-
-
-def _composite(chains: Sequence[Sequence[Curve]], closed: Sequence[bool]) -> Curves:
-    """The composite curves of chains of pieces, from the lengths of spans that these know."""
-    pieces = [curve for chain in chains for curve in chain]
-    counts = np.concatenate([np.diff(curve.flat.first_control) for curve in pieces])
-    spans = [sum(len(curve.spans) for curve in chain) for chain in chains]
-    first = np.concatenate([[0], np.cumsum(spans)]).astype(np.int64)
-    lengths = np.concatenate([np.diff(curve.stops) for curve in pieces])
-    start, stop = np.zeros(len(lengths)), np.zeros(len(lengths))
-    for a, b in pairwise(first.tolist()):
-        stop[a:b] = np.cumsum(lengths[a:b])
-        start[a + 1 : b] = stop[a : b - 1]
-    return Curves(
-        control=np.concatenate([curve.flat.control for curve in pieces]),
-        first_control=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        start=start,
-        stop=stop,
-        first_span=first,
-        closed=np.array(closed, np.bool_),
-    )

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import place_all
-from meshwright_core.domains import chord_conflicts
-from meshwright_core.domains.labelled_triangles import regions_of, seeds
-from meshwright_core.domains.side_edges import SideEdges
-from meshwright_core.domains.sided_elements import SidedElements
-from meshwright_core.domains.triangulation import Bounds, triangle_areas, triangulated
+from meshwright_core.domains.elements import chord_conflicts
+from meshwright_core.domains.elements.labelled_triangles import regions_of, seeds
+from meshwright_core.domains.elements.side_edges import SideEdges
+from meshwright_core.domains.elements.sided_elements import SidedElements
+from meshwright_core.domains.elements.triangulation import Bounds, triangle_areas, triangulated
 from meshwright_core.errors import MeshError
 
 Points = NDArray[np.float64]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from meshwright_core.curves.curve import Curve
-from meshwright_core.domains.side_pieces import GAP, Piece
+from meshwright_core.domains.loops.side_pieces import GAP, Piece
 from meshwright_core.errors import MeshError, capitalised
 
 Points = NDArray[np.float64]

@@ -7,8 +7,8 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from meshwright_core.io.drawings.drawn import Points, counted, place_words
-from meshwright_core.io.drawings.gaps import Repair
-from meshwright_core.io.drawings.network import Network
+from meshwright_core.io.drawings.tracing.gaps import Repair
+from meshwright_core.io.drawings.tracing.network import Network
 
 _TOLD = 1e-7
 """Share of the drawing's size from which on it is told that ends were moved."""

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 from xml.etree import ElementTree
 
-from meshwright_core.io.drawings.svg_lengths import tag_of
+from meshwright_core.io.drawings.readers.svg_lengths import tag_of
 
 READ = ("display", "visibility", "fill", "stroke", "transform")
 """The properties that are looked at."""

@@ -11,9 +11,9 @@ import numpy as np
 import shapely
 
 from meshwright_core.curves.curve import Curve
-from meshwright_core.io.drawings import measures
 from meshwright_core.io.drawings.drawn import Points
-from meshwright_core.io.drawings.network import Edge, Network, joined, with_ends
+from meshwright_core.io.drawings.tracing import measures
+from meshwright_core.io.drawings.tracing.network import Edge, Network, joined, with_ends
 
 _NEAREST = 6
 """Loose ends looked at around each."""

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from meshwright_core import MeshError
-from meshwright_core.io.drawings import svg_lengths
-from meshwright_core.io.drawings.svg import says_something
+from meshwright_core.io.drawings.readers import svg_lengths
+from meshwright_core.io.drawings.readers.svg import says_something
 
 
 def svg(body: str, head: str = "") -> str:

@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings import dxf_entities, dxf_tags
 from meshwright_core.io.drawings.drawn import (
     MAX_CURVES,
     Drawing,
@@ -26,6 +25,7 @@ from meshwright_core.io.drawings.drawn import (
     Points,
     listed,
 )
+from meshwright_core.io.drawings.readers import dxf_entities, dxf_tags
 from meshwright_core.io.formats import contained
 
 _DEPTH = 8

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.curves.curve import Curve, polygon_area
 from meshwright_core.domains.domain_json import chain_json
-from meshwright_core.domains.meetings import refuse_meetings
-from meshwright_core.domains.planar_graph import ANCHOR, PlanarGraph, Side
-from meshwright_core.domains.shared_pieces import cut_at_ends, merged
-from meshwright_core.domains.side_pieces import (
+from meshwright_core.domains.loops.meetings import refuse_meetings
+from meshwright_core.domains.loops.planar_graph import ANCHOR, PlanarGraph, Side
+from meshwright_core.domains.loops.shared_pieces import cut_at_ends, merged
+from meshwright_core.domains.loops.side_pieces import (
     Piece,
     closed_chain,
     extent,
@@ -77,7 +77,7 @@ class RegionLoops:
         labels: what messages call each loop of each region.
 
     Raises:
-        MeshError: as :meth:`.domain.Domain.from_regions`.
+        MeshError: as :meth:`meshwright_core.domains.domain.Domain.from_regions`.
 
     Attributes:
         curve_step: degrees that an edge of a mesh turns along a curve, at most; None: as it comes.
@@ -283,7 +283,7 @@ class RegionLoops:
         return any(not piece.curve.straight for piece in self.graph.pieces)
 
     def to_json(self) -> dict[str, Any]:
-        """The loops as :meth:`.domain.Domain.from_json` reads them."""
+        """The loops as :meth:`meshwright_core.domains.domain.Domain.from_json` reads them."""
         content: dict[str, Any] = {}
         if self.corner_angle != CORNER_ANGLE:
             content["corner_angle"] = self.corner_angle

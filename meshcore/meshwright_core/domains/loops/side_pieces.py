@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshwright_core.curves.curve import Curve, polygon_area
-from meshwright_core.domains.ring_checks import LARGEST
+from meshwright_core.domains.loops.ring_checks import LARGEST
 from meshwright_core.errors import MeshError, capitalised
 
 Points = NDArray[np.float64]

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.curves.curve import Curve
-from meshwright_core.domains.side_pieces import (
+from meshwright_core.domains.loops.side_pieces import (
     Piece,
     angle_at_corner,
     cut_at_corners,

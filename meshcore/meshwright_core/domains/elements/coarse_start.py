@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from meshwright_core.domains import chord_conflicts
-from meshwright_core.domains.curved_quads import CurvedTriangles
-from meshwright_core.domains.labelled_triangles import edge_keys, neighbours, regions_of
-from meshwright_core.domains.side_edges import SideEdges
-from meshwright_core.domains.sided_elements import SidedElements
-from meshwright_core.domains.triangulation import Bounds, triangle_areas, triangulated
+from meshwright_core.domains.elements import chord_conflicts
+from meshwright_core.domains.elements.curved_quads import CurvedTriangles
+from meshwright_core.domains.elements.labelled_triangles import edge_keys, neighbours, regions_of
+from meshwright_core.domains.elements.side_edges import SideEdges
+from meshwright_core.domains.elements.sided_elements import SidedElements
+from meshwright_core.domains.elements.triangulation import Bounds, triangle_areas, triangulated
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]

@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.curves.curve import Curve
-from meshwright_core.domains.side_pieces import sample_parameters
+from meshwright_core.domains.loops.side_pieces import sample_parameters
 from meshwright_core.errors import MeshError, capitalised
 
 Points = NDArray[np.float64]

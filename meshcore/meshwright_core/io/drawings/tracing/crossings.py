@@ -10,7 +10,7 @@ import shapely
 
 from meshwright_core.curves.curve import Curve
 from meshwright_core.io.drawings.drawn import Points
-from meshwright_core.io.drawings.network import Edge, Network, Owners, joined
+from meshwright_core.io.drawings.tracing.network import Edge, Network, Owners, joined
 
 _ROUNDS = 40
 """Projections from one curve to the other by which a crossing is found."""

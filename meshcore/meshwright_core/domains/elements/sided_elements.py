@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import Curves, place_all
 from meshwright_core.core.irregularity import desired_between, usual_desired_degree
-from meshwright_core.core.mesh_boundary import CurvePiece, Interface, MeshBoundary
-from meshwright_core.domains import quadrangulation
-from meshwright_core.domains.labelled_triangles import edge_keys
-from meshwright_core.domains.region_loops import RegionLoops
-from meshwright_core.domains.side_edges import SideEdges
+from meshwright_core.domains.elements import quadrangulation
+from meshwright_core.domains.elements.labelled_triangles import edge_keys
+from meshwright_core.domains.elements.side_edges import SideEdges
+from meshwright_core.domains.loops.region_loops import RegionLoops
+from meshwright_core.domains.loops.side_curves import mesh_boundary
 from meshwright_core.mesh import HalfEdgeMesh
 
 Points = NDArray[np.float64]
@@ -147,12 +147,13 @@ class SidedElements:
 
     def mesh(self, sides: RegionLoops) -> HalfEdgeMesh:
         """The half-edge mesh, its vertices on the curves of the domain."""
+        vertex_at = {node: v for v, node in enumerate(self.node.tolist()) if node >= 0}
         return HalfEdgeMesh.from_elements(
             self.points,
             self.elements,
             self.node >= 0,
             self._desired(sides),
-            boundary=self._boundary(sides),
+            boundary=mesh_boundary(sides, self.curves, vertex_at),
             seats=(self.curve, self.parameter),
             regions=self.regions,
         )
@@ -168,29 +169,3 @@ class SidedElements:
             angles = [angle for _, angle in point.sectors]
             desired[vertex] = desired_between(angles, k, point.boundary)
         return desired
-
-    def _boundary(self, sides: RegionLoops) -> MeshBoundary:
-        every = sides.all_sides
-        loops = len(sides.loop_sides)
-        vertex_of = {int(node): v for v, node in enumerate(self.node.tolist()) if node >= 0}
-        interfaces = []
-        for number, side in enumerate(every[loops:], start=loops):
-            ends = (-1, -1) if side.closed else (side.nodes[0], side.nodes[-1])
-            start, end = (vertex_of.get(node, -1) for node in ends)
-            piece = side.pieces[0]
-            interfaces.append(Interface(number, piece.left, piece.right, start, end))
-        pieces = []
-        for number, side in enumerate(every):
-            counts = np.cumsum([0, *(len(piece.curve.spans) for piece in side.pieces)])
-            spans = self.curves.first_span[number] + counts
-            stops = self.curves.stop[spans[1:] - 1].tolist()
-            row: list[CurvePiece] = []
-            begin = 0.0
-            for piece, stop in zip(side.pieces, stops, strict=True):
-                data = piece.curve.to_json()
-                row.append(CurvePiece(begin, stop, piece.curve.kind, piece.name, data))
-                begin = stop
-            pieces.append(tuple(row))
-        return MeshBoundary(
-            self.curves, tuple(range(loops)), tuple(interfaces), sides.region_names, tuple(pieces)
-        )

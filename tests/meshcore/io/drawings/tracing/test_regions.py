@@ -9,7 +9,7 @@ from meshwright_core import MeshError
 from meshwright_core.curves.curve import Curve
 from meshwright_core.io.drawings.domains import domain_of
 from meshwright_core.io.drawings.drawn import Drawing
-from meshwright_core.io.drawings.tracing import traced
+from meshwright_core.io.drawings.tracing.regions import traced
 
 TURN = 2 * math.pi
 

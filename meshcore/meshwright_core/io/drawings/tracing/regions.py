@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.curves.curve import Curve
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings import loose_ends, measures
-from meshwright_core.io.drawings.crossings import crossings, split_at_crossings
 from meshwright_core.io.drawings.drawn import Drawing, Points, counted, listed, place_words
-from meshwright_core.io.drawings.faces import Face, Faces, Way, around, faces_of
-from meshwright_core.io.drawings.gaps import Repair, mended
-from meshwright_core.io.drawings.mending_words import mending_words
-from meshwright_core.io.drawings.network import Edge, Network, joined
-from meshwright_core.io.drawings.region_names import named
 from meshwright_core.io.drawings.report import DrawingReport, FoundRegion, Side
+from meshwright_core.io.drawings.tracing import loose_ends, measures
+from meshwright_core.io.drawings.tracing.crossings import crossings, split_at_crossings
+from meshwright_core.io.drawings.tracing.faces import Face, Faces, Way, around, faces_of
+from meshwright_core.io.drawings.tracing.gaps import Repair, mended
+from meshwright_core.io.drawings.tracing.mending_words import mending_words
+from meshwright_core.io.drawings.tracing.network import Edge, Network, joined
+from meshwright_core.io.drawings.tracing.region_names import named
 
 TOLERANCE = 1e-5
 """Ends nearer than this share of the drawing's size are one point."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from meshwright_core.io.drawings import measures
 from meshwright_core.io.drawings.drawn import Points, place_words
-from meshwright_core.io.drawings.network import Network
+from meshwright_core.io.drawings.tracing import measures
+from meshwright_core.io.drawings.tracing.network import Network
 
 _OPEN = 0.5
 """Width of all gaps, as a share of the length drawn, up to which lines are an open outline."""

@@ -9,9 +9,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from meshwright_core.io.drawings import measures
 from meshwright_core.io.drawings.drawn import Points
-from meshwright_core.io.drawings.network import Edge, Network
+from meshwright_core.io.drawings.tracing import measures
+from meshwright_core.io.drawings.tracing.network import Edge, Network
 
 _NEAR, _FAR = 0.01, 0.2
 """Shares of the shortest curve at a node that are followed to see in which order curves leave it:

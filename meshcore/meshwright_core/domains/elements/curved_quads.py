@@ -1,8 +1,8 @@
 """Shape of the quads that triangles with curved sides are cut into.
 
 A triangle of corners a, b, c is cut through the middles of its sides and a centre. Each quad has
-two curved sides at most: the halves of the triangle's sides at its corner. It is the image of the
-unit square under its Coons map, which is looked at on a grid.
+two curved sides at most: the halves of the triangle's sides at its corner. Its shape is that of its
+Coons map at the samples of :mod:`meshwright_core.geometry.coons`.
 """
 
 from __future__ import annotations
@@ -11,17 +11,15 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from meshwright_core.core.composite_curves import place_all, tangents
-from meshwright_core.domains.side_edges import SAMPLES, STRAIGHT, SideEdges
-from meshwright_core.domains.triangulation import triangle_areas
+from meshwright_core.core.composite_curves import place_all
+from meshwright_core.domains.elements.side_edges import SAMPLES, STRAIGHT, SideEdges
+from meshwright_core.domains.elements.triangulation import triangle_areas
+from meshwright_core.geometry.coons import SAMPLES as COONS_SAMPLES
+from meshwright_core.geometry.coons import CurvedElements, curved_corners
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]
 Reals = NDArray[np.float64]
-
-GRID = np.linspace(0.0, 1.0, 6)
-"""Fractions along both directions at which the Jacobian of the Coons map is taken."""
-
 
 _HALVINGS = 14
 _TOUCH = 0.03
@@ -70,32 +68,39 @@ class CurvedTriangles:
         return found
 
     def _curved_shapes(self, triangles: Ids, sides: Ids) -> Reals:
-        place, slope = self._halves(triangles, sides)
-        middle = place[:, :, 0, -1]
-        centre = middle.mean(axis=1)
-        worst = np.full(len(triangles), np.inf)
-        for corner in range(3):
-            before = corner - 1
-            # along the first half of this side, and backwards along the second half of the last
-            first, first_slope = place[:, corner, 0], slope[:, corner, 0]
-            last, last_slope = place[:, before, 1], slope[:, before, 1]
-            quads = np.stack(
-                [self.points[triangles[:, corner]], middle[:, corner], centre, middle[:, before]],
-                axis=1,
-            )
-            worst = np.minimum(
-                worst, _scaled_jacobians(quads, first, first_slope, last, last_slope)
-            )
-        return worst
+        count, n = len(triangles), len(self.points)
+        middles = 0.5 * (self.points[triangles] + self.points[np.roll(triangles, -1, axis=1)])
+        row, corner = np.nonzero(sides >= 0)
+        edge = sides[row, corner]
+        span = self._spans(triangles[row, corner], edge)
+        half = span.mean(axis=1)
+        middles[row, corner] = place_all(self.edges.curves, self.edges.side[edge], half)[:, :2]
+        points = np.concatenate([self.points, middles.reshape(-1, 2), middles.mean(axis=1)])
+        # one quad at each corner: the middles of the sides from and to it, and the centre
+        middle = n + np.arange(3 * count).reshape(count, 3)
+        centre = np.broadcast_to(n + 3 * count + np.arange(count)[:, None], (count, 3))
+        quads = np.stack([triangles, middle, centre, np.roll(middle, 1, axis=1)], axis=2)
+        number = np.full((count, 3, 4), -1)
+        number[row, corner, 0] = np.arange(len(row))
+        number[row, (corner + 1) % 3, 3] = len(row) + np.arange(len(row))
+        base = np.concatenate(
+            [np.column_stack([span[:, 0], half]), np.column_stack([half, span[:, 1]])]
+        )
+        sines, _ = self._corners(
+            points, quads.reshape(-1, 4), number.reshape(-1, 4), np.tile(edge, 2), base
+        )
+        found: Reals = sines.reshape(count, -1).min(axis=1)
+        return found
 
     def corner_angles(self, triangles: Ids) -> Reals:
         """(m, 3) degrees between the sides of triangles (m, 3) at each corner, in (-180, 180]."""
-        _, slope = self._halves(triangles, self.side_edges(triangles))
-        ahead = slope[:, :, 0, 0]
-        back = np.roll(slope[:, :, 1, 0], 1, axis=1)
-        across = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
-        along = (ahead * back).sum(axis=-1)
-        angles: Reals = np.degrees(np.arctan2(across, along))
+        sides = self.side_edges(triangles)
+        row, corner = np.nonzero(sides >= 0)
+        edge = sides[row, corner]
+        number = np.full(sides.shape, -1)
+        number[row, corner] = np.arange(len(row))
+        span = self._spans(triangles[row, corner], edge)
+        angles: Reals = np.degrees(self._corners(self.points, triangles, number, edge, span)[1])
         # a hair over a straight angle
         return np.where(angles < -150.0, angles + 360.0, angles)
 
@@ -154,57 +159,32 @@ class CurvedTriangles:
         radius[rows] = np.where(seen, low, 0.0)
         return found, radius
 
-    def _halves(self, triangles: Ids, sides: Ids) -> tuple[Points, Points]:
-        """Points (m, 3, 2, g, 2) of the halves of sides at GRID, from corners to middles, and the
-        derivatives by GRID.
+    def _spans(self, begin: Ids, edge: Ids) -> Reals:
+        """(r, 2) the parameters of edges (r,) from the vertices `begin` (r,) on."""
+        span = self.edges.span[edge]
+        backward = self.edges.ends[edge, 0] != begin
+        return np.where(backward[:, None], span[:, ::-1], span)
+
+    def _corners(
+        self, points: Points, elements: Ids, sides: Ids, edge: Ids, span: Reals
+    ) -> tuple[Reals, Reals]:
+        """Sines and angles (m, k) as :func:`.geometry.coons.curved_corners` gives them.
+
+        points (n, 2); elements (m, k); sides (m, k): rows of `edge` and `span`, -1 if straight.
         """
-        corners = self.points[triangles]
-        ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2)
-        middle = ends.mean(axis=2)
-        way = middle[:, :, None] - ends
-        place = ends[:, :, :, None] + GRID[:, None] * way[:, :, :, None]
-        slope = np.broadcast_to(way[:, :, :, None], place.shape).copy()
-        which = np.nonzero(sides >= 0)
-        if len(which[0]):
-            edge = sides[which]
-            edges = self.edges
-            backward = edges.ends[edge, 0] != triangles[which]
-            low, high = edges.span[edge].T
-            start, stop = np.where(backward, high, low), np.where(backward, low, high)
-            for half, (a, b) in enumerate(((start, stop), (stop, start))):
-                reach = 0.5 * (b - a)
-                t = a[:, None] + reach[:, None] * GRID
-                curve = np.repeat(edges.side[edge], len(GRID))
-                # derivatives at ends from inside: there may be a corner
-                inner = a[:, None] + reach[:, None] * np.clip(GRID, 1e-6, None)
-                found = place_all(edges.curves, curve, t.ravel())[:, :2]
-                step = tangents(edges.curves, curve, inner.ravel())[:, :2]
-                place[which[0], which[1], half] = found.reshape(-1, len(GRID), 2)
-                slope[which[0], which[1], half] = (
-                    step.reshape(-1, len(GRID), 2) * reach[:, None, None]
-                )
-        return place, slope
-
-
-def _scaled_jacobians(
-    quads: Points, first: Points, first_slope: Points, last: Points, last_slope: Points
-) -> Reals:
-    """(m,) least J / (|S_u| |S_v|) on the grid of Coons maps.
-
-    quads: (m, 4, 2); the side from corner 0 to 1 is `first` (m, g, 2) at GRID, that from corner 0
-    to 3 is `last`; the other two are straight.
-    """
-    p0, p1, p2, p3 = (quads[:, i, None, None] for i in range(4))
-    u, v = GRID[None, :, None, None], GRID[None, None, :, None]
-    c, dc = first[:, :, None], first_slope[:, :, None]
-    d, dd = last[:, None, :], last_slope[:, None, :]
-    opposite = p3 + u * (p2 - p3)
-    right = p1 + v * (p2 - p1)
-    su = (1 - v) * dc + v * (p2 - p3) + right - d
-    su = su - ((1 - v) * (p1 - p0) + v * (p2 - p3))
-    sv = opposite - c + (1 - u) * dd + u * (p2 - p1)
-    sv = sv - ((1 - u) * (p3 - p0) + u * (p2 - p1))
-    jacobian = su[..., 0] * sv[..., 1] - su[..., 1] * sv[..., 0]
-    size = np.linalg.norm(su, axis=-1) * np.linalg.norm(sv, axis=-1)
-    found: Reals = (jacobian / np.maximum(size, 1e-300)).reshape(len(quads), -1).min(axis=1)
-    return found
+        rows = np.arange(len(elements))
+        table = CurvedElements(
+            curves=self.edges.curves,
+            samples=COONS_SAMPLES[elements.shape[1]],
+            elements=np.ascontiguousarray(elements, np.int64),
+            element=rows,
+            row=rows,
+            sides=np.ascontiguousarray(sides, np.int64),
+            curve=np.asarray(self.edges.side[edge], np.int64),
+            base=np.ascontiguousarray(span, np.float64),
+            parameter=np.zeros(len(points)),
+        )
+        flat = np.column_stack([points, np.zeros(len(points))])
+        up = np.broadcast_to([0.0, 0.0, 1.0], (len(elements), 3)).copy()
+        sines, angles = curved_corners(table, flat, up)
+        return sines, angles

@@ -1,0 +1,1 @@
+"""Triangles and quads between the sides of a domain: coarse and refined starts of meshes."""

@@ -1,0 +1,1 @@
+"""The loops of curves around domains and regions: checks, shared sides, points between them."""

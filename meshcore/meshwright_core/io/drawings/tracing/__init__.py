@@ -1,0 +1,1 @@
+"""Finds the regions that the curves of a drawing enclose: gaps, crossings, network, faces."""
