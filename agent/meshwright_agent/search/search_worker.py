@@ -178,7 +178,7 @@ class Worker:
         best = int(batch.best.min())
         if best > search.score or (before and best == start.score):
             return
-        for b in np.flatnonzero(batch.best == best)[:KEPT].tolist():
+        for b in np.flatnonzero(batch.best == best).tolist():
             length = int(batch.best_step[b])
             decisions = [(int(codes[t][b]), int(halfedges[t][b])) for t in range(length)]
             operations = before + self._with_cleanups(start, decisions)

@@ -30,7 +30,7 @@ from meshwright_core.core.compilation import kernel
 from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.foldover_energy import Problem, place, unfold
 from meshwright_core.geometry.outline import Outline, Polylines, nearest_on
-from meshwright_core.geometry.worst_corner import climb, worst_sine
+from meshwright_core.geometry.worst_corner import FOLDED, climb, worst_sine
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -39,6 +39,8 @@ POOR = 0.05
 """Worst sine below which the foldover-free energy is minimised first."""
 UNFOLDING, SHAPING = 1.0, 0.1
 """Weights of equal areas in that energy before and after the last corner unfolds."""
+SWEEPS = 40
+"""Sweeps of averaging in the second attempt."""
 ROUNDS, INNER, POLISH = 12, 30, 20
 """The most values of its regularisation, L-BFGS steps at each, and steps for shape after them."""
 
@@ -102,9 +104,9 @@ def _next_on_boundary(m, v):
 
 
 @kernel
-def _in_order(m, rails, g, along):
+def _in_order(m, rails, g, along, even):
     """Write the arc lengths of the vertices after g on its side into `along`, spread evenly if
-    those of their projections do not increase; returns their number.
+    `even`, or if those of their projections do not increase; returns their number.
     """
     s = rails.side_of[g]
     length = rails.sides.arc[rails.sides.first[s + 1] - 1]
@@ -116,16 +118,16 @@ def _in_order(m, rails, g, along):
         before = along[count]
         count += 1
         v = _next_on_boundary(m, v)
-    if not (increasing and before < length * (1.0 - 1e-9)):
+    if even or not (increasing and before < length * (1.0 - 1e-9)):
         for i in range(count):
             along[i] = length * (i + 1) / (count + 1)
     return count
 
 
 @kernel
-def assemble(m, rails):
+def assemble(m, rails, even):
     """The arrays of a :class:`Problem` for the whole layout, its variables, and the mean size of
-    an element.
+    an element. even: spread the vertices on sides.
     """
     n = m.counters[VERTEX_SLOTS]
     points, tangent = np.zeros((n, 2)), np.zeros((n, 2))
@@ -138,7 +140,7 @@ def assemble(m, rails):
         if rails.side_of[g] < 0 or m.vertex[g, HALF] < 0:
             continue
         s = rails.side_of[g]
-        members = _in_order(m, rails, g, along)
+        members = _in_order(m, rails, g, along, even)
         length = rails.sides.arc[rails.sides.first[s + 1] - 1]
         v, variable_before, fixed_before = g, -1, 0.0
         for i in range(members + 1):
@@ -181,33 +183,77 @@ def assemble(m, rails):
 
 
 @kernel
-def position(m, rails, goal, iterations):
-    """Give all movable vertices of the layout better positions, in place.
+def _average(problem, x):
+    """Move the free vertices to the means of their neighbours, by sweeps over all of them."""
+    points, corners = problem.points, problem.corners
+    n = len(points)
+    total, count = np.zeros((n, 2)), np.zeros(n)
+    for c in range(len(corners)):
+        count[corners[c, 0]] += 1.0
+        count[corners[c, 1]] += 1.0
+    for _ in range(SWEEPS):
+        for v in range(n):
+            total[v, 0] = total[v, 1] = 0.0
+        for c in range(len(corners)):
+            a, b = corners[c, 0], corners[c, 1]
+            for axis in range(2):
+                total[a, axis] += points[b, axis]
+                total[b, axis] += points[a, axis]
+        for v in range(n):
+            i = problem.variable[v]
+            if i >= 0 and problem.side[v] < 0:
+                for axis in range(2):
+                    points[v, axis] = x[i + axis] = total[v, axis] / count[v]
 
-    Ends as soon as the worst corner sine reaches `goal`. iterations: of each stage of
-    :func:`climb`. Returns the worst corner sine; 0 or less if the layout stays folded.
-    """
-    (
-        points, tangent, variable, side, corners, scale, gaps, offset, gap_scale, x, unit,
-    ) = assemble(m, rails)  # fmt: skip
-    shape = np.array([1.0, 0.0, 1.0])
-    problem = Problem(
-        points, tangent, variable, side, rails.sides, corners, scale, shape, gaps, offset, gap_scale
-    )
+
+@kernel
+def _improve(problem, x, unit, goal, iterations, afresh):
+    """Untangle where needed, then raise the worst corner; returns its sine."""
     place(problem, x)
+    if afresh:
+        _average(problem, x)
     worst = worst_sine(problem)
     if worst < POOR:
         unfold(problem, x, UNFOLDING, ROUNDS, INNER, POLISH, SHAPING)
         worst = worst_sine(problem)
-    if POOR * 0.01 < worst < goal and len(x):
+    if FOLDED < worst < goal and len(x):
         worst = climb(problem, x, unit, goal, iterations)
-    for v in range(len(points)):
-        if variable[v] >= 0:
-            m.points[v, 0], m.points[v, 1] = points[v, 0], points[v, 1]
+    return worst
+
+
+@kernel
+def _position(m, rails, goal, iterations, afresh):
+    (
+        points, tangent, variable, side, corners, scale, gaps, offset, gap_scale, x, unit,
+    ) = assemble(m, rails, afresh)  # fmt: skip
+    shape = np.array([1.0, 0.0, 1.0])
+    problem = Problem(
+        points, tangent, variable, side, rails.sides, corners, scale, shape, gaps, offset, gap_scale
+    )
+    worst = _improve(problem, x, unit, goal, iterations, afresh)
     # the problem only points to these arrays: their last use must come after its own
     used = len(tangent) + len(side) + len(corners) + len(scale) + len(shape) + len(gaps)
     used += len(offset) + len(gap_scale) + len(x)
-    return worst if used > 0 else 1.0
+    return (worst if used > 0 else 1.0), points, variable
+
+
+@kernel
+def position(m, rails, goal, iterations):
+    """Give all movable vertices of the layout better positions, in place.
+
+    Ends as soon as the worst corner sine reaches `goal`. Where corners stay folded a second attempt
+    starts from evenly spread vertices. iterations: of each stage of :func:`climb`. Returns the
+    worst corner sine; 0 or less if the layout stays folded.
+    """
+    worst, points, variable = _position(m, rails, goal, iterations, False)
+    if worst <= FOLDED:
+        other, others, _ = _position(m, rails, goal, iterations, True)
+        if other > worst:
+            worst, points = other, others
+    for v in range(len(points)):
+        if variable[v] >= 0:
+            m.points[v, 0], m.points[v, 1] = points[v, 0], points[v, 1]
+    return worst
 
 
 def rails_of(mesh: HalfEdgeMesh, centre: np.ndarray, unit: float) -> Rails:

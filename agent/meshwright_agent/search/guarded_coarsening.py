@@ -1,0 +1,365 @@
+"""Guarded coarsening: fewer blocks at the same s, while the worst corner stays good.
+
+A candidate is the collapse of a strip or the deletion of a line of regular vertices. It is applied
+to a copy, rejected at once where the degrees alone forbid a good shape, then positioned
+(:mod:`meshwright_core.geometry.layout_positions`) and kept if the layout is better in this order:
+lower s; worst corner sine, up to a target; smaller sum of the squared irregularities; fewer
+elements. A layout is changed in larger steps by a *kick*: some random operations, followed by
+annealing until s is as low as before. All of it is compiled; every operation is logged.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from meshwright_agent.env.candidates import Rules, permitted
+from meshwright_agent.env.task import MOST_CLEANUPS, Task, transition
+from meshwright_agent.search.annealing import (
+    WEIGHTS,
+    Operations,
+    copy_mesh,
+    draw_operation,
+    propose,
+    with_room,
+)
+from meshwright_core.core.arrays import (
+    DEGREE,
+    DESIRED,
+    ELEMENT_SLOTS,
+    ELEMENTS,
+    IRREGULAR,
+    ORIGIN,
+    SCORE,
+    SIDES,
+    TWIN,
+    MeshArrays,
+    opposite,
+)
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.references import by_reference
+from meshwright_core.geometry.layout_positions import Rails, layout_bound, position, rails_of
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import (
+    CHORD_COLLAPSE,
+    CLEANUP,
+    CODES,
+    GLOBAL_SPLIT,
+    NAMES,
+    check,
+    needs_twin,
+    rewrite,
+    score_change,
+)
+from meshwright_core.operations.chord_collapse import chord_start
+from meshwright_core.operations.global_lines import is_ring, line_start
+from meshwright_core.operations.refusals import ALLOWED
+
+ALIKE = 2e-3
+"""Difference of worst sines below which two layouts count as equally good."""
+STEPS = 25
+"""Steps of each stage of the max-min positions of a candidate."""
+ROUGH, FINE = 0.5, 0.25
+"""Temperature of the first operations of a kick, and of the annealing back to low s."""
+SPLIT_PRICE = 0.5
+"""Price of a global split in a kick, in units of s."""
+_LOG = 1 << 12
+
+# entries of the state that the kernels share
+LENGTH, EVALUATED, ACCEPTED = 0, 1, 2
+
+
+@by_reference
+class Guard(NamedTuple):
+    """What a layout is judged by."""
+
+    target: float
+    """Worst corner sine beyond which more does not count."""
+    cap: int
+    """Highest degree that an operation may produce."""
+    floor: int
+    """Least number of elements."""
+    angle: np.ndarray
+    """(slots,) inner angles, as in :class:`meshwright_core.geometry.layout_positions.Rails`."""
+
+
+@by_reference
+class Record(NamedTuple):
+    """What was done to a layout."""
+
+    operations: np.ndarray
+    """(N, 2) int32: operations and half-edges."""
+    state: np.ndarray
+    """(4,) int64, indexed by LENGTH, EVALUATED and ACCEPTED."""
+    touched: np.ndarray
+    """Scratch of the transitions, as is the next."""
+    cleaned: np.ndarray
+
+
+@bare_kernel
+def squares(m):
+    """Sum of the squared irregularities."""
+    total = 0
+    for i in range(m.counters[IRREGULAR]):
+        v = m.irregular[i]
+        delta = m.vertex[v, DEGREE] - m.vertex[v, DESIRED]
+        total += delta * delta
+    return total
+
+
+@bare_kernel
+def is_better(first, second, target):
+    """Whether the first of two (s, worst sine, sum of squares, elements) is the better layout."""
+    if first[0] != second[0]:
+        return first[0] < second[0]
+    a, b = min(first[1], target), min(second[1], target)
+    if abs(a - b) > ALIKE:
+        return a > b
+    if first[2] != second[2]:
+        return first[2] < second[2]
+    return first[3] < second[3]
+
+
+@kernel
+def candidates(m, found):
+    """Write the operations (code, half-edge) that may coarsen the layout into `found` (N, 2): one
+    for each strip, and one for each line of regular vertices. Returns their number.
+    """
+    slots = 4 * m.counters[ELEMENT_SLOTS]
+    seen, ring = np.zeros(slots, np.uint8), np.zeros(slots, np.uint8)
+    count = 0
+    for h in range(slots):
+        if m.edge[h, ORIGIN] < 0:
+            continue
+        if not seen[h]:
+            found[count, 0], found[count, 1] = CHORD_COLLAPSE, h
+            count += 1
+            start = chord_start(m, h)
+            entry = start
+            for _ in range(2 * m.counters[ELEMENTS]):
+                seen[entry] = seen[opposite(entry)] = 1
+                entry = m.edge[opposite(entry), TWIN]
+                if entry < 0 or entry == start:
+                    break
+        if m.edge[h, TWIN] >= 0 and (line_start(m, h) == h or is_ring(m, h, ring, 0)):
+            found[count, 0], found[count, 1] = CLEANUP, h
+            count += 1
+    return count
+
+
+@bare_kernel
+def _log(record, operation, h):
+    length = record.state[LENGTH]
+    record.operations[length, 0], record.operations[length, 1] = operation, h
+    record.state[LENGTH] = length + 1
+
+
+@kernel
+def coarsen_layout(m, trial, rails, guard, record, key, most, rng):
+    """Coarsen `m` in place by candidates in random order until none is accepted, or `most` were
+    positioned. trial: arrays of the same size; key (4,): s, worst sine, squares, elements of `m`,
+    kept up to date. Returns whether it came to an end.
+    """
+    found = np.zeros((8 * m.counters[ELEMENT_SLOTS], 2), np.int64)
+    other = np.zeros(4)
+    state = record.state
+    stop = state[EVALUATED] + most
+    improved = True
+    while improved:
+        improved = False
+        count = candidates(m, found)
+        for i in range(count):
+            j = i + int(rng.random() * (count - i))
+            operation, h = found[j, 0], found[j, 1]
+            found[j, 0], found[j, 1] = found[i, 0], found[i, 1]
+            if m.edge[h, ORIGIN] < 0 or m.counters[ELEMENTS] <= guard.floor:
+                continue
+            if check(m, operation, h, guard.cap) != ALLOWED:
+                continue
+            if state[LENGTH] + 2 > len(record.operations) or state[EVALUATED] >= stop:
+                return False
+            copy_mesh(m, trial)
+            rewrite(trial, operation, h)
+            other[0], other[1] = trial.counters[SCORE], layout_bound(trial, guard.angle)
+            other[2], other[3] = squares(trial), trial.counters[ELEMENTS]
+            if not is_better(other, key, guard.target):
+                continue
+            other[1] = max(0.0, position(trial, rails, guard.target, STEPS))
+            state[EVALUATED] += 1
+            if not is_better(other, key, guard.target):
+                continue
+            copy_mesh(trial, m)
+            _log(record, operation, h)
+            for c in range(4):
+                key[c] = other[c]
+            state[ACCEPTED] += 1
+            improved = True
+    return True
+
+
+@kernel
+def kick(m, record, weights, rules, goal, jumps, proposals, rng):
+    """`jumps` random operations, then annealing until s is `goal` again.
+
+    Returns whether it is, within so many proposals.
+    """
+    k = m.counters[SIDES]
+    done = 0
+    for _ in range(proposals):
+        if done >= jumps and m.counters[SCORE] <= goal:
+            return True
+        if record.state[LENGTH] + MOST_CLEANUPS + 1 > len(record.operations):
+            return False
+        h = propose(m, k, 0.3 if done < jumps else 0.02, rng)
+        if h < 0:
+            continue
+        operation = rules.first + draw_operation(weights, rng)
+        if operation > GLOBAL_SPLIT:
+            operation = GLOBAL_SPLIT
+        if m.edge[h, TWIN] < 0 and needs_twin(operation):
+            continue
+        change = score_change(m, operation, h)
+        price = change + (SPLIT_PRICE if operation == GLOBAL_SPLIT else 0.0)
+        temperature = ROUGH if done < jumps else FINE
+        if price > 0.0 and rng.random() >= np.exp(-price / temperature):
+            continue
+        if not permitted(m, operation, h, rules):
+            continue
+        cleanups = transition(m, operation, h, rules.cap, record.touched, record.cleaned)
+        _log(record, operation, h)
+        for i in range(cleanups):
+            _log(record, CLEANUP, record.cleaned[i])
+        done += 1
+    return m.counters[SCORE] <= goal
+
+
+@kernel
+def replay(m, operations):
+    """Apply operations (N, 2) to `m`; returns how many were allowed before the first that was
+    not.
+    """
+    for i in range(len(operations)):
+        if check(m, operations[i, 0], operations[i, 1], 0) != ALLOWED:
+            return i
+        rewrite(m, operations[i, 0], operations[i, 1])
+    return len(operations)
+
+
+@dataclass
+class Layout:
+    """A layout in the search."""
+
+    arrays: MeshArrays
+    """Connectivity and positions, the latter in units of the search."""
+    key: np.ndarray
+    """(4,) s, worst corner sine up to the target (0: folded), sum of squares, elements."""
+    record: Record
+    """How it is reached from the start."""
+
+    def copy(self) -> Layout:
+        """An independent copy."""
+        return Layout(
+            MeshArrays(*(array.copy() for array in self.arrays)),
+            self.key.copy(),
+            self.record._replace(
+                operations=self.record.operations.copy(), state=self.record.state.copy()
+            ),
+        )
+
+    def operations(self) -> Operations:
+        """The operations that lead from the start to it."""
+        done = self.record.operations[: self.record.state[LENGTH]].tolist()
+        return [(NAMES[code], h) for code, h in done]
+
+
+class Coarsener:
+    """Layouts of one plane quad mesh, made from operations on it, coarsened and kicked.
+
+    Args:
+        mesh: the start; not changed.
+        target: worst corner sine beyond which more does not count.
+        seed: of all random choices.
+        floor: least number of elements.
+        ceiling: largest number of elements; by default twice that of the start.
+    """
+
+    def __init__(
+        self,
+        mesh: HalfEdgeMesh,
+        target: float,
+        seed: int = 0,
+        floor: int = 1,
+        ceiling: int | None = None,
+    ) -> None:
+        """Prepare the arrays that all layouts are copied from."""
+        task = Task("quad")
+        size = mesh.n_elements
+        ceiling = max(2 * size, size + 8) if ceiling is None else ceiling
+        self.rng = np.random.default_rng(seed)
+        self.start = with_room(mesh, ceiling)
+        live = mesh.vertices()
+        self.centre = mesh.points[live].mean(axis=0)
+        extent = float(np.ptp(mesh.points[live], axis=0).max())
+        self.unit = extent / max(1.0, float(np.sqrt(size)))
+        self.start.points[:] = (self.start.points - self.centre) / self.unit
+        rails = rails_of(mesh, self.centre[:2], self.unit)
+        room = len(self.start.vertex) - mesh.slots
+        self.rails = rails._replace(
+            side_of=np.append(rails.side_of, np.full(room, -1, np.int64)),
+            angle=np.append(rails.angle, np.zeros(room)),
+        )
+        self.guard = Guard(float(target), task.cap, floor, self.rails.angle)
+        self._rules = task.rules(floor, ceiling)
+        self._weights = np.array(WEIGHTS["quad"][:5])
+        self._weights /= self._weights.sum()
+        self._spare = MeshArrays(*(array.copy() for array in self.start))
+
+    def layout(self, operations: Operations, goal: float | None = None) -> Layout:
+        """The layout that operations lead to, with positions."""
+        codes = np.array([(CODES[4][name], h) for name, h in operations], np.int32).reshape(-1, 2)
+        arrays = MeshArrays(*(array.copy() for array in self.start))
+        if replay(arrays, codes) < len(codes):
+            raise ValueError("the operations do not replay on the start")
+        log = np.zeros((max(_LOG, 2 * len(codes)), 2), np.int32)
+        log[: len(codes)] = codes
+        state = np.zeros(4, np.int64)
+        state[LENGTH] = len(codes)
+        record = Record(log, state, np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64))
+        layout = Layout(arrays, np.zeros(4), record)
+        self.judge(layout, goal)
+        return layout
+
+    def judge(self, layout: Layout, goal: float | None = None, steps: int = STEPS) -> None:
+        """Position the vertices of a layout and update its key."""
+        m = layout.arrays
+        goal = self.guard.target if goal is None else goal
+        worst = position(m, self.rails, goal, steps)
+        layout.key[:] = (m.counters[SCORE], max(0.0, worst), squares(m), m.counters[ELEMENTS])
+
+    def coarsen(self, layout: Layout, most: int = 1 << 40) -> bool:
+        """Coarsen in place until no candidate is accepted (then true), or `most` were tried."""
+        return bool(
+            coarsen_layout(
+                layout.arrays, self._spare, self.rails, self.guard, layout.record, layout.key,
+                most, self.rng,
+            )  # fmt: skip
+        )
+
+    def kicked(self, layout: Layout, jumps: int, proposals: int) -> Layout | None:
+        """A copy after a kick of so many operations, positioned; None if s could not be lowered to
+        that of `layout` again.
+        """
+        other = layout.copy()
+        if not kick(
+            other.arrays, other.record, self._weights, self._rules, int(layout.key[0]), jumps,
+            proposals, self.rng,
+        ):  # fmt: skip
+            return None
+        self.judge(other)
+        return other
+
+    def better(self, first: Layout, second: Layout) -> bool:
+        """Whether the first is the better layout."""
+        return bool(is_better(first.key, second.key, self.guard.target))
