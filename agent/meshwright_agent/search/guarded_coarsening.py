@@ -3,7 +3,7 @@
 A candidate is the collapse of a strip or the deletion of a line of regular vertices. It is applied
 to a copy, rejected at once where the degrees alone forbid a good shape, then positioned
 (:mod:`meshwright_core.geometry.layout_positions`) and kept if the layout is better in this order:
-lower s; worst corner sine, up to a target; smaller sum of the squared irregularities; fewer
+nothing inverted; lower s; worst corner sine, up to a target; smaller sum of the squared irregularities; fewer
 elements. A layout is changed in larger steps by a *kick*: some random operations, followed by
 annealing until s is as low as before. All of it is compiled; every operation is logged.
 """
@@ -30,11 +30,16 @@ from meshwright_core.core.arrays import (
     DESIRED,
     ELEMENT_SLOTS,
     ELEMENTS,
+    FLAGS,
+    GEOMETRIC,
+    HALF,
     IRREGULAR,
+    LOCKED,
     ORIGIN,
     SCORE,
     SIDES,
     TWIN,
+    VERTEX_SLOTS,
     MeshArrays,
     opposite,
 )
@@ -83,6 +88,8 @@ class Guard(NamedTuple):
     """Least number of elements."""
     angle: np.ndarray
     """(slots,) inner angles, as in :class:`meshwright_core.geometry.layout_positions.Rails`."""
+    spread: bool
+    """Whether the sum of the squared irregularities counts before the number of elements."""
 
 
 @by_reference
@@ -111,7 +118,12 @@ def squares(m):
 
 @bare_kernel
 def is_better(first, second, target):
-    """Whether the first of two (s, worst sine, sum of squares, elements) is the better layout."""
+    """Whether the first of two (s, worst sine, sum of squares, elements) is the better layout.
+
+    One without inverted elements always is better than one with them.
+    """
+    if (first[1] > 0.0) != (second[1] > 0.0):
+        return first[1] > 0.0
     if first[0] != second[0]:
         return first[0] < second[0]
     a, b = min(first[1], target), min(second[1], target)
@@ -183,7 +195,8 @@ def coarsen_layout(m, trial, rails, guard, record, key, most, rng):
             copy_mesh(m, trial)
             rewrite(trial, operation, h)
             other[0], other[1] = trial.counters[SCORE], layout_bound(trial, guard.angle)
-            other[2], other[3] = squares(trial), trial.counters[ELEMENTS]
+            other[2] = squares(trial) if guard.spread else 0
+            other[3] = trial.counters[ELEMENTS]
             if not is_better(other, key, guard.target):
                 continue
             other[1] = max(0.0, position(trial, rails, guard.target, STEPS))
@@ -199,30 +212,55 @@ def coarsen_layout(m, trial, rails, guard, record, key, most, rng):
     return True
 
 
-@kernel
-def kick(m, record, weights, rules, goal, jumps, proposals, rng):
-    """`jumps` random operations, then annealing until s is `goal` again.
+@by_reference
+class Kick(NamedTuple):
+    """How a layout is changed by a kick."""
 
-    Returns whether it is, within so many proposals.
+    jumps: int
+    """Random operations before the annealing."""
+    proposals: int
+    """The most proposals, of both together."""
+    rough: float
+    """Temperature of the random operations."""
+    fine: float
+    """Temperature of the annealing."""
+    score: int
+    """s to come back to."""
+    bound: float
+    """Worst corner sine that the degrees have to permit, see
+    :func:`meshwright_core.geometry.layout_positions.layout_bound`."""
+    weights: np.ndarray
+    """(5,) probability of proposing each operation."""
+    angle: np.ndarray
+    """(slots,) inner angles at corners."""
+
+
+@kernel
+def kick(m, record, plan, rules, rng):
+    """Random operations, then annealing until s and the degrees are as good as `plan` wants.
+
+    Returns whether they are, within so many proposals.
     """
     k = m.counters[SIDES]
-    done = 0
-    for _ in range(proposals):
-        if done >= jumps and m.counters[SCORE] <= goal:
-            return True
+    done, looked = 0, -1
+    for _ in range(plan.proposals):
+        if done >= plan.jumps and done > looked and m.counters[SCORE] <= plan.score:
+            if layout_bound(m, plan.angle) >= plan.bound:
+                return True
+            looked = done
         if record.state[LENGTH] + MOST_CLEANUPS + 1 > len(record.operations):
             return False
-        h = propose(m, k, 0.3 if done < jumps else 0.02, rng)
+        rough = done < plan.jumps
+        h = propose(m, k, 0.3 if rough else 0.05, rng)
         if h < 0:
             continue
-        operation = rules.first + draw_operation(weights, rng)
-        if operation > GLOBAL_SPLIT:
-            operation = GLOBAL_SPLIT
+        operation = rules.first + draw_operation(plan.weights, rng)
         if m.edge[h, TWIN] < 0 and needs_twin(operation):
             continue
-        change = score_change(m, operation, h)
-        price = change + (SPLIT_PRICE if operation == GLOBAL_SPLIT else 0.0)
-        temperature = ROUGH if done < jumps else FINE
+        price = score_change(m, operation, h)
+        if operation == GLOBAL_SPLIT:
+            price += SPLIT_PRICE
+        temperature = plan.rough if rough else plan.fine
         if price > 0.0 and rng.random() >= np.exp(-price / temperature):
             continue
         if not permitted(m, operation, h, rules):
@@ -232,7 +270,7 @@ def kick(m, record, weights, rules, goal, jumps, proposals, rng):
         for i in range(cleanups):
             _log(record, CLEANUP, record.cleaned[i])
         done += 1
-    return m.counters[SCORE] <= goal
+    return False
 
 
 @kernel
@@ -283,6 +321,7 @@ class Coarsener:
         seed: of all random choices.
         floor: least number of elements.
         ceiling: largest number of elements; by default twice that of the start.
+        spread: whether small irregularities count before few elements.
     """
 
     def __init__(
@@ -292,6 +331,7 @@ class Coarsener:
         seed: int = 0,
         floor: int = 1,
         ceiling: int | None = None,
+        spread: bool = True,
     ) -> None:
         """Prepare the arrays that all layouts are copied from."""
         task = Task("quad")
@@ -310,14 +350,18 @@ class Coarsener:
             side_of=np.append(rails.side_of, np.full(room, -1, np.int64)),
             angle=np.append(rails.angle, np.zeros(room)),
         )
-        self.guard = Guard(float(target), task.cap, floor, self.rails.angle)
+        self.guard = Guard(float(target), task.cap, floor, self.rails.angle, spread)
         self._rules = task.rules(floor, ceiling)
         self._weights = np.array(WEIGHTS["quad"][:5])
         self._weights /= self._weights.sum()
         self._spare = MeshArrays(*(array.copy() for array in self.start))
 
-    def layout(self, operations: Operations, goal: float | None = None) -> Layout:
-        """The layout that operations lead to, with positions."""
+    def layout(self, operations: Operations, steps: int = STEPS) -> Layout:
+        """The layout that operations lead to, with positions.
+
+        steps: of each stage of the max-min positions. Raises ValueError if the operations do not
+        replay on the start.
+        """
         codes = np.array([(CODES[4][name], h) for name, h in operations], np.int32).reshape(-1, 2)
         arrays = MeshArrays(*(array.copy() for array in self.start))
         if replay(arrays, codes) < len(codes):
@@ -328,34 +372,51 @@ class Coarsener:
         state[LENGTH] = len(codes)
         record = Record(log, state, np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64))
         layout = Layout(arrays, np.zeros(4), record)
-        self.judge(layout, goal)
+        self.judge(layout, steps)
         return layout
 
-    def judge(self, layout: Layout, goal: float | None = None, steps: int = STEPS) -> None:
+    def judge(self, layout: Layout, steps: int = STEPS) -> None:
         """Position the vertices of a layout and update its key."""
         m = layout.arrays
-        goal = self.guard.target if goal is None else goal
-        worst = position(m, self.rails, goal, steps)
-        layout.key[:] = (m.counters[SCORE], max(0.0, worst), squares(m), m.counters[ELEMENTS])
+        worst = position(m, self.rails, self.guard.target, steps)
+        spread = squares(m) if self.guard.spread else 0
+        layout.key[:] = (m.counters[SCORE], max(0.0, worst), spread, m.counters[ELEMENTS])
+
+    def positions(self, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
+        """Ids (n,) of the vertices that may move, and their places (n, 3) in the mesh's units."""
+        m = layout.arrays
+        rows = m.vertex[: m.counters[VERTEX_SLOTS]]
+        free = (rows[:, HALF] >= 0) & ((rows[:, FLAGS] & (GEOMETRIC | LOCKED)) == 0)
+        ids = np.flatnonzero(free).astype(np.int64)
+        return ids, m.points[ids] * self.unit + self.centre
 
     def coarsen(self, layout: Layout, most: int = 1 << 40) -> bool:
         """Coarsen in place until no candidate is accepted (then true), or `most` were tried."""
         return bool(
             coarsen_layout(
-                layout.arrays, self._spare, self.rails, self.guard, layout.record, layout.key,
-                most, self.rng,
+                layout.arrays,
+                self._spare,
+                self.rails,
+                self.guard,
+                layout.record,
+                layout.key,
+                most,
+                self.rng,
             )  # fmt: skip
         )
 
-    def kicked(self, layout: Layout, jumps: int, proposals: int) -> Layout | None:
-        """A copy after a kick of so many operations, positioned; None if s could not be lowered to
-        that of `layout` again.
+    def kicked(
+        self, layout: Layout, jumps: int, score: int, bound: float, proposals: int
+    ) -> Layout | None:
+        """A copy after a kick of so many random operations, positioned; None where s does not come
+        down to `score`, with degrees that permit a worst sine of `bound`, by so many `proposals`.
         """
         other = layout.copy()
-        if not kick(
-            other.arrays, other.record, self._weights, self._rules, int(layout.key[0]), jumps,
-            proposals, self.rng,
-        ):  # fmt: skip
+        plan = Kick(
+            jumps, proposals, ROUGH, FINE, score, float(bound), self._weights,
+            self.rails.angle,
+        )  # fmt: skip
+        if not kick(other.arrays, other.record, plan, self._rules, self.rng):
             return None
         self.judge(other)
         return other

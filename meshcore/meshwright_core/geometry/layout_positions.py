@@ -30,6 +30,7 @@ from meshwright_core.core.compilation import kernel
 from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.foldover_energy import Problem, place, unfold
 from meshwright_core.geometry.outline import Outline, Polylines, nearest_on
+from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.geometry.worst_corner import FOLDED, climb, worst_sine
 
 if TYPE_CHECKING:
@@ -262,23 +263,14 @@ def rails_of(mesh: HalfEdgeMesh, centre: np.ndarray, unit: float) -> Rails:
     Vertices of a loop without geometric vertices stay where they are.
     """
     outline, geometric = Outline.of(mesh), mesh.geometric()
-    side_of, angle = np.full(mesh.slots, -1, np.int64), np.zeros(mesh.slots)
-    pieces, owners, ends = [], [], []
+    side_of = np.full(mesh.slots, -1, np.int64)
+    pieces = []
     for loop in mesh.boundary_loops():
         corners = np.flatnonzero(geometric[loop])
         for a, b in zip(corners, np.append(corners[1:], corners[:1] + len(loop)), strict=True):
             chain = np.take(loop, np.arange(a, b + 1), mode="wrap")
-            piece = outline.side(chain, mesh.points[chain], False)[:, :2]
             side_of[chain[0]] = len(pieces)
-            owners.append(int(chain[0]))
-            ends.append(int(chain[-1]))
-            pieces.append((piece - centre) / unit)
-    going = {v: piece[1] - piece[0] for v, piece in zip(owners, pieces, strict=True)}
-    coming = {v: piece[-1] - piece[-2] for v, piece in zip(ends, pieces, strict=True)}
-    for v, out in going.items():
-        back = -coming[v]
-        turn = np.arctan2(out[0] * back[1] - out[1] * back[0], out @ back)
-        angle[v] = turn if turn > 0.0 else turn + 2.0 * np.pi
+            pieces.append((outline.side(chain, mesh.points[chain], False)[:, :2] - centre) / unit)
     arcs = [
         np.append(0.0, np.cumsum(np.linalg.norm(np.diff(piece, axis=0), axis=1)))
         for piece in pieces
@@ -289,4 +281,4 @@ def rails_of(mesh: HalfEdgeMesh, centre: np.ndarray, unit: float) -> Rails:
         first=np.cumsum([0, *map(len, pieces)]).astype(np.int64),
         closed=np.zeros(len(pieces), np.bool_),
     )
-    return Rails(sides, side_of, angle)
+    return Rails(sides, side_of, corner_angles(mesh))
