@@ -3,8 +3,8 @@
 A candidate is the collapse of a strip or the deletion of a line of regular vertices. It is applied
 to a copy, rejected at once where the degrees alone forbid a good shape, then positioned
 (:mod:`meshwright_core.geometry.layout_positions`) and kept if the layout is better in this order:
-nothing inverted; lower s; worst corner sine, up to a target; smaller sum of the squared irregularities; fewer
-elements. A layout is changed in larger steps by a *kick*: some random operations, followed by
+nothing inverted; lower s; worst corner sine, up to a target; smaller sum of the squared
+irregularities; fewer elements. A layout is changed in larger steps by a *kick*: some random operations, followed by
 annealing until s is as low as before. All of it is compiled; every operation is logged.
 """
 
@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshwright_agent.env.candidates import Rules, permitted
+from meshwright_agent.env.candidates import permitted
 from meshwright_agent.env.task import MOST_CLEANUPS, Task, transition
 from meshwright_agent.search.annealing import (
     WEIGHTS,
@@ -45,7 +45,7 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
-from meshwright_core.geometry.layout_positions import Rails, layout_bound, position, rails_of
+from meshwright_core.geometry.layout_positions import layout_bound, position, rails_of
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
@@ -392,18 +392,11 @@ class Coarsener:
 
     def coarsen(self, layout: Layout, most: int = 1 << 40) -> bool:
         """Coarsen in place until no candidate is accepted (then true), or `most` were tried."""
-        return bool(
-            coarsen_layout(
-                layout.arrays,
-                self._spare,
-                self.rails,
-                self.guard,
-                layout.record,
-                layout.key,
-                most,
-                self.rng,
-            )  # fmt: skip
-        )
+        ended = coarsen_layout(
+            layout.arrays, self._spare, self.rails, self.guard, layout.record, layout.key, most,
+            self.rng,
+        )  # fmt: skip
+        return bool(ended)
 
     def kicked(
         self, layout: Layout, jumps: int, score: int, bound: float, proposals: int

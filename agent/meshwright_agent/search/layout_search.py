@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.guarded_coarsening import Coarsener, Layout
 from meshwright_core.geometry.shape_bound import attainable_bound

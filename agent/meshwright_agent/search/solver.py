@@ -1,4 +1,4 @@
-"""The anytime solver: rollouts of a policy and annealing, then layouts of good shape with few blocks.
+"""The anytime solver: rollouts of a policy and annealing, then layouts of good shape.
 
 Better means, in this order: no inverted elements; lower s; a better worst corner, up to a target;
 a smaller sum of squared irregularities; for quads, fewer elements; fewer operations. s = s* proves
@@ -12,7 +12,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
@@ -20,7 +20,7 @@ import numpy as np
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
 from meshwright_agent.policy.policy_files import Policy, require_kind
-from meshwright_agent.search.annealing import Operations, anneal
+from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import PATIENCE, replayed, undrawable
 from meshwright_agent.search.coarsening import coarsen as coarser

@@ -35,7 +35,7 @@ def corner_shapes(p: np.ndarray, reference: np.ndarray) -> np.ndarray:
 
 
 def element_shapes(mesh: HalfEdgeMesh) -> np.ndarray:
-    """(m,) shape of each element, in the order of `mesh.elements()`: 1 is best, 0 or less folded."""
+    """(m,) shape of each element, in the order of `mesh.elements()`; 0 or less where folded."""
     elements = mesh.elements()
     normal = Outline.of(mesh).normal(mesh.points[mesh.vertices()])
     reference = reference_normals(mesh.points, elements, normal)

@@ -31,7 +31,7 @@ from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.foldover_energy import Problem, place, unfold
 from meshwright_core.geometry.outline import Outline, Polylines, nearest_on
 from meshwright_core.geometry.shape_bound import corner_angles
-from meshwright_core.geometry.worst_corner import FOLDED, climb, worst_sine
+from meshwright_core.geometry.worst_corner import FOLDED, climb, even_out, worst_sine
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -219,6 +219,8 @@ def _improve(problem, x, unit, goal, iterations, afresh):
         worst = worst_sine(problem)
     if FOLDED < worst < goal and len(x):
         worst = climb(problem, x, unit, goal, iterations)
+        if goal >= 1.0:
+            worst = even_out(problem, x, unit, iterations)
     return worst
 
 
@@ -242,7 +244,8 @@ def _position(m, rails, goal, iterations, afresh):
 def position(m, rails, goal, iterations):
     """Give all movable vertices of the layout better positions, in place.
 
-    Ends as soon as the worst corner sine reaches `goal`. Where corners stay folded a second attempt
+    Ends as soon as the worst corner sine reaches `goal`; with a goal of 1 all elements are given
+    better shapes after that. Where corners stay folded a second attempt
     starts from evenly spread vertices. iterations: of each stage of :func:`climb`. Returns the
     worst corner sine; 0 or less if the layout stays folded.
     """
