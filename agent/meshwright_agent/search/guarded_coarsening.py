@@ -41,11 +41,14 @@ from meshwright_core.core.arrays import (
     TWIN,
     VERTEX_SLOTS,
     MeshArrays,
+    following,
     opposite,
+    preceding,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.layout_positions import layout_bound, position, rails_of
+from meshwright_core.geometry.worst_corner import corner_sine
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
@@ -68,6 +71,10 @@ STEPS = 25
 """Steps of each stage of the max-min positions of a candidate."""
 ROUGH, FINE = 0.5, 0.25
 """Temperature of the first operations of a kick, and of the annealing back to low s."""
+SCATTER = 0.3
+"""Share of the random operations of a kick that are proposed anywhere."""
+NEARBY = 60
+"""Proposals near where a kick is to begin."""
 SPLIT_PRICE = 0.5
 """Price of a global split in a kick, in units of s."""
 _LOG = 1 << 12
@@ -233,6 +240,38 @@ class Kick(NamedTuple):
     """(5,) probability of proposing each operation."""
     angle: np.ndarray
     """(slots,) inner angles at corners."""
+    start: int
+    """Half-edge near which the operations begin; -1: anywhere."""
+    scatter: float
+    """Share of the random operations that are proposed anywhere."""
+
+
+@bare_kernel
+def _wander(m, h, rng):
+    """A half-edge a few elements away from h."""
+    for _ in range(4):
+        h = h - h % 4 + int(4.0 * rng.random())
+        if m.edge[h, TWIN] < 0 or rng.random() < 0.4:
+            break
+        h = m.edge[h, TWIN]
+    return h
+
+
+@kernel
+def worst_halfedge(m):
+    """The half-edge whose origin is the corner with the smallest sine."""
+    worst, where = np.inf, -1
+    for h in range(4 * m.counters[ELEMENT_SLOTS]):
+        if m.edge[h, ORIGIN] >= 0:
+            a, b, c = (
+                m.edge[h, ORIGIN],
+                m.edge[following(h, 4), ORIGIN],
+                m.edge[preceding(h, 4), ORIGIN],
+            )
+            sine = corner_sine(m.points, a, b, c)
+            if sine < worst:
+                worst, where = sine, h
+    return where
 
 
 @kernel
@@ -242,7 +281,7 @@ def kick(m, record, plan, rules, rng):
     Returns whether they are, within so many proposals.
     """
     k = m.counters[SIDES]
-    done, looked = 0, -1
+    done, looked, tries = 0, -1, 0
     for _ in range(plan.proposals):
         if done >= plan.jumps and done > looked and m.counters[SCORE] <= plan.score:
             if layout_bound(m, plan.angle) >= plan.bound:
@@ -251,7 +290,11 @@ def kick(m, record, plan, rules, rng):
         if record.state[LENGTH] + MOST_CLEANUPS + 1 > len(record.operations):
             return False
         rough = done < plan.jumps
-        h = propose(m, k, 0.3 if rough else 0.05, rng)
+        if done == 0 and plan.start >= 0 and tries < NEARBY:
+            h = _wander(m, plan.start, rng)
+            tries += 1
+        else:
+            h = propose(m, k, plan.scatter if rough else 0.05, rng)
         if h < 0:
             continue
         operation = rules.first + draw_operation(plan.weights, rng)
@@ -399,15 +442,23 @@ class Coarsener:
         return bool(ended)
 
     def kicked(
-        self, layout: Layout, jumps: int, score: int, bound: float, proposals: int
+        self,
+        layout: Layout,
+        jumps: int,
+        score: int,
+        bound: float,
+        proposals: int,
+        at_worst: bool = False,
     ) -> Layout | None:
         """A copy after a kick of so many random operations, positioned; None where s does not come
         down to `score`, with degrees that permit a worst sine of `bound`, by so many `proposals`.
+
+        at_worst: the operations begin near the worst corner.
         """
         other = layout.copy()
         plan = Kick(
             jumps, proposals, ROUGH, FINE, score, float(bound), self._weights,
-            self.rails.angle,
+            self.rails.angle, int(worst_halfedge(other.arrays)) if at_worst else -1, SCATTER,
         )  # fmt: skip
         if not kick(other.arrays, other.record, plan, self._rules, self.rng):
             return None

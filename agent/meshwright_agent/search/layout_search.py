@@ -13,12 +13,13 @@ from dataclasses import dataclass
 
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.guarded_coarsening import Coarsener, Layout
-from meshwright_core.geometry.shape_bound import attainable_bound
+from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.mesh import HalfEdgeMesh
 
 PREFERENCES = ("blocks", "balanced", "shape")
-SHARE = {"blocks": 0.0, "balanced": 0.85, "shape": 1.0}
-"""Target of the worst scaled Jacobian, as a share of the best that the geometry permits."""
+SHARE = {"blocks": (0.0, 0.0), "balanced": (0.85, 0.82), "shape": (1.0, 1.0)}
+"""Target of the worst scaled Jacobian, as a share of the best that is attainable and as one of q*;
+the larger counts."""
 LEAST = 0.05
 """The least target: a corner below it is as good as folded."""
 SLACK = 3e-3
@@ -29,6 +30,8 @@ FIRST = 0.6
 """Probability of kicking the best of them; each next one with the same share of the rest."""
 JUMPS = 7
 """The most random operations of a kick."""
+AT_WORST = 0.7
+"""Probability that a kick of a layout below the target begins near its worst corner."""
 PROPOSALS = 200
 """The most proposals of a kick, relative to the number of elements."""
 SLICE = 4000
@@ -56,10 +59,13 @@ class Preference:
         if self.min_shape is not None and not 0.0 <= self.min_shape <= 1.0:
             raise ValueError(f"min_shape must lie between 0 and 1, not {self.min_shape}")
 
-    def target(self, bound: float) -> float:
-        """The target where the geometry permits a worst scaled Jacobian of `bound`."""
-        wanted = SHARE[self.prefer] * bound if self.min_shape is None else self.min_shape
-        return max(min(wanted, bound - SLACK), LEAST)
+    def target(self, attainable: float, bound: float) -> float:
+        """The target where `attainable` is the best worst scaled Jacobian, and `bound` is q*."""
+        by_best, by_bound = SHARE[self.prefer]
+        wanted = max(by_best * attainable, by_bound * bound)
+        if self.min_shape is not None:
+            wanted = self.min_shape
+        return max(min(wanted, attainable - SLACK), LEAST)
 
     @property
     def spread(self) -> bool:
@@ -83,8 +89,8 @@ class LayoutSearch:
         self, mesh: HalfEdgeMesh, preference: Preference, seed: int = 0, floor: int = 1
     ) -> None:
         """Prepare the arrays; the pool is empty."""
-        self.bound, self.optimum = attainable_bound(mesh), mesh.optimum
-        self.target = preference.target(self.bound)
+        self.optimum = mesh.optimum
+        self.target = preference.target(attainable_bound(mesh), shape_bound(mesh))
         self.coarsener = Coarsener(mesh, self.target, seed, floor, spread=preference.spread)
         self.pool: list[Layout] = []
         self.best: Layout | None = None
@@ -140,7 +146,10 @@ class LayoutSearch:
         score = int(parent.key[0])
         if score > self.optimum and rng.random() < 0.7:
             score = self.optimum
-        child = coarsener.kicked(parent, jumps, score, bound, PROPOSALS * int(parent.key[3]))
+        at_worst = parent.key[1] < self.target and rng.random() < AT_WORST
+        child = coarsener.kicked(
+            parent, jumps, score, bound, PROPOSALS * int(parent.key[3]), at_worst
+        )
         if child is None:
             return
         self._coarsen(child, stop)
