@@ -8,8 +8,9 @@ from operator import index
 
 import numpy as np
 
-from meshwright_core.core import construction, notebook_display
+from meshwright_core.core import construction, curve_checks, notebook_display
 from meshwright_core.core.arrays import (
+    CURVE,
     DESIRED,
     ELEMENT_SLOTS,
     FLAGS,
@@ -24,9 +25,12 @@ from meshwright_core.core.arrays import (
     TRACE_IDS,
     VERTEX_SLOTS,
     MeshArrays,
+    copied,
     enlarge,
 )
-from meshwright_core.core.mesh_view import BoundaryLoops, MeshView
+from meshwright_core.core.mesh_boundary import MeshBoundary, Seats
+from meshwright_core.core.mesh_view import MeshView
+from meshwright_core.core.projected_seats import take_projected_seats
 from meshwright_core.errors import MeshError, OperationRefused
 from meshwright_core.history import journal
 from meshwright_core.history.packed_steps import Steps, last_done
@@ -45,9 +49,22 @@ class HalfEdgeMesh(MeshView):
     none. See :mod:`meshwright_core.core.arrays` for the arrays behind it.
     """
 
-    def __init__(self, arrays: MeshArrays, outline: BoundaryLoops, degree_cap: int = 0) -> None:
-        """For :meth:`from_elements` and :meth:`copy`; wraps arrays that obey the invariants."""
-        super().__init__(arrays, outline)
+    def __init__(
+        self,
+        arrays: MeshArrays,
+        boundary: MeshBoundary,
+        degree_cap: int = 0,
+        *,
+        seats_recorded: bool = True,
+    ) -> None:
+        """For :meth:`from_elements` and :meth:`copy`; wraps arrays that obey the invariants.
+
+        seats_recorded: false for a mesh whose history is from before meshes had curves.
+        """
+        super().__init__(arrays, boundary)
+        self.seats_recorded = seats_recorded
+        """Whether undo and redo restore where vertices lie on curves to the bit, too. Otherwise
+        they seat the boundary vertices by projection."""
         self.degree_cap = degree_cap
         """The highest degree that an operation may produce; 0 for no limit."""
         self._codes = catalogue.CODES[self.k]
@@ -61,24 +78,47 @@ class HalfEdgeMesh(MeshView):
         geometric: np.ndarray | Sequence[bool] | None = None,
         desired_degree: np.ndarray | Sequence[int] | None = None,
         corner_angle: float = construction.CORNER_ANGLE,
+        boundary: MeshBoundary | None = None,
+        seats: tuple[np.ndarray, np.ndarray] | None = None,
+        regions: np.ndarray | Sequence[int] | None = None,
     ) -> HalfEdgeMesh:
         """A mesh from (n, 2|3) points and (m, 3|4) counter-clockwise elements.
 
         Vertex i of the input is vertex id i, element j is element id j; points of no element are
-        dead ids. geometric: (n,) flags; by default the boundary vertices where the boundary turns
-        by more than `corner_angle` degrees. desired_degree: (n,); by default equation 2 of the
-        paper. Raises MeshError, with the place, unless it is an oriented manifold mesh.
+        dead ids. Raises MeshError, with the place, unless it is an oriented manifold mesh.
+
+        Args:
+            points: (n, 2|3).
+            elements: (m, 3|4).
+            geometric: (n,) flags; by default the vertices where the boundary or an interface turns
+                by more than `corner_angle` degrees. Where interfaces end all are geometric.
+            desired_degree: (n,); by default equation 2 of the paper.
+            corner_angle: in degrees.
+            boundary: the curves that the boundary and the interfaces run along; by default
+                polylines through their vertices.
+            seats: with `boundary`: curve (n,) int, -1 for none, and parameter (n,) float of each
+                vertex, as the invariants of :mod:`meshwright_core.core.arrays` have it; these
+                vertices are moved to the points of the curves there.
+            regions: (m,) region of each element, from 0; by default all are of one.
         """
-        arrays = construction.build(
+        placed = None
+        if boundary is not None:
+            if seats is None:
+                raise MeshError("the seats of the vertices on the boundary's curves are missing")
+            placed, points = curve_checks.seated(np.asarray(points), boundary, *seats)
+        arrays, boundary = construction.build(
             np.asarray(points),
             np.asarray(elements),
             None if geometric is None else np.asarray(geometric),
             None if desired_degree is None else np.asarray(desired_degree),
             corner_angle,
+            boundary,
+            placed,
+            None if regions is None else np.asarray(regions),
         )
-        mesh = cls(arrays, [])
-        mesh.outline = [(loop, mesh.points[loop].copy()) for loop in mesh.boundary_loops()]
-        return mesh
+        if placed is not None:
+            curve_checks.require_seats(arrays, boundary)
+        return cls(arrays, boundary)
 
     def check(self, operation: Operation | str, h: int) -> Verdict:
         """Whether the operation may be applied to half-edge h, and if not, why. No side effect."""
@@ -176,8 +216,19 @@ class HalfEdgeMesh(MeshView):
         """Enlarge the arrays to at least so many vertices and elements, dead ones included."""
         self._arrays = enlarge(self._arrays, vertices, elements, 0, 0)
 
-    def move(self, vertices: np.ndarray | Sequence[int], positions: np.ndarray) -> None:
-        """Move live vertices (n,) to positions (n, 3): one undoable step, or part of one."""
+    def move(
+        self,
+        vertices: np.ndarray | Sequence[int],
+        positions: np.ndarray,
+        parameters: np.ndarray | Sequence[float] | None = None,
+    ) -> None:
+        """Move live vertices (n,) to positions (n, 3): one undoable step, or part of one.
+
+        parameters: (n,) the new parameters of those on curves, which must keep the order of the
+        vertices there; others are ignored. By default a vertex gets that of its projection to the
+        part of its curve between its neighbours, and a geometric one keeps its own. Positions are
+        taken as they are, whether on the curve or not.
+        """
         ids = np.ascontiguousarray(vertices, dtype=np.int64)
         places = np.ascontiguousarray(positions, dtype=float)
         if places.shape != (len(ids), 3):
@@ -186,8 +237,18 @@ class HalfEdgeMesh(MeshView):
             raise MeshError("a vertex cannot move to a position that is not finite")
         for vertex in ids.tolist():
             self._require_live(vertex)
-        self._make_room(3 * len(ids))
-        vertex_edits.move(self._arrays, ids, places)
+        self._make_room(4 * len(ids))
+        if parameters is None:
+            vertex_edits.move(self._arrays, ids, places)
+            return
+        along = np.ascontiguousarray(parameters, dtype=float)
+        if along.shape != ids.shape:
+            raise MeshError(f"parameters must be ({len(ids)},), not {along.shape}")
+        curves = self._arrays.vertex[ids, CURVE]
+        lengths = np.append(self._boundary.lengths(), np.inf)[curves]
+        if not ((along >= 0.0) & (along <= lengths))[curves >= 0].all():
+            raise MeshError("a parameter lies beyond the ends of its curve")
+        vertex_edits.move_along(self._arrays, ids, places, along)
 
     def set_desired(self, vertex: int, degree: int) -> None:
         """Set the desired degree of a vertex: one undoable step; s and s* are updated."""
@@ -243,7 +304,9 @@ class HalfEdgeMesh(MeshView):
         self._refuse_in_transaction()
         if self._archive.past and not self._arrays.counters[STEP]:
             self._arrays = self._archive.trimmed(self._archive.fetch_past(self._arrays))
-        return bool(journal.undo(self._arrays))
+        undone = bool(journal.undo(self._arrays))
+        self._project_seats()
+        return undone
 
     def redo(self) -> bool:
         """Redo the last undone step, exact to the bit; False if there is none."""
@@ -251,7 +314,13 @@ class HalfEdgeMesh(MeshView):
         counters = self._arrays.counters
         if self._archive.future and counters[STEP] == counters[STEP_END]:
             self._arrays = self._archive.trimmed(self._archive.fetch_future(self._arrays))
-        return bool(journal.redo(self._arrays))
+        redone = bool(journal.redo(self._arrays))
+        self._project_seats()
+        return redone
+
+    def _project_seats(self) -> None:
+        if not self.seats_recorded:
+            take_projected_seats(self._arrays, self.boundary_loops(), self._boundary)
 
     def _refuse_in_transaction(self) -> None:
         if self._arrays.counters[GROUPED]:
@@ -331,7 +400,7 @@ class HalfEdgeMesh(MeshView):
 
     def copy(self, history: bool = False) -> HalfEdgeMesh:
         """An independent mesh with the same ids and free slots; by default without a history."""
-        arrays = MeshArrays(*(array.copy() for array in self._arrays))
+        arrays = copied(self._arrays)
         if history:
             self._refuse_in_transaction()
         else:
@@ -340,10 +409,11 @@ class HalfEdgeMesh(MeshView):
             )
             for counter in (JOURNAL_TOP, STEP, STEP_END, GROUPED):
                 arrays.counters[counter] = 0
-        copied = HalfEdgeMesh(arrays, list(self.outline), self.degree_cap)
+        recorded = self.seats_recorded or not history
+        twin = HalfEdgeMesh(arrays, self._boundary, self.degree_cap, seats_recorded=recorded)
         if history:
-            copied._archive = self._archive.copy()
-        return copied
+            twin._archive = self._archive.copy()
+        return twin
 
     def compact(self) -> tuple[np.ndarray, np.ndarray]:
         """Renumber vertices and elements without gaps; the history is gone.
@@ -356,23 +426,19 @@ class HalfEdgeMesh(MeshView):
         element_map = np.full(int(self._arrays.counters[ELEMENT_SLOTS]), -1, np.int64)
         element_map[ids] = np.arange(len(ids))
         rows = self._arrays.vertex[live]
-        arrays = construction.build(
+        arrays, boundary = construction.build(
             self.points[live],
             vertex_map[self.elements()],
             (rows[:, FLAGS] & GEOMETRIC) > 0,
             rows[:, DESIRED],
+            boundary=self._boundary.renumbered(vertex_map),
+            seats=Seats(rows[:, CURVE], self._arrays.parameter[live]),
+            regions=self.regions(),
         )
         arrays.vertex[: len(live), FLAGS] = rows[:, FLAGS]
         self._arrays, self._archive = arrays, Archive()
-        self.outline = [
-            (
-                np.where(
-                    ids < len(vertex_map), vertex_map[np.minimum(ids, len(vertex_map) - 1)], -1
-                ),
-                at,
-            )
-            for ids, at in self.outline
-        ]
+        self._take_boundary(boundary)
+        self.seats_recorded = True
         return vertex_map, element_map
 
     def _repr_mimebundle_(

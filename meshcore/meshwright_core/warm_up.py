@@ -13,7 +13,8 @@ import numpy as np
 
 from meshwright_core.analysis.cleanable_lines import cleanable_lines
 from meshwright_core.core.compilation import cache_folder, cache_root
-from meshwright_core.geometry.sides import Sides
+from meshwright_core.geometry.edge_curves import curved_edge_polylines, edge_points
+from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -34,7 +35,9 @@ def exercise() -> None:
     )
     quads.move([4], np.array([[3.0, 3.0, 0.0]]))
     relax(quads, [4])
-    Sides(quads).project(1, quads.points[1])
+    inverted(quads)
+    edge_points(quads, 0, [0.5])
+    curved_edge_polylines(quads, 0.1)
     quads.set_locked(4)
     quads.move([4], quads.points[[4]])
     while quads.undo():

@@ -15,6 +15,8 @@ def state(mesh: HalfEdgeMesh) -> list[bytes]:
         arrays.edge[: ends[0]].tobytes(),
         arrays.vertex[: ends[1]].tobytes(),
         mesh.points.tobytes(),
+        mesh.parameters().tobytes(),
+        arrays.region[: ends[0] // mesh.k].tobytes(),
         arrays.irregular[: mesh.irregular_count].tobytes(),
         arrays.counters[:RESTORED].tobytes(),
     ]

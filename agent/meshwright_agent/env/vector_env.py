@@ -22,6 +22,7 @@ from meshwright_agent.env.task import (
     transition,
 )
 from meshwright_core.core.arrays import (
+    CURVE,
     DELTA_SUM,
     ELEMENT_SLOTS,
     ELEMENTS,
@@ -35,6 +36,7 @@ from meshwright_core.core.arrays import (
     enlarge,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.composite_curves import chained_curves
 from meshwright_core.core.references import by_reference
 from meshwright_core.core.score import normalised_return
 from meshwright_core.domains.meshing import benchmark_mesh
@@ -44,6 +46,8 @@ from meshwright_core.mesh import HalfEdgeMesh
 _ROOM = 2.5  # slots relative to the largest start mesh; operations that need more are masked
 PART_CORNERS = (8, 30)
 """Least and largest number of corners of the random parts among start meshes."""
+_OWN_FIELDS = MeshArrays._fields[:-2]
+"""The arrays that each mesh has for itself; the last two hold the curves."""
 _TRIES = 64  # random half-edges that a random step draws before it does nothing
 
 
@@ -71,16 +75,26 @@ def start_meshes(
 
 
 def stack(meshes: list[HalfEdgeMesh], task: Task) -> MeshArrays:
-    """Meshes as arrays with a leading axis, with spare slots and without a journal."""
+    """Meshes as arrays with a leading axis, with spare slots and without a journal.
+
+    Only the curves have no such axis: those of all meshes follow each other.
+    """
     vertices = int(_ROOM * max(mesh.slots for mesh in meshes)) + 16
     elements = int(_ROOM * max(mesh.n_elements for mesh in meshes)) + 16
-    fields: list[list[np.ndarray]] = [[] for _ in MeshArrays._fields]
+    fields: list[list[np.ndarray]] = [[] for _ in _OWN_FIELDS]
+    curves = 0
     for mesh in meshes:
         room = enlarge(_trimmed(mesh.arrays), vertices, elements, 1, 1)
         room.counters[JOURNALLING] = 0
-        for field, array in zip(fields, room, strict=True):
-            field.append(array)
-    return MeshArrays(*(np.stack(field) for field in fields))
+        room.vertex[room.vertex[:, CURVE] >= 0, CURVE] += curves
+        curves += len(mesh.arrays.interface)
+        for field, name in zip(fields, _OWN_FIELDS, strict=True):
+            field.append(getattr(room, name))
+    return MeshArrays(
+        *(np.stack(field) for field in fields),
+        curves=chained_curves([mesh.arrays.curves for mesh in meshes]),
+        interface=np.concatenate([mesh.arrays.interface for mesh in meshes]),
+    )
 
 
 def _trimmed(arrays: MeshArrays) -> MeshArrays:
@@ -88,7 +102,8 @@ def _trimmed(arrays: MeshArrays) -> MeshArrays:
     slots, elements = int(arrays.counters[VERTEX_SLOTS]), int(arrays.counters[ELEMENT_SLOTS])
     k = int(arrays.counters[SIDES])
     empty = allocate(k, slots, elements, 1, 1)
-    for name in ("edge", "vertex", "points", "irregular", "element_mark"):
+    names = ("edge", "vertex", "points", "irregular", "element_mark", "parameter", "region")
+    for name in names:
         getattr(empty, name)[:] = getattr(arrays, name)[: len(getattr(empty, name))]
     empty.counters[:11] = arrays.counters[:11]
     return empty
@@ -147,6 +162,10 @@ def member(meshes, b):
         meshes.counters[b],
         meshes.journal[b],
         meshes.steps[b],
+        meshes.parameter[b],
+        meshes.region[b],
+        meshes.curves,
+        meshes.interface,
     )
 
 
@@ -163,8 +182,10 @@ def _reset(meshes, pool, b, p):
         for axis in range(pool.points.shape[2]):
             meshes.points[b, v, axis] = pool.points[p, v, axis]
         meshes.irregular[b, v] = pool.irregular[p, v]
+        meshes.parameter[b, v] = pool.parameter[p, v]
     for e in range(pool.element_mark.shape[1]):
         meshes.element_mark[b, e] = pool.element_mark[p, e]
+        meshes.region[b, e] = pool.region[p, e]
     for i in range(pool.counters.shape[1]):
         meshes.counters[b, i] = pool.counters[p, i]
 
@@ -286,7 +307,11 @@ class Batch:
         self.best_step = np.zeros(size, int)
         self.active = np.ones(size, np.bool_)
         self.scratch = Scratch(task, self.pool.edge.shape[1], self.pool.vertex.shape[1])
-        self.meshes = MeshArrays(*(array[np.zeros(size, int)].copy() for array in self.pool))
+        self.meshes = MeshArrays(
+            *(getattr(self.pool, name)[np.zeros(size, int)].copy() for name in _OWN_FIELDS),
+            curves=self.pool.curves,
+            interface=self.pool.interface,
+        )
         rows = min(LARGEST, self.pool.edge.shape[1])
         self._features = np.zeros((size * rows, task.channels), np.int8)
         self._reads = np.zeros((size * rows, task.k + 1), np.int16)

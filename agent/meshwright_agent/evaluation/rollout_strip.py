@@ -11,12 +11,14 @@ import numpy as np
 from meshwright_agent.evaluation.figures import BLUE, DOTS, GREEN, INK, MUTED, VERMILION
 from meshwright_agent.policy.rollout import PolicyStep
 from meshwright_core.geometry import smoothing
+from meshwright_core.geometry.true_edges import TrueEdges
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.mesh import HalfEdgeMesh
 
 PICTURES = 5
 _FILL, _EDGE, _OUTLINE = "#F1F2ED", "#8D99A6", "#2F3B48"
 _SIZE = 3.0  # inches, width of one picture
+_FINENESS = 2e-4  # of the extent: distance of drawn edges from their curves
 _HEAD = 0.55  # inches, for the text above it
 
 
@@ -60,14 +62,16 @@ def draw_mesh(axes: Any, mesh: HalfEdgeMesh) -> None:
     """Draw elements, outline, corners, and irregular vertices labelled with their Delta."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    ends, points = mesh.elements(), mesh.points[:, :2]
-    axes.add_collection(
-        PolyCollection(points[ends], facecolor=_FILL, edgecolor=_EDGE, linewidth=0.7)
-    )
-    axes.add_collection(
-        LineCollection(points[_outline(ends)], colors=_OUTLINE, linewidths=1.5, capstyle="round")
-    )
-    ids = mesh.vertices()
+    points, ids = mesh.points[:, :2], mesh.vertices()
+    extent = float(np.ptp(points[ids], axis=0).max())
+    true = TrueEdges(mesh, _FINENESS * extent)
+    outlines = true.outlines(mesh.element_ids())
+    axes.add_collection(PolyCollection(outlines, facecolor=_FILL, edgecolor=_EDGE, linewidth=0.7))
+    lines = [np.vstack([line, line[:1]]) for line in map(true.chained, true.rims())]
+    for collection, width in ((true.interfaces(), 1.0), (lines, 1.5)):
+        axes.add_collection(
+            LineCollection(collection, colors=_OUTLINE, linewidths=width, capstyle="round")
+        )
     corners = points[ids[mesh.geometric()[ids]]]
     axes.scatter(*corners.T, s=9, marker="s", color=_OUTLINE, linewidths=0, zorder=3)
     delta = mesh.irregularity()
@@ -90,14 +94,6 @@ def draw_mesh(axes: Any, mesh: HalfEdgeMesh) -> None:
     axes.set_ylim(low[1] - margin, high[1] + margin)
     axes.set_aspect("equal")
     axes.set_axis_off()
-
-
-def _outline(ends: np.ndarray) -> np.ndarray:
-    """The edges (N, 2) of elements (m, k) that belong to one element only."""
-    edges = np.stack([ends, np.roll(ends, -1, axis=1)], axis=2).reshape(-1, 2)
-    unique, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
-    boundary: np.ndarray = unique[counts == 1]
-    return boundary
 
 
 def _marker_size(mesh: HalfEdgeMesh) -> float:

@@ -30,6 +30,7 @@ from meshwright_core.core.arrays import (
     TWIN,
     VERTEX_SLOTS,
     MeshArrays,
+    copied,
     turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
@@ -119,10 +120,13 @@ def copy_mesh(source, target):
         target.edge[h, 0] = source.edge[h, 0]
         target.edge[h, 1] = source.edge[h, 1]
     for v in range(max(source.counters[VERTEX_SLOTS], target.counters[VERTEX_SLOTS])):
-        for column in range(6):
+        for column in range(7):
             target.vertex[v, column] = source.vertex[v, column]
         for axis in range(3):
             target.points[v, axis] = source.points[v, axis]
+        target.parameter[v] = source.parameter[v]
+    for e in range(max(source.counters[ELEMENT_SLOTS], target.counters[ELEMENT_SLOTS])):
+        target.region[e] = source.region[e]
     for i in range(source.counters[IRREGULAR]):
         target.irregular[i] = source.irregular[i]
     for i in range(len(source.counters)):
@@ -339,7 +343,7 @@ class Annealer:
         self.state = np.zeros(8, np.int64)
         self.log = np.zeros((_LOG, 2), np.int32)
         self.arrays = with_room(mesh, self.ceiling)
-        self.best = MeshArrays(*(array.copy() for array in self.arrays))
+        self.best = copied(self.arrays)
         self.state[BEST_SCORE], self.state[BEST_ELEMENTS] = mesh.score, size
 
     @property

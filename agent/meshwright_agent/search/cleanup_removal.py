@@ -16,7 +16,7 @@ from meshwright_agent.search.shortening import (
     nothing_replayed,
     replay,
 )
-from meshwright_core.core.arrays import MeshArrays
+from meshwright_core.core.arrays import MeshArrays, copied
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import CLEANUP, CODES, NAMES
 
@@ -53,4 +53,4 @@ def without_cleanups(mesh: HalfEdgeMesh, operations: Operations) -> Operations:
 
 
 def _copy(arrays: MeshArrays) -> MeshArrays:
-    return MeshArrays(*(array.copy() for array in arrays))
+    return copied(arrays)

@@ -22,7 +22,7 @@ from meshwright_agent.search.annealing import (
     copy_mesh,
 )
 from meshwright_core.analysis.drawability import Obstacles
-from meshwright_core.core.arrays import ELEMENT_SLOTS, ELEMENTS, MeshArrays
+from meshwright_core.core.arrays import ELEMENT_SLOTS, ELEMENTS, copied
 from meshwright_core.geometry import smoothing
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -123,7 +123,7 @@ class _Coarser:
         return obstacles + len(smoothing.relax(reached))
 
     def _keep(self) -> None:
-        self._kept = MeshArrays(*(array.copy() for array in self._annealer.best))
+        self._kept = copied(self._annealer.best)
         if self._flaws:
             # with flaws, any state with s as low may be better
             self._annealer.state[BEST_ELEMENTS] = self._annealer.ceiling + 1

@@ -4,8 +4,9 @@ A candidate is the collapse of a strip or the deletion of a line of regular vert
 to a copy, rejected at once where the degrees alone forbid a good shape, then positioned
 (:mod:`meshwright_core.geometry.layout_positions`) and kept if the layout is better in this order:
 nothing inverted; lower s; worst corner sine, up to a target; smaller sum of the squared
-irregularities; fewer elements. A layout is changed in larger steps by a *kick*: some random operations, followed by
-annealing until s is as low as before. All of it is compiled; every operation is logged.
+irregularities; fewer elements. A layout is changed in larger steps by a *kick*: some random
+operations, followed by annealing until s is as low as before. All of it is compiled; every
+operation is logged.
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ from meshwright_core.core.arrays import (
     TWIN,
     VERTEX_SLOTS,
     MeshArrays,
+    copied,
     following,
     opposite,
     preceding,
@@ -48,7 +50,6 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.layout_positions import layout_bound, position, rails_of
-from meshwright_core.geometry.worst_corner import corner_sine
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
@@ -259,18 +260,19 @@ def _wander(m, h, rng):
 
 @kernel
 def worst_halfedge(m):
-    """The half-edge whose origin is the corner with the smallest sine."""
+    """The half-edge whose origin is the corner with the smallest sine, by the chords."""
     worst, where = np.inf, -1
+    points = m.points
     for h in range(4 * m.counters[ELEMENT_SLOTS]):
-        if m.edge[h, ORIGIN] >= 0:
-            a, b, c = (
-                m.edge[h, ORIGIN],
-                m.edge[following(h, 4), ORIGIN],
-                m.edge[preceding(h, 4), ORIGIN],
-            )
-            sine = corner_sine(m.points, a, b, c)
-            if sine < worst:
-                worst, where = sine, h
+        if m.edge[h, ORIGIN] < 0:
+            continue
+        o, s = m.edge[h, ORIGIN], m.edge[following(h, 4), ORIGIN]
+        t = m.edge[preceding(h, 4), ORIGIN]
+        px, py = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
+        qx, qy = points[t, 0] - points[o, 0], points[t, 1] - points[o, 1]
+        sine = (px * qy - py * qx) / (np.hypot(px, py) * np.hypot(qx, qy) + 1e-300)
+        if sine < worst:
+            worst, where = sine, h
     return where
 
 
@@ -333,7 +335,7 @@ class Layout:
     """A layout in the search."""
 
     arrays: MeshArrays
-    """Connectivity and positions, the latter in units of the search."""
+    """Connectivity and positions."""
     key: np.ndarray
     """(4,) s, worst corner sine up to the target (0: folded), sum of squares, elements."""
     record: Record
@@ -342,7 +344,7 @@ class Layout:
     def copy(self) -> Layout:
         """An independent copy."""
         return Layout(
-            MeshArrays(*(array.copy() for array in self.arrays)),
+            copied(self.arrays),
             self.key.copy(),
             self.record._replace(
                 operations=self.record.operations.copy(), state=self.record.state.copy()
@@ -382,22 +384,12 @@ class Coarsener:
         ceiling = max(2 * size, size + 8) if ceiling is None else ceiling
         self.rng = np.random.default_rng(seed)
         self.start = with_room(mesh, ceiling)
-        live = mesh.vertices()
-        self.centre = mesh.points[live].mean(axis=0)
-        extent = float(np.ptp(mesh.points[live], axis=0).max())
-        self.unit = extent / max(1.0, float(np.sqrt(size)))
-        self.start.points[:] = (self.start.points - self.centre) / self.unit
-        rails = rails_of(mesh, self.centre[:2], self.unit)
-        room = len(self.start.vertex) - mesh.slots
-        self.rails = rails._replace(
-            side_of=np.append(rails.side_of, np.full(room, -1, np.int64)),
-            angle=np.append(rails.angle, np.zeros(room)),
-        )
+        self.rails = rails_of(mesh, len(self.start.vertex))
         self.guard = Guard(float(target), task.cap, floor, self.rails.angle, spread)
         self._rules = task.rules(floor, ceiling)
         self._weights = np.array(WEIGHTS["quad"][:5])
         self._weights /= self._weights.sum()
-        self._spare = MeshArrays(*(array.copy() for array in self.start))
+        self._spare = copied(self.start)
 
     def layout(self, operations: Operations, steps: int = STEPS) -> Layout:
         """The layout that operations lead to, with positions.
@@ -406,7 +398,7 @@ class Coarsener:
         replay on the start.
         """
         codes = np.array([(CODES[4][name], h) for name, h in operations], np.int32).reshape(-1, 2)
-        arrays = MeshArrays(*(array.copy() for array in self.start))
+        arrays = copied(self.start)
         if replay(arrays, codes) < len(codes):
             raise ValueError("the operations do not replay on the start")
         log = np.zeros((max(_LOG, 2 * len(codes)), 2), np.int32)
@@ -425,13 +417,13 @@ class Coarsener:
         spread = squares(m) if self.guard.spread else 0
         layout.key[:] = (m.counters[SCORE], max(0.0, worst), spread, m.counters[ELEMENTS])
 
-    def positions(self, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
-        """Ids (n,) of the vertices that may move, and their places (n, 3) in the mesh's units."""
+    def positions(self, layout: Layout) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Ids (n,) of the vertices that may move, their places (n, 3), and parameters (n,)."""
         m = layout.arrays
         rows = m.vertex[: m.counters[VERTEX_SLOTS]]
         free = (rows[:, HALF] >= 0) & ((rows[:, FLAGS] & (GEOMETRIC | LOCKED)) == 0)
         ids = np.flatnonzero(free).astype(np.int64)
-        return ids, m.points[ids] * self.unit + self.centre
+        return ids, m.points[ids].copy(), m.parameter[ids].copy()
 
     def coarsen(self, layout: Layout, most: int = 1 << 40) -> bool:
         """Coarsen in place until no candidate is accepted (then true), or `most` were tried."""

@@ -17,6 +17,7 @@ from meshwright_agent.env.vector_env import member
 from meshwright_agent.search.repair_queue import FILL, dequeue, enqueue, irregular
 from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
+    CURVE,
     DEGREE,
     DELTA_SUM,
     DESIRED,
@@ -188,11 +189,13 @@ def cut_out(m, a, k, found, whole_rim, out, ids):
     """
     vertices = 0
     for i in range(len(found)):
+        out.region[i] = m.region[found[i]]
         for j in range(k):
             v = m.edge[found[i] * k + j, ORIGIN]
             if a.number[v] == 0:
                 ids[vertices] = v
                 out.vertex[vertices, FLAGS] = m.vertex[v, FLAGS]
+                out.vertex[vertices, CURVE] = m.vertex[v, CURVE]
                 vertices += 1
                 a.number[v] = vertices
             w, t = a.number[v] - 1, m.edge[found[i] * k + j, TWIN]
@@ -208,6 +211,8 @@ def cut_out(m, a, k, found, whole_rim, out, ids):
             v, w = out.edge[h, ORIGIN], out.edge[following(h, k), ORIGIN]
             out.vertex[v, DEGREE] += 1
             out.vertex[v, HALF] = h
+            # on some curve, as all vertices on a boundary; a patch has no curves to place them on
+            out.vertex[v, CURVE] = max(out.vertex[v, CURVE], 0)
             if whole_rim or m.edge[found[h // k] * k + h % k, TWIN] >= 0:
                 out.vertex[v, FLAGS] |= LOCKED
                 out.vertex[w, FLAGS] |= LOCKED

@@ -49,6 +49,7 @@ from meshwright_core.core.arrays import (
     STEP_COLUMNS,
     allocate,
 )
+from meshwright_core.core.mesh_boundary import MeshBoundary
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 
@@ -352,7 +353,7 @@ class _Work:
         count = cut_out(self.mesh.arrays, self.agenda, k, elements, k == 4, out, self._ids)
         vertices = self._ids[:count].copy()
         irregular = vertices[out.irregular[: out.counters[IRREGULAR]]]
-        return _Patch(elements, vertices, irregular, HalfEdgeMesh(out, []))
+        return _Patch(elements, vertices, irregular, HalfEdgeMesh(out, MeshBoundary()))
 
     def _settle(self, patch: _Patch, elements: np.ndarray, better: bool) -> None:
         arrays, k = self.mesh.arrays, self.mesh.k

@@ -35,6 +35,7 @@ from meshwright_core.core.arrays import (
     MeshArrays,
     allocate,
 )
+from meshwright_core.core.mesh_boundary import MeshBoundary
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import CODES, NAMES, Operation
@@ -114,7 +115,7 @@ class _Region:
         scratch.place[elements] = np.arange(1, count + 1)
         out = allocate(k, k * count, count, 1, 1)
         cut_out(arrays, scratch, k, elements, k == 4, out, np.zeros(k * count, np.int64))
-        self.mesh, self.elements = HalfEdgeMesh(out, []), elements
+        self.mesh, self.elements = HalfEdgeMesh(out, MeshBoundary()), elements
 
     def put_back(self, whole: HalfEdgeMesh, operations: Operations) -> Operations:
         """Apply operations of the region to `whole`, up to its lowest s.

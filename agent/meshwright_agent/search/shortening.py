@@ -30,6 +30,7 @@ from meshwright_core.core.arrays import (
     TRACE_IDS,
     VERTEX_SLOTS,
     MeshArrays,
+    copied,
     find,
     following,
     neighbour,
@@ -399,7 +400,7 @@ class _Shortener:
             raise ValueError(f"operation {failed}, {operation} at half-edge {h}, does not replay")
 
     def _copied(self) -> MeshArrays:
-        return MeshArrays(*(array.copy() for array in self.start))
+        return copied(self.start)
 
     def _replayed(self, entries: np.ndarray) -> tuple[int, Replayed]:
         """Where a replay reaches the goal, -1 for nowhere, and what it applied until there."""

@@ -60,6 +60,8 @@ class Solution:
     """(n,) vertices that move after the operations."""
     positions: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)), repr=False)
     """(n, 3) where to."""
+    parameters: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
+    """(n,) their places on curves."""
 
     @property
     def rank(self) -> tuple[bool, int, int, int, int, int, int]:
@@ -89,7 +91,7 @@ class Solution:
         by.
         """
         if len(self.vertices):
-            mesh.move(self.vertices, self.positions)
+            mesh.move(self.vertices, self.positions, self.parameters)
 
     @property
     def perfect(self) -> bool:
@@ -124,6 +126,7 @@ def judged(
         sum_delta2=int((reached.irregularity() ** 2).sum()),
         vertices=vertices,
         positions=reached.points[vertices].copy(),
+        parameters=reached.arrays.parameter[vertices].copy(),
     )
 
 
@@ -138,7 +141,7 @@ def _best_positions(mesh: HalfEdgeMesh, reached: HalfEdgeMesh) -> np.ndarray:
             smoothing.relax(other)
             if len(inverted(other)) < left:
                 ids = other.vertices()
-                reached.move(ids, other.points[ids])
+                reached.move(ids, other.points[ids], other.arrays.parameter[ids])
     else:
         smoothing.relax(reached)
     live = reached.vertices()

@@ -30,7 +30,6 @@ from meshwright_agent.search.search_worker import KEPT, SIDE_BY_SIDE, Candidate,
 from meshwright_agent.search.shortening import shorten as shorter
 from meshwright_agent.search.solution import Solution, judged
 from meshwright_core.domains.meshing import benchmark_mesh
-from meshwright_core.geometry.boundary_spacing import anchors
 from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
@@ -104,7 +103,6 @@ def solve(
     preference = Preference(prefer, min_shape)
     if seconds is not None:
         prepare(policy)  # so that loading the kernels takes none of the time
-    given, mesh = mesh, _anchored(mesh)
     if is_large(mesh):
         go_on = partial(
             solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten,
@@ -113,7 +111,7 @@ def solve(
         return _patch_by_patch(mesh, policy, seconds, max_steps, seed, progress, cancelled, go_on)
     search = _Search(mesh, policy, rollouts, seconds, max_steps, seed, progress, cancelled)
     best = search.nothing(coarsen)
-    if _has_layouts(given):
+    if _has_layouts(mesh):
         found = _search_layouts(search, preference, workers, coarsen, shorten)
     else:
         found = _search_states(search, best, workers, coarsen, shorten)
@@ -236,20 +234,6 @@ def _valid_part(search: _Search, found: Solution) -> Solution:
     return judged(best, mesh, search.stopped)
 
 
-def _anchored(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
-    """A copy with vertices locked on curved sides, so that a disc does not become a square.
-
-    Locks only forbid operations: what is allowed on the copy is allowed on the mesh itself.
-    """
-    held = anchors(mesh).tolist() if mesh.n_elements <= SIDE_BY_SIDE else []
-    if not held:
-        return mesh
-    copy = mesh.copy()
-    for vertex in held:
-        copy.set_locked(vertex)
-    return copy
-
-
 def _patch_by_patch(
     mesh: HalfEdgeMesh,
     policy: Policy,
@@ -300,6 +284,11 @@ def _warm_up(task: Task) -> None:
     operations = anneal(mesh, proposals=2000)[0]
     shorter(mesh, operations)
     coarser(mesh, proposals=500, seconds=None)
+    if task.kind == "quad":
+        seeker = LayoutSearch(mesh, Preference("shape"))
+        seeker.add(operations, True, lambda: False)
+        seeker.run(lambda: False, 8)
+        judged(Solution(seeker.pool[0].operations(), 0, 0, 0), mesh)
     batch = Batch(task, [mesh], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
 

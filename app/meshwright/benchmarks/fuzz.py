@@ -1,4 +1,7 @@
-"""Random operations against a naive face list: a million of each kind without a violation."""
+"""Random operations against a naive face list: a million of each kind without a violation.
+
+On straight domains, on domains with curved sides, and on those of several regions.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +11,31 @@ from typing import Any
 from meshwright.console import Update
 from meshwright_core.testing.fuzzing import fuzz
 
-SUMMARY = "a million random operations of each kind, each checked against a naive face list"
+SUMMARY = "millions of random operations, each checked against a naive face list"
 
 OPERATIONS = 1_000_000
 QUICK = 300
 
 
+STARTS: dict[str, dict[str, bool]] = {
+    "straight": {},
+    "curved": {"curved": True},
+    "interfaces": {"curved": True, "interfaces": True},
+}
+"""The kinds of start meshes: random grids, with arcs as sides, with several regions too."""
+
+
 def run(seed: int, quick: bool, update: Update) -> dict[str, Any]:
-    """Fuzz both kinds; the first violation ends it as an error."""
+    """Fuzz both kinds on all starts; the first violation ends it as an error."""
     count = QUICK if quick else OPERATIONS
 
-    def show(kind: str, done: int) -> None:
-        update(done, f"{kind} {done:,}")
+    def show(name: str, done: int) -> None:
+        update(done, f"{name} {done:,}")
 
-    return {kind: fuzz(kind, count, seed, partial(show, kind)) for kind in ("tri", "quad")}
+    return {
+        kind: {
+            start: fuzz(kind, count, seed, partial(show, f"{kind}, {start}"), **choices)
+            for start, choices in STARTS.items()
+        }
+        for kind in ("tri", "quad")
+    }

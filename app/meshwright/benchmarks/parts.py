@@ -110,22 +110,24 @@ def text(results: dict[str, Any]) -> str:
     tables = []
     for group, found in results.items():
         rows = [["shape", *next(iter(found["shapes"].values()))]]
-        rows += [[name, *map(_shown, row.values())] for name, row in found["shapes"].items()]
+        rows += [[name, *map(shown, row.values())] for name, row in found["shapes"].items()]
         lines = [
             f"{name}: {value} of {found['meshes']}"
             for name, value in found.items()
             if isinstance(value, int) and name != "meshes"
         ]
         lines += [f"{name}: {value:.3g}" for name, value in found.items() if "," in name]
-        tables.append("\n".join([group, _aligned(rows), *lines]))
+        tables.append("\n".join([group, aligned(rows), *lines]))
     return "\n\n".join(tables)
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
+    """Return a cell of the table."""
     return ("no", "yes")[value] if isinstance(value, bool) else f"{value}"
 
 
-def _aligned(rows: list[list[str]]) -> str:
+def aligned(rows: list[list[str]]) -> str:
+    """Return rows of cells as lines of columns, the first one flush left."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return "\n".join(
         "  ".join(

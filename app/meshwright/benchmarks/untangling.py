@@ -1,9 +1,9 @@
 """Untangling against averaging on meshes that random operations have reached.
 
-Two walks: over any allowed operations, which soon reach meshes that cannot be drawn with straight
-edges (a doublet, a flat corner, an edge between two corners that do not see each other); and one
-that takes back every operation after which :func:`drawable` sees such an obstacle. What passes that
-test need not be drawable either: it looks at single corners and edges.
+Two walks: over any allowed operations, which soon reach meshes that have no valid
+embedding (a doublet, a flat corner, an edge between two corners that do not see each other); and
+one that takes back every operation after which :func:`drawable` sees such an obstacle. What passes
+that test need not be drawable either: it looks at single corners and edges.
 """
 
 from __future__ import annotations
@@ -14,13 +14,12 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-import shapely
 
 from meshwright.console import Update, no_update
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.analysis.drawability import Obstacles
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality, smoothing, untangling
-from meshwright_core.geometry.sides import Sides
 from meshwright_core.geometry.unfixable import unfixable
 
 SUMMARY = "share of randomly edited meshes without inverted elements: as is, averaged, untangled"
@@ -67,7 +66,7 @@ def edited(start: HalfEdgeMesh, rng: np.random.Generator, careful: bool) -> Half
     """
     mesh = start.copy()
     mesh.degree_cap = (9 if mesh.k == 3 else 7) if careful else 0
-    inside = _domain(mesh)
+    obstacles = Obstacles(mesh)
     names = list(mesh.allowed(-1))
     left = int(rng.integers(30, 101))
     for _ in range(30 * left):
@@ -79,56 +78,25 @@ def edited(start: HalfEdgeMesh, rng: np.random.Generator, careful: bool) -> Half
         if not mesh.check(operation, h):
             continue
         mesh.apply(operation, h)
-        if careful and not drawable(mesh, inside):
+        if careful and not drawable(mesh, obstacles):
             mesh.undo()
         else:
             left -= 1
     return mesh
 
 
-def _domain(mesh: HalfEdgeMesh) -> shapely.Geometry:
-    """The domain of a mesh, slightly enlarged: segments along its boundary count as inside."""
-    loops = sorted(
-        (shapely.Polygon(points[:, :2]) for _, points in mesh.outline), key=lambda loop: -loop.area
-    )
-    domain = shapely.Polygon(loops[0].exterior, [loop.exterior for loop in loops[1:]]).buffer(1e-9)
-    shapely.prepare(domain)
-    return domain
+def drawable(mesh: HalfEdgeMesh, obstacles: Obstacles) -> bool:
+    """Whether no simple obstacle to a drawing is found, and no unfixable corner."""
+    return not len(unfixable(mesh)) and not obstacles.count(mesh)
 
 
-def drawable(mesh: HalfEdgeMesh, domain: shapely.Geometry) -> bool:
-    """Whether no simple obstacle to a drawing with straight edges is found.
-
-    No unfixable corner; no edge between corners that leaves the domain; no edge inside that joins
-    two vertices of one straight side.
-    """
-    if len(unfixable(mesh)):
-        return False
-    elements = mesh.elements()
-    a, b = elements.ravel(), np.roll(elements, -1, axis=1).ravel()
-    boundary, fixed = mesh.boundary(), mesh.geometric()
-    ends = {
-        (x, y) for x, y in zip(a.tolist(), b.tolist(), strict=True) if boundary[x] & boundary[y]
-    }
-    chords = [(x, y) for x, y in ends if (y, x) in ends and x < y]
-    seen = [(x, y) for x, y in chords if fixed[x] and fixed[y]]
-    if seen and not shapely.covers(domain, shapely.linestrings(mesh.points[seen][..., :2])).all():
-        return False
-    where = Sides(mesh)
-    straight: dict[int, set[int]] = {}
-    for number, chain in enumerate(where.chains):
-        if where.polylines.first[number + 1] - where.polylines.first[number] == 2:
-            for v in chain.tolist():
-                straight.setdefault(v, set()).add(number)
-    return not any(straight.get(x, set()) & straight.get(y, set()) for x, y in chords)
+Moves = tuple[np.ndarray, np.ndarray, np.ndarray]
+Method = Callable[[HalfEdgeMesh], Moves]
 
 
-Method = Callable[[HalfEdgeMesh], tuple[np.ndarray, np.ndarray]]
-
-
-def _untangled(mesh: HalfEdgeMesh) -> tuple[np.ndarray, np.ndarray]:
+def _untangled(mesh: HalfEdgeMesh) -> Moves:
     found = untangling.untangle(mesh)
-    return found.vertices, found.positions
+    return found.vertices, found.positions, found.parameters
 
 
 METHODS: dict[str, Method] = {
@@ -141,15 +109,15 @@ METHODS: dict[str, Method] = {
 def _measured(mesh: HalfEdgeMesh) -> dict[str, Any]:
     row: dict[str, Any] = {
         "elements": mesh.n_elements,
-        "obstacle": not drawable(mesh, _domain(mesh)),
+        "obstacle": not drawable(mesh, Obstacles(mesh)),
         "as is": not len(quality.inverted(mesh)),
     }
     for name, method in METHODS.items():
         work = mesh.copy()
         begin = time.perf_counter()
-        vertices, positions = method(work)
+        moves = method(work)
         row[name + " ms"] = 1e3 * (time.perf_counter() - begin)
-        work.move(vertices, positions)
+        work.move(*moves)
         row[name] = not len(quality.inverted(work))
     return row
 

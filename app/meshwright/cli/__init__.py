@@ -3,8 +3,8 @@
 Neither this module nor the modules of the subcommands import heavy packages at their top: each
 imports what it needs when it runs, so that ``meshwright --help`` answers at once.
 
-Exit codes: 0 done; 1 internal error; 2 wrong use, bad input, or stopped by Ctrl-C; 141 stdout was
-closed by its reader.
+Exit codes: 0 done; 1 internal error; 2 wrong use, bad input, or stopped by Ctrl-C; 3 done, but
+elements that were inverted before still are; 141 stdout was closed by its reader.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ def _run(words: list[str], report: Report, interrupted: threading.Event) -> int:
         arguments = build_parser().parse_args(words)
         command: Command = COMMANDS[arguments.command]
         name = f"meshwright {arguments.command}"
-        command.run(arguments, report)
+        return command.run(arguments, report) or DONE
     except BrokenPipeError:
         _silence_stdout()
         return READER_GONE
@@ -171,7 +171,6 @@ def _run(words: list[str], report: Report, interrupted: threading.Event) -> int:
         )
         report.error(name, f"internal error: {type(error).__name__}: {error}{hint}")
         return BUG
-    return DONE
 
 
 def _interrupted(report: Report, name: str) -> int:

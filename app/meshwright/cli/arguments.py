@@ -36,7 +36,7 @@ def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
     from meshwright.sources import resolve
     from meshwright_core.io import file_checks, formats
 
-    with _bad_input(path):
+    with bad_input(path):
         found = resolve.resolve(Path(path), corner_angle=corner_angle)
         if not isinstance(found, Document) or found.mesh is None:
             with file_checks.naming(Path(path)):
@@ -56,24 +56,43 @@ def read_document(word: str, kind: str, corner_angle: float | None = None) -> Do
 
     if resolve.names_file(word):
         _require_file(word)
-    with _bad_input(word):
+    with bad_input(word):
         found = resolve.resolve(word, corner_angle=corner_angle)
     if isinstance(found, Document):
         return found
     return Document(make_mesh(found, kind), found.name or Path(word).stem)
 
 
-def read_domain(shape: str, corner_angle: float | None = None) -> Domain:
+def read_domain(
+    shape: str,
+    corner_angle: float | None = None,
+    curve_step: float | None = None,
+    region: str | None = None,
+    gap: float | None = None,
+    fit: str | None = None,
+) -> Domain:
     """Return the domain with this name in the gallery, or in this drawing.
 
     ``corner_angle`` in degrees: a point where the boundary turns by more is a corner.
+    ``curve_step``, ``region``, ``gap`` and ``fit`` as for
+    :func:`meshwright.sources.resolve.resolve`; they are for drawings.
     """
     from meshwright.sources import resolve
 
     if resolve.names_file(shape):
         _require_file(shape)
-    with _bad_input(shape):
-        return resolve.domain(shape, corner_angle=corner_angle)
+    for option, value in (("--region", region), ("--fit-arcs", fit)):
+        if value is not None and not resolve.names_file(shape):
+            raise UserError(f"{option}: this is for drawings, and {shape} is a name in the gallery")
+    with bad_input(shape):
+        return resolve.domain(
+            shape,
+            corner_angle=corner_angle,
+            curve_step=curve_step,
+            region=region,
+            gap=gap,
+            fit=fit,
+        )
 
 
 def make_mesh(
@@ -82,7 +101,7 @@ def make_mesh(
     """Return a mesh of the domain, or raise UserError if it cannot be meshed as requested."""
     from meshwright_core.domains import meshing
 
-    with _bad_input(domain.name or "the domain"):
+    with bad_input(domain.name or "the domain"):
         return meshing.mesh_domain(domain, kind, max_edge=max_edge, seed=seed)
 
 
@@ -110,7 +129,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
         name = shipped[0]
     elif looks_like_path(name):
         _require_file(name)
-    with _bad_input(name, policy_files.PolicyError):
+    with bad_input(name, policy_files.PolicyError):
         policy = policy_files.load(name)
         policy_files.require_kind(policy, kind, name)
     return policy
@@ -123,7 +142,7 @@ def read_configuration(path: str | None, kind: str) -> TrainingConfiguration:
     if path is not None:
         _require_file(path)
     source = path or str(trainer.shipped_configuration(kind))
-    with _bad_input(source, trainer.ConfigurationError):
+    with bad_input(source, trainer.ConfigurationError):
         configuration = trainer.read_configuration(source)
     found = configuration.task.kind
     if found != kind:
@@ -151,6 +170,14 @@ def seed(text: str) -> int:
     value = _int(text)
     if value < 0:
         raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least 0")
+    return value
+
+
+def length(text: str) -> float:
+    """Read a finite number of at least 0 from the command line."""
+    value = _float(text)
+    if not (value >= 0 and math.isfinite(value)):
+        raise argparse.ArgumentTypeError(f"{text} is not a number of at least 0")
     return value
 
 
@@ -204,7 +231,7 @@ def _require_file(path: str) -> None:
 
 
 @contextmanager
-def _bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
+def bad_input(name: str, *more: type[Exception]) -> Iterator[None]:
     """Turn a MeshError, or one of ``more``, into a UserError whose sentence names the input."""
     from meshwright_core.errors import MeshError
 

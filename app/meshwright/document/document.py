@@ -388,10 +388,18 @@ class Document:
         mesh = self._need()
         return self._do("untangle", "Untangle", -1, by, lambda: repair(mesh))
 
-    def move(self, vertices: np.ndarray, positions: np.ndarray, by: str = YOU) -> None:
-        """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step."""
+    def move(
+        self,
+        vertices: np.ndarray,
+        positions: np.ndarray,
+        by: str = YOU,
+        parameters: np.ndarray | None = None,
+    ) -> None:
+        """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step; ``parameters`` (n,) as in
+        :meth:`HalfEdgeMesh.move`.
+        """
         mesh = self._need()
-        self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions))
+        self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions, parameters))
 
     def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
         """Set the desired degree of one vertex or several (n,), as one step.

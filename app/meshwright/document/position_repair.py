@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry.movable_part import chosen, elements_at
 from meshwright_core.geometry.quality import inverted
-from meshwright_core.geometry.region import chosen, elements_at
 from meshwright_core.geometry.smoothing import relax, smooth
 from meshwright_core.geometry.untangling import untangle
 
@@ -19,7 +19,7 @@ def tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
     _move(mesh, *smooth(mesh, vertices.tolist()))
     if len(chosen(mesh, vertices.tolist()).inverted()):
         done = untangle(mesh, vertices.tolist())
-        _move(mesh, done.vertices, done.positions)
+        _move(mesh, done.vertices, done.positions, done.parameters)
 
 
 def repair(mesh: HalfEdgeMesh) -> tuple[int, int]:
@@ -50,6 +50,8 @@ def settle(mesh: HalfEdgeMesh) -> list[int]:
     return [int(row) for row in np.flatnonzero(np.isin(mesh.element_ids(), still_inverted))]
 
 
-def _move(mesh: HalfEdgeMesh, vertices: np.ndarray, positions: np.ndarray) -> None:
+def _move(
+    mesh: HalfEdgeMesh, vertices: np.ndarray, positions: np.ndarray, parameters: np.ndarray
+) -> None:
     if len(vertices):
-        mesh.move(vertices, positions)
+        mesh.move(vertices, positions, parameters)

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.geometry.outline import Outline
-from meshwright_core.geometry.quality import TOLERANCE, reference_normals
+from meshwright_core.geometry.quality import TOLERANCE, Measure
 
 CHUNK = 1 << 12
 """Elements measured at a time; the work can be cancelled in between."""
@@ -56,22 +55,17 @@ def summarise(
 
     The mesh must not change during the call: pass a copy to another thread.
     """
-    elements, ids = mesh.elements(), mesh.element_ids()
-    points = mesh.points
-    used = points if len(points) == mesh.n_vertices else points[mesh.vertices()]
-    normal = Outline.of(mesh).normal(used)
-    curved = reference_normals(points, elements) if normal is None else None
-    jacobian, angle = np.empty(len(elements)), np.empty(len(elements))
+    measure = Measure(mesh)
+    ids = measure.ids
+    jacobian, angle = np.empty(len(ids)), np.empty(len(ids))
     ideal = 1.0 if mesh.k == 4 else np.sqrt(0.75)
-    for first in range(0, len(elements), CHUNK):
+    for first in range(0, len(ids), CHUNK):
         if cancelled():
             return None
         part = slice(first, first + CHUNK)
-        reference = normal if curved is None else curved[part]
-        assert reference is not None
-        sine, cosine = _corners(points[elements[part]], reference)
-        jacobian[part] = sine.min(axis=1)
-        angle[part] = np.degrees(np.arctan2(sine, cosine)).min(axis=1)
+        corners = measure.of(part)
+        jacobian[part] = corners.sine.min(axis=1)
+        angle[part] = np.degrees(corners.angle).min(axis=1)
     sound = jacobian > TOLERANCE
     blocks = None
     if mesh.k == 4 and not cancelled():
@@ -86,27 +80,6 @@ def summarise(
         inverted=ids[~sound],
         blocks=blocks,
     )
-
-
-def _corners(p: np.ndarray, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Sine and cosine (m, k) at the corners of elements with corners ``p`` (m, k, 3).
-
-    The sine is negative where a corner turns clockwise seen against ``reference`` (3,) or (m, 3);
-    both are 0 at a side of no length.
-    """
-    forward = np.roll(p, -1, axis=1) - p
-    backward = np.roll(p, 1, axis=1) - p
-    if reference.ndim == 1 and not reference[:2].any():
-        area = forward[..., 0] * backward[..., 1] - forward[..., 1] * backward[..., 0]
-        area *= reference[2]
-    else:
-        across = np.cross(forward, backward)
-        area = np.einsum("ikj,ij->ik", across, np.broadcast_to(reference, (len(p), 3)))
-    along = np.einsum("ikj,ikj->ik", forward, backward)
-    squares = np.einsum("ikj,ikj->ik", forward, forward)
-    lengths = np.sqrt(squares * np.roll(squares, 1, axis=1))
-    lengths[lengths == 0.0] = np.inf
-    return area / lengths, along / lengths
 
 
 def _spread(

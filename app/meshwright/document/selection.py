@@ -9,7 +9,7 @@ import numpy as np
 
 from meshwright.signals import Signal
 from meshwright_core.core.arrays import HALF
-from meshwright_core.geometry.region import elements_at, rings
+from meshwright_core.geometry.movable_part import elements_at, rings
 
 if TYPE_CHECKING:
     from meshwright.document.document import Document

@@ -13,14 +13,15 @@ import numpy as np
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import FLAGS, GEOMETRIC, LOCKED
-from meshwright_core.geometry.outline import place_all
-from meshwright_core.geometry.quality import TOLERANCE, corner_sines, reference_normals
-from meshwright_core.geometry.region import elements_at
-from meshwright_core.geometry.sides import Sides
+from meshwright_core.core.composite_curves import curve_length, nearest_between
+from meshwright_core.geometry import movable_part
+from meshwright_core.geometry.edge_curves import points_of_edge
 
 KEPT = 0.02
 """Distance that a sliding vertex keeps from its neighbours, as a fraction of their distance."""
 CORNER = "A corner keeps its position: free it in its menu first."
+PIECES = np.linspace(0.0, 1.0, 17)
+"""Places of the ends of the segments that stand for a curved edge."""
 LOCK = "This vertex is locked: unlock it in its menu first."
 
 
@@ -36,79 +37,79 @@ class Drag:
     """One drag of ``vertices``, of which ``grabbed`` is under the mouse.
 
     Corners and locked vertices among them stay. Attributes: ``vertices`` (n,) ids of those that
-    move, ``places`` (n, 3) where they are now.
+    move.
     """
 
     def __init__(self, mesh: HalfEdgeMesh, vertices: Sequence[int], grabbed: int) -> None:
         ids = np.unique(np.asarray(vertices, np.int64))
         flags = mesh.arrays.vertex[ids, FLAGS]
         self.vertices = ids[(flags & (GEOMETRIC | LOCKED)) == 0]
-        self._start = mesh.points[self.vertices].copy()
-        self.places = self._start.copy()
+        self._mesh = mesh
+        self._part = movable_part.around(mesh, self.vertices)
+        self._rows = np.searchsorted(self._part.vertices, self.vertices)
+        self._start = self._part.points[self._rows].copy()
         self._origin = mesh.points[grabbed].copy()
-        self._slides = np.flatnonzero(mesh.boundary()[self.vertices])
-        self._sides = Sides(mesh, self.vertices[self._slides]) if len(self._slides) else None
-        self._parameters: dict[int, np.ndarray] = {}
-        self._measure(mesh)
-
-    def _measure(self, mesh: HalfEdgeMesh) -> None:
-        """Collect the surrounding elements in small arrays with local indices."""
-        self._elements = elements_at(mesh, self.vertices)
-        near, local = np.unique(mesh.corners(self._elements), return_inverse=True)
-        self._corners = local.reshape(-1, mesh.k)
-        self._points = mesh.points[near].copy()
-        self._rows = np.searchsorted(near, self.vertices)
-        moves = np.zeros(len(near), bool)
-        moves[self._rows] = True
-        a, b = self._corners.ravel(), np.roll(self._corners, -1, axis=1).ravel()
+        elements = self._part.elements
+        a, b = elements.ravel(), np.roll(elements, -1, axis=1).ravel()
         pairs = np.column_stack([np.minimum(a, b), np.maximum(a, b)])
-        self._edges = np.unique(pairs[moves[pairs].any(axis=1)], axis=0)
-        flat = np.ptp(self._points[:, 2]) == 0.0 if len(near) else True
-        normal = np.array([0.0, 0.0, 1.0]) if flat else None
-        self._reference = reference_normals(self._points, self._corners, normal)
-        if flat and len(near):
-            areas = corner_sines(self._points, self._corners, self._reference).sum()
-            self._reference *= 1.0 if areas >= 0 else -1.0
+        moving = self._part.movable[pairs].any(axis=1)
+        # each edge once, with the number of its curve where it bends
+        self._edges, first = np.unique(pairs[moving], axis=0, return_index=True)
+        curved = self._part.curved
+        sides = np.full(elements.shape, -1, np.int64)
+        sides[curved.element] = curved.sides
+        side = sides.ravel()[moving][first]
+        self._bent = np.column_stack([a[moving][first], b[moving][first], side])[side >= 0]
+        self._edges = self._edges[side < 0]
 
     def to(self, x: float, y: float) -> None:
         """Move the grabbed vertex to (x, y), and the others with it."""
         step = np.array([x - self._origin[0], y - self._origin[1], 0.0])
-        self.places = self._start + step
-        for row in self._slides.tolist():
-            self.places[row] = self._on_side(row)
-        self._points[self._rows] = self.places
+        self._part.points[self._rows] = self._start + step
+        for i in self._rows.tolist():
+            if self._part.seats.curve[i] >= 0:
+                self._part.seats.parameter[i] = self._nearest(i, self._part.points[i])
+        self._part.settle()
 
-    def _on_side(self, row: int) -> np.ndarray:
-        """The position of a sliding vertex: on its side, between its neighbours."""
-        assert self._sides is not None
-        vertex = int(self.vertices[row])
-        side, seat = self._sides.seat(vertex)
-        _, wanted = self._sides.project(vertex, self.places[row])
-        low, high = self._room(side, seat)
-        length = self._sides.length(side)
-        if self._sides.polylines.closed[side]:
-            middle = 0.5 * (low + high)
-            wanted += length * np.round((middle - wanted) / length)
-        at = float(np.clip(wanted, low, high))
-        return np.asarray(place_all(self._sides.polylines, np.array([side]), np.array([at]))[0])
+    def _nearest(self, i: int, goal: np.ndarray) -> float:
+        """The parameter of a sliding vertex nearest to ``goal``, between its neighbours."""
+        part, seats = self._part, self._part.seats
+        curve = int(seats.curve[i])
+        goal = goal - seats.offset[i] - seats.parameter[i] * seats.slope[i]
+        low, high = self._room(i)
+        length = float(curve_length(part.curves, curve))
+        best, found = np.inf, low
+        # on closed curves the room may lie before the start or beyond the end
+        for shift in (-length, 0.0, length) if part.curves.closed[curve] else (0.0,):
+            start, stop = max(low - shift, 0.0), min(high - shift, length)
+            if start > stop:
+                continue
+            t, away = nearest_between(part.curves, curve, goal, start, stop)
+            if away < best:
+                best, found = away, float(np.clip(t + shift, low, high))
+        return found
 
-    def _room(self, side: int, seat: int) -> tuple[float, float]:
-        """The range of arc length for a vertex; half-way to a neighbour that moves too."""
-        assert self._sides is not None
-        if side not in self._parameters:
-            self._parameters[side] = self._sides.parameters(side)
-        t = self._parameters[side]
-        closed = bool(self._sides.polylines.closed[side])
-        length, count = self._sides.length(side), len(t)
-        here, chain = float(t[seat]), self._sides.chains[side]
+    def _room(self, i: int) -> tuple[float, float]:
+        """The range of the parameter of a vertex; half-way to a neighbour that moves too."""
+        seats, home = self._part.seats, self._part.home
         bounds = []
-        for step in (-1, 1):
-            turns, other = divmod(seat + step, count) if closed else (0, seat + step)
-            there = float(t[other]) + turns * length
-            share = 0.5 if int(chain[other]) in self.vertices else 1.0
-            bounds.append(here + share * (there - here))
+        for neighbours, bound in ((seats.before, seats.low), (seats.after, seats.high)):
+            other = int(neighbours[i])
+            there = float(bound[i]) + (float(home[other]) if other >= 0 else 0.0)
+            bounds.append(there if other < 0 else 0.5 * (there + float(home[i])))
         margin = KEPT * (bounds[1] - bounds[0])
         return bounds[0] + margin, bounds[1] - margin
+
+    @property
+    def places(self) -> np.ndarray:
+        """(n, 3) where the vertices are now."""
+        return self._part.points[self._rows]
+
+    @property
+    def parameters(self) -> np.ndarray:
+        """(n,) the parameters there of those on curves, as :meth:`HalfEdgeMesh.move` takes them."""
+        found: np.ndarray = self._part.parameters(self._mesh)[self._rows]
+        return found
 
     @property
     def moved(self) -> bool:
@@ -117,14 +118,20 @@ class Drag:
 
     @property
     def segments(self) -> np.ndarray:
-        """(m, 2, 2) the moving edges at their present positions."""
-        segments: np.ndarray = self._points[self._edges][:, :, :2]
+        """(m, 2, 2) the moving edges at their present positions; curved ones in many pieces."""
+        points, curved = self._part.points, self._part.curved
+        found = [points[self._edges]]
+        for a, b, side in self._bent.tolist():
+            span = curved.base[side] + curved.parameter[[a, b]]
+            ends = points[[a, b]]
+            line = points_of_edge(curved.curves, int(curved.curve[side]), span, ends, PIECES)
+            found.append(np.stack([line[:-1], line[1:]], axis=1))
+        segments: np.ndarray = np.concatenate(found)[:, :, :2]
         return segments
 
     @property
     def folded(self) -> np.ndarray:
         """(f, k, 2) the corners of the elements that would be inverted."""
-        sines = corner_sines(self._points, self._corners, self._reference)
-        bad = sines.min(axis=1) <= TOLERANCE if len(sines) else np.zeros(0, bool)
-        corners: np.ndarray = self._points[self._corners[bad]][:, :, :2]
+        bad = self._part.inverted_rows()
+        corners: np.ndarray = self._part.points[self._part.elements[bad]][:, :, :2]
         return corners

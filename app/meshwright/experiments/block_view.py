@@ -10,13 +10,14 @@ import numpy as np
 from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh
 from meshwright.experiments.picture import Picture, ThemedFigureOptions
 from meshwright.graphics.drawing import Disc, Drawing, Polygon, Segments, Text, text_width
-from meshwright.graphics.mesh_figure import figure
+from meshwright.graphics.mesh_figure import below_edges, figure
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.analysis.block_grids import Grid, grids
 from meshwright_core.analysis.blocks import separatrices
-from meshwright_core.core.arrays import ORIGIN, TWIN
+from meshwright_core.core.arrays import TWIN
+from meshwright_core.geometry.true_edges import TrueEdges
 
 SIZE = 480
 FOOT = 40.0
@@ -80,8 +81,10 @@ class BlockView(Picture):
         view = Viewport(size=size).fitted(mesh.points[mesh.vertices()], MARGIN)
         picture = figure(mesh, options, None, view)
         drawing = Drawing((SIZE, round(tall + FOOT)), theme.background, repr(self))
-        drawing.add(*self._tints(theme, view), *picture.shapes[1:2], self._lines(theme, view))
-        drawing.add(*picture.shapes[2:])
+        true = TrueEdges(mesh, view.tolerance)
+        edges = below_edges(picture)
+        drawing.add(*self._tints(theme, view, true), picture.shapes[edges])
+        drawing.add(self._lines(theme, view, true), *picture.shapes[edges + 1 :])
         single = all(grid.elements.size == 1 for grid in self.grids)
         for i, grid in enumerate(self.grids, 1):
             words = str(i) if single else _size(grid)
@@ -96,18 +99,14 @@ class BlockView(Picture):
         )  # fmt: skip
         return drawing
 
-    def _tints(self, theme: Theme, view: Viewport) -> list[Polygon]:
-        tints = (theme.fill, theme.accent_soft, theme.pressed, theme.warning_soft)
+    def _tints(self, theme: Theme, view: Viewport, true: TrueEdges) -> list[Polygon]:
+        tints = theme.tints
         chosen = self._chosen(len(tints))
-        points = self.mesh.points
-        shapes = []
-        for grid, tint in zip(self.grids, chosen, strict=True):
-            v = grid.vertices
-            quads = np.stack([v[:-1, :-1], v[:-1, 1:], v[1:, 1:], v[1:, :-1]], axis=-1)
-            shapes += [
-                Polygon(view.to_screen(points[quad]), tints[tint]) for quad in quads.reshape(-1, 4)
-            ]
-        return shapes
+        return [
+            Polygon(view.to_screen(outline), tints[tint])
+            for grid, tint in zip(self.grids, chosen, strict=True)
+            for outline in true.outlines(grid.elements.ravel())
+        ]
 
     def _chosen(self, tints: int) -> list[int]:
         """The index of a tint for each block, different from its neighbours' where possible."""
@@ -124,12 +123,10 @@ class BlockView(Picture):
             chosen.append(free[0] if free else i % tints)
         return chosen
 
-    def _lines(self, theme: Theme, view: Viewport) -> Segments:
+    def _lines(self, theme: Theme, view: Viewport, true: TrueEdges) -> Segments:
         """The edges between blocks."""
-        h = np.flatnonzero(self._cut)
-        ends = self.mesh.arrays.edge[:, ORIGIN]
-        pairs = np.column_stack([ends[h], ends[h - h % 4 + (h + 1) % 4]])
-        return Segments(view.to_screen(self.mesh.points[pairs]), theme.accent, 3.0)
+        pieces = true.pieces(np.flatnonzero(self._cut))
+        return Segments(view.to_screen(pieces), theme.accent, 3.0)
 
     def _middle(self, grid: Grid) -> np.ndarray:
         """Where the label goes, in the plane: near the middle of the block."""

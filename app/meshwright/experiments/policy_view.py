@@ -14,12 +14,14 @@ from meshwright.experiments.rollouts import known_policy, require_kind
 from meshwright.experiments.template_figure import template_figure
 from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Text
 from meshwright.graphics.markers import label
+from meshwright.graphics.mesh_figure import below_edges
 from meshwright.graphics.theme import LIGHT, Theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.arguments import whole_number
 from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.errors import sentence
+from meshwright_core.geometry.true_edges import TrueEdges
 from meshwright_core.operations.catalogue import CATALOGUE, Operation
 
 if TYPE_CHECKING:
@@ -206,8 +208,10 @@ class PolicyView(Picture):
         view = Viewport(size=MESH).fitted(window, MARGIN + 16.0)
         drawing = thumbnail(mesh, MESH, theme, _box(view))
         screen = view.to_screen(corners)
-        tints = [Polygon(one, theme.accent_soft) for one in screen]
-        drawing.shapes[1:1] = tints
+        outlines = TrueEdges(mesh, view.tolerance).outlines(self.field[:, 0])
+        tints = [Polygon(view.to_screen(outline), theme.accent_soft) for outline in outlines]
+        edges = below_edges(drawing)
+        drawing.shapes[edges:edges] = tints
         for one, block in zip(screen, self.field[:, 1].tolist(), strict=True):
             x, y = one.mean(axis=0).tolist()
             if block:

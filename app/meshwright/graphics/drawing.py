@@ -14,7 +14,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-SAMPLES = 3
+SAMPLES = 4
 """Images are drawn at this many times their size and scaled down, for smooth lines."""
 FAMILIES = "'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif"
 MIDDLE = 0.36

@@ -6,17 +6,29 @@ Pictures and films consist of figures; the window draws the same things in the s
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import cycle
 
 import numpy as np
 
 from meshwright.document import score_series
-from meshwright.graphics.drawing import Area, Disc, Drawing, Line, Segments, Square, Text, hatching
+from meshwright.graphics.drawing import (
+    Area,
+    Disc,
+    Drawing,
+    Line,
+    Segments,
+    Square,
+    Text,
+    hatching,
+    text_width,
+)
 from meshwright.graphics.markers import READABLE, Markers, label, markers
 from meshwright.graphics.theme import Theme, theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ORIGIN, TWIN
 from meshwright_core.geometry import quality
+from meshwright_core.geometry.true_edges import TrueEdges
 
 REFERENCE = 800.0
 """Lines and letters have their nominal size in a figure whose shorter side has these pixels."""
@@ -25,6 +37,8 @@ HEAD, FOOT = 64.0, 112.0
 MARGIN = 24.0
 MOST_INVERTED = 500
 """The most inverted elements that are hatched."""
+INTERFACE = 0.7
+"""Width of the line between two regions, relative to that of the boundary."""
 
 
 @dataclass(frozen=True)
@@ -107,24 +121,39 @@ def figure(
     colours, unit = options.palette, _unit(options)
     drawing = Drawing(options.size, colours.background, summary(mesh))
     marks = markers(mesh)
-    pairs = edges(mesh)
-    drawing.add(Area([view.to_screen(loop) for loop in marks.loops], colours.fill))
+    true = TrueEdges(mesh, view.tolerance)
+    rims = true.rims()
+    width = _edge_width(mesh, true, view, unit)
+    drawing.add(*_fills(true, rims, view, colours))
     if options.changes and moment is not None and len(moment.removed):
         gone = view.to_screen(moment.removed)
         drawing.add(Segments(gone, colours.faint, 1.3 * unit, dash=5.0 * unit))
-    width = _edge_width(mesh, pairs, view, unit)
-    drawing.add(Segments(view.to_screen(mesh.points[pairs]), colours.edge, width))
+    drawing.add(edge_lines(true, view, colours.edge, width))
     if options.changes and moment is not None and len(moment.added):
         drawing.add(Segments(view.to_screen(moment.added), colours.accent, 2.6 * unit))
-    _add_inverted(drawing, mesh, view, colours, unit)
-    for loop in marks.loops:
-        drawing.add(Line(view.to_screen(loop), colours.boundary, max(2.0 * unit, 1.3 * width)))
+    _add_inverted(drawing, mesh, true, view, colours, unit)
+    thick = max(2.0 * unit, 1.3 * width)
+    for line in true.interfaces():
+        drawing.add(Line(view.to_screen(line), colours.boundary, INTERFACE * thick))
+    for rim in rims:
+        drawing.add(Line(view.to_screen(_ring(true.chained(rim))), colours.boundary, thick))
     _add_markers(drawing, marks, view, colours, unit, options.numbers)
     if options.score:
         _add_head(drawing, mesh, moment, colours, unit)
+        _add_legend(drawing, mesh, moment, colours, unit)
     if moment is not None and _has_curve(options, moment):
         _add_curve(drawing, moment, colours, unit)
     return drawing
+
+
+def below_edges(drawing: Drawing) -> int:
+    """The number of shapes of a figure that lie below the edges: the fills."""
+    return next(i for i, shape in enumerate(drawing.shapes) if not isinstance(shape, Area))
+
+
+def edge_lines(true: TrueEdges, view: Viewport, colour: str, width: float) -> Segments:
+    """All edges, along their curves."""
+    return Segments(view.to_screen(true.pieces(true.once())), colour, width)
 
 
 def summary(mesh: HalfEdgeMesh) -> str:
@@ -146,8 +175,24 @@ def _has_curve(options: FigureOptions, moment: HistoryMoment | None) -> bool:
     return options.curve and moment is not None and len(moment.scores) > 1
 
 
-def _edge_width(mesh: HalfEdgeMesh, pairs: np.ndarray, view: Viewport, unit: float) -> float:
+def _fills(true: TrueEdges, rims: list[np.ndarray], view: Viewport, colours: Theme) -> list[Area]:
+    """The area of the mesh, or those of its regions in different tints."""
+    loops = [rims]
+    if true.region_count > 1:
+        loops = [true.rims(region) for region in range(true.region_count)]
+    return [
+        Area([view.to_screen(true.chained(rim)) for rim in around], tint)
+        for around, tint in zip(loops, cycle(colours.tints), strict=False)
+    ]
+
+
+def _ring(points: np.ndarray) -> np.ndarray:
+    return np.vstack([points, points[:1]])
+
+
+def _edge_width(mesh: HalfEdgeMesh, true: TrueEdges, view: Viewport, unit: float) -> float:
     """Line width of edges in pixels: thinner where edges are short."""
+    pairs = true.ends(true.once())
     if len(pairs) == 0:
         return unit
     some = mesh.points[pairs[:: max(1, len(pairs) // 2000)], :2]
@@ -156,15 +201,20 @@ def _edge_width(mesh: HalfEdgeMesh, pairs: np.ndarray, view: Viewport, unit: flo
 
 
 def _add_inverted(
-    drawing: Drawing, mesh: HalfEdgeMesh, view: Viewport, colours: Theme, unit: float
+    drawing: Drawing,
+    mesh: HalfEdgeMesh,
+    true: TrueEdges,
+    view: Viewport,
+    colours: Theme,
+    unit: float,
 ) -> None:
     """Hatch inverted elements, which solvers do not accept."""
     ids = quality.inverted(mesh)[:MOST_INVERTED]
     if len(ids) == 0:
         return
-    corners = view.to_screen(mesh.points[mesh.corners(ids)])
-    lines = np.concatenate([hatching(one, 6.0 * unit) for one in corners])
-    rims = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)
+    outlines = [view.to_screen(outline) for outline in true.outlines(ids)]
+    lines = np.concatenate([hatching(one, 6.0 * unit) for one in outlines])
+    rims = np.concatenate([np.stack([one, np.roll(one, -1, 0)], 1) for one in outlines])
     drawing.add(Segments(lines, colours.warning, 0.9 * unit))
     drawing.add(Segments(rims, colours.warning, 1.5 * unit))
 
@@ -209,6 +259,37 @@ def _add_head(
     words = "at the optimum" if solved else f"optimum {mesh.optimum:,}"
     colour = colours.accent if solved else colours.muted
     drawing.add(Text(words, (right, second), 13.5 * unit, colour, "right", solved))
+
+
+def _add_legend(
+    drawing: Drawing, mesh: HalfEdgeMesh, moment: HistoryMoment | None, colours: Theme, unit: float
+) -> None:
+    """The names of several regions, each beside its tint, in the second line of the head."""
+    names = mesh.region_names
+    if len(names) < 2:
+        return
+    size, y, gap = 13.5 * unit, 48.0 * unit, 16.0 * unit
+    left = MARGIN * unit
+    if moment is not None and moment.detail:
+        left += text_width(moment.detail, size) + 1.5 * gap
+    room = drawing.size[0] - (MARGIN + 150.0) * unit
+    tints = cycle(colours.tints)
+    for number, (name, tint) in enumerate(zip(names, tints, strict=False), start=1):
+        words = name or f"region {number}"
+        width = 17.0 * unit + text_width(words, size)
+        last = number == len(names)
+        if left + width + (0.0 if last else 5.0 * gap) > room:
+            words = f"and {len(names) - number + 1:,} more"
+            drawing.add(Text(words, (left, y), size, colours.muted))
+            return
+        half = 5.5 * unit
+        place = (left + half, y)
+        drawing.add(
+            Square(place, half, colours.boundary),
+            Square(place, half - 1.0 * unit, tint),
+            Text(words, (left + 17.0 * unit, y), size, colours.muted),
+        )
+        left += width + gap
 
 
 def _add_curve(drawing: Drawing, moment: HistoryMoment, colours: Theme, unit: float) -> None:

@@ -45,6 +45,11 @@ class Theme:
     warning: str
     warning_soft: str
 
+    @property
+    def tints(self) -> tuple[str, ...]:
+        """Pale fills of neighbouring areas, by which regions and blocks differ."""
+        return self.fill, self.accent_soft, self.warning_soft, self.pressed
+
 
 LIGHT = Theme(
     name="light",

@@ -25,6 +25,11 @@ class Viewport:
         """Half the height of the view in units of length, the parallel scale of a VTK camera."""
         return self.size[1] / (2.0 * self.pixels)
 
+    @property
+    def tolerance(self) -> float:
+        """Units of length by which a drawn line may be away from its curve: a tenth of a pixel."""
+        return 0.1 / self.pixels
+
     def to_screen(self, points: np.ndarray) -> np.ndarray:
         """Pixels (n, 2) of ``points`` (n, 2 or 3)."""
         points = np.asarray(points, dtype=float)

@@ -48,6 +48,9 @@ def resolve(
     *,
     corner_angle: float | None = None,
     curve_step: float | None = None,
+    region: str | None = None,
+    gap: float | None = None,
+    fit: str | None = None,
 ) -> Document | Domain:
     """The document or the domain that a source means.
 
@@ -58,8 +61,12 @@ def resolve(
         name: name of a new document; by default that of the file.
         corner_angle: degrees by which the boundary of a mesh file or drawing must turn at a
             corner; None for the default, 0.01.
-        curve_step: degrees by which a polyline that replaces a curve of a drawing turns at each
-            point, at most; None for the default, 15.
+        curve_step: degrees that an edge of a mesh turns along a curve of a drawing, at most; None
+            for as much as the shape allows.
+        region: names or numbers of regions of a drawing, separated by commas, or ``"all"``; None
+            for all of them if they touch.
+        gap: width of gaps of a drawing that are closed, in its units; None for 0.001 of its size.
+        fit: ``"arcs"`` or ``"splines"`` that are to be found in polylines of a drawing.
 
     Returns a domain for a gallery shape, a drawing, a polygon and a domain, else a document.
 
@@ -72,7 +79,8 @@ def resolve(
     if isinstance(source, HalfEdgeMesh):
         return Document(source, name)
     if names_file(source):
-        return _read(Path(source), name, corner_angle, curve_step)
+        found = document_file.read(Path(source), corner_angle, curve_step, region, gap, fit)
+        return _opened(found, name) if isinstance(found, DocumentState) else found
     from meshwright_core.domains import gallery
     from meshwright_core.domains.domain import Domain
 
@@ -145,28 +153,35 @@ def document(source: Any, kind: str | None = None, name: str = "") -> Document:
     return found
 
 
-def domain(source: Any, *, corner_angle: float | None = None) -> Domain:
+def domain(
+    source: Any,
+    *,
+    corner_angle: float | None = None,
+    curve_step: float | None = None,
+    region: str | None = None,
+    gap: float | None = None,
+    fit: str | None = None,
+) -> Domain:
     """The domain that a source means: a gallery shape, a drawing, a polygon or a domain.
+
+    Arguments as for :func:`resolve`.
 
     Raises MeshError, one sentence, for any other source.
     """
     if names_file(source) and not document_file.is_drawing(source):
         raise MeshError(f"{source}: a file of a shape ends in one of {' '.join(SHAPES)}.")
-    found = resolve(source, corner_angle=corner_angle)
+    found = resolve(
+        source, corner_angle=corner_angle, curve_step=curve_step, region=region, gap=gap, fit=fit
+    )
     if isinstance(found, Document):
         raise MeshError("This is a mesh, not a shape that can be meshed.")
     return found
 
 
-def _read(
-    path: Path, name: str, corner_angle: float | None, curve_step: float | None
-) -> Document | Domain:
-    """The document in a mesh file or project, or the domain in a drawing."""
-    found = document_file.read(path, corner_angle, curve_step)
-    if not isinstance(found, DocumentState):
-        return found
+def _opened(state: DocumentState, name: str) -> Document:
+    """The document in a mesh file or project."""
     opened = Document()
-    opened.adopt(replace(found, name=name or found.name))
+    opened.adopt(replace(state, name=name or state.name))
     return opened
 
 

@@ -38,7 +38,6 @@ from meshwright_core.operations.catalogue import Operation
 
 Result = TypeVar("Result")
 
-_WRITE_KINDS = 1 + journal.LIST_WRITE
 _ENTRIES = 1024
 """Room for journal entries at the first attempt."""
 
@@ -153,7 +152,7 @@ def _make_room(mesh: HalfEdgeMesh, vertices: int, elements: int) -> None:
 def _read(aside: MeshArrays, operation: Operation, h: int, change: int) -> DryRun:
     """Undo the operation and compare the states before and after it."""
     entries = aside.journal[: aside.counters[JOURNAL_TOP], 0]
-    index, kind = entries // _WRITE_KINDS, entries % _WRITE_KINDS
+    index, kind = entries // journal.WRITE_KINDS, entries % journal.WRITE_KINDS
     k = int(aside.counters[SIDES])
     elements = np.unique(index[kind == journal.EDGE_WRITE] // (2 * k))
     vertices = np.unique(index[kind == journal.VERTEX_WRITE] // VERTEX_COLUMNS)

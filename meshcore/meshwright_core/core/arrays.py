@@ -4,8 +4,8 @@ Layout
 ------
 Every element has k sides, k = 3 or 4. Element e owns the half-edges k*e ... k*e+k-1 in
 counter-clockwise order, so that *next* and *previous* are arithmetic, and the paper's *cycle* a
-reshape (section 4.2). Everything lives in nine arrays (:class:`MeshArrays`) that compiled kernels
-take as one argument; the rows of one vertex, and of one element, share a cache line.
+reshape (section 4.2). Everything lives in a few arrays (:class:`MeshArrays`) that compiled kernels
+take as one argument; the rows of one vertex share a cache line.
 
 Invariants of live slots
 ------------------------
@@ -22,6 +22,18 @@ Invariants of live slots
    ``vertex[v, PLACE]`` is its place there, -1 for regular vertices.
 7. ``counters`` holds the counts and sums that the names of its indices stand for.
 8. ``vertex[:, MARK]`` and ``element_mark`` are zero between calls (scratch of the checks).
+9. An edge is *constrained* if its two elements have different regions. The vertices of boundary and
+   constrained edges have ``vertex[v, CURVE]`` >= 0, all others -1 and parameter 0.
+10. The vertices of a boundary loop lie on one closed curve of their own. Their parameters, in
+    [0, length), increase along the loop, once around; the domain is on the left of the curve.
+11. The constrained edges between the two regions of an interface form one chain, from its start to
+    its end vertex or closed, on which the parameters increase with the left region on the left. A
+    vertex whose curve edges are not two of one curve is a *junction*: it is geometric, and every
+    interface at it starts or ends there; its own curve is a boundary loop if it lies on one.
+
+A position is no invariant: a vertex lies at ``parameter`` of its curve to within rounding until
+someone moves it off (:meth:`meshwright_core.mesh.HalfEdgeMesh.move`), and its parameter then says
+which point of the curve it stands for.
 
 Dead slots are chained: an element through ``edge[k*e, TWIN]`` with all origins -1; a vertex v
 through ``vertex[v, HALF]`` = -2 - (next dead vertex). A dead vertex has degree and desired degree
@@ -35,15 +47,18 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.composite_curves import Curves, no_curves
 from meshwright_core.core.references import by_reference
 
 # columns of MeshArrays.edge
 ORIGIN, TWIN = 0, 1
 # columns of MeshArrays.vertex
-HALF, DEGREE, DESIRED, FLAGS, PLACE, MARK = 0, 1, 2, 3, 4, 5
+HALF, DEGREE, DESIRED, FLAGS, PLACE, MARK, CURVE = 0, 1, 2, 3, 4, 5, 6
 VERTEX_COLUMNS = 8  # 32 bytes: half a cache line
 # bits of vertex[:, FLAGS]
 GEOMETRIC, LOCKED = 1, 2
+# columns of MeshArrays.interface
+LEFT, RIGHT, START, END = 0, 1, 2, 3
 # counters that an undo restores
 VERTEX_SLOTS, ELEMENT_SLOTS, VERTICES, ELEMENTS, BOUNDARY_EDGES = 0, 1, 2, 3, 4
 FREE_VERTEX, FREE_ELEMENT, SCORE, DELTA_SUM, IRREGULAR = 5, 6, 7, 8, 9
@@ -65,7 +80,8 @@ class MeshArrays(NamedTuple):
     edge: np.ndarray
     """(H, 2) int32: origin, twin."""
     vertex: np.ndarray
-    """(V, 8) int32: a half-edge, degree, desired degree, flags, place among the irregular, mark."""
+    """(V, 8) int32: a half-edge, degree, desired degree, flags, place among the irregular, mark,
+    curve."""
     points: np.ndarray
     """(V, 3) float64: coordinates."""
     irregular: np.ndarray
@@ -80,12 +96,24 @@ class MeshArrays(NamedTuple):
     """(J, 2) int64: place and former value of each write."""
     steps: np.ndarray
     """(S, 14) int64: one row for each undoable step."""
+    parameter: np.ndarray
+    """(V,) float64: where on its curve a vertex lies; 0 for those on none."""
+    region: np.ndarray
+    """(E,) int32: the region of each element."""
+    curves: Curves
+    """Boundary loops and interfaces; never written, and shared by copies."""
+    interface: np.ndarray
+    """(n, 4) int32: for each curve left and right region, start and end vertex; all -1 for boundary
+    loops, the vertices -1 for interfaces without junction. Never written, and shared by copies."""
 
 
 def allocate(
     k: int, vertices: int, elements: int, journal: int = 1024, steps: int = 64
 ) -> MeshArrays:
-    """Empty arrays with room for `vertices` and `elements` slots, journal entries and steps."""
+    """Empty arrays with room for `vertices` and `elements` slots, journal entries and steps.
+
+    They hold no curve: edits put new vertices in the middle of straight edges.
+    """
     arrays = MeshArrays(
         edge=np.full((k * elements, 2), -1, np.int32),
         vertex=np.zeros((vertices, VERTEX_COLUMNS), np.int32),
@@ -96,13 +124,22 @@ def allocate(
         counters=np.zeros(COUNTERS, np.int64),
         journal=np.zeros((journal, 2), np.int64),
         steps=np.zeros((steps, STEP_COLUMNS), np.int64),
+        parameter=np.zeros(vertices),
+        region=np.zeros(elements, np.int32),
+        curves=no_curves(),
+        interface=np.zeros((0, 4), np.int32),
     )
-    arrays.vertex[:, PLACE] = -1
-    arrays.vertex[:, HALF] = -1
+    arrays.vertex[:, (PLACE, HALF, CURVE)] = -1
     arrays.counters[FREE_VERTEX] = arrays.counters[FREE_ELEMENT] = -1
     arrays.counters[SIDES] = k
     arrays.counters[JOURNALLING] = 1
     return arrays
+
+
+def copied(arrays: MeshArrays) -> MeshArrays:
+    """The same mesh and history in arrays of its own; only the curves are shared."""
+    own = {name: getattr(arrays, name).copy() for name in MeshArrays._fields[:-2]}
+    return MeshArrays(**own, curves=arrays.curves, interface=arrays.interface)
 
 
 def copy_rows(source: np.ndarray, length: int, fill: int) -> np.ndarray:
@@ -125,8 +162,7 @@ def enlarge(
     vertices = max(vertices, len(arrays.vertex))
     elements = max(elements, len(arrays.element_mark))
     vertex = copy_rows(arrays.vertex, vertices, 0)
-    vertex[len(arrays.vertex) :, PLACE] = -1
-    vertex[len(arrays.vertex) :, HALF] = -1
+    vertex[len(arrays.vertex) :, (PLACE, HALF, CURVE)] = -1
     return MeshArrays(
         edge=copy_rows(arrays.edge, k * elements, -1),
         vertex=vertex,
@@ -137,6 +173,10 @@ def enlarge(
         counters=arrays.counters,
         journal=copy_rows(arrays.journal, max(journal, len(arrays.journal)), 0),
         steps=copy_rows(arrays.steps, max(steps, len(arrays.steps)), 0),
+        parameter=copy_rows(arrays.parameter, vertices, 0),
+        region=copy_rows(arrays.region, elements, 0),
+        curves=arrays.curves,
+        interface=arrays.interface,
     )
 
 
@@ -173,6 +213,26 @@ def opposite(h):
 def on_boundary(m, v):
     """Whether the live vertex v lies on the boundary (invariant 4)."""
     return m.edge[m.vertex[v, HALF], TWIN] < 0
+
+
+@bare_kernel
+def on_curve(m, v):
+    """Whether v lies on the boundary or on the interface of two regions (invariant 9)."""
+    return m.vertex[v, CURVE] >= 0
+
+
+@bare_kernel
+def constrained(m, h, k):
+    """Whether the edge of h lies on the interface of two regions."""
+    t = m.edge[h, TWIN]
+    return t >= 0 and m.region[h // k] != m.region[t // k]
+
+
+@bare_kernel
+def along_curve(m, h, k):
+    """Whether the edge of h lies on the boundary or on the interface of two regions."""
+    t = m.edge[h, TWIN]
+    return t < 0 or m.region[h // k] != m.region[t // k]
 
 
 @bare_kernel

@@ -22,6 +22,8 @@ from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
 
 _GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)
+SHORTEST = 1e-12
+"""Least extent of the parameter on a span of a polyline, relative to its length."""
 _TRIALS = 8
 """Intervals of a curved span that are searched for the nearest point."""
 
@@ -132,6 +134,32 @@ def place_on(curves, curve, t, point, tangent):
         tangent[c] /= extent
         if inside != t:
             point[c] += (t - inside) * tangent[c]
+
+
+@bare_kernel
+def span_and_share(curves, curve, t):
+    """The span of a curve at t, and the place u in [0, 1] there; t beyond an open end: the end."""
+    length = curve_length(curves, curve)
+    if curves.closed[curve] and (t < 0.0 or t > length):
+        t -= np.floor(t / length) * length
+    inside = min(max(t, 0.0), length)
+    span = span_at(curves, curve, inside)
+    return span, (inside - curves.start[span]) / (curves.stop[span] - curves.start[span])
+
+
+@bare_kernel
+def coordinate_in_span(curves, span, u, c):
+    """Coordinate c of the point at u of a span: that of :func:`place_in_span` to the bit."""
+    first = curves.first_control[span]
+    degree = curves.first_control[span + 1] - first - 1
+    control = curves.control
+    if degree == 1:
+        step = control[first + 1, c] - control[first, c]
+        if u <= 0.5:
+            return control[first, c] + u * step
+        return control[first + 1, c] - (1.0 - u) * step
+    v = 1.0 - u
+    return _bernstein(control, first, degree, u, v, c) / _bernstein(control, first, degree, u, v, 3)
 
 
 @kernel
@@ -291,12 +319,16 @@ def joined_curves(chains: Sequence[Sequence[np.ndarray]], closed: Sequence[bool]
 def polyline_curves(polylines: Sequence[np.ndarray], closed: Sequence[bool]) -> Curves:
     """Curves from polylines (p, 3); a closed one does not repeat its first point.
 
-    Points must differ from their neighbours.
+    Where neighbouring points coincide, their span gets a tiny extent of the parameter.
     """
     control, counts, stops, starts = [np.zeros((0, 4))], [], [np.zeros(0)], [np.zeros(0)]
     for points, ring in zip(polylines, closed, strict=True):
         around = np.vstack([points, points[:1]]) if ring else np.asarray(points, np.float64)
-        arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(around, axis=0), axis=1))])
+        steps = np.linalg.norm(np.diff(around, axis=0), axis=1)
+        total = float(steps.sum())
+        # parameters increase even where points coincide
+        steps = np.maximum(steps, SHORTEST * total if total > 0.0 else 1.0 / len(steps))
+        arc = np.concatenate([[0.0], np.cumsum(steps)])
         ends = np.ones((len(around) - 1, 2, 4))
         ends[:, 0, :3], ends[:, 1, :3] = around[:-1], around[1:]
         control.append(ends.reshape(-1, 4))
@@ -311,6 +343,23 @@ def polyline_curves(polylines: Sequence[np.ndarray], closed: Sequence[bool]) -> 
         stop=np.concatenate(stops),
         first_span=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
         closed=np.array(closed, np.bool_).reshape(-1),
+    )
+
+
+def chained_curves(parts: Sequence[Curves]) -> Curves:
+    """All curves of `parts`, those of the first one first."""
+    spans = np.cumsum([0, *(len(part.start) for part in parts)])
+    controls = np.cumsum([0, *(len(part.control) for part in parts)])
+    whole = [(np.zeros(1, np.int64), np.zeros(1, np.int64))]
+    for part, span, control in zip(parts, spans, controls, strict=False):
+        whole.append((part.first_control[1:] + control, part.first_span[1:] + span))
+    return Curves(
+        control=np.concatenate([np.zeros((0, 4)), *(part.control for part in parts)]),
+        first_control=np.concatenate([ends for ends, _ in whole]),
+        start=np.concatenate([np.zeros(0), *(part.start for part in parts)]),
+        stop=np.concatenate([np.zeros(0), *(part.stop for part in parts)]),
+        first_span=np.concatenate([ends for _, ends in whole]),
+        closed=np.concatenate([np.zeros(0, np.bool_), *(part.closed for part in parts)]),
     )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
+    CURVE,
     DEGREE,
     DELTA_SUM,
     DESIRED,
@@ -25,6 +26,7 @@ from meshwright_core.core.arrays import (
     MeshArrays,
     allocate,
 )
+from meshwright_core.core.curve_corners import corners, desired_by_sectors, sectors
 from meshwright_core.core.irregularity import (
     CORNER_ANGLE,
     QUAD_INSIDE,
@@ -33,6 +35,8 @@ from meshwright_core.core.irregularity import (
     planar_boundary_angles,
     turning_angles,
 )
+from meshwright_core.core.mesh_boundary import Chain, MeshBoundary, Seats, polyline_boundary
+from meshwright_core.core.region_interfaces import interface_chains
 from meshwright_core.errors import MeshError
 
 
@@ -148,6 +152,12 @@ def boundary_chain(elements: np.ndarray, twin: np.ndarray) -> tuple[np.ndarray, 
     return flat[open_edges], flat[open_edges + 1 - k * ((open_edges + 1) % k == 0)]
 
 
+def is_flat(points: np.ndarray) -> bool:
+    """Whether points (n, 3) lie in a plane z = const."""
+    z = points[:, 2]
+    return bool(z.max() - z.min() <= 1e-12 * max(1.0, float(np.abs(points).max())))
+
+
 def boundary_angles(
     points: np.ndarray,
     elements: np.ndarray,
@@ -158,8 +168,7 @@ def boundary_angles(
     """Angle in degrees of the domain at boundary vertices: by the boundary's directions in a plane
     z = const, else the sum of the elements' angles there.
     """
-    z = points[elements.ravel(), 2]
-    if z.max() - z.min() <= 1e-12 * max(1.0, float(np.abs(points[elements.ravel()]).max())):
+    if is_flat(points[elements.ravel()]):
         return planar_boundary_angles(points[vertices], points[before], points[after])
     corner = points[elements]
     back = np.roll(corner, 1, axis=1) - corner
@@ -175,8 +184,14 @@ def build(
     geometric: np.ndarray | None,
     desired_degree: np.ndarray | None,
     corner_angle: float = CORNER_ANGLE,
-) -> MeshArrays:
-    """Arrays of the mesh with these (n, 2|3) points and (m, k) elements; see `from_elements`."""
+    boundary: MeshBoundary | None = None,
+    seats: Seats | None = None,
+    regions: np.ndarray | None = None,
+) -> tuple[MeshArrays, MeshBoundary]:
+    """Arrays of the mesh with these (n, 2|3) points and (m, k) elements, and its curves.
+
+    See `from_elements`; here `boundary` and `seats` are taken as they are, and no point is moved.
+    """
     points, elements = checked_input(points, elements)
     n, (m, k) = len(points), elements.shape
     twin = twins_of(elements)
@@ -184,31 +199,59 @@ def build(
     start, end = boundary_chain(elements, twin)
     before, after = np.full(n, -1), np.full(n, -1)
     after[start], before[end] = end, start
+    regions = checked_regions(regions, m)
+    chains: list[Chain] = []
+    drawn = boundary is not None and seats is not None
+    if boundary is not None:
+        ends = [v for one in boundary.interfaces for v in one[3:] if 0 <= v < n]
+        junctions = np.array(ends, np.int64)
+    else:
+        chains, junctions = interface_chains(elements, twin, regions)
 
     flags = np.zeros(n, np.int32)
-    if geometric is None:
-        turn = turning_angles(points[start], points[before[start]], points[after[start]])
-        flags[start[turn > corner_angle]] = GEOMETRIC
-    else:
+    if geometric is not None:
         flags[np.asarray(geometric, bool)] = GEOMETRIC
         flags[half < 0] = 0
-
-    degree = np.bincount(elements.ravel(), minlength=n)
-    degree[start] += 1
-    if desired_degree is None:
-        desired = np.where(half >= 0, TRIANGLE_INSIDE if k == 3 else QUAD_INSIDE, 0)
-        angle = boundary_angles(points, elements, start, before[start], after[start])
-        desired[start] = desired_on_boundary(angle, k)
-    else:
-        desired = np.where(half >= 0, np.asarray(desired_degree, np.int64), 0)
-        if len(desired) != n or (desired[half >= 0] < 1).any():
-            raise MeshError("desired_degree must hold one positive number for each point")
+    elif not drawn:
+        turn = turning_angles(points[start], points[before[start]], points[after[start]])
+        flags[start[turn > corner_angle]] = GEOMETRIC
+        for chain in chains:
+            flags[_corners(points, chain, corner_angle)] = GEOMETRIC
+    flags[junctions] |= GEOMETRIC
+    if boundary is None or seats is None:
+        loops = [Chain(loop, True) for loop in trace_loops(start, end)]
+        names = ("",) * (int(regions.max()) + 1)
+        boundary, seats = polyline_boundary(points, [*loops, *chains], flags > 0, names)
 
     arrays = allocate(k, n + n // 4 + 64, m + m // 4 + 64)
     arrays.edge[: k * m, ORIGIN] = elements.ravel()
     arrays.edge[: k * m, TWIN] = twin
     arrays.points[:n] = points
     arrays.vertex[:n, HALF] = half
+    arrays.vertex[:n, CURVE] = np.where(half >= 0, seats.curve, -1)
+    arrays.parameter[:n] = np.where(arrays.vertex[:n, CURVE] >= 0, seats.parameter, 0.0)
+    arrays.region[:m] = regions
+    arrays = arrays._replace(curves=boundary.curves, interface=boundary.table())
+    arrays.counters[ELEMENT_SLOTS] = m
+
+    degree = np.bincount(elements.ravel(), minlength=n)
+    degree[start] += 1
+    curved = drawn or len(chains) > 0
+    found = sectors(arrays) if curved and (geometric is None or desired_degree is None) else None
+    if found is not None and drawn and geometric is None:
+        flags[corners(found, arrays, boundary, corner_angle)[:n]] = GEOMETRIC
+    if desired_degree is None:
+        desired = np.where(half >= 0, TRIANGLE_INSIDE if k == 3 else QUAD_INSIDE, 0)
+        if found is not None and is_flat(points[elements.ravel()]):
+            there = np.unique(found.vertex)
+            desired[there] = desired_by_sectors(found, k, n)[there]
+        else:
+            angle = boundary_angles(points, elements, start, before[start], after[start])
+            desired[start] = desired_on_boundary(angle, k)
+    else:
+        desired = np.where(half >= 0, np.asarray(desired_degree, np.int64), 0)
+        if len(desired) != n or (desired[half >= 0] < 1).any():
+            raise MeshError("desired_degree must hold one positive number for each point")
     arrays.vertex[:n, DEGREE] = degree
     arrays.vertex[:n, DESIRED] = desired
     arrays.vertex[:n, FLAGS] = flags
@@ -217,7 +260,7 @@ def build(
     arrays.irregular[: len(irregular)] = irregular
     arrays.vertex[irregular, PLACE] = np.arange(len(irregular))
     counters = arrays.counters
-    counters[VERTEX_SLOTS], counters[ELEMENT_SLOTS] = n, m
+    counters[VERTEX_SLOTS] = n
     counters[VERTICES], counters[ELEMENTS] = int((half >= 0).sum()), m
     counters[BOUNDARY_EDGES] = len(start)
     counters[SCORE], counters[DELTA_SUM] = int(np.abs(delta).sum()), int(delta.sum())
@@ -225,7 +268,28 @@ def build(
     for vertex in np.flatnonzero(half < 0)[::-1]:
         arrays.vertex[vertex, HALF] = -2 - counters[FREE_VERTEX]
         counters[FREE_VERTEX] = vertex
-    return arrays
+    return arrays, boundary
+
+
+def checked_regions(regions: np.ndarray | None, elements: int) -> np.ndarray:
+    """The region of each element as (m,) int64, 0 where none is given; MeshError if invalid."""
+    if regions is None:
+        return np.zeros(elements, np.int64)
+    regions = np.asarray(regions)
+    if regions.shape != (elements,) or not np.issubdtype(regions.dtype, np.integer):
+        raise MeshError("regions must hold one whole number for each element")
+    if regions.min() < 0 or regions.max() > np.iinfo(np.int32).max:
+        raise MeshError("regions must be numbered from 0")
+    return regions.astype(np.int64)
+
+
+def _corners(points: np.ndarray, chain: Chain, corner_angle: float) -> np.ndarray:
+    """The vertices at which an interface turns by more than `corner_angle` degrees."""
+    line = chain.vertices
+    before, after = np.roll(line, 1), np.roll(line, -1)
+    if not chain.closed:
+        line, before, after = line[1:-1], line[:-2], line[2:]
+    return line[turning_angles(points[line], points[before], points[after]) > corner_angle]
 
 
 def trace_loops(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:

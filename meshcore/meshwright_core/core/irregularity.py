@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from meshwright_core.core.compilation import bare_kernel
@@ -49,3 +51,26 @@ def desired_on_boundary(angles: np.ndarray, k: int) -> np.ndarray:
     """
     alpha = 60.0 if k == 3 else 90.0
     return np.maximum(np.floor(angles / alpha + 0.5 + 1e-9).astype(np.int64) + 1, 2)
+
+
+def usual_desired_degree(k: int, boundary: bool) -> int:
+    """Desired degree of a vertex that is not geometric, inside or on a straight side."""
+    if k == 3:
+        return TRIANGLE_STRAIGHT if boundary else TRIANGLE_INSIDE
+    return QUAD_STRAIGHT if boundary else QUAD_INSIDE
+
+
+def desired_between(angles: Sequence[float], k: int, boundary: bool) -> int:
+    """The sum rule: desired degree of a vertex from the angles of the regions around it.
+
+    Each sector between two curves, of boundary or interface, takes max(1, round(angle / alpha))
+    elements, alpha = 60 or 90 degrees; the degree is their number, and one more on the boundary.
+    With one sector on the boundary this is equation 2.
+
+    Args:
+        angles: degrees, of each sector inside the domain.
+        k: 3 or 4 sides of an element.
+        boundary: whether one of the sectors around the vertex is outside.
+    """
+    degrees = desired_on_boundary(np.asarray(angles, np.float64), k)
+    return int((degrees - 1).sum()) + boundary

@@ -7,6 +7,7 @@ import numpy as np
 from meshwright_core.core import circulators, construction, validation
 from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
+    CURVE,
     DEGREE,
     DELTA_SUM,
     DESIRED,
@@ -27,8 +28,8 @@ from meshwright_core.core.arrays import (
     corners_of,
     halfedges_of,
 )
-
-BoundaryLoops = list[tuple[np.ndarray, np.ndarray]]
+from meshwright_core.core.composite_curves import place_all
+from meshwright_core.core.mesh_boundary import BoundaryLoops, Interface, MeshBoundary, outline_of
 
 _KINDS = {3: "tri", 4: "quad"}
 
@@ -40,14 +41,77 @@ class MeshView:
     :mod:`meshwright_core.core.arrays` for the arrays behind it.
     """
 
-    def __init__(self, arrays: MeshArrays, outline: BoundaryLoops) -> None:
+    def __init__(self, arrays: MeshArrays, boundary: MeshBoundary) -> None:
         """Wraps arrays that obey the invariants."""
         self._arrays = arrays
-        self.outline = outline
-        """One (vertex ids (m,), points (m, 3)) per boundary loop of the mesh when it was built:
-        boundary vertices slide along these polylines."""
+        self._take_boundary(boundary)
         self.k: int = int(arrays.counters[SIDES])
         """Sides of an element, 3 or 4."""
+
+    def _take_boundary(self, boundary: MeshBoundary) -> None:
+        self._boundary = boundary
+        self._outline: BoundaryLoops | None = None
+
+    @property
+    def outline(self) -> BoundaryLoops:
+        """One (vertex ids (m,), points (m, 3)) per boundary loop: the ends of the spans of its
+        curve, and the vertices that lay there when this was first read, -1 for none.
+        """
+        if self._outline is None:
+            self._outline = outline_of(self._arrays, self._boundary)
+        return self._outline
+
+    @outline.setter
+    def outline(self, loops: BoundaryLoops) -> None:
+        self._outline = loops
+
+    @property
+    def boundary_info(self) -> MeshBoundary:
+        """The curves that boundary and interfaces run along, and the names of regions."""
+        return self._boundary
+
+    @property
+    def interfaces(self) -> tuple[Interface, ...]:
+        """The curves between two regions."""
+        return self._boundary.interfaces
+
+    @property
+    def region_names(self) -> tuple[str, ...]:
+        """The name of each region, "" where it has none."""
+        return self._boundary.region_names
+
+    def regions(self) -> np.ndarray:
+        """(m,) the region of each live element, in the order of :meth:`element_ids`."""
+        return self._arrays.region[self.element_ids()]
+
+    def curve_ids(self) -> np.ndarray:
+        """(slots,) the curve that each vertex lies on, -1 for none."""
+        return self._arrays.vertex[: self.slots, CURVE].copy()
+
+    def parameters(self) -> np.ndarray:
+        """(slots,) the parameter of each vertex on its curve, 0 for those on none."""
+        return self._arrays.parameter[: self.slots].copy()
+
+    def curve_of(self, v: int) -> int:
+        """The curve that vertex v lies on, -1 for none."""
+        return int(self._arrays.vertex[v, CURVE])
+
+    def parameter_of(self, v: int) -> float:
+        """The parameter of vertex v on its curve, 0 if it lies on none."""
+        return float(self._arrays.parameter[v])
+
+    def off_curve(self) -> np.ndarray:
+        """(slots,) distance of each vertex from its own point of its curve; 0 for others.
+
+        Within rounding 0 unless someone moved the vertex off.
+        """
+        curve = self.curve_ids()
+        there = np.flatnonzero(curve >= 0)
+        off = np.zeros(self.slots)
+        t = self._arrays.parameter[there]
+        there_points = place_all(self._arrays.curves, curve[there].astype(np.int64), t)
+        off[there] = np.linalg.norm(self.points[there] - there_points, axis=1)
+        return off
 
     @property
     def kind(self) -> str:
@@ -215,7 +279,7 @@ class MeshView:
 
     def validate(self) -> None:
         """Check every invariant exhaustively; MeshError names the broken one and its place."""
-        validation.validate(self._arrays)
+        validation.validate(self._arrays, self._boundary)
 
     def __repr__(self) -> str:
         """Kind, size and score in one line."""

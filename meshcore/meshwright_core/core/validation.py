@@ -30,6 +30,8 @@ from meshwright_core.core.arrays import (
     VERTICES,
     MeshArrays,
 )
+from meshwright_core.core.curve_checks import require_seats
+from meshwright_core.core.mesh_boundary import MeshBoundary
 from meshwright_core.errors import MeshError
 
 
@@ -38,13 +40,17 @@ def _require(condition: bool, sentence: str) -> None:
         raise MeshError(f"broken mesh: {sentence}")
 
 
-def validate(m: MeshArrays) -> None:
+def validate(m: MeshArrays, boundary: MeshBoundary) -> None:
     """Raise MeshError, saying which invariant is broken and where, unless all hold."""
     elements = _check_elements(m)
     edges = _check_twins(m, elements)
     _check_vertices(m, elements, edges)
     _check_counters(m, edges)
     _check_free_slots(m)
+    try:
+        require_seats(m, boundary)
+    except MeshError as error:
+        raise MeshError(f"broken mesh: {error}") from None
 
 
 def _check_elements(m: MeshArrays) -> dict[int, list[int]]:

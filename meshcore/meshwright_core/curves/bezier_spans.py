@@ -7,6 +7,8 @@ drawings lie in the plane z = 0.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +17,9 @@ from numpy.typing import NDArray
 from meshwright_core.core.composite_curves import halves, span_points
 
 Array = NDArray[np.float64]
+
+_GAUSS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)
+_NODES, _WEIGHTS = 0.5 * (_GAUSS + 1.0), 0.5 * _GAUSS_WEIGHTS
 
 WIDEST = math.radians(45.0)
 """Sweep of one span of an arc, at most: its speed then varies by less than 4 percent."""
@@ -71,7 +76,16 @@ def circle_spans(centre: Array, radius: float, start: float, sweep: float) -> li
     points = centre + radius * np.column_stack([np.cos(angle), np.sin(angle)])
     if abs(sweep) == 2.0 * math.pi:
         points[-1] = points[0]
-    return [arc_span(a, b, sweep / count) for a, b in pairwise(points)]
+    # arc_span for all at once
+    half = 0.5 * sweep / count
+    a, b = points[:-1], points[1:]
+    chord = b - a
+    normal = np.column_stack([chord[:, 1], -chord[:, 0]])
+    spans = np.zeros((count, 3, 4))
+    spans[:, 0, :2], spans[:, 2, :2] = a, b
+    spans[:, 1, :2] = (0.5 * (a + b) + 0.5 * math.tan(half) * normal) * math.cos(half)
+    spans[:, :, 3] = 1.0, math.cos(half), 1.0
+    return list(spans)
 
 
 def spline_spans(control: Array, knots: Array, degree: int) -> list[Array]:
@@ -104,6 +118,44 @@ def spline_spans(control: Array, knots: Array, degree: int) -> list[Array]:
         if np.abs(before[-1] - after[0]).max() <= 1e-12 * np.abs(before[-1]).max():
             after[0] = before[-1]
     return list(spans)
+
+
+def span_lengths(spans: Sequence[Array]) -> Array:
+    """Arc length of each span, by Gauss-Legendre quadrature of order 24; all at once."""
+    lengths = np.zeros(len(spans))
+    degrees = np.array([len(span) - 1 for span in spans])
+    for degree in np.unique(degrees).tolist():
+        index = np.flatnonzero(degrees == degree)
+        control = np.stack([spans[i] for i in index.tolist()])
+        if degree == 1:
+            ends = control[:, :, :3] / control[:, :, 3:]
+            lengths[index] = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+            continue
+        basis, slopes = _bernstein(degree)
+        value, slope = basis @ control, slopes @ control
+        point = value[:, :, :3] / value[:, :, 3:]
+        speed = (slope[:, :, :3] - point * slope[:, :, 3:]) / value[:, :, 3:]
+        lengths[index] = np.linalg.norm(speed, axis=2) @ _WEIGHTS
+    return lengths
+
+
+@cache
+def _bernstein(degree: int) -> tuple[Array, Array]:
+    """(24, degree + 1) Bernstein polynomials at the nodes of the quadrature, and derivatives."""
+    u = _NODES[:, None]
+    i = np.arange(degree + 1)
+    basis = _binomials(degree, i) * u**i * (1.0 - u) ** (degree - i)
+    i = np.arange(degree)
+    lower = _binomials(degree - 1, i) * u**i * (1.0 - u) ** (degree - 1 - i)
+    slopes = np.zeros_like(basis)
+    slopes[:, 1:] += degree * lower
+    slopes[:, :-1] -= degree * lower
+    return basis, slopes
+
+
+def _binomials(n: int, k: NDArray[np.int64]) -> Array:
+    """Binomial coefficients."""
+    return np.array([float(math.comb(n, i)) for i in k.tolist()])
 
 
 def evened(spans: list[Array]) -> list[Array]:

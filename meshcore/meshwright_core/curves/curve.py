@@ -20,14 +20,14 @@ from numpy.typing import ArrayLike, NDArray
 from meshwright_core.core.composite_curves import (
     Curves,
     halves,
-    joined_curves,
     nearest_parameters,
     place_all,
     span_points,
     tangents,
 )
 from meshwright_core.curves import bezier_spans, curve_json
-from meshwright_core.curves.bezier_spans import evened, homogeneous, segment
+from meshwright_core.curves.bezier_spans import evened, homogeneous, segment, span_lengths
+from meshwright_core.curves.part_data import image_of_conic, part_of_conic, spline_of_spans
 from meshwright_core.errors import MeshError
 
 Array = NDArray[np.float64]
@@ -58,7 +58,7 @@ class Curve:
 
     def __init__(self, kind: str, data: dict[str, Any], spans: list[Array]) -> None:
         """For the class methods below."""
-        if not spans or not all(np.isfinite(span).all() for span in spans):
+        if not spans or not np.isfinite(np.concatenate(spans)).all():
             raise MeshError(f"a curve ({kind}) has a number that is not finite, or no length")
         for span in spans:
             span.flags.writeable = False
@@ -225,7 +225,15 @@ class Curve:
     @cached_property
     def flat(self) -> Curves:
         """The curve as arrays for compiled kernels; curve 0."""
-        return joined_curves([self.spans], [self.closed])
+        stop = np.cumsum(span_lengths(self.spans))
+        return Curves(
+            control=np.concatenate(self.spans),
+            first_control=np.cumsum([0, *map(len, self.spans)]).astype(np.int64),
+            start=np.concatenate([[0.0], stop[:-1]]),
+            stop=stop,
+            first_span=np.array([0, len(self.spans)]),
+            closed=np.array([self.closed]),
+        )
 
     @property
     def closed(self) -> bool:
@@ -329,11 +337,21 @@ class Curve:
         Summed over a closed chain with one origin this is the area enclosed, positive if it turns
         counter-clockwise. Gauss-Legendre quadrature of order 24 on each span.
         """
+        start, end = self.start, self.end
+        (x, y), (dx, dy) = start - np.asarray(origin, np.float64), end - start
+        return self._own_area + 0.5 * float(x * dy - y * dx)
+
+    @cached_property
+    def _own_area(self) -> float:
+        """:meth:`area_about` its start."""
         total = 0.0
-        base = np.asarray(origin, np.float64)
         for span in self.spans:
+            if len(span) == 2:
+                (x, y), (z, w) = (row[:2] / row[3] - self.start for row in span)
+                total += 0.5 * float(x * w - y * z)
+                continue
             point, slope = span_points(span, _GAUSS)
-            x, y = (point[:, :2] - base).T
+            x, y = (point[:, :2] - self.start).T
             total += 0.5 * float(_WEIGHTS @ (x * slope[:, 1] - y * slope[:, 0]))
         return total
 
@@ -379,7 +397,10 @@ class Curve:
             data["control"] = data["control"][::-1].copy()
             data["knots"] = (knots[0] + knots[-1]) - knots[::-1]
             data["weights"] = None if weights is None else weights[::-1].copy()
-        return Curve(self.kind, data, [span[::-1].copy() for span in reversed(self.spans)])
+        found = Curve(self.kind, data, [span[::-1].copy() for span in reversed(self.spans)])
+        if "_own_area" in self.__dict__:
+            found.__dict__["_own_area"] = -self._own_area
+        return found
 
     def split(self, t: ArrayLike) -> tuple[Curve, ...]:
         """Its parts between parameters t (n,), ascending, strictly between 0 and the length.
@@ -448,15 +469,21 @@ class Curve:
             )
         if self.kind == "spline":
             if affine is None:
-                return Curve("spline", _spline_data(spans), spans)
+                return Curve("spline", spline_of_spans(spans), spans)
             data = dict(self.data, control=self.data["control"] @ affine[:, :2].T + affine[:, 2])
             return Curve("spline", data, spans)
-        return _conic(self, spans, affine)
+        axes = self.data.get("radius", 1.0) * np.eye(2)
+        if self.kind == "ellipse":
+            axes = np.array([self.data["major"], self.data["minor"]])
+        if affine is None:
+            return Curve(self.kind, part_of_conic(axes, self.data, spans), spans)
+        kind, data = image_of_conic(axes, self.data, affine)
+        return Curve(kind, data, spans if kind == "arc" else evened(spans))
 
     def to_json(self) -> dict[str, Any]:
         """The piece as an object of a domain file; see :mod:`.curve_json`."""
         if self.kind == "ellipse" and abs(self.data["sweep"]) < _FLAT:
-            return curve_json.to_json("spline", _spline_data(self.spans))
+            return curve_json.to_json("spline", spline_of_spans(self.spans))
         if self.kind == "arc" and abs(self.data["sweep"]) < _FLAT:
             bulge = math.tan(0.25 * self.data["sweep"])
             return {"arc": {"from": self.start.tolist(), "to": self.end.tolist(), "bulge": bulge}}
@@ -517,63 +544,3 @@ def _mapped(span: Array, affine: Array) -> Array:
     image = span.copy()
     image[:, :2] = span[:, :2] @ affine[:, :2].T + span[:, 3:] * affine[:, 2]
     return image
-
-
-def _conic(curve: Curve, spans: list[Array], affine: Array | None) -> Curve:
-    """An arc of a circle or ellipse of the given spans: a part of `curve`, or its image."""
-    data = dict(curve.data)
-    circle = curve.kind == "arc"
-    axes = data["radius"] * np.eye(2) if circle else np.array([data["major"], data["minor"]])
-    if affine is None:
-        ends = np.array([spans[0][0, :2] / spans[0][0, 3], spans[-1][-1, :2] / spans[-1][-1, 3]])
-        local = np.linalg.solve(axes.T, (ends - data["centre"]).T).T
-        first, last = np.arctan2(local[:, 1], local[:, 0]).tolist()
-        turn = math.copysign(2.0 * math.pi, data["sweep"])
-        # both angles on the way from the old start to the old end, which may touch either
-        begin = (first - data["start"]) % turn
-        if abs(begin - turn) < 1e-9:
-            begin = 0.0
-        stop = (last - data["start"]) % turn
-        if abs(stop) <= abs(begin) + 1e-12:
-            stop += turn
-        return Curve(curve.kind, dict(data, start=data["start"] + begin, sweep=stop - begin), spans)
-    centre = affine[:, :2] @ data["centre"] + affine[:, 2]
-    images = axes @ affine[:, :2].T
-    scale = float(np.linalg.norm(images[0]))
-    across = np.array([-images[0, 1], images[0, 0]])
-    flips = images[1] @ across < 0.0
-    if circle and np.abs(images[1] - (-across if flips else across)).max() <= 1e-12 * scale:
-        turned = float(np.arctan2(images[0, 1], images[0, 0]))
-        sign = -1.0 if flips else 1.0
-        data.update(
-            centre=centre, radius=scale, start=turned + sign * data["start"],
-            sweep=sign * data["sweep"],
-        )  # fmt: skip
-        return Curve("arc", data, spans)
-    data = {
-        "centre": centre, "major": images[0], "minor": images[1],
-        "start": data["start"], "sweep": data["sweep"],
-    }  # fmt: skip
-    return Curve("ellipse", data, evened(spans))
-
-
-def _spline_data(spans: list[Array]) -> dict[str, Any]:
-    """Spans of one degree as a B-spline whose knots have the multiplicity of the degree.
-
-    The ends of neighbouring spans may have different weights: each span is scaled to the one
-    before it, which does not change its points.
-    """
-    degree = len(spans[0]) - 1
-    rows, scale = [spans[0]], 1.0
-    for before, after in pairwise(spans):
-        scale *= before[-1, 3] / after[0, 3]
-        rows.append(after[1:] * scale)
-    control = np.concatenate(rows)
-    knots = np.arange(len(spans) + 1, dtype=np.float64)
-    weights = control[:, 3]
-    return {
-        "degree": degree,
-        "control": control[:, :2] / weights[:, None],
-        "knots": np.concatenate([[0.0], np.repeat(knots, degree), knots[-1:]]),
-        "weights": None if (weights == 1.0).all() else weights,
-    }

@@ -1,37 +1,47 @@
-"""A domain: the outline of a polygon, its holes, and which of their points are corners."""
+"""A domain: a part of the plane between curves, with its corners and its regions."""
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from meshwright_core.errors import MeshError, capitalised
+from meshwright_core.core.irregularity import (
+    CORNER_ANGLE,
+    desired_between,
+    usual_desired_degree,
+)
+from meshwright_core.curves.curve import Curve
+from meshwright_core.domains.domain_json import CurvedContent, load_json, parsed
+from meshwright_core.domains.region_loops import DomainRegion, Interface, RegionLoops
+from meshwright_core.domains.ring_checks import (
+    Flags,
+    Points,
+    checked_flags,
+    checked_ring,
+    refuse_crossings,
+    refuse_strays,
+    signed_area,
+    turning_angles,
+)
+from meshwright_core.errors import MeshError
 
-Points = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-
-CORNER_ANGLE = 0.01
-"""Degrees by which the boundary must turn at a point before it counts as a corner."""
-
-_NEAR = 1e-10
-"""Neighbouring points nearer than this share of the domain's size are one point twice."""
-
-_LARGEST = 1e100
-"""Coordinates beyond this would overflow in areas and in-circle tests."""
+__all__ = ["CORNER_ANGLE", "Domain", "Flags", "Points", "load_json", "turning_angles"]
 
 
 class Domain:
-    """A polygon with holes, checked, in one orientation.
+    """A part of the plane, checked, in one orientation: a polygon with holes, or between curves.
 
-    The outline runs counter-clockwise and the holes clockwise, so that the domain always lies on
-    the left. Curved sides are polylines whose inner points are not corners.
+    Outlines run counter-clockwise and holes clockwise, so that the domain always lies on the left.
+    Domains of curves are made by :meth:`from_curves` and :meth:`from_regions`; of those, `outline`,
+    `holes` and `loops` are polylines close to the curves, for pictures and estimates. In a polygon
+    curved sides are polylines whose inner points are not corners.
 
     Args:
         outline: (n, 2) points in order, either orientation; a last point that repeats the first
@@ -49,11 +59,14 @@ class Domain:
             without area, a hole outside the outline or inside another hole, flags that do not fit.
 
     Attributes:
-        outline: (n, 2) float64, counter-clockwise, read-only.
+        outline: (n, 2) float64, counter-clockwise, read-only; the largest one if there are several.
         holes: tuple of (m, 2) float64, clockwise, read-only.
         corners: (n,) bool, read-only.
         hole_corners: tuple of (m,) bool, read-only.
+        loops: all outlines, then the holes.
+        loop_corners: the corner flags of the loops.
         name: str.
+        sides: the curves with their regions and geometric points; None for a polygon.
     """
 
     def __init__(
@@ -71,29 +84,94 @@ class Domain:
         if len(hole_flags) != len(holes):
             raise MeshError(f"{len(hole_flags)} lists of hole corners for {len(holes)} holes.")
         given = [corners, *hole_flags]
-        loops = [_ring(ring, what) for ring, what in zip([outline, *holes], names, strict=True)]
+        loops = [
+            checked_ring(ring, what) for ring, what in zip([outline, *holes], names, strict=True)
+        ]
         flags = [
-            _flags(flag, ring, loop, what)
+            checked_flags(flag, ring, loop, what)
             for flag, ring, loop, what in zip(given, [outline, *holes], loops, names, strict=True)
         ]
-        _refuse_crossings(loops, names)
+        refuse_crossings(loops, names)
         for i, loop in enumerate(loops):
-            if (_signed_area(loop) > 0) != (i == 0):
+            if (signed_area(loop) > 0) != (i == 0):
                 loops[i] = loop[::-1].copy()
                 flag = flags[i]
                 flags[i] = None if flag is None else flag[::-1].copy()
-        _refuse_strays(loops, names)
+        refuse_strays(loops, names)
         marked = [
             turning_angles(loop) > corner_angle if flag is None else flag
             for loop, flag in zip(loops, flags, strict=True)
         ]
-        for array in (*loops, *marked):
+        self.sides: RegionLoops | None = None
+        self._set(name, loops, marked, 1)
+
+    def _set(self, name: str, loops: list[Points], corners: list[Flags], outlines: int) -> None:
+        for array in (*loops, *corners):
             array.flags.writeable = False
         self.name = name
-        self.outline: Points = loops[0]
-        self.holes: tuple[Points, ...] = tuple(loops[1:])
-        self.corners: Flags = marked[0]
-        self.hole_corners: tuple[Flags, ...] = tuple(marked[1:])
+        self.curve_step: float | None = None
+        """Degrees that an edge of a mesh turns along a curve, at most; None: as it comes."""
+        self.outlines = outlines
+        """How many of the loops are outlines: the components of the domain."""
+        self.loops: tuple[Points, ...] = tuple(loops)
+        self.loop_corners: tuple[Flags, ...] = tuple(corners)
+
+    @classmethod
+    def from_curves(
+        cls,
+        loops: Sequence[Sequence[Curve]],
+        name: str = "",
+        corner_angle: float = CORNER_ANGLE,
+        names: Sequence[Sequence[str]] | None = None,
+    ) -> Domain:
+        """The domain between loops of curves.
+
+        Args:
+            loops: the curves of each loop end to end, in any orientation; gaps below 1e-6 of the
+                size are closed. Loops inside an odd number of others are holes; the others are
+                outlines, of which there may be several.
+            name: what to call the domain in titles.
+            corner_angle: degrees by which the tangent turns at a corner; between curved pieces at
+                least 1.
+            names: of the pieces of each loop.
+
+        Raises:
+            MeshError: a loop that is not closed or without area, loops that cross or touch, a
+                coordinate that is not a finite number, names that do not fit.
+        """
+        all_names = None if names is None else [names]
+        return cls._of(RegionLoops([("", loops)], corner_angle, all_names), name)
+
+    @classmethod
+    def from_regions(
+        cls,
+        regions: Sequence[tuple[str, Sequence[Sequence[Curve]]]],
+        name: str = "",
+        corner_angle: float = CORNER_ANGLE,
+        names: Sequence[Sequence[Sequence[str]]] | None = None,
+    ) -> Domain:
+        """The domain of several regions, which may touch along their sides.
+
+        Where the loops of two regions run along each other, within 1e-6 of the size, is an
+        interface.
+
+        Args:
+            regions: the name and the loops of each region, as for :meth:`from_curves`.
+            name: as there.
+            corner_angle: as there.
+            names: of the pieces of each loop of each region.
+
+        Raises:
+            MeshError: as there; regions that overlap, or touch only in a point.
+        """
+        return cls._of(RegionLoops(regions, corner_angle, names), name)
+
+    @classmethod
+    def _of(cls, sides: RegionLoops, name: str) -> Domain:
+        domain = cls.__new__(cls)
+        domain.sides = sides
+        domain._set(name, sides.polylines, sides.flags, sides.outlines)
+        return domain
 
     @classmethod
     def from_json(
@@ -103,59 +181,180 @@ class Domain:
     ) -> Domain:
         """Read a domain from a JSON file, or from what such a file holds.
 
-        The form is ``{"outline": [[x, y], ...], "holes": [[[x, y], ...], ...]}``, either
-        orientation, with optional ``"name"``, ``"corners"`` (a list of booleans, one for each
-        outline point) and ``"hole_corners"`` (such a list, or null, for each hole). Where they are
-        left out, corners are where the boundary turns by more than `corner_angle` degrees.
+        The form is ``{"outline": LOOP, "holes": [LOOP, ...]}``, either orientation, with optional
+        ``"name"``. A loop is a list of the corners of a polygon, ``[[x, y], ...]``, or of pieces
+        end to end (:mod:`meshwright_core.curves.curve_json`), each with an optional ``"name"``. A
+        domain of several parts has ``"outlines": [LOOP, ...]``, one of several regions
+        ``"regions": [{"name": ..., "outline": LOOP, "holes": [LOOP, ...]}, ...]``. Corners are
+        where the boundary turns by more than `corner_angle` degrees, or by more than
+        ``"corner_angle"`` if that is more; for polygons ``"corners"`` (a list of booleans, one for
+        each outline point) and ``"hole_corners"`` (such a list, or null, for each hole) state them.
 
         Raises:
             MeshError: the file is missing or not JSON (with the line), or its content is no
                 domain; the message begins with the file's name.
         """
         if isinstance(source, Mapping):
-            return _from_mapping(source, corner_angle)
+            return cls._from_content(source, corner_angle)
         path = Path(source)
         content = load_json(path)
         try:
-            domain = _from_mapping(content, corner_angle)
+            domain = cls._from_content(content, corner_angle)
         except MeshError as error:
             raise MeshError(f"{path}: {error}") from error
         domain.name = domain.name or path.stem
         return domain
 
+    @classmethod
+    def _from_content(cls, content: Any, corner_angle: float) -> Domain:
+        found = parsed(content)
+        if isinstance(found, CurvedContent):
+            angle = max(corner_angle, found.corner_angle)
+            sides = RegionLoops(found.regions, angle, found.names, found.labels)
+            sides.refuse_other_roles(found.outlines)
+            return cls._of(sides, found.name)
+        return cls(
+            found.outline, found.holes, found.corners, found.hole_corners, found.name, corner_angle
+        )
+
     def to_json(self) -> dict[str, Any]:
         """Return the domain as a dictionary that ``json.dump`` writes and `from_json` reads."""
         content: dict[str, Any] = {"name": self.name} if self.name else {}
+        if self.sides is not None:
+            content.update(self.sides.to_json())
+            return content
         content["outline"] = self.outline.tolist()
         content["holes"] = [hole.tolist() for hole in self.holes]
         content["corners"] = self.corners.tolist()
         content["hole_corners"] = [flags.tolist() for flags in self.hole_corners]
         return content
 
-    @property
-    def loops(self) -> tuple[Points, ...]:
-        """The outline, then the holes."""
-        return (self.outline, *self.holes)
+    def flattened(self, turn_degrees: float) -> Domain:
+        """A polygon whose sides turn by so many degrees at each point, at most, in place of curves.
+
+        Its corners are those of this domain.
+
+        Raises:
+            MeshError: it has several outlines or regions, or its polylines cross.
+        """
+        if self.sides is None:
+            return self
+        if self.outlines > 1 or self.interfaces:
+            raise MeshError("A domain of several parts or regions is no polygon.")
+        loops = [self.sides.polyline(side, turn_degrees) for side in self.sides.loop_sides]
+        points, corners = [row for row, _ in loops], [flags for _, flags in loops]
+        return Domain(points[0], points[1:], corners[0], corners[1:], self.name)
 
     @property
-    def loop_corners(self) -> tuple[Flags, ...]:
-        """The corner flags of the outline, then those of the holes."""
-        return (self.corners, *self.hole_corners)
+    def outline(self) -> Points:
+        """The largest outline."""
+        return self.loops[0]
 
     @property
-    def polygon(self) -> shapely.Polygon:
-        """The domain as a shapely polygon."""
-        return shapely.Polygon(self.outline, self.holes)
+    def corners(self) -> Flags:
+        """The corner flags of `outline`."""
+        return self.loop_corners[0]
 
     @property
+    def holes(self) -> tuple[Points, ...]:
+        """The holes."""
+        return self.loops[self.outlines :]
+
+    @property
+    def hole_corners(self) -> tuple[Flags, ...]:
+        """The corner flags of the holes."""
+        return self.loop_corners[self.outlines :]
+
+    @property
+    def has_curves(self) -> bool:
+        """Whether a side bends otherwise than in corners."""
+        if self.sides is not None:
+            return self.sides.has_curves
+        return not all(flags.all() for flags in self.loop_corners)
+
+    @cached_property
+    def boundary(self) -> tuple[tuple[Curve, ...], ...]:
+        """The curves of the loops, the domain on their left."""
+        if self.sides is not None:
+            return self.sides.boundary
+        return tuple(
+            tuple(Curve.line(a, b) for a, b in zip(loop, np.roll(loop, -1, axis=0), strict=True))
+            for loop in self.loops
+        )
+
+    @property
+    def interfaces(self) -> tuple[Interface, ...]:
+        """The curves between two regions."""
+        return () if self.sides is None else self.sides.interfaces
+
+    @cached_property
+    def regions(self) -> tuple[DomainRegion, ...]:
+        """The regions; one for a domain that is not divided."""
+        if self.sides is not None:
+            return self.sides.regions
+        spot = self.polygon.representative_point()
+        corners = sum(int(flags.sum()) for flags in self.loop_corners)
+        inside = np.array([spot.x, spot.y])
+        return (DomainRegion("", self.area, self.boundary, inside, len(self.holes), corners),)
+
+    @property
+    def polygon(self) -> shapely.Polygon | shapely.MultiPolygon:
+        """The domain between its polylines as a shapely polygon."""
+        if self.outlines == 1:
+            return shapely.Polygon(self.outline, self.holes)
+        found = shapely.Polygon()
+        # the larger ones first: an island lies in a hole
+        for number in sorted(
+            range(len(self.loops)), key=lambda i: -abs(signed_area(self.loops[i]))
+        ):
+            ring = shapely.Polygon(self.loops[number])
+            found = found.union(ring) if number < self.outlines else found.difference(ring)
+        return found
+
+    @cached_property
     def area(self) -> float:
-        """The area of the outline less that of the holes."""
-        return float(sum(_signed_area(loop) for loop in self.loops))
+        """The area, exact also between curves."""
+        if self.sides is not None:
+            return sum(region.area for region in self.sides.regions)
+        return float(sum(signed_area(loop) for loop in self.loops))
 
-    @property
+    def optimum(self, kind: str) -> int:
+        """s* of every mesh of the domain whose geometric vertices are those of the domain.
+
+        The degrees of a mesh of k-sided elements add up to 2 E. With Euler's formula, V - E + F =
+        chi, and k F = 2 E - B, for B boundary edges, the sum of the irregularities is the sum of
+        usual less desired degree over the geometric vertices, less 4 chi (quads) or 6 chi
+        (triangles).
+
+        Args:
+            kind: "tri" or "quad".
+        """
+        k = 3 if kind == "tri" else 4
+        euler = 2 * self.outlines - len(self.loops)
+        excess = 0
+        for boundary, angles in self._angles_at_points():
+            excess += usual_desired_degree(k, boundary) - desired_between(angles, k, boundary)
+        return abs(excess - (6 if k == 3 else 4) * euler)
+
+    def _angles_at_points(self) -> list[tuple[bool, list[float]]]:
+        """Whether each geometric point is on the boundary, and the angles of regions there."""
+        if self.sides is not None:
+            points = self.sides.graph.points.values()
+            return [(point.boundary, [angle for _, angle in point.sectors]) for point in points]
+        found = []
+        for loop, flags in zip(self.loops, self.loop_corners, strict=True):
+            come = loop - np.roll(loop, 1, axis=0)
+            go = np.roll(come, -1, axis=0)
+            across = come[:, 0] * go[:, 1] - come[:, 1] * go[:, 0]
+            angles = 180.0 - np.degrees(np.arctan2(across, (come * go).sum(axis=1)))
+            found += [(True, [angle]) for angle in angles[flags].tolist()]
+        return found
+
+    @cached_property
     def diameter(self) -> float:
-        """The largest distance between two points of the outline."""
-        hull = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(self.outline)))
+        """The largest distance between two points of the outlines (of their polylines)."""
+        outlines = np.concatenate(self.loops[: self.outlines])
+        hull = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(outlines)))
         hull = hull[:-1][::-1] if len(hull) > 3 else hull
         # the farthest two lie on parallel lines around the hull, one of them along an edge:
         # opposite to it is the point where the edges begin to run back
@@ -168,214 +367,8 @@ class Domain:
 
     def __repr__(self) -> str:
         """Name and size of the domain."""
+        if self.sides is not None:
+            pieces = " and ".join(f"{len(loop)}" for loop in self.boundary)
+            return f"<Domain {self.name!r}, loops of {pieces} curves>"
         sizes = " and ".join(f"{len(loop)}" for loop in self.loops)
         return f"<Domain {self.name!r}, loops of {sizes} points>"
-
-
-def turning_angles(loop: Points) -> NDArray[np.float64]:
-    """Return by how many degrees a closed polyline turns at each of its points, 0 to 180.
-
-    Args:
-        loop: (n, 2) points in order.
-    """
-    before = loop - np.roll(loop, 1, axis=0)
-    after = np.roll(before, -1, axis=0)
-    across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    along = (before * after).sum(axis=1)
-    return np.abs(np.degrees(np.arctan2(across, along)))
-
-
-def _signed_area(loop: Points) -> float:
-    x, y = (loop - loop[0]).T
-    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y))
-
-
-def _place(point: ArrayLike) -> str:
-    x, y = np.asarray(point, dtype=float)
-    return f"({x:.6g}, {y:.6g})"
-
-
-def _ring(ring: ArrayLike, what: str) -> Points:
-    """One ring as a new (n, 2) array without a closing point; MeshError if it is invalid."""
-    try:
-        if np.iscomplexobj(ring):
-            raise TypeError("complex numbers would lose their imaginary part")
-        points = np.array(ring, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise MeshError(f"{capitalised(what)} is not a list of [x, y] pairs of numbers.") from error
-    if points.size and (points.ndim != 2 or points.shape[1] != 2):
-        raise MeshError(f"{capitalised(what)} is not a list of [x, y] pairs of numbers.")
-    points = points.reshape(-1, 2)
-    bad = np.flatnonzero(~(np.abs(points) < _LARGEST).all(axis=1))
-    if bad.size:
-        raise MeshError(
-            f"Point {bad[0]} of {what} is {_place(points[bad[0]])}, which is not a finite place."
-        )
-    if len(points) > 3 and (points[0] == points[-1]).all():
-        points = points[:-1]
-    if len(points) < 3:
-        plural = "" if len(points) == 1 else "s"
-        raise MeshError(
-            f"{capitalised(what)} has {len(points)} point{plural}, but a polygon needs at least 3."
-        )
-    _refuse_repeats(points, what)
-    return points
-
-
-def _refuse_repeats(points: Points, what: str) -> None:
-    _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    again = np.flatnonzero(first[inverse.ravel()] != np.arange(len(points)))
-    if again.size:
-        j = int(again[0])
-        i = int(first[inverse.ravel()[j]])
-        raise MeshError(f"Points {i} and {j} of {what} are the same, {_place(points[j])}.")
-    size = float(np.ptp(points, axis=0).max())
-    if size < 1 / _LARGEST:
-        raise MeshError(f"{capitalised(what)} encloses no area: it is only {size:.3g} across.")
-    steps = np.abs(np.roll(points, -1, axis=0) - points).max(axis=1)
-    near = np.flatnonzero(steps < _NEAR * size)
-    if near.size:
-        i = int(near[0])
-        raise MeshError(
-            f"Points {i} and {(i + 1) % len(points)} of {what} are nearly the same, "
-            f"{_place(points[i])}."
-        )
-    centred = (points - points.mean(axis=0)) / size
-    if np.linalg.svd(centred, compute_uv=False)[1] < _NEAR:
-        raise MeshError(f"{capitalised(what)} encloses no area: all its points lie on one line.")
-
-
-def _flags(flags: ArrayLike | None, ring: ArrayLike, loop: Points, what: str) -> Flags | None:
-    if flags is None:
-        return None
-    values = np.array(flags)
-    given = len(np.asarray(ring))
-    if values.ndim != 1 or values.dtype != np.bool_ or len(values) not in (len(loop), given):
-        raise MeshError(
-            f"The corners of {what} must be {len(loop)} true or false, one for each point."
-        )
-    return values[: len(loop)]
-
-
-def _refuse_crossings(loops: list[Points], names: list[str]) -> None:
-    """Raise MeshError if two edges meet anywhere but in the point that neighbours share."""
-    starts = np.concatenate(loops)
-    ends = np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
-    ring = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
-    index = np.concatenate([np.arange(len(loop)) for loop in loops])
-    edges = shapely.linestrings(np.stack([starts, ends], axis=1))
-    one, other = shapely.STRtree(edges).query(edges, predicate="intersects")
-    later = one < other
-    one, other = one[later], other[later]
-    order = np.lexsort((other, one))
-    for i, j in zip(one[order].tolist(), other[order].tolist(), strict=True):
-        meeting = shapely.intersection(edges[i], edges[j])
-        count = len(loops[ring[i]])
-        neighbours = ring[i] == ring[j] and (index[j] - index[i]) % count in (1, count - 1)
-        if neighbours and (meeting.geom_type == "Point" or meeting.is_empty):
-            continue
-        spots = shapely.get_coordinates(meeting)
-        spot = _place(spots.mean(axis=0) if len(spots) else ends[i])
-        edge_i, edge_j = (f"edge {index[e]}-{(index[e] + 1) % len(loops[ring[e]])}" for e in (i, j))
-        if ring[i] == ring[j]:
-            raise MeshError(
-                f"{capitalised(names[ring[i]])} crosses or touches itself near {spot}: "
-                f"{edge_i} meets {edge_j}."
-            )
-        raise MeshError(
-            f"{capitalised(names[ring[j]])} crosses or touches {names[ring[i]]} near {spot}: "
-            f"{edge_j} meets {edge_i}."
-        )
-
-
-def _refuse_strays(loops: list[Points], names: list[str]) -> None:
-    """Raise MeshError if a hole lies outside the outline or in another hole; no rings meet."""
-    polygons = [shapely.Polygon(loop) for loop in loops]
-    for i in range(1, len(loops)):
-        spot = shapely.Point(loops[i][0])
-        if not polygons[0].contains(spot):
-            inverted = " and around it" if polygons[i].contains(shapely.Point(loops[0][0])) else ""
-            raise MeshError(
-                f"{capitalised(names[i])} lies outside the outline{inverted}: "
-                f"its point 0 is {_place(loops[i][0])}."
-            )
-        for j in range(1, len(loops)):
-            if i != j and polygons[j].contains(spot):
-                raise MeshError(
-                    f"{capitalised(names[i])} lies inside {names[j]}: "
-                    f"its point 0 is {_place(loops[i][0])}."
-                )
-
-
-def load_json(path: Path) -> Any:
-    """Return what a JSON file holds; MeshError that begins with the path if there is none."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError as error:
-        raise MeshError(f"{path}: there is no such file.") from error
-    except IsADirectoryError as error:
-        raise MeshError(f"{path}: this is a folder, not a file.") from error
-    except UnicodeDecodeError as error:
-        raise MeshError(f"{path}: this is not a text file.") from error
-    except (OSError, ValueError) as error:
-        raise MeshError(f"{path}: cannot be read ({_reason(error)}).") from error
-    try:
-        return json.loads(text)
-    except json.JSONDecodeError as error:
-        if not text.strip():
-            raise MeshError(f"{path}: the file is empty.") from error
-        place = f"line {error.lineno}, column {error.colno}"
-        raise MeshError(f"{path}, {place}: this is not JSON ({error.msg}).") from error
-    except (RecursionError, ValueError) as error:
-        raise MeshError(f"{path}: this JSON is too deep or its numbers too long.") from error
-
-
-def _reason(error: Exception) -> str:
-    text = (error.strerror if isinstance(error, OSError) else None) or str(error)
-    return text[:1].lower() + text[1:].strip().rstrip(".")
-
-
-def _from_mapping(content: Any, corner_angle: float) -> Domain:
-    if not isinstance(content, Mapping):
-        raise MeshError('A domain is a JSON object with an "outline".')
-    if "outline" not in content:
-        raise MeshError('The domain has no "outline".')
-    outline = _pairs(content["outline"], "the outline")
-    holes = content.get("holes")
-    holes = [] if holes is None else holes
-    if not isinstance(holes, Sequence) or isinstance(holes, str):
-        raise MeshError('"holes" is not a list of holes.')
-    rings = [_pairs(hole, f"hole {i}") for i, hole in enumerate(holes)]
-    hole_corners = content.get("hole_corners")
-    if hole_corners is not None and (
-        not isinstance(hole_corners, Sequence) or isinstance(hole_corners, str)
-    ):
-        raise MeshError('"hole_corners" is not a list with one entry for each hole.')
-    name = content.get("name", "")
-    if not isinstance(name, str):
-        raise MeshError('"name" is not a text.')
-    return Domain(outline, rings, content.get("corners"), hole_corners, name, corner_angle)
-
-
-def _pairs(ring: Any, what: str) -> list[list[float]]:
-    """Return a JSON list of [x, y] pairs as floats, or raise MeshError with the wrong entry."""
-    if isinstance(ring, np.ndarray):
-        ring = ring.tolist()
-    if not isinstance(ring, Sequence) or isinstance(ring, str):
-        raise MeshError(f"{capitalised(what)} is not a list of [x, y] pairs.")
-    pairs = []
-    for i, pair in enumerate(ring):
-        numbers = isinstance(pair, Sequence) and len(pair) == 2 and all(map(_is_number, pair))
-        if not numbers:
-            shown = repr(pair)
-            shown = shown if len(shown) <= 40 else shown[:37] + "..."
-            raise MeshError(f"Point {i} of {what} is not a pair of numbers: {shown}.")
-        try:
-            pairs.append([float(pair[0]), float(pair[1])])
-        except OverflowError as error:
-            raise MeshError(f"Point {i} of {what} has a number that is too large.") from error
-    return pairs
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,7 +1,8 @@
 """The gallery of named domains, and the random polygons of the benchmark.
 
-All shapes are about one to two units across. Sides that are curved are polylines just fine enough
-to look round on a coarse mesh; their points are not corners.
+All shapes are about one to two units across. The curved sides of most are polylines just fine
+enough to look round on a coarse mesh; their points are not corners. Those of
+:mod:`.curved_shapes` are true curves.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshwright_core.domains import curved_shapes
+from meshwright_core.domains.airfoils import naca4
 from meshwright_core.domains.domain import Domain, Points
 from meshwright_core.errors import MeshError
 
@@ -207,41 +210,6 @@ def _gear() -> Domain:
     return _around(outline, _circle((0, 0), 0.3, 12))
 
 
-def naca4(code: str, pieces: int = 14, chord: float = 1.0) -> Points:
-    """Return a NACA four-digit airfoil as (2 pieces, 2) points from the trailing edge on.
-
-    Upper side first, so counter-clockwise; the trailing edge, at (chord, 0), is the first point
-    and closed (last thickness coefficient -0.1036). Stations follow a cosine, dense at both ends.
-    After Jacobs, Ward and Pinkerton, NACA Report 460 (1933).
-
-    Args:
-        code: four digits: camber in percent, its place in tenths, thickness in percent.
-        pieces: edges on each of the two sides.
-        chord: length from nose to trailing edge.
-
-    Raises:
-        MeshError: `code` is not four digits, or has no thickness.
-    """
-    if len(code) != 4 or not code.isascii() or not code.isdigit() or code.endswith("00"):
-        raise MeshError(f"A NACA airfoil is named by four digits with a thickness, not {code!r}.")
-    camber, place, thickness = int(code[0]) / 100, int(code[1]) / 10, int(code[2:]) / 100
-    x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, pieces + 1)))
-    half = 5 * thickness * x * (-0.1260 - x * (0.3516 - x * (0.2843 - 0.1036 * x)))
-    half += 5 * thickness * 0.2969 * np.sqrt(x)
-    half[-1] = 0.0
-    line, slope = np.zeros_like(x), np.zeros_like(x)
-    if camber > 0 and place > 0:
-        scale = np.where(x < place, camber / place**2, camber / (1 - place) ** 2)
-        line = scale * np.where(
-            x < place, 2 * place * x - x**2, 1 - 2 * place + 2 * place * x - x**2
-        )
-        slope = 2 * scale * (place - x)
-    tilt = np.arctan(slope)
-    upper = np.column_stack([x - half * np.sin(tilt), line + half * np.cos(tilt)])
-    lower = np.column_stack([x + half * np.sin(tilt), line - half * np.cos(tilt)])
-    return chord * np.vstack([upper[::-1], lower[1:-1]])
-
-
 def _airfoil() -> Domain:
     wing = naca4("2415", pieces=9, chord=1.0) - [0.5, 0]
     corners = _none(wing)
@@ -278,4 +246,13 @@ _SHAPES: dict[str, Callable[[], Domain]] = {
     "bracket": _bracket,
     "gear": _gear,
     "airfoil": _airfoil,
+    "plate-with-round-hole": curved_shapes.plate_with_round_hole,
+    "filleted-bracket": curved_shapes.filleted_bracket,
+    "duct-bend": curved_shapes.duct_bend,
+    "nozzle": curved_shapes.nozzle,
+    "pipe": curved_shapes.pipe,
+    "airfoil-in-box": curved_shapes.airfoil_in_box,
+    "two-materials": curved_shapes.two_materials,
+    "plate-with-insert": curved_shapes.plate_with_insert,
+    "motor-segment": curved_shapes.motor_segment,
 }

@@ -9,17 +9,26 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import shapely
-import triangle
 from numpy.typing import NDArray
 
 from meshwright_core.core.irregularity import QUAD_STRAIGHT, TRIANGLE_STRAIGHT
-from meshwright_core.domains import quadrangulation
+from meshwright_core.domains import quadrangulation, triangulation
+from meshwright_core.domains.coarse_start import coarse
 from meshwright_core.domains.domain import Domain, Flags, Points
 from meshwright_core.domains.gallery import random_corners
+from meshwright_core.domains.refined_start import refined
+from meshwright_core.domains.side_edges import SideEdges
+from meshwright_core.domains.sided_elements import SidedElements
+from meshwright_core.domains.triangulation import (
+    Bounds,
+    plain_triangles,
+    triangle_areas,
+    triangulated,
+)
 from meshwright_core.errors import MeshError
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -36,17 +45,15 @@ BENCHMARK_EDGE = 0.4
 MAX_ANGLE = 34.0
 """Degrees; asking Triangle for more than this hardly ever ends."""
 
-MAX_TRIANGLES = 4_000_000
-"""What a mesh may need before the request is refused."""
-
 CURVED_ANGLE = 18.5
 """Degrees that Triangle aims at before Catmull-Clark splits of a domain with curved sides: just
 above what a fan of twenty triangles in a circle has, which makes a centre of degree twenty."""
 
+_HALVES = 0.99
+"""Share of twice the longest edge that an edge on a curve has, so that its halves are shorter."""
+
 _EDGE_SHARE = 0.2
 """The longest edge by default, as a share of the diameter; 0.4 for the benchmark's 2."""
-
-_ROUNDS = 200
 
 
 def mesh_domain(
@@ -83,6 +90,9 @@ def mesh_domain(
     Raises:
         MeshError: an argument out of range, or a mesh that would need too many triangles.
     """
+    if domain.sides is not None:
+        found = _sided(domain, kind, max_edge, min_angle, max_area, seed, quads)
+        return found.mesh(domain.sides)
     arrays = mesh_arrays(domain, kind, max_edge, min_angle, max_area, seed, quads)
     mesh = HalfEdgeMesh.from_elements(*arrays)
     desired = mesh.desired()
@@ -103,84 +113,129 @@ def mesh_arrays(
     quads: Quads = "catmull-clark",
 ) -> Arrays:
     """Return the arrays of `mesh_domain`."""
+    if domain.sides is not None:
+        found = _sided(domain, kind, max_edge, min_angle, max_area, seed, quads)
+        return found.points, found.elements, found.node >= 0
+    bounds = _bounds(domain, kind, max_edge, min_angle, max_area, quads)
+    points, triangles, geometric = triangle_arrays(domain, *bounds, seed)
+    if kind == "tri":
+        return points, triangles, geometric
+    if quads == "catmull-clark":
+        return quadrangulation.catmull_clark(points, [triangles], geometric)
+    paired, alone = quadrangulation.pair(points, triangles)
+    if len(alone) == 0:
+        return quadrangulation.without_doublets(points, paired, geometric)
+    points, triangles, geometric = triangle_arrays(domain, *_doubled(bounds), seed)
+    paired, alone = quadrangulation.pair(points, triangles)
+    arrays = quadrangulation.catmull_clark(points, [paired, alone], geometric)
+    return quadrangulation.without_doublets(*arrays)
+
+
+def _sided(
+    domain: Domain,
+    kind: str,
+    max_edge: float | None,
+    min_angle: float | None,
+    max_area: float | None,
+    seed: int,
+    quads: Quads,
+) -> SidedElements:
+    """The elements of a domain of curves."""
+    sides = domain.sides
+    assert sides is not None
+    bounds = _bounds(domain, kind, max_edge, min_angle, max_area, quads)
+    edges = SideEdges(sides)
+    if bounds == Bounds():
+        found = coarse(edges, domain.diameter, seed)
+    else:
+        found = refined(edges, domain.diameter, bounds, seed)
+    if kind == "tri":
+        return found
+    if quads == "catmull-clark":
+        return found.catmull_clark([found.elements], [found.regions])
+    blocks, regions = found.paired()
+    if len(blocks[1]) == 0:
+        return found.with_elements(blocks[0], regions[0]).without_doublets()
+    found = refined(SideEdges(sides), domain.diameter, _doubled(bounds), seed)
+    return found.catmull_clark(*found.paired()).without_doublets()
+
+
+def _bounds(
+    domain: Domain,
+    kind: str,
+    max_edge: float | None,
+    min_angle: float | None,
+    max_area: float | None,
+    quads: Quads,
+) -> Bounds:
+    """The bounds of the triangles for a request; MeshError for an argument out of range."""
     _refuse_kind(kind)
     if quads not in ("catmull-clark", "pairing"):
         raise MeshError(f'Quads are made by "catmull-clark" or "pairing", not by {quads!r}.')
     if kind == "quad" and quads == "catmull-clark":
         # a quad's edges are halves of a triangle's edges and thirds of its medians
         bound = None if max_edge is None else 2 * _positive(max_edge, "longest edge")
+        if bound is not None and domain.has_curves and domain.sides is not None:
+            bound *= _HALVES
         if min_angle is None:
-            curved = not all(corners.all() for corners in domain.loop_corners)
+            bent = domain.sides is None and domain.has_curves
             bounded = max_edge is not None or max_area is not None
-            min_angle = MIN_ANGLE if bounded else CURVED_ANGLE if curved else 0.0
-        points, triangles, geometric = triangle_arrays(domain, bound, min_angle, max_area, seed)
-        return quadrangulation.catmull_clark(points, [triangles], geometric)
-    bound = _EDGE_SHARE * domain.diameter if max_edge is None else max_edge
-    angle = MIN_ANGLE if min_angle is None else min_angle
-    points, triangles, geometric = triangle_arrays(domain, bound, angle, max_area, seed)
-    if kind == "tri":
-        return points, triangles, geometric
-    paired, alone = quadrangulation.pair(points, triangles)
-    if len(alone) == 0:
-        return quadrangulation.without_doublets(points, paired, geometric)
-    points, triangles, geometric = triangle_arrays(domain, 2 * bound, angle, max_area, seed)
-    paired, alone = quadrangulation.pair(points, triangles)
-    arrays = quadrangulation.catmull_clark(points, [paired, alone], geometric)
-    return quadrangulation.without_doublets(*arrays)
+            min_angle = MIN_ANGLE if bounded else CURVED_ANGLE if bent else 0.0
+        bounds = Bounds(min_angle, bound, max_area)
+    else:
+        bound = _EDGE_SHARE * domain.diameter if max_edge is None else max_edge
+        bounds = Bounds(MIN_ANGLE if min_angle is None else min_angle, bound, max_area)
+    _check(domain, bounds)
+    return bounds
+
+
+def _doubled(bounds: Bounds) -> Bounds:
+    """With edges twice as long, which are halved afterwards."""
+    assert bounds.max_edge is not None
+    return bounds._replace(max_edge=2 * bounds.max_edge)
+
+
+def _check(domain: Domain, bounds: Bounds) -> None:
+    """Raise MeshError for a bound out of range, or one that needs too many triangles."""
+    if bounds.max_edge is not None:
+        _positive(bounds.max_edge, "longest edge")
+    if bounds.max_area is not None:
+        _positive(bounds.max_area, "largest area")
+    if not 0 <= bounds.min_angle <= MAX_ANGLE:
+        raise MeshError(f"The smallest angle must lie between 0 and {MAX_ANGLE:g} degrees.")
+    target = min(
+        math.inf if bounds.max_edge is None else math.sqrt(3) / 4 * bounds.max_edge**2,
+        math.inf if bounds.max_area is None else bounds.max_area,
+    )
+    if domain.area > target * triangulation.MAX_TRIANGLES:
+        raise MeshError(
+            f"Elements this small would take about {domain.area / target:.2g} triangles; "
+            f"no more than {triangulation.MAX_TRIANGLES:,} are made."
+        )
 
 
 def triangle_arrays(
     domain: Domain,
-    max_edge: float | None = None,
     min_angle: float = MIN_ANGLE,
+    max_edge: float | None = None,
     max_area: float | None = None,
     seed: int = 0,
 ) -> Arrays:
-    """Triangulate a domain by Triangle; arguments and errors as in `mesh_domain`.
+    """Triangulate a polygon by Triangle; arguments and errors as in `mesh_domain`.
 
     With neither `max_edge` nor `max_area` and `min_angle` 0 no points are inserted. The domain's
     points come first, the outline's before the holes', at exactly their places.
     """
-    if max_edge is not None:
-        _positive(max_edge, "longest edge")
-    if max_area is not None:
-        _positive(max_area, "largest area")
-    if not 0 <= min_angle <= MAX_ANGLE:
-        raise MeshError(f"The smallest angle must lie between 0 and {MAX_ANGLE:g} degrees.")
-    target = min(
-        math.inf if max_edge is None else math.sqrt(3) / 4 * max_edge**2,
-        math.inf if max_area is None else max_area,
-    )
-    if domain.area > target * MAX_TRIANGLES:
-        raise MeshError(
-            f"Elements this small would take about {domain.area / target:.2g} triangles; "
-            f"no more than {MAX_TRIANGLES:,} are made."
-        )
-    loops = domain.loops
-    # exact, and keeps the areas that go to Triangle in plain decimals
-    scale = 2.0 ** -math.frexp(domain.diameter)[1]
-    turn, order = _shuffle(sum(len(loop) for loop in loops), seed)
-    place = np.argsort(order)
-    points = np.concatenate(loops)
-    starts = np.cumsum([0, *(len(loop) for loop in loops)])
+    bounds = Bounds(min_angle, max_edge, max_area)
+    _check(domain, bounds)
+    points = np.concatenate(domain.loops)
+    starts = np.cumsum([0, *(len(loop) for loop in domain.loops)])
     segments = np.concatenate([_ring(a, b) for a, b in itertools.pairwise(starts)])
     spots = [shapely.Polygon(hole).representative_point() for hole in domain.holes]
-    raw_points, raw_triangles = _triangle(
-        scale * points[order] @ turn,
-        place[segments],
-        scale * np.array([[spot.x, spot.y] for spot in spots]).reshape(-1, 2) @ turn,
-        min_angle,
-        None if max_edge is None else scale * max_edge,
-        None if max_area is None else scale**2 * max_area,
-    )
-    if np.linalg.det(turn) < 0:
-        raw_triangles = raw_triangles[:, ::-1]
-    result = raw_points @ turn.T / scale
-    renumbered = np.arange(len(result))
-    renumbered[: len(points)] = order
-    result[: len(points)] = points
-    triangles = renumbered[raw_triangles]
-    if abs(_areas(result, triangles).sum() - domain.area) > 1e-9 * domain.diameter**2:
+    holes = np.array([[spot.x, spot.y] for spot in spots]).reshape(-1, 2)
+    found = triangulated(points, segments, holes, domain.diameter, bounds, seed)
+    result, triangles = found.points, found.triangles
+    if abs(triangle_areas(result, triangles).sum() - domain.area) > 1e-9 * domain.diameter**2:
         raise MeshError("The domain could not be triangulated: it is too thin somewhere.")
     geometric = np.zeros(len(result), dtype=bool)
     geometric[: len(points)] = np.concatenate(domain.loop_corners)
@@ -202,11 +257,8 @@ def benchmark_arrays(kind: str, sides: int, rng: np.random.Generator) -> Arrays:
     _refuse_kind(kind)
     corners = random_corners(sides, rng)
     segments = _ring(0, sides)
-    no_holes = np.empty((0, 2))
-    if kind == "tri":
-        points, elements = _triangle(corners, segments, no_holes, MIN_ANGLE, BENCHMARK_EDGE, None)
-    else:
-        points, elements = _triangle(corners, segments, no_holes, 0.0, None, None)
+    bounds = Bounds(MIN_ANGLE, BENCHMARK_EDGE) if kind == "tri" else Bounds()
+    points, elements = plain_triangles(corners, segments, bounds)
     geometric = np.arange(len(points)) < sides
     if kind == "tri":
         return points, elements, geometric
@@ -255,81 +307,9 @@ def grid(kind: str, n_elements: int, rng: np.random.Generator | None = None) -> 
     return HalfEdgeMesh.from_elements(*grid_arrays(kind, n_elements, rng))
 
 
-def _triangle(
-    points: Points,
-    segments: Elements,
-    holes: Points,
-    min_angle: float,
-    max_edge: float | None,
-    max_area: float | None,
-) -> tuple[Points, Elements]:
-    """Call Triangle, and again while an edge is too long; input points keep their numbers.
-
-    A triangle with a long edge that is far above the area of the equilateral one is brought down
-    to that; any other loses at least a tenth, so that Triangle must cut it.
-    """
-    mesh: dict[str, Any] = {"vertices": points, "segments": segments}
-    if len(holes):
-        mesh["holes"] = holes
-    quality = f"q{min_angle:.6f}" if min_angle > 0 else ""
-    area = "" if max_area is None else f"a{max_area:.30f}"
-    mesh = _call(mesh, f"p{quality}{area}")
-    if max_edge is None:
-        return _result(mesh)
-    target = math.sqrt(3) / 4 * max_edge**2
-    for _ in range(_ROUNDS):
-        vertices, triangles = _result(mesh)
-        ends = vertices[triangles]
-        sides = ends - ends[:, [1, 2, 0]]
-        long = (np.einsum("ijk,ijk->ij", sides, sides) > max_edge**2).any(axis=1)
-        if not long.any():
-            return vertices, triangles
-        now = _areas(vertices, triangles)
-        limit = np.where(now > 2 * target, target, 0.9 * now)
-        mesh = {name: mesh[name] for name in ("vertices", "triangles", "segments")}
-        mesh["triangle_max_area"] = np.where(long, limit, -1.0)[:, None]
-        mesh = _call(mesh, f"rp{quality}a")
-    raise MeshError("Triangle did not bring all edges below the requested longest edge.")
-
-
-def _call(mesh: dict[str, Any], switches: str) -> dict[str, Any]:
-    allowed = MAX_TRIANGLES // 2
-    result: dict[str, Any] = triangle.triangulate(mesh, f"{switches}S{allowed}")
-    if len(result["vertices"]) - len(mesh["vertices"]) >= allowed:
-        raise MeshError(
-            f"The mesh would need more than {MAX_TRIANGLES:,} triangles: "
-            "ask for longer edges or smaller angles, or widen the thin parts of the domain."
-        )
-    return result
-
-
-def _result(mesh: dict[str, Any]) -> tuple[Points, Elements]:
-    triangles = mesh.get("triangles")
-    if triangles is None or len(triangles) == 0:
-        raise MeshError("The domain could not be triangulated: it is too thin somewhere.")
-    return np.asarray(mesh["vertices"], dtype=np.float64), triangles.astype(np.int64)
-
-
-def _areas(points: Points, triangles: Elements) -> NDArray[np.float64]:
-    a, b, c = (points[triangles[:, i]] for i in range(3))
-    u, v = b - a, c - a
-    return 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-
-
 def _ring(start: int, stop: int) -> Elements:
     index = np.arange(start, stop)
     return np.column_stack([index, np.roll(index, -1)])
-
-
-def _shuffle(count: int, seed: int) -> tuple[Points, Elements]:
-    """Return one of the eight exact turns of the plane and an order of `count` points."""
-    if seed == 0:
-        return np.eye(2), np.arange(count)
-    rng = np.random.default_rng(seed)
-    turn = np.diag(rng.choice([-1.0, 1.0], 2))
-    if rng.random() < 0.5:
-        turn = turn[::-1].copy()
-    return turn, rng.permutation(count)
 
 
 def _refuse_kind(kind: str) -> None:

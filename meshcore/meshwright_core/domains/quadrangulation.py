@@ -31,26 +31,37 @@ def catmull_clark(
         blocks: element arrays of one width each, that share edges; triangles and quads mix.
         geometric: (n,).
     """
-    n = len(points)
+    pairs, quads = split_elements(len(points), blocks)
+    middles = 0.5 * (points[pairs[:, 0]] + points[pairs[:, 1]])
+    centres = [points[block].mean(axis=1) for block in blocks]
+    everything = np.concatenate([points, middles, *centres])
+    flags = np.zeros(len(everything), dtype=bool)
+    flags[: len(points)] = geometric
+    return everything, quads, flags
+
+
+def split_elements(count: int, blocks: Sequence[Elements]) -> tuple[Elements, Elements]:
+    """The connectivity of :func:`catmull_clark`, for elements on `count` points.
+
+    Returns:
+        the ends (e, 2) of the edges whose midpoints are the points from `count` on, the lower one
+        first; and the quads, k for each element, that at its corner i the i-th of them.
+    """
     ends = np.concatenate([_sides(block).reshape(-1, 2) for block in blocks])
     low, high = ends.min(axis=1), ends.max(axis=1)
-    keys, edge = np.unique(low * n + high, return_inverse=True)
-    middles = 0.5 * (points[keys // n] + points[keys % n])
-    edge = n + edge.ravel()
-    centres, quads = [], []
-    first, centre = 0, n + len(keys)
+    keys, edge = np.unique(low * count + high, return_inverse=True)
+    edge = count + edge.ravel()
+    quads = []
+    first, centre = 0, count + len(keys)
     for block in blocks:
         m, k = block.shape
         following = edge[first : first + m * k].reshape(m, k)
         hub = np.repeat(centre + np.arange(m), k).reshape(m, k)
         quads.append(np.stack([block, following, hub, np.roll(following, 1, axis=1)], axis=2))
-        centres.append(points[block].mean(axis=1))
         first += m * k
         centre += m
-    everything = np.concatenate([points, middles, *centres])
-    flags = np.zeros(len(everything), dtype=bool)
-    flags[:n] = geometric
-    return everything, np.concatenate([quad.reshape(-1, 4) for quad in quads]), flags
+    pairs = np.column_stack([keys // count, keys % count])
+    return pairs, np.concatenate([quad.reshape(-1, 4) for quad in quads])
 
 
 def pair(points: Points, triangles: Elements) -> tuple[Elements, Elements]:
@@ -89,9 +100,23 @@ def without_doublets(
     Each merge: V-1, E-2, F-1. Points that are no longer used are dropped and the rest renumbered
     in order.
     """
+    merged, _ = merged_doublets(quads, np.zeros(len(points), bool))
+    used = np.zeros(len(points), dtype=bool)
+    used[merged] = True
+    new = np.cumsum(used) - 1
+    return points[used], new[merged], geometric[used]
+
+
+def merged_doublets(quads: Elements, kept: Flags) -> tuple[Elements, Elements]:
+    """The quads of :func:`without_doublets` on the old points, and their rows among the old ones.
+
+    kept: (n,) vertices that stay even if they have two quads.
+    """
     quads = quads.copy()
+    rows = np.arange(len(quads))
     while True:
-        doublet = _first_doublets(quads, len(points))
+        doublet = _first_doublets(quads, len(kept))
+        doublet = doublet[~kept[doublet]]
         if len(doublet) == 0:
             break
         touched = np.zeros(len(quads), dtype=bool)
@@ -106,11 +131,8 @@ def without_doublets(
             b = np.roll(quads[f], -int(np.flatnonzero(quads[f] == vertex)[0]))
             quads[e] = [a[1], a[2], a[3], b[2]]
             dead[f] = True
-        quads = quads[~dead]
-    used = np.zeros(len(points), dtype=bool)
-    used[quads] = True
-    new = np.cumsum(used) - 1
-    return points[used], new[quads], geometric[used]
+        quads, rows = quads[~dead], rows[~dead]
+    return quads, rows
 
 
 def _sides(elements: Elements) -> Elements:

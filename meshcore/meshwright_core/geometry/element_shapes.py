@@ -2,7 +2,7 @@
 
 a and b are the sides at a corner, J = a x b. It is 1 for a square, and falls with skewness like the
 scaled Jacobian, but also with the ratio of the sides: a rectangle of 10 to 1 has 0.2. A triangle is
-measured by its mean ratio, 2 sqrt(3) times twice its area over the sum of its squared sides.
+measured by its mean ratio. With curved sides it is the worst over the samples of the element's map.
 """
 
 from __future__ import annotations
@@ -11,33 +11,32 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright_core.geometry.outline import Outline
-from meshwright_core.geometry.quality import reference_normals
+from meshwright_core.core.compilation import kernel
+from meshwright_core.geometry import movable_part
+from meshwright_core.geometry.coons import curved_shape
+from meshwright_core.geometry.smoothing import element_shape
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
 
 
-def corner_shapes(p: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """(m, k) shape at each corner of quads at p (m, 4, 3), or of triangles (the same at each), with
-    the signs of `reference` (m, 3); 0 where both sides have no length.
-    """
-    forward = np.roll(p, -1, axis=1) - p
-    backward = np.roll(p, 1, axis=1) - p
-    area = np.einsum("ikj,ij->ik", np.cross(forward, backward), reference)
-    square = np.einsum("ikj,ikj->ik", forward, forward)
-    total = square + np.roll(square, 1, axis=1)
-    scale = 2.0
-    if p.shape[1] == 3:
-        total, scale = np.repeat(square.sum(axis=1, keepdims=True), 3, axis=1), 2.0 * np.sqrt(3.0)
-    found: np.ndarray = scale * area / np.where(total > 0.0, total, np.inf)
+@kernel
+def _shapes(points, elements, curved, reference):
+    """(m,) shapes of elements (m, k)."""
+    found = np.zeros(len(elements))
+    for e in range(len(elements)):
+        row = curved.row[e]
+        if row < 0:
+            found[e] = element_shape(points, elements, e, reference)
+        else:
+            found[e] = curved_shape(curved, points, row, reference[e])
     return found
 
 
 def element_shapes(mesh: HalfEdgeMesh) -> np.ndarray:
     """(m,) shape of each element, in the order of `mesh.elements()`; 0 or less where folded."""
-    elements = mesh.elements()
-    normal = Outline.of(mesh).normal(mesh.points[mesh.vertices()])
-    reference = reference_normals(mesh.points, elements, normal)
-    smallest: np.ndarray = corner_shapes(mesh.points[elements], reference).min(axis=1)
-    return smallest
+    part = movable_part.whole(mesh)
+    found: np.ndarray = _shapes(
+        part.points, part.elements, part.curved, np.ascontiguousarray(part.references())
+    )
+    return found

@@ -7,9 +7,10 @@ corner (a square's, an equilateral triangle's) to the plane, with Jacobian J. It
     f = (tr J'J + lambda (det J^2 + 1)) / chi(eps, det J),   chi = (det + sqrt(eps^2 + det^2)) / 2
 
 is finite for folded corners as long as eps > 0; as eps falls to zero it turns into a barrier that
-no corner crosses. Vertices inside have two variables, a vertex that slides along a side one, the
-arc length. The gaps between neighbours on a side carry a barrier of their own, so that the order
-along a side holds at every step.
+no corner crosses. Of elements with curved sides samples of their Coons maps take the place of
+corners (:mod:`meshwright_core.geometry.curved_energy`). Vertices inside have two variables; those
+that slide along a side have one, the parameter on its curve. The gaps between neighbours on a side
+carry a barrier of their own, so that the order along a side holds at every step.
 """
 
 from __future__ import annotations
@@ -19,8 +20,15 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
+from meshwright_core.core.composite_curves import Curves
 from meshwright_core.core.references import by_reference
-from meshwright_core.geometry.outline import Polylines, place_on
+from meshwright_core.geometry.coons import CurvedElements
+from meshwright_core.geometry.curved_energy import (
+    corner_energy,
+    curved_energy,
+    flat_place,
+    pull,
+)
 
 MEMORY = 10
 """Pairs that L-BFGS keeps."""
@@ -39,38 +47,69 @@ class Problem(NamedTuple):
     points: np.ndarray
     """(n, 2) positions, written when variables are placed."""
     tangent: np.ndarray
-    """(n, 2) directions of the side at sliding vertices, written likewise."""
+    """(n, 2) derivatives of the positions of sliding vertices, written likewise."""
     variable: np.ndarray
-    """(n,) a vertex's first variable, -1 when it stays."""
-    side: np.ndarray
-    """(n,) the side that a vertex slides on, -1 for none."""
-    sides: Polylines
+    """(n,) a vertex's first variable, -1 when it stays. Those of sliding vertices are their
+    parameters, divided by the unit."""
+    seat: np.ndarray
+    """(n,) the curve that a vertex slides on, -1 for none."""
+    offset: np.ndarray
+    """(n, 2) how far a sliding vertex would lie off its curve at parameter 0."""
+    drift: np.ndarray
+    """(n, 2) the change of that by its variable."""
+    curves: Curves
+    """In the coordinates of the mesh."""
+    axes: np.ndarray
+    """(2, 3) directions of the plane."""
+    centre: np.ndarray
+    """(2,) the origin in the plane."""
+    unit: np.ndarray
+    """(1,) unit of length."""
     corners: np.ndarray
-    """(c, 3) the vertex of each corner, the next one and the previous one of its element."""
+    """(c, 3) the vertex of each straight corner, the next one and the previous one."""
     scale: np.ndarray
     """(c,) one over the squared target size of the corner's element."""
     shape: np.ndarray
     """(3,) alpha, beta, delta: tr J'J = alpha (|p|^2 + |q|^2) - beta p.q, det J = delta p x q."""
     gaps: np.ndarray
     """(g, 2) variables of neighbours on a side, -1 for one that stays."""
-    offset: np.ndarray
+    offsets: np.ndarray
     """(g,) what the gap has besides the difference of its variables."""
     gap_scale: np.ndarray
     """(g,) one over the target of the gap."""
+    curved: CurvedElements
+    """The elements with curved sides; its parameters are written when variables are placed."""
+    curved_scale: np.ndarray
+    """(c,) as `scale`, by curved element."""
+    active: np.ndarray
+    """(c,) bool: curved elements that something moves."""
+    slight: np.ndarray
+    """(c,) bool: those whose sides turn so little that their corners alone are looked at."""
+    dropped: np.ndarray
+    """(c, k) bool: corners whose samples are left out."""
+    differences: np.ndarray
+    """(NODES, NODES) derivative by the place on a side."""
 
 
 @kernel
 def place(problem, x):
     """Write the positions that the variables `x` stand for."""
+    flat, point, slope = np.zeros((2, 2)), np.zeros(3), np.zeros(3)
     for v in range(len(problem.variable)):
         i = problem.variable[v]
         if i < 0:
             continue
-        if problem.side[v] < 0:
+        if problem.seat[v] < 0:
             problem.points[v, 0] = x[i]
             problem.points[v, 1] = x[i + 1]
         else:
-            place_on(problem.sides, problem.side[v], x[i], problem.points[v], problem.tangent[v])
+            t = x[i] * problem.unit[0]
+            problem.curved.parameter[v] = t
+            flat_place(problem, problem.seat[v], t, flat, point, slope)
+            for c in range(2):
+                drift = problem.drift[v, c]
+                problem.points[v, c] = flat[0, c] + problem.offset[v, c] + x[i] * drift
+                problem.tangent[v, c] = flat[1, c] + drift
 
 
 @kernel
@@ -82,7 +121,7 @@ def energy(problem, x, gradient, eps, weight):
     total = 0.0
     for i in range(len(problem.gaps)):
         a, b = problem.gaps[i, 0], problem.gaps[i, 1]
-        gap = problem.offset[i]
+        gap = problem.offsets[i]
         if a >= 0:
             gap -= x[a]
         if b >= 0:
@@ -96,47 +135,25 @@ def energy(problem, x, gradient, eps, weight):
             gradient[a] += slope
         if b >= 0:
             gradient[b] -= slope
-    alpha, beta, delta = problem.shape[0], problem.shape[1], problem.shape[2]
     smallest = np.inf
     points = problem.points
     for c in range(len(problem.corners)):
         o, s, t = problem.corners[c, 0], problem.corners[c, 1], problem.corners[c, 2]
-        scale = problem.scale[c]
         px, py = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
         qx, qy = points[t, 0] - points[o, 0], points[t, 1] - points[o, 1]
-        trace = scale * (
-            alpha * (px * px + py * py + qx * qx + qy * qy) - beta * (px * qx + py * qy)
+        value, det, gpx, gpy, gqx, gqy = corner_energy(
+            problem.shape, problem.scale[c], eps, weight, px, py, qx, qy
         )
-        det = scale * delta * (px * qy - py * qx)
+        total += value
         smallest = min(smallest, det)
-        root = np.sqrt(eps * eps + det * det)
-        # the second form has no cancellation where det is negative
-        chi = 0.5 * (det + root) if det > 0.0 else 0.5 * eps * eps / (root - det)
-        numerator = trace + weight * (det * det + 1.0)
-        total += numerator / chi
-        by_trace = scale / chi
-        by_det = scale * delta * (2.0 * weight * det - numerator / root) / chi
-        gpx = by_trace * (2.0 * alpha * px - beta * qx) + by_det * qy
-        gpy = by_trace * (2.0 * alpha * py - beta * qy) - by_det * qx
-        gqx = by_trace * (2.0 * alpha * qx - beta * px) - by_det * py
-        gqy = by_trace * (2.0 * alpha * qy - beta * py) + by_det * px
-        _pull(problem, gradient, s, gpx, gpy)
-        _pull(problem, gradient, t, gqx, gqy)
-        _pull(problem, gradient, o, -gpx - gqx, -gpy - gqy)
+        pull(problem, gradient, s, gpx, gpy)
+        pull(problem, gradient, t, gqx, gqy)
+        pull(problem, gradient, o, -gpx - gqx, -gpy - gqy)
+    if len(problem.curved.element):
+        more, least = curved_energy(problem, gradient, eps, weight)
+        total += more
+        smallest = min(smallest, least)
     return total, smallest
-
-
-@kernel
-def _pull(problem, gradient, v, gx, gy):
-    """Add the derivative (gx, gy) by the position of v to that by its variables."""
-    i = problem.variable[v]
-    if i < 0:
-        return
-    if problem.side[v] < 0:
-        gradient[i] += gx
-        gradient[i + 1] += gy
-    else:
-        gradient[i] += gx * problem.tangent[v, 0] + gy * problem.tangent[v, 1]
 
 
 @kernel

@@ -1,6 +1,6 @@
-"""Initial guesses for untangling: starting positions of a region.
+"""Initial guesses for untangling: starting positions of a part.
 
-Each start changes the positions of a region in place; the energy is minimised from there.
+Each start changes the positions of a movable part in place; the energy is minimised from there.
 """
 
 from __future__ import annotations
@@ -9,86 +9,84 @@ from collections.abc import Callable
 
 import numpy as np
 
-from meshwright_core.geometry.quality import TOLERANCE
-from meshwright_core.geometry.region import Region
-from meshwright_core.geometry.sides import in_order
-from meshwright_core.geometry.unfixable import turns
+from meshwright_core.geometry.movable_part import MovablePart
 
 TANGLED = 0.1
 """Share of inverted elements above which the present positions are not tried first."""
 SCATTERED, SMALL = 4, 500
-"""Random starts after all others, for regions of so many elements at most."""
+"""Random starts after all others, for parts of so many elements at most."""
 
-Start = Callable[[Region], None]
+Start = Callable[[MovablePart], None]
 
 
-def starts(region: Region, rng: np.random.Generator) -> list[Start]:
+def starts(part: MovablePart, rng: np.random.Generator) -> list[Start]:
     """The initial guesses in order: the present positions first, unless many are inverted."""
-    tangled = region.inverted_rows().mean() > TANGLED
+    tangled = part.inverted_rows().mean() > TANGLED
     first: list[Start] = [_embedded, _present] if tangled else [_present, _embedded]
-    more = SCATTERED if len(region.elements) <= SMALL else 0
+    more = SCATTERED if len(part.elements) <= SMALL else 0
     return [*first, _spread, *(_scattered(rng, 0.01 * (i + 1)) for i in range(more))]
 
 
-def _present(region: Region) -> None:
+def _present(part: MovablePart) -> None:
     """Start from where the vertices are."""
 
 
-def _embedded(region: Region) -> None:
+def _embedded(part: MovablePart) -> None:
     """Start from every vertex at the mean of its neighbours, those on sides where they are."""
     # here, because few meshes need it and it takes a quarter of a second
     from scipy.sparse import coo_matrix, diags
     from scipy.sparse.linalg import splu
 
-    n = len(region.vertices)
-    a = region.elements.ravel()
-    b = np.roll(region.elements, -1, axis=1).ravel()
+    n = len(part.vertices)
+    a = part.elements.ravel()
+    b = np.roll(part.elements, -1, axis=1).ravel()
     ones = np.ones(len(a))
     links = coo_matrix((ones, (a, b)), (n, n)).tocsr()
     links = ((links + links.T) > 0).astype(np.float64)
-    free = region.free
+    free = part.free
     if not free.any():
         return
     degree = np.asarray(links.sum(axis=1)).ravel()
     inner = diags(degree[free]) - links[free][:, free]
-    outer = links[free][:, ~free] @ region.points[~free]
-    region.points[free] = splu(inner.tocsc()).solve(outer)
+    outer = links[free][:, ~free] @ part.points[~free]
+    part.points[free] = splu(inner.tocsc()).solve(outer)
 
 
-def _spread(region: Region) -> None:
+def _spread(part: MovablePart) -> None:
     """Start from boundary vertices spread evenly on their sides, the others at means."""
-    for run in region.runs():
+    for run in part.runs():
         even = np.linspace(run.low, run.high, len(run.members) + 2)[1:-1]
-        region.seats.parameter[run.members] = even - run.shift
-    hold_single_quads(region)
-    _embedded(region)
+        part.seats.parameter[run.members] = even - run.shift
+    hold_single_quads(part)
+    _embedded(part)
 
 
-def _single(region: Region) -> np.ndarray:
+def _single(part: MovablePart) -> np.ndarray:
     """(n,) bool: sliding vertices of one quad only; they must sit at a bend of their side."""
-    if region.elements.shape[1] == 3:
-        return np.zeros(len(region.vertices), bool)
-    uses = np.bincount(region.elements.ravel(), minlength=len(region.vertices))
-    single: np.ndarray = region.sliding & (uses == 1)
+    if part.elements.shape[1] == 3:
+        return np.zeros(len(part.vertices), bool)
+    uses = np.bincount(part.elements.ravel(), minlength=len(part.vertices))
+    single: np.ndarray = part.sliding & (uses == 1)
     return single
 
 
-def hold_single_quads(region: Region) -> Region:
+def hold_single_quads(part: MovablePart) -> MovablePart:
     """Bring boundary vertices of a single quad to bends of their side, where they are not flat.
 
-    Returns the region, on the same positions, with those vertices held: along a straight piece the
+    Returns the part, on the same positions, with those vertices held: along a straight piece the
     energy does not see where its ends are.
     """
-    single = _single(region)
+    single = _single(part)
     if not single.any():
-        return region
-    t, held = region.seats.parameter, []
-    for run in region.runs():
+        return part
+    part = _first_on_closed_sides(part, single)
+    t, held = part.seats.parameter, []
+    for run in part.runs():
         if not single[run.members].any():
             continue
         now = t[run.members] + run.shift
-        bends = _outward_bends(region, int(region.seats.side[run.members[0]]))
-        bends = bends[(bends > run.low) & (bends < run.high)]
+        curve = int(part.seats.curve[run.members[0]])
+        bends = part.bends(curve, run.low, run.high)
         corners = np.flatnonzero(single[run.members])
         chosen = _nearest_in_order(now[corners], bends)
         corners = corners[: len(chosen)]
@@ -100,8 +98,23 @@ def hold_single_quads(region: Region) -> Region:
             now[a + 1 : b] = in_order(piece, high - low)[1:-1]
         t[run.members] = now - run.shift
         held.extend(run.members[corners].tolist())
-    region.settle()
-    return region.holding(held)
+    part.settle()
+    return part.holding(held)
+
+
+def _first_on_closed_sides(part: MovablePart, single: np.ndarray) -> MovablePart:
+    """The part with one vertex held at a bend on each closed side all of whose vertices slide."""
+    t = part.seats.parameter
+    for i in np.flatnonzero(single).tolist():
+        if not part.sliding[i] or not part.encircles(i):
+            continue
+        curve, half = int(part.seats.curve[i]), 0.5 * float(np.ptp(part.seats.reach[i]))
+        bends = part.bends(curve, t[i] - half, t[i] + half)
+        if len(bends):
+            t[i] = bends[np.argmin(np.abs(bends - t[i]))]
+            part.settle()
+            part = part.holding([i])
+    return part
 
 
 def _nearest_in_order(values: np.ndarray, places: np.ndarray) -> np.ndarray:
@@ -118,25 +131,33 @@ def _nearest_in_order(values: np.ndarray, places: np.ndarray) -> np.ndarray:
     return np.array(chosen)
 
 
-def _outward_bends(region: Region, side: int) -> np.ndarray:
-    """(b,) arc lengths where a side turns outwards; on closed sides of two rounds."""
-    assert region.frame is not None
-    sides = region.sides
-    rows = slice(sides.first[side], sides.first[side + 1])
-    angles = turns(sides.points[rows] @ region.frame[:2].T, bool(sides.closed[side]))
-    arc = sides.arc[rows][1 : len(angles) + 1]
-    bends: np.ndarray = arc[angles > TOLERANCE]
-    return np.concatenate([bends, bends + sides.arc[rows][-1]]) if sides.closed[side] else bends
+def in_order(t: np.ndarray, length: float) -> np.ndarray:
+    """`t` (n,) if it increases strictly; else values near it that do, with the same ends."""
+    least = 1e-6 * length / len(t)
+    if np.all(np.diff(t) > least):
+        return t
+    blocks: list[list[float]] = []  # mean and size: isotonic regression by pooling
+    for value in np.clip(t[1:-1], t[0], t[-1]):
+        blocks.append([float(value), 1.0])
+        while len(blocks) > 1 and blocks[-2][0] >= blocks[-1][0]:
+            mean, size = blocks.pop()
+            blocks[-1][0] = (blocks[-1][0] * blocks[-1][1] + mean * size) / (blocks[-1][1] + size)
+            blocks[-1][1] += size
+    pooled = np.repeat([mean for mean, _ in blocks], [int(size) for _, size in blocks])
+    pooled = np.concatenate([t[:1], pooled, t[-1:]])
+    # a touch of even spacing parts those that were pooled into one
+    even = np.linspace(t[0], t[-1], len(t))
+    return 0.9 * pooled + 0.1 * even
 
 
 def _scattered(rng: np.random.Generator, share: float) -> Start:
-    """Start from the means, each moved at random by `share` of the region's size or so."""
+    """Start from the means, each moved at random by `share` of the part's size or so."""
 
-    def start(region: Region) -> None:
-        assert region.frame is not None
-        _spread(region)
-        free = np.flatnonzero(region.free)
-        size = np.ptp(region.points, axis=0).max() * share
-        region.points[free] += size * rng.standard_normal((len(free), 2)) @ region.frame[:2]
+    def start(part: MovablePart) -> None:
+        assert part.frame is not None
+        _spread(part)
+        free = np.flatnonzero(part.free)
+        size = np.ptp(part.points, axis=0).max() * share
+        part.points[free] += size * rng.standard_normal((len(free), 2)) @ part.frame[:2]
 
     return start

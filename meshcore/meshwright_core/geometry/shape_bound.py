@@ -3,7 +3,8 @@
 At a corner of angle theta with desired degree d*, d* - 1 elements meet if it is regular. Their
 angles there add up to theta, so the smallest sine among them is at most sin(theta / (d* - 1)), by
 equal shares: q* is the least of these over all corners, 1 where there is none. For sides that bend
-theta is the angle between their tangents at the corner.
+theta is the angle between their tangents at the corner. Where regions meet, each sector counts as a
+corner with its own share of elements.
 
 What it assumes: straight or smooth element edges at the corner, and every corner regular. At
 s = s* = 0 every vertex is regular, so no mesh at the optimum exceeds q*. At s* > 0 a mesh at the
@@ -19,7 +20,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright_core.geometry.outline import Outline
+from meshwright_core.core.curve_corners import sectors
+from meshwright_core.geometry.planes import plane_normal
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -29,26 +31,35 @@ _MOST = 8
 
 
 def corner_angles(mesh: HalfEdgeMesh) -> np.ndarray:
-    """(slots,) radians inside the domain between the sides at each geometric boundary vertex.
+    """(slots,) radians inside the domain at each geometric boundary vertex, between tangents.
 
-    0 for all other vertices, and for meshes that do not lie in a plane.
+    0 for all other vertices, and for meshes that do not lie in a plane z = const.
     """
     angles = np.zeros(mesh.slots)
-    outline, geometric = Outline.of(mesh), mesh.geometric()
-    normal = outline.normal(mesh.points[mesh.vertices()])
-    if normal is None:
-        return angles
-    for loop in mesh.boundary_loops():
-        corners = np.flatnonzero(geometric[loop])
-        pieces = []
-        for a, b in zip(corners, np.append(corners[1:], corners[:1] + len(loop)), strict=True):
-            chain = np.take(loop, np.arange(a, b + 1), mode="wrap")
-            pieces.append(outline.side(chain, mesh.points[chain], False))
-        for i, corner in enumerate(loop[corners].tolist()):
-            out, back = pieces[i][1] - pieces[i][0], pieces[i - 1][-2] - pieces[i - 1][-1]
-            turn = float(np.arctan2(np.cross(out, back) @ normal, out @ back))
-            angles[corner] = turn if turn > 0.0 else turn + 2.0 * np.pi
+    vertex, angle, _ = _sectors(mesh)
+    np.add.at(angles, vertex, angle)
+    angles[~mesh.boundary()] = 0.0
     return angles
+
+
+def _sectors(mesh: HalfEdgeMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertex (n,), radians (n,) and, if it is regular, elements (n,) of each sector at a geometric
+    vertex.
+    """
+    empty = np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64)
+    normal = plane_normal(mesh)
+    if normal is None or abs(normal[2]) < 1.0:
+        return empty
+    found = sectors(mesh.arrays)
+    geometric = mesh.geometric()[found.vertex]
+    vertex, angle = found.vertex[geometric], found.angle[geometric]
+    boundary = found.boundary[geometric]
+    count = np.bincount(vertex, minlength=mesh.slots)[vertex]
+    alpha = 60.0 if mesh.k == 3 else 90.0
+    shares = np.maximum(1, np.floor(angle / alpha + 0.5 + 1e-9).astype(np.int64))
+    # the user may have set another desired degree
+    own = mesh.desired()[vertex] - boundary
+    return vertex, np.radians(angle), np.where(count == 1, own, shares).astype(np.int64)
 
 
 def _share(angle: np.ndarray, elements: np.ndarray, k: int) -> np.ndarray:
@@ -59,16 +70,12 @@ def _share(angle: np.ndarray, elements: np.ndarray, k: int) -> np.ndarray:
     return found
 
 
-def _corners(mesh: HalfEdgeMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Angles (n,) of the corners, and the elements (n,) that meet at each if it is regular."""
-    angles = corner_angles(mesh)
-    ids = np.flatnonzero(angles > 0.0)
-    return angles[ids], mesh.desired()[ids] - 1
-
-
 def shape_bound(mesh: HalfEdgeMesh) -> float:
-    """q*: the largest worst scaled Jacobian that the corners permit where they are regular."""
-    angle, elements = _corners(mesh)
+    """q*: the largest worst scaled Jacobian that the corners permit where they are regular.
+
+    1 for meshes that do not lie in a plane z = const.
+    """
+    _, angle, elements = _sectors(mesh)
     return float(min(1.0, _share(angle, elements, mesh.k).min(initial=1.0)))
 
 
@@ -80,11 +87,11 @@ def attainable_bound(mesh: HalfEdgeMesh) -> float:
     of an interior vertex.
     """
     excess = int(mesh.irregularity().sum())
-    angle, elements = _corners(mesh)
+    _, angle, elements = _sectors(mesh)
     if excess == 0:
         return float(min(1.0, _share(angle, elements, mesh.k).min(initial=1.0)))
     sign, count = (1 if excess > 0 else -1), abs(excess)
-    regular = mesh.k if mesh.k == 4 else 6
+    regular = 4 if mesh.k == 4 else 6
     inside = float(_share(np.array([2 * np.pi]), np.array([regular + sign]), mesh.k)[0])
     steps = np.arange(min(count, _MOST) + 1)
     shapes = np.stack([_share(angle, elements + sign * i, mesh.k) for i in steps], axis=1)

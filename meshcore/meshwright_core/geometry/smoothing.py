@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry import region as regions
-from meshwright_core.geometry.boundary_spacing import bending, spread
-from meshwright_core.geometry.outline import place_on
+from meshwright_core.core.references import by_reference
+from meshwright_core.geometry import movable_part
+from meshwright_core.geometry.coons import CurvedElements, curved_shape
+from meshwright_core.geometry.movable_part import MovablePart
 from meshwright_core.geometry.quality import TOLERANCE
-from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.seats import place_seat
 from meshwright_core.geometry.unfixable import fixable
-from meshwright_core.geometry.untangling import ALL, untangle_region
+from meshwright_core.geometry.untangling import ALL, untangle_part
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -63,8 +64,20 @@ def element_shape(points, elements, e, reference):
     return worst
 
 
+@kernel
+def true_shape(points, stars, e):
+    """Shape of element e with its sides as they are: :func:`element_shape` where all are straight,
+    else the worst over the samples of its Coons map.
+    """
+    row = stars.curved.row[e]
+    if row < 0:
+        return element_shape(points, stars.elements, e, stars.reference)
+    return curved_shape(stars.curved, points, row, stars.reference[e])
+
+
+@by_reference
 class Stars(NamedTuple):
-    """The elements of a region, and around each vertex."""
+    """The elements of a movable part, and around each vertex."""
 
     elements: np.ndarray
     """(m, k) vertices by element."""
@@ -74,10 +87,12 @@ class Stars(NamedTuple):
     """(m k,) the elements at each vertex, each with the vertex's corner: k * element + corner."""
     reference: np.ndarray
     """(m, 3) normals that the corners of the elements are measured against."""
+    curved: CurvedElements
+    """Those with curved sides."""
 
 
 @kernel
-def move_to_means(points, stars, order, seats, sides, guarded):
+def move_to_means(points, stars, order, seats, curves, guarded):
     """One sweep over the vertices `order`, in place. Returns how far the farthest one moved,
     relative to the distance of its neighbours.
 
@@ -105,12 +120,12 @@ def move_to_means(points, stars, order, seats, sides, guarded):
         size /= 2.0 * (end - begin)
         for c in range(3):
             mean[c] = mean[c] / (2.0 * (end - begin)) - points[v, c]
-        slides = seats.side[v] >= 0
+        slides = seats.curve[v] >= 0
         start = seats.parameter[v]
         shift = 0.0
         if slides:
-            place_on(sides, seats.side[v], start, points[v], tangent)
-            shift = np.dot(tangent, mean)
+            place_seat(curves, seats, v, points[v], tangent)
+            shift = np.dot(tangent, mean) / np.dot(tangent, tangent)
             low, high = seats.low[v], seats.high[v]
             if seats.before[v] >= 0:
                 low += seats.parameter[seats.before[v]]
@@ -126,7 +141,7 @@ def move_to_means(points, stars, order, seats, sides, guarded):
                     mean[c] -= along * normal[c]
         worst = np.inf
         for i in range(begin, end):
-            shape = element_shape(points, elements, incident[i] // k, reference)
+            shape = true_shape(points, stars, incident[i] // k)
             worst = min(worst, shape)
             if i - begin < 64:
                 before[i - begin] = shape
@@ -134,14 +149,14 @@ def move_to_means(points, stars, order, seats, sides, guarded):
         for _ in range(4):
             if slides:
                 seats.parameter[v] = start + step * shift
-                place_on(sides, seats.side[v], seats.parameter[v], points[v], tangent)
+                place_seat(curves, seats, v, points[v], tangent)
             else:
                 for c in range(3):
                     points[v, c] = old[c] + step * mean[c]
             fine = True
             if guarded:
                 for i in range(begin, end):
-                    shape = element_shape(points, elements, incident[i] // k, reference)
+                    shape = true_shape(points, stars, incident[i] // k)
                     was = before[i - begin] if i - begin < 64 else np.inf
                     if shape < worst or (was > TOLERANCE and shape <= TOLERANCE):
                         fine = False
@@ -162,24 +177,29 @@ def move_to_means(points, stars, order, seats, sides, guarded):
     return farthest
 
 
-def sweep(region: Region, iterations: int, guarded: bool = True) -> None:
-    """Move the vertices of `region` in place by up to `iterations` sweeps."""
-    order = np.flatnonzero(region.movable)
+def stars_of(part: MovablePart) -> Stars:
+    """The elements of `part`, by vertex."""
+    corners = part.elements.ravel()
+    incident = np.argsort(corners, kind="stable")
+    first = np.searchsorted(corners[incident], np.arange(len(part.vertices) + 1))
+    return Stars(part.elements, first, incident, part.references(), part.curved)
+
+
+def sweep(part: MovablePart, iterations: int, guarded: bool = True) -> None:
+    """Move the vertices of `part` in place by up to `iterations` sweeps."""
+    order = np.flatnonzero(part.movable)
     if not len(order):
         return
-    corners = region.elements.ravel()
-    incident = np.argsort(corners, kind="stable")
-    first = np.searchsorted(corners[incident], np.arange(len(region.vertices) + 1))
-    stars = Stars(region.elements, first, incident, region.references())
+    stars = stars_of(part)
     for _ in range(iterations):
-        moved = move_to_means(region.points, stars, order, region.seats, region.sides, guarded)
+        moved = move_to_means(part.points, stars, order, part.seats, part.curves, guarded)
         if moved < 1e-4:
             break
 
 
 def smooth(
     mesh: HalfEdgeMesh, vertices: Iterable[int] | None = None, iterations: int = 20
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Positions nearer to the means of the neighbours; the mesh itself is not changed.
 
     Args:
@@ -188,23 +208,24 @@ def smooth(
         iterations: the most sweeps over these vertices; fewer when they come to rest.
 
     Returns:
-        ids (n,) of the vertices that have moved, and their new positions (n, 3). On a surface that
-        is not plane vertices move along their tangent plane.
+        what :meth:`HalfEdgeMesh.move` takes: ids (n,) of the vertices that have moved, their new
+        positions (n, 3), and the parameters (n,) of those on curves. On a surface that is not plane
+        vertices move along their tangent plane.
     """
-    region = regions.chosen(mesh, vertices)
-    region.settle()
-    sweep(region, iterations)
-    return region.changed(mesh)
+    part = movable_part.chosen(mesh, vertices)
+    part.settle()
+    sweep(part, iterations)
+    return part.changed(mesh)
 
 
 def average(
     mesh: HalfEdgeMesh, vertices: Iterable[int] | None = None, iterations: int = 100
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Plain averaging, for comparison: as :func:`smooth`, but elements may fold."""
-    region = regions.chosen(mesh, vertices)
-    region.settle()
-    sweep(region, iterations, guarded=False)
-    return region.changed(mesh)
+    part = movable_part.chosen(mesh, vertices)
+    part.settle()
+    sweep(part, iterations, guarded=False)
+    return part.changed(mesh)
 
 
 def relax(
@@ -218,79 +239,61 @@ def relax(
             around them move, and if these do not suffice to untangle, more and more rings, up to
             some thousand elements. None: the whole mesh.
         thorough: False: two rings only. Takes a few milliseconds at most, and may leave
-            elements inverted that a larger region could untangle.
+            elements inverted that a larger part could untangle.
 
     Returns:
         Ids, ascending, of the elements that stay inverted, of those looked at.
     """
     if around is None:
         return _relax_whole(mesh)
-    seeds = regions.live(mesh, around)
+    seeds = movable_part.live(mesh, around)
     return _relax_near(mesh, seeds, thorough).inverted() if len(seeds) else seeds
 
 
-def _relax_near(mesh: HalfEdgeMesh, seeds: np.ndarray, thorough: bool = True) -> Region:
+def _relax_near(mesh: HalfEdgeMesh, seeds: np.ndarray, thorough: bool = True) -> MovablePart:
     """Relax around `seeds`, with more and more rings as long as something stays inverted."""
     reach = RINGS
     while True:
-        region = regions.around(mesh, regions.rings(mesh, seeds, reach))
-        last = len(region.elements) >= min(LARGEST, mesh.n_elements)
-        if _relax_region(region, tries=3 if last and thorough else 1) or last or not thorough:
-            _write(mesh, region)
-            return region
+        part = movable_part.around(mesh, movable_part.rings(mesh, seeds, reach))
+        last = len(part.elements) >= min(LARGEST, mesh.n_elements)
+        if _shape(part, tries=3 if last and thorough else 1) or last or not thorough:
+            _write(mesh, part)
+            return part
         reach *= 2
 
 
-def _relax_region(region: Region, tries: int = ALL) -> bool:
-    """Give the elements better shapes in place; false if some stay inverted without need.
-
-    On sides that bend the vertices are spread first, and held; only where elements would stay
-    inverted with that do they slide as those on straight sides do.
-    """
-    bent = bending(region)
-    if bent:
-        trial = region.fork()
-        trial.settle()
-        spread(trial)
-        held = trial.holding(bent)
-        if _shape(held, tries):
-            region.adopt(trial)
-            return True
-    return _shape(region, tries)
-
-
-def _shape(region: Region, tries: int) -> bool:
-    """Smooth and untangle in place; false if some elements stay inverted without need.
+def _shape(part: MovablePart, tries: int = ALL) -> bool:
+    """Give the elements better shapes in place; false if some elements stay inverted without need.
 
     Averaging unfolds most of what an edit has folded, and is the only method for surfaces that are
     not plane; minimising the energy gives better positions.
     """
-    region.settle()
-    if region.frame is None or region.folded().any():
-        sweep(region, SWEEPS)
-    untangle_region(region, tries=tries)
-    return not fixable(region).any()
+    part.settle()
+    if part.frame is None or part.folded().any():
+        sweep(part, SWEEPS)
+    untangle_part(part, tries=tries)
+    return not fixable(part).any()
 
 
-def _write(mesh: HalfEdgeMesh, region: Region) -> None:
-    vertices, positions = region.changed(mesh)
+def _write(mesh: HalfEdgeMesh, part: MovablePart) -> None:
+    vertices, positions, parameters = part.changed(mesh)
     if len(vertices):
-        mesh.move(vertices, positions)
+        mesh.move(vertices, positions, parameters)
 
 
 def _relax_whole(mesh: HalfEdgeMesh) -> np.ndarray:
-    region = regions.whole(mesh)
+    part = movable_part.whole(mesh)
     if mesh.n_elements <= WHOLE:
-        _relax_region(region)
-        _write(mesh, region)
-        return region.inverted()
+        _shape(part)
+        _write(mesh, part)
+        return part.inverted()
     # large meshes are tangled in few places: untangle these one by one
-    region.settle()
-    sweep(region, SWEEPS)
-    pending = dict.fromkeys(region.inverted().tolist())
+    part.settle()
+    sweep(part, SWEEPS)
+    pending = dict.fromkeys(part.inverted().tolist())
     stuck: set[int] = set()
     with mesh.transaction():
-        _write(mesh, region)
+        _write(mesh, part)
         while pending:
             element = next(iter(pending))
             patch = _relax_near(mesh, mesh.corners(np.array([element]))[0])

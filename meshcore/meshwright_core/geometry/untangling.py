@@ -15,11 +15,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright_core.geometry import region as regions
+from meshwright_core.geometry import movable_part
+from meshwright_core.geometry.coons import CurvedElements
+from meshwright_core.geometry.curved_energy import DIFFERENCES, SLIGHT
+from meshwright_core.geometry.edge_kernels import NODES, WEIGHTS, bulges
 from meshwright_core.geometry.foldover_energy import Problem, unfold
 from meshwright_core.geometry.initial_guesses import hold_single_quads, starts
-from meshwright_core.geometry.outline import Polylines
-from meshwright_core.geometry.region import Region
+from meshwright_core.geometry.movable_part import MovablePart
+from meshwright_core.geometry.planes import vector_areas
+from meshwright_core.geometry.turning import turnings
 from meshwright_core.geometry.unfixable import unfixable_corners
 
 if TYPE_CHECKING:
@@ -46,6 +50,8 @@ class Untangled:
     """(n,) ids of the vertices that have moved."""
     positions: np.ndarray
     """(n, 3) their new positions."""
+    parameters: np.ndarray
+    """(n,) the new parameters of those on curves."""
     inverted: np.ndarray
     """Ids, ascending, of the elements that stay inverted."""
     unfixable: np.ndarray
@@ -74,195 +80,236 @@ def untangle(
         polish: the most steps that improve shapes once nothing is inverted.
         seed: of the random starts that follow when all others fail.
     """
-    region = regions.chosen(mesh, vertices)
-    starts, evaluations = untangle_region(region, polish, seed)
-    moved, positions = region.changed(mesh)
-    bad = region.inverted_rows()
-    unfixable = bad & unfixable_corners(region).any(axis=1)
+    part = movable_part.chosen(mesh, vertices)
+    starts, evaluations = untangle_part(part, polish, seed)
+    moved, positions, parameters = part.changed(mesh)
+    bad = part.inverted_rows()
+    unfixable = bad & unfixable_corners(part).any(axis=1)
     return Untangled(
         vertices=moved,
         positions=positions,
-        inverted=np.sort(region.element_ids[bad]),
-        unfixable=np.sort(region.element_ids[unfixable]),
+        parameters=parameters,
+        inverted=np.sort(part.element_ids[bad]),
+        unfixable=np.sort(part.element_ids[unfixable]),
         starts=starts,
         evaluations=evaluations,
     )
 
 
-def untangle_region(
-    region: Region, polish: int = POLISH, seed: int = 0, tries: int = ALL
+def untangle_part(
+    part: MovablePart, polish: int = POLISH, seed: int = 0, tries: int = ALL
 ) -> tuple[int, int]:
-    """Untangle `region` in place, from at most `tries` starts.
+    """Untangle `part` in place, from at most `tries` starts.
 
     Returns the number of starts and of energy evaluations.
     """
-    if region.frame is None or not region.movable.any():
+    if part.frame is None or not part.movable.any():
         return 0, 0
-    region.settle()
-    lost = unfixable_corners(region)
-    best, present = _BestPositions(region, lost), _BestPositions(region, lost)
+    part.settle()
+    lost = unfixable_corners(part)
+    best, present = _BestPositions(part, lost), _BestPositions(part, lost)
     tried = evaluations = 0
-    for start in starts(region, np.random.default_rng(seed))[:tries]:
-        if tried >= 3 and evaluations * region.elements.size > BUDGET:
+    for start in starts(part, np.random.default_rng(seed))[:tries]:
+        if tried >= 3 and evaluations * part.elements.size > BUDGET:
             break
-        present.restore(region)
-        start(region)
+        present.restore(part)
+        start(part)
         tried += 1
-        evaluations += _run(hold_single_quads(region), lost, polish)
-        best.keep_better(region)
+        evaluations += _run(hold_single_quads(part), lost, polish)
+        best.keep_better(part)
         if best.done:
             break
     if not best.done:
         # leave out the corners that stay folded, so that they do not distort others
-        best.restore(region)
-        evaluations += _run(region, lost | region.folded(), polish)
-        best.keep_better(region)
-    best.restore(region)
+        best.restore(part)
+        evaluations += _run(part, lost | part.folded(), polish)
+        best.keep_better(part)
+    best.restore(part)
     return tried, evaluations
 
 
 class _BestPositions:
-    """The best positions of a region so far."""
+    """The best positions of a movable part so far."""
 
-    def __init__(self, region: Region, unfixable: np.ndarray) -> None:
+    def __init__(self, part: MovablePart, unfixable: np.ndarray) -> None:
         self._unfixable = unfixable.any(axis=1)
-        self._badness = self._measure(region)
-        self._save(region)
+        self._badness = self._measure(part)
+        self._save(part)
 
     @property
     def done(self) -> bool:
         """Whether no element is inverted but the unfixable ones."""
         return self._badness[0] == 0
 
-    def _measure(self, region: Region) -> tuple[int, int]:
-        bad = region.inverted_rows()
+    def _measure(self, part: MovablePart) -> tuple[int, int]:
+        bad = part.inverted_rows()
         return int((bad & ~self._unfixable).sum()), int(bad.sum())
 
-    def _save(self, region: Region) -> None:
-        self._points, self._parameter = region.points.copy(), region.seats.parameter.copy()
+    def _save(self, part: MovablePart) -> None:
+        self._points, self._parameter = part.points.copy(), part.seats.parameter.copy()
 
-    def keep_better(self, region: Region) -> None:
-        """Remember the positions of `region` unless more elements are inverted there."""
-        badness = self._measure(region)
+    def keep_better(self, part: MovablePart) -> None:
+        """Remember the positions of `part` unless more elements are inverted there."""
+        badness = self._measure(part)
         if badness <= self._badness:
             self._badness = badness
-            self._save(region)
+            self._save(part)
 
-    def restore(self, region: Region) -> None:
-        """Write the best positions to `region`."""
-        region.points[:] = self._points
-        region.seats.parameter[:] = self._parameter
+    def restore(self, part: MovablePart) -> None:
+        """Write the best positions to `part`."""
+        part.points[:] = self._points
+        part.seats.parameter[:] = self._parameter
 
 
-def _run(region: Region, dropped: np.ndarray, polish: int) -> int:
-    """Minimise the energy of all corners but the `dropped` ones, from the region's positions."""
-    assert region.frame is not None
-    axes = region.frame[:2]
-    flat = region.points @ axes.T
-    areas = _signed_areas(flat, region.elements)
-    triangles = region.elements.shape[1] == 3
+def _run(part: MovablePart, dropped: np.ndarray, polish: int) -> int:
+    """Minimise the energy of all corners but the `dropped` ones, from the part's positions."""
+    assert part.frame is not None
+    axes = part.frame[:2]
     # a unit square, and the equilateral triangle of side 1
-    ideal = np.sqrt(0.1875) if triangles else 1.0
-    targets = _target_areas(region.elements, areas) / ideal
+    ideal = np.sqrt(0.1875) if part.elements.shape[1] == 3 else 1.0
+    targets = _target_areas(part.elements, _signed_areas(part)) / ideal
     unit = float(np.sqrt(targets.mean()))
-    centre = flat.mean(axis=0)
-    problem, x = energy_problem(region, dropped, (flat - centre) / unit, centre, unit, targets)
-    if not len(problem.corners) or not len(x):
+    problem, x = energy_problem(part, dropped, unit, targets)
+    if not len(x) or not (len(problem.corners) or problem.active.any()):
         return 0
     _, evaluations = unfold(problem, x, UNFOLDING, ROUNDS, INNER, polish, SHAPING)
-    free, slides = np.flatnonzero(region.free), np.flatnonzero(region.sliding)
-    region.points[free] += (problem.points[free] * unit + centre - flat[free]) @ axes
-    region.seats.parameter[slides] = x[problem.variable[slides]] * unit
-    region.settle()
+    free, slides = np.flatnonzero(part.free), np.flatnonzero(part.sliding)
+    flat = part.points[free] @ axes.T
+    part.points[free] += (problem.points[free] * unit + problem.centre - flat) @ axes
+    part.seats.parameter[slides] = x[problem.variable[slides]] * unit
+    part.settle()
     return int(evaluations)
 
 
 def energy_problem(
-    region: Region,
-    dropped: np.ndarray,
-    points: np.ndarray,
-    centre: np.ndarray,
-    unit: float,
-    targets: np.ndarray,
+    part: MovablePart, dropped: np.ndarray, unit: float, targets: np.ndarray
 ) -> tuple[Problem, np.ndarray]:
-    """The arrays of the energy in units of `unit`, and the variables (v,) at `points` (n, 2)."""
-    assert region.frame is not None
-    elements, seats = region.elements, region.seats
-    count = np.where(region.free, 2, np.where(region.sliding, 1, 0))
+    """The arrays of the energy in units of `unit`, and the variables (v,) at the present positions.
+
+    Args:
+        part: what moves.
+        dropped: (m, k) corners that are left out.
+        unit: of length.
+        targets: (m,) areas that the elements should have, of triangles times 16/sqrt(27).
+    """
+    assert part.frame is not None
+    axes, seats, curved = np.ascontiguousarray(part.frame[:2]), part.seats, part.curved
+    flat = part.points @ axes.T
+    centre = flat.mean(axis=0)
+    points = (flat - centre) / unit
+    count = np.where(part.free, 2, np.where(part.sliding, 1, 0))
     variable = np.where(count > 0, np.cumsum(count) - count, -1)
     x = np.zeros(int(count.sum()))
-    free, slides = np.flatnonzero(region.free), np.flatnonzero(region.sliding)
+    free, slides = np.flatnonzero(part.free), np.flatnonzero(part.sliding)
     x[variable[free]], x[variable[free] + 1] = points[free].T
     x[variable[slides]] = seats.parameter[slides] / unit
 
-    k = elements.shape[1]
-    triangles = k == 3
-    turned = np.stack([elements, np.roll(elements, -1, 1), np.roll(elements, 1, 1)], axis=2)
-    used = ~dropped
-    if triangles:
-        used = np.column_stack([used.all(axis=1), np.zeros((len(used), 2), bool)])
-    # corners that nothing moves would only add a constant
-    used = used & (variable[turned] >= 0).any(axis=2)
-    scale = np.broadcast_to((unit * unit / targets)[:, None], (len(elements), k))
-
-    gaps, offset, share = _gaps(region, variable)
-    flat_sides = Polylines(
-        points=np.ascontiguousarray((region.sides.points @ region.frame[:2].T - centre) / unit),
-        arc=region.sides.arc / unit,
-        first=region.sides.first,
-        closed=region.sides.closed,
-    )
+    corners, rows = _straight_corners(part, dropped, variable)
+    scale = unit * unit / targets
+    gaps, offsets, share = _gaps(part, variable)
+    triangles = part.elements.shape[1] == 3
     return Problem(
         points=np.ascontiguousarray(points),
         tangent=np.zeros_like(points),
         variable=variable,
-        side=seats.side,
-        sides=flat_sides,
-        corners=np.ascontiguousarray(turned[used]),
-        scale=np.ascontiguousarray(scale[used]),
+        seat=seats.curve,
+        offset=seats.offset @ axes.T / unit,
+        drift=seats.slope @ axes.T,
+        curves=part.curves,
+        axes=axes,
+        centre=centre,
+        unit=np.array([unit]),
+        corners=corners,
+        scale=np.ascontiguousarray(scale[rows]),
         shape=np.array([4 / 3, 4 / 3, np.sqrt(4 / 3)] if triangles else [1.0, 0.0, 1.0]),
         gaps=gaps,
-        offset=offset / unit,
+        offsets=offsets / unit,
         gap_scale=unit / share,
+        curved=curved._replace(parameter=seats.parameter.copy()),
+        curved_scale=np.ascontiguousarray(scale[curved.element]),
+        active=(variable[part.elements[curved.element]] >= 0).any(axis=1),
+        slight=_side_turning(part, curved) <= SLIGHT,
+        dropped=np.ascontiguousarray(dropped[curved.element]),
+        differences=DIFFERENCES,
     ), x
 
 
-def _gaps(region: Region, variable: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The gaps between neighbours on sides: variables (g, 2) at both ends, -1 for one that stays;
-    what the gap has besides their difference (g,); the mean gap of the side (g,).
+def _straight_corners(
+    part: MovablePart, dropped: np.ndarray, variable: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Vertex, next and previous one of each corner in the energy of straight elements (c, 3), and
+    the rows (c,) of their elements.
     """
-    seats = region.seats
-    pairs, offset, size, side = [], [], [], []
-    for i in np.flatnonzero(region.sliding).tolist():
-        before, after = int(seats.before[i]), int(seats.after[i])
-        if before < 0:
-            pairs.append((-1, variable[i]))
-            offset.append(-seats.low[i])
-            size.append(seats.parameter[i] - seats.low[i])
-            side.append(seats.side[i])
-        # a gap between two sliding vertices is counted at the first of them
-        pairs.append((variable[i], variable[after] if after >= 0 else -1))
-        offset.append(seats.high[i])
-        end = seats.high[i] + (seats.parameter[after] if after >= 0 else 0.0)
-        size.append(end - seats.parameter[i])
-        side.append(seats.side[i])
-    sides = np.array(side, np.int64)
-    mean = np.bincount(sides, size) / np.maximum(np.bincount(sides), 1) if side else np.zeros(0)
-    return np.array(pairs, np.int64).reshape(-1, 2), np.array(offset, float), mean[sides]
+    elements = part.elements
+    turned = np.stack([elements, np.roll(elements, -1, 1), np.roll(elements, 1, 1)], axis=2)
+    used = ~dropped & (part.curved.row < 0)[:, None]
+    if elements.shape[1] == 3:
+        used = np.column_stack([used.all(axis=1), np.zeros((len(used), 2), bool)])
+    # corners that nothing moves would only add a constant
+    used = used & (variable[turned] >= 0).any(axis=2)
+    return np.ascontiguousarray(turned[used]), np.nonzero(used)[0]
 
 
-def _signed_areas(points: np.ndarray, elements: np.ndarray) -> np.ndarray:
-    """(m,) signed areas of plane elements (m, k) at points (n, 2)."""
-    p = points[elements] - points[elements[:, :1]]
-    q = np.roll(p, -1, axis=1)
-    area: np.ndarray = 0.5 * (p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0]).sum(axis=1)
-    return area
+def _spans(curved: CurvedElements) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (r, 2) at the ends of the curved sides, and their parameters (r, 2)."""
+    rows, places = np.nonzero(curved.sides >= 0)
+    elements, order = curved.elements[curved.element[rows]], curved.sides[rows, places]
+    ends = np.zeros((len(curved.curve), 2), np.int64)
+    at = np.arange(len(rows))
+    ends[order, 0] = elements[at, places]
+    ends[order, 1] = elements[at, (places + 1) % elements.shape[1]]
+    return ends, curved.base + curved.parameter[ends]
+
+
+def _side_turning(part: MovablePart, curved: CurvedElements) -> np.ndarray:
+    """(c,) the largest turning of a side of each curved element."""
+    _, spans = _spans(curved)
+    turned = np.append(turnings(part.curves, part.turning, curved.curve, spans), 0.0)
+    found: np.ndarray = turned[curved.sides].max(axis=1, initial=0.0)
+    return found
+
+
+def _signed_areas(part: MovablePart) -> np.ndarray:
+    """(m,) signed areas of the elements of a plane part, with their curved sides."""
+    assert part.frame is not None
+    areas = vector_areas(part.points, part.elements)
+    curved = part.curved
+    if len(curved.element):
+        ends, spans = _spans(curved)
+        more = bulges(part.curves, curved.curve, spans, part.points[ends], NODES, WEIGHTS)
+        more = np.vstack([more, np.zeros(3)])
+        areas[curved.element] += more[curved.sides].sum(axis=1)
+    signed: np.ndarray = areas @ part.frame[2]
+    return signed
+
+
+def _gaps(part: MovablePart, variable: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The gaps between neighbours on sides: variables (g, 2) at both ends, -1 for one that stays;
+    what the gap has besides their difference (g,); the mean gap on the curve (g,).
+    """
+    seats = part.seats
+    i = np.flatnonzero(part.sliding)
+    before, after = seats.before[i], seats.after[i]
+    ends = np.where(after >= 0, seats.parameter[after], 0.0) + seats.high[i]
+    # a gap between two sliding vertices is counted at the first of them
+    first = i[before < 0]
+    pairs = np.concatenate(
+        [
+            np.column_stack([np.full(len(first), -1), variable[first]]),
+            np.column_stack([variable[i], np.where(after >= 0, variable[after], -1)]),
+        ]
+    ).astype(np.int64)
+    offsets = np.concatenate([-seats.low[first], seats.high[i]])
+    size = np.concatenate([seats.parameter[first] - seats.low[first], ends - seats.parameter[i]])
+    curve = seats.curve[np.concatenate([first, i])]
+    total, number = np.bincount(curve, size), np.bincount(curve)
+    return pairs, offsets, (total / np.maximum(number, 1))[curve]
 
 
 def _target_areas(elements: np.ndarray, areas: np.ndarray) -> np.ndarray:
     """(m,) areas that elements should have: all the same, or smoothed ones where little is folded.
 
-    The sum of the signed areas is that of the region, however tangled it is.
+    The sum of the signed areas is that of the part, however tangled it is.
     """
     total, unsigned = abs(areas.sum()), np.abs(areas).sum()
     mean = max(total, 1e-3 * unsigned, 1e-300) / len(areas)

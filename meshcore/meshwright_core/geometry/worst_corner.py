@@ -1,28 +1,37 @@
 """Max-min positions: raising the smallest corner sine of a plane quad mesh, compiled.
 
-Untangling ends where nothing is folded; what a mesh is then judged by is its worst corner. Here
-the soft minimum of all corner sines s_c,
+A corner is described by the directions of its two sides and the lengths of their chords. The
+direction is that of the chord where the side is straight, and the tangent of the curve where it
+bends. With the sine s and the lengths P and Q of a corner, three functions are minimised by L-BFGS:
 
-    f = (1 / p) log sum exp(-p s_c) + w mean((|a|^2 + |b|^2) / (2 det)),
+- to unfold, the foldover-free energy of Garanzha et al. (2021, see
+  :mod:`meshwright_core.geometry.foldover_energy`) of det = P Q s and trace = P^2 + Q^2;
+- to raise the worst corner, the soft minimum of all sines
 
-is minimised by L-BFGS for growing p. The first term tends to minus the smallest sine; the second,
-small one is the mean of one over the corners' shapes: it is infinite for a folded corner, so that
-no step inverts an element, and keeps elements from shrinking, which a sine does not see. The
-variables are those of :mod:`meshwright_core.geometry.foldover_energy`: two for a vertex inside, the
-place on its side for one that slides.
+      f = (1 / p) log sum exp(-p s) + w mean((P^2 + Q^2) / (2 P Q s))
+
+  for growing p. The first term tends to minus the smallest sine; the second, small one is the mean
+  of one over the corners' shapes: it is infinite for a folded corner, so that no step inverts an
+  element, and keeps elements from shrinking, which a sine does not see;
+- for the other elements, the same with sines beyond a level left out, and a larger w.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from meshwright_core.core.compilation import kernel
+from meshwright_core.core.compilation import bare_kernel, kernel
+from meshwright_core.core.composite_curves import Curves, curve_length, place_on
+from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.foldover_energy import (
+    GAP_WEIGHT,
     MEMORY,
+    SHARPEST,
     SUFFICIENT,
     _direction,
-    _pull,
-    place,
+    chi,
 )
 
 SHARPNESS = (16.0, 64.0, 256.0)
@@ -32,23 +41,138 @@ SHAPE_WEIGHT = 0.002
 NO_LEVEL = 1e3
 """Level beyond which sines do not count, where all count."""
 EVEN_WEIGHTS, GIVEN = (0.005, 0.02, 0.08), 0.02
-"""Weights w once the worst corner is as good as it gets, and the share of its sine that may be given
-for better shapes."""
+"""Weights w once the worst corner is as good as it gets, and the share of its sine that may be
+given for better shapes."""
 PRECISION = 1e-5
 """Gain of a step below which the ascent ends."""
 FOLDED = 1e-6
 """Sine up to which a corner counts as folded here: far from 0 in the arithmetic that follows."""
+UNFOLDING, SHAPING = 1.0, 0.1
+"""Weights of equal areas in the foldover-free energy before and after the last corner unfolds."""
+_STEP = 1e-5
+"""Step of the differences of tangents, relative to the length of the curve."""
+_TINY = 1e-150
+
+# how the direction of a corner's side is found
+CHORD, HELD, SLIDING = 0, 1, 2
+
+
+@by_reference
+class LayoutProblem(NamedTuple):
+    """The variables and corners of a quad layout in the plane z = 0; n vertices, c corners."""
+
+    points: np.ndarray
+    """(n, 3) positions, written when variables are placed."""
+    slope: np.ndarray
+    """(n, 3) derivatives of the positions of sliding vertices by their parameters."""
+    tangent: np.ndarray
+    """(n, 4) unit tangents of their curves, and the derivatives of these."""
+    variable: np.ndarray
+    """(n,) a vertex's first variable, -1 when it stays."""
+    seat: np.ndarray
+    """(n,) the curve that a vertex slides on, -1 for none."""
+    bends: np.ndarray
+    """(n,) bool: whether a side at a sliding vertex bends."""
+    corners: np.ndarray
+    """(c, 3) the vertex of each corner, the next one and the previous one of its element."""
+    kind: np.ndarray
+    """(c, 2) CHORD, HELD or SLIDING, of the side to the next vertex and to the previous one."""
+    ways: np.ndarray
+    """(c, 4) the directions of both sides where HELD; where SLIDING 1 or -1 at [0] or [2], whether
+    the side goes along its curve."""
+    gaps: np.ndarray
+    """(g, 3) variables of neighbours on a curve, -1 for one that stays, and the curve."""
+    offsets: np.ndarray
+    """(g, 2) what the gap has besides the difference of its variables; one over its target."""
+    size: np.ndarray
+    """(1,) the mean size of an element."""
+    curves: Curves
 
 
 @kernel
-def corner_sine(points, o, s, t):
-    """Sine of the angle from s to t at o, positive counter-clockwise; 0 where a side has no
-    length.
-    """
-    px, py = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
-    qx, qy = points[t, 0] - points[o, 0], points[t, 1] - points[o, 1]
-    square = (px * px + py * py) * (qx * qx + qy * qy)
-    return (px * qy - py * qx) / np.sqrt(square) if square > 0.0 else 0.0
+def place_layout(problem, x):
+    """Write the positions that the variables `x` stand for, and tangents of bending sides."""
+    other, ahead, back = np.zeros(3), np.zeros(3), np.zeros(3)
+    for v in range(len(problem.variable)):
+        i = problem.variable[v]
+        if i < 0:
+            continue
+        if problem.seat[v] < 0:
+            problem.points[v, 0], problem.points[v, 1] = x[i], x[i + 1]
+            continue
+        curve = problem.seat[v]
+        place_on(problem.curves, curve, x[i], problem.points[v], problem.slope[v])
+        if not problem.bends[v]:
+            continue
+        step = _STEP * curve_length(problem.curves, curve)
+        place_on(problem.curves, curve, x[i] + step, other, ahead)
+        place_on(problem.curves, curve, x[i] - step, other, back)
+        here, there = np.hypot(ahead[0], ahead[1]), np.hypot(back[0], back[1])
+        size = np.hypot(problem.slope[v, 0], problem.slope[v, 1])
+        for c in range(2):
+            problem.tangent[v, c] = problem.slope[v, c] / size
+            problem.tangent[v, c + 2] = (ahead[c] / here - back[c] / there) / (2.0 * step)
+
+
+@bare_kernel
+def _side(problem, c, which):
+    """Direction and chord length of a side of corner c: 0 to the next vertex, 1 to the previous."""
+    points = problem.points
+    o, s = problem.corners[c, 0], problem.corners[c, 1 + which]
+    dx, dy = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
+    length = max(np.sqrt(dx * dx + dy * dy), _TINY)
+    kind = problem.kind[c, which]
+    if kind == CHORD:
+        return dx / length, dy / length, length
+    if kind == HELD:
+        return problem.ways[c, 2 * which], problem.ways[c, 2 * which + 1], length
+    way = problem.ways[c, 2 * which]
+    return way * problem.tangent[o, 0], way * problem.tangent[o, 1], length
+
+
+@bare_kernel
+def _pull(problem, gradient, v, gx, gy):
+    """Add the derivative (gx, gy) by the position of v to that by its variables."""
+    i = problem.variable[v]
+    if i < 0:
+        return
+    if problem.seat[v] < 0:
+        gradient[i] += gx
+        gradient[i + 1] += gy
+    else:
+        gradient[i] += gx * problem.slope[v, 0] + gy * problem.slope[v, 1]
+
+
+@bare_kernel
+def _pull_side(problem, gradient, c, which, by_length, by_way_x, by_way_y):
+    """Add the derivatives by the length and the direction of a side to those by the variables."""
+    points = problem.points
+    o, s = problem.corners[c, 0], problem.corners[c, 1 + which]
+    dx, dy = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
+    length = max(np.sqrt(dx * dx + dy * dy), _TINY)
+    ux, uy = dx / length, dy / length
+    gx, gy = by_length * ux, by_length * uy
+    kind = problem.kind[c, which]
+    if kind == CHORD:
+        # the direction changes across itself only
+        along = by_way_x * ux + by_way_y * uy
+        gx += (by_way_x - along * ux) / length
+        gy += (by_way_y - along * uy) / length
+    elif kind == SLIDING and problem.variable[o] >= 0:
+        way = problem.ways[c, 2 * which]
+        gradient[problem.variable[o]] += way * (
+            by_way_x * problem.tangent[o, 2] + by_way_y * problem.tangent[o, 3]
+        )
+    _pull(problem, gradient, s, gx, gy)
+    _pull(problem, gradient, o, -gx, -gy)
+
+
+@bare_kernel
+def sine_of(problem, c):
+    """The sine at corner c."""
+    px, py, _ = _side(problem, c, 0)
+    qx, qy, _ = _side(problem, c, 1)
+    return px * qy - py * qx
 
 
 @kernel
@@ -56,83 +180,127 @@ def worst_sine(problem):
     """The smallest corner sine at the present points; 1 if there are no corners."""
     worst = 1.0
     for c in range(len(problem.corners)):
-        corner = problem.corners[c]
-        worst = min(worst, corner_sine(problem.points, corner[0], corner[1], corner[2]))
+        worst = min(worst, sine_of(problem, c))
     return worst
 
 
 @kernel
-def soft_worst(problem, x, gradient, sines, aim):
-    """The objective f and the smallest sine; `gradient` is overwritten. sines (c,): scratch;
-    aim (3,): p, w, and a level beyond which sines do not count.
-
-    Infinite where a corner folds or a gap on a side closes.
-    """
-    place(problem, x)
-    for i in range(len(gradient)):
-        gradient[i] = 0.0
+def _gap_energy(problem, x, gradient, weight):
+    """Barrier between neighbours on curves; infinite where a gap closes."""
+    total = 0.0
     for i in range(len(problem.gaps)):
         a, b = problem.gaps[i, 0], problem.gaps[i, 1]
-        gap = problem.offset[i]
+        gap = problem.offsets[i, 0]
         if a >= 0:
             gap -= x[a]
         if b >= 0:
             gap += x[b]
+        gap *= problem.offsets[i, 1]
         if not gap > 0.0:
-            return np.inf, -1.0
-    points, corners = problem.points, problem.corners
+            return np.inf
+        total += weight / gap
+        slope = weight / (gap * gap) * problem.offsets[i, 1]
+        if a >= 0:
+            gradient[a] += slope
+        if b >= 0:
+            gradient[b] -= slope
+    return total
+
+
+@kernel
+def _back(problem, gradient, c, by_p, by_q, by_sine):
+    """Add the derivatives by P, Q and the sine of corner c to those by the variables."""
+    px, py, _ = _side(problem, c, 0)
+    qx, qy, _ = _side(problem, c, 1)
+    _pull_side(problem, gradient, c, 0, by_p, by_sine * qy, -by_sine * qx)
+    _pull_side(problem, gradient, c, 1, by_q, -by_sine * py, by_sine * px)
+
+
+@kernel
+def _soft_worst(problem, gradient, sines, aim):
+    """The objective f of the positions, see the module; infinite where a corner folds."""
+    count = len(problem.corners)
     worst = 1.0
-    for c in range(len(corners)):
-        sine = corner_sine(points, corners[c, 0], corners[c, 1], corners[c, 2])
-        if not sine > FOLDED:
-            return np.inf, sine
-        sines[c] = sine
-        worst = min(worst, sine)
+    for c in range(count):
+        sines[c] = sine_of(problem, c)
+        if not sines[c] > FOLDED:
+            return np.inf, sines[c]
+        worst = min(worst, sines[c])
     sharpness, weight = aim[0], aim[1]
     total = np.exp(sharpness * min(worst - aim[2], 2.0))
-    for c in range(len(corners)):
-        sines[c] = np.exp(sharpness * (worst - sines[c]))
-        total += sines[c]
+    for c in range(count):
+        total += np.exp(sharpness * (worst - sines[c]))
     value = np.log(total) / sharpness - worst
-    share = weight / len(corners)
-    for c in range(len(corners)):
-        o, s, t = corners[c, 0], corners[c, 1], corners[c, 2]
-        px, py = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
-        qx, qy = points[t, 0] - points[o, 0], points[t, 1] - points[o, 1]
-        pp, qq, det = px * px + py * py, qx * qx + qy * qy, px * qy - py * qx
-        value += share * 0.5 * (pp + qq) / det
-        by_det = -share * 0.5 * (pp + qq) / (det * det)
-        by_p = by_q = share / det
-        pull = sines[c] / total
-        if pull > 1e-12:
-            lengths = np.sqrt(pp * qq)
-            by_det -= pull / lengths
-            sine = det / lengths
-            by_p += pull * sine / pp
-            by_q += pull * sine / qq
-        gpx, gpy = by_p * px + by_det * qy, by_p * py - by_det * qx
-        gqx, gqy = by_q * qx - by_det * py, by_q * qy + by_det * px
-        _pull(problem, gradient, s, gpx, gpy)
-        _pull(problem, gradient, t, gqx, gqy)
-        _pull(problem, gradient, o, -gpx - gqx, -gpy - gqy)
+    share = 0.5 * weight / count
+    for c in range(count):
+        _, _, p = _side(problem, c, 0)
+        _, _, q = _side(problem, c, 1)
+        sine, ratio = sines[c], p / q
+        value += share * (ratio + 1.0 / ratio) / sine
+        by_sine = -share * (ratio + 1.0 / ratio) / (sine * sine)
+        by_sine -= np.exp(sharpness * (worst - sine)) / total
+        by_ratio = share * (1.0 - 1.0 / (ratio * ratio)) / sine
+        _back(problem, gradient, c, by_ratio / q, -by_ratio * ratio / q, by_sine)
     return value, worst
 
 
 @kernel
-def _ascend(problem, x, aim, unit, goal, iterations):
-    """L-BFGS on :func:`soft_worst` over `x` in place, until the smallest sine is `goal`.
+def _foldover(problem, gradient, aim):
+    """The foldover-free energy of the positions; aim: [3] epsilon, [1] the weight lambda."""
+    eps, weight = aim[3], aim[1]
+    scale = 1.0 / (problem.size[0] * problem.size[0])
+    total, smallest = 0.0, np.inf
+    for c in range(len(problem.corners)):
+        _, _, p = _side(problem, c, 0)
+        _, _, q = _side(problem, c, 1)
+        sine = sine_of(problem, c)
+        det, trace = scale * p * q * sine, scale * (p * p + q * q)
+        smallest = min(smallest, det)
+        root = np.sqrt(eps * eps + det * det)
+        regular = chi(eps, det)
+        numerator = trace + weight * (det * det + 1.0)
+        total += numerator / regular
+        by_det = (2.0 * weight * det - numerator / root) / regular * scale
+        by_trace = 2.0 * scale / regular
+        _back(
+            problem, gradient, c, by_trace * p + by_det * q * sine,
+            by_trace * q + by_det * p * sine, by_det * p * q,
+        )  # fmt: skip
+    return total, smallest
 
-    Ends at the positions with the largest smallest sine if the aim has no level, else at the last
-    ones. Returns the smallest sine there.
+
+@kernel
+def _objective(problem, x, gradient, sines, aim):
+    """Value, and the smallest sine or, where aim[3] > 0, determinant; `gradient` is overwritten."""
+    place_layout(problem, x)
+    for i in range(len(gradient)):
+        gradient[i] = 0.0
+    barrier = _gap_energy(problem, x, gradient, GAP_WEIGHT if aim[3] > 0.0 else 1e-2 * aim[1])
+    if not barrier < np.inf:
+        return np.inf, -np.inf
+    if aim[3] > 0.0:
+        value, smallest = _foldover(problem, gradient, aim)
+        return value + barrier, smallest
+    value, smallest = _soft_worst(problem, gradient, sines, aim)
+    return value + barrier, smallest
+
+
+@kernel
+def minimise(problem, x, aim, goal, iterations):
+    """L-BFGS on one of the functions over `x` in place, until the smallest sine is `goal`.
+
+    aim: p, w, level, epsilon; epsilon > 0 chooses the foldover-free energy. Without level and
+    epsilon it ends at the positions with the largest smallest sine, else at the last ones. Returns
+    the value at the end, and the smallest sine or determinant.
     """
-    n = len(x)
+    n, unit = len(x), problem.size[0]
     gradient, trial, slope = np.zeros(n), np.zeros(n), np.zeros(n)
     direction, best_x = np.zeros(n), x.copy()
     steps, changes = np.zeros((MEMORY, n)), np.zeros((MEMORY, n))
     rho, sines = np.zeros(MEMORY), np.zeros(len(problem.corners))
     count, newest = 0, -1
-    value, worst = soft_worst(problem, x, gradient, sines, aim)
-    best = worst
+    keeps_best = aim[3] <= 0.0 and aim[2] >= NO_LEVEL
+    value, best = _objective(problem, x, gradient, sines, aim)
     for _ in range(iterations):
         if best >= goal or not value < np.inf:
             break
@@ -148,7 +316,7 @@ def _ascend(problem, x, aim, unit, goal, iterations):
         for _ in range(20):
             for c in range(n):
                 trial[c] = x[c] + step * direction[c]
-            found, worst = soft_worst(problem, trial, slope, sines, aim)
+            found, worst = _objective(problem, trial, slope, sines, aim)
             if found <= value + SUFFICIENT * step * descent:
                 break
             step *= 0.4
@@ -167,47 +335,74 @@ def _ascend(problem, x, aim, unit, goal, iterations):
         for c in range(n):
             x[c], gradient[c] = trial[c], slope[c]
         value = found
-        if worst > best or aim[2] < NO_LEVEL:
+        if worst > best or not keeps_best:
             best = worst
             for c in range(n):
                 best_x[c] = x[c]
-        if gain <= PRECISION:
+        if gain <= PRECISION * max(1.0, abs(value)):
             break
     for c in range(n):
         x[c] = best_x[c]
-    return best
+    return value, best
 
 
 @kernel
-def climb(problem, x, unit, goal, iterations):
+def unfold_layout(problem, x, rounds, inner, polish):
+    """Untangle over `x` in place by the foldover-free energy; then `polish` steps for shape.
+
+    The regularisation falls by the rule of the paper (section 3.1). Returns the smallest sine.
+    """
+    aim = np.array([0.0, UNFOLDING, NO_LEVEL, 1.0])
+    gradient, sines = np.zeros(len(x)), np.zeros(len(problem.corners))
+    value, smallest = _objective(problem, x, gradient, sines, aim)
+    if smallest > 1e-3:
+        aim[3] = SHARPEST
+    for _ in range(rounds):
+        if aim[3] <= SHARPEST or not value < np.inf:
+            break
+        before, _ = _objective(problem, x, gradient, sines, aim)
+        value, smallest = minimise(problem, x, aim, np.inf, inner)
+        sigma = max(1.0 - value / before, 0.1)
+        goal = (1.0 - sigma) * chi(aim[3], smallest)
+        aim[3] = 2.0 * np.sqrt(goal * (goal - smallest)) if smallest < goal else SHARPEST
+        aim[3] = max(aim[3], SHARPEST)
+    if smallest > 0.0:
+        aim[1], aim[3] = SHAPING, SHARPEST
+        minimise(problem, x, aim, np.inf, polish)
+    place_layout(problem, x)
+    return worst_sine(problem)
+
+
+@kernel
+def climb(problem, x, goal, iterations):
     """Raise the worst corner over `x` in place, from positions without folded corners.
 
-    Ends early when the worst corner reaches `goal`. unit: the size of an element, which scales the
-    first step; iterations: the most for each value of p. Returns the smallest sine, never below
-    that of the start.
+    Ends early when the worst corner reaches `goal`. iterations: the most for each value of p.
+    Returns the smallest sine, never below that of the start.
     """
     best = worst_sine(problem)
-    aim = np.array([0.0, SHAPE_WEIGHT, NO_LEVEL])
+    aim = np.array([0.0, SHAPE_WEIGHT, NO_LEVEL, 0.0])
     for stage in range(len(SHARPNESS)):
         if best >= goal:
             break
         aim[0] = SHARPNESS[stage]
-        best = _ascend(problem, x, aim, unit, goal, iterations)
-    place(problem, x)
+        _, best = minimise(problem, x, aim, goal, iterations)
+    place_layout(problem, x)
     return best
 
 
 @kernel
-def even_out(problem, x, unit, iterations):
+def even_out(problem, x, iterations):
     """Better shapes for all elements over `x` in place, after :func:`climb`, at the cost of at most
     :data:`GIVEN` of the worst corner's sine, which is returned.
     """
     before = best = worst_sine(problem)
     kept = x.copy()
-    aim = np.array([SHARPNESS[len(SHARPNESS) - 1], 0.0, before * (1.0 - 0.5 * GIVEN)])
+    level = before * (1.0 - 0.5 * GIVEN)
+    aim = np.array([SHARPNESS[len(SHARPNESS) - 1], 0.0, level, 0.0])
     for stage in range(len(EVEN_WEIGHTS)):
         aim[1] = EVEN_WEIGHTS[stage]
-        found = _ascend(problem, x, aim, unit, np.inf, iterations)
+        _, found = minimise(problem, x, aim, np.inf, iterations)
         if found < before * (1.0 - GIVEN):
             for c in range(len(x)):
                 x[c] = kept[c]
@@ -215,5 +410,5 @@ def even_out(problem, x, unit, iterations):
         best = found
         for c in range(len(x)):
             kept[c] = x[c]
-    place(problem, x)
+    place_layout(problem, x)
     return best

@@ -12,6 +12,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from meshwright_core.core.arrays import (
+    CURVE,
     DEGREE,
     DELTA_SUM,
     DESIRED,
@@ -43,11 +44,22 @@ from meshwright_core.core.arrays import (
     VERTEX_COLUMNS,
     VERTEX_SLOTS,
     VERTICES,
+    along_curve,
+    following,
 )
 from meshwright_core.core.compilation import bare_kernel
+from meshwright_core.core.composite_curves import (
+    coordinate_in_span,
+    curve_length,
+    span_and_share,
+)
+from meshwright_core.core.curve_edges import edge_curve, edge_range
 
-EDGE_WRITE, VERTEX_WRITE, POINT_WRITE, LIST_WRITE = 0, 1, 2, 3
-_WRITE_KINDS = 4
+EDGE_WRITE, VERTEX_WRITE, POINT_WRITE, LIST_WRITE, PARAMETER_WRITE, REGION_WRITE = range(6)
+WRITE_KINDS = 8
+"""A place is index * WRITE_KINDS + the kind of write."""
+_NEAR = 1e-12
+"""Distance from its curve, relative to the curve's length, below which a vertex lies on it."""
 
 
 @intrinsic
@@ -73,7 +85,7 @@ def _float_of(typingctx, value):
 @bare_kernel
 def _note(m, kind, index, former):
     top = m.counters[JOURNAL_TOP]
-    m.journal[top, 0] = index * _WRITE_KINDS + kind
+    m.journal[top, 0] = index * WRITE_KINDS + kind
     m.journal[top, 1] = former
     m.counters[JOURNAL_TOP] = top + 1
 
@@ -103,6 +115,22 @@ def put_point(m, v, x, y, z):
     m.points[v, 0] = x
     m.points[v, 1] = y
     m.points[v, 2] = z
+
+
+@bare_kernel
+def put_parameter(m, v, t):
+    """Write the parameter of vertex v."""
+    if m.counters[JOURNALLING]:
+        _note(m, PARAMETER_WRITE, v, _bits_of(m.parameter[v]))
+    m.parameter[v] = t
+
+
+@bare_kernel
+def put_region(m, e, region):
+    """Write the region of element e."""
+    if m.counters[JOURNALLING]:
+        _note(m, REGION_WRITE, e, m.region[e])
+    m.region[e] = region
 
 
 @bare_kernel
@@ -176,7 +204,7 @@ def new_vertex(m, degree, desired, x, y, z):
 
 @bare_kernel
 def midway(m, a, b, degree, desired):
-    """A new vertex in the middle of a and b."""
+    """A new vertex in the middle of a and b, on no curve."""
     p = m.points
     return new_vertex(
         m,
@@ -189,18 +217,71 @@ def midway(m, a, b, degree, desired):
 
 
 @bare_kernel
+def on_edge(m, h, degree, desired, k):
+    """A new vertex in the middle of the edge of h: on its curve where it lies on one.
+
+    Its parameter is the mean of those of the ends; its distance from the curve too, where the ends
+    have been moved off it.
+    """
+    a, b = m.edge[h, ORIGIN], m.edge[following(h, k), ORIGIN]
+    if not along_curve(m, h, k):
+        return midway(m, a, b, degree, desired)
+    c = edge_curve(m, h, k)
+    if c < 0:
+        v = midway(m, a, b, degree, desired)
+        put_vertex(m, v, CURVE, m.vertex[a, CURVE])
+        return v
+    t_a, t_b = edge_range(m, h, c, k)
+    t = 0.5 * (t_a + t_b)
+    length = curve_length(m.curves, c)
+    if m.curves.closed[c] and t >= length:
+        t -= length
+    span_a, u_a = span_and_share(m.curves, c, t_a)
+    span_b, u_b = span_and_share(m.curves, c, t_b)
+    span, u = span_and_share(m.curves, c, t)
+    x = _mean_offset(m, a, span_a, u_a, b, span_b, u_b, 0)
+    y = _mean_offset(m, a, span_a, u_a, b, span_b, u_b, 1)
+    z = _mean_offset(m, a, span_a, u_a, b, span_b, u_b, 2)
+    slack = _NEAR * length
+    x = x if abs(x) > slack else 0.0
+    y = y if abs(y) > slack else 0.0
+    z = z if abs(z) > slack else 0.0
+    v = new_vertex(
+        m,
+        degree,
+        desired,
+        coordinate_in_span(m.curves, span, u, 0) + x,
+        coordinate_in_span(m.curves, span, u, 1) + y,
+        coordinate_in_span(m.curves, span, u, 2) + z,
+    )
+    put_vertex(m, v, CURVE, c)
+    put_parameter(m, v, t)
+    return v
+
+
+@bare_kernel
+def _mean_offset(m, a, span_a, u_a, b, span_b, u_b, axis):
+    """Coordinate `axis` of the mean way from the curve's points to the vertices a and b."""
+    off = m.points[a, axis] - coordinate_in_span(m.curves, span_a, u_a, axis)
+    return 0.5 * (off + m.points[b, axis] - coordinate_in_span(m.curves, span_b, u_b, axis))
+
+
+@bare_kernel
 def drop_vertex(m, v):
     """Free the slot of v; its coordinates stay until the slot is taken again."""
     set_degrees(m, v, 0, 0)
     if m.vertex[v, FLAGS] != 0:
         put_vertex(m, v, FLAGS, 0)
+    if m.vertex[v, CURVE] >= 0:
+        put_vertex(m, v, CURVE, -1)
+        put_parameter(m, v, 0.0)
     put_vertex(m, v, HALF, -2 - m.counters[FREE_VERTEX])
     m.counters[FREE_VERTEX] = v
     m.counters[VERTICES] -= 1
 
 
 @bare_kernel
-def new_element(m, k):
+def new_element(m, region, k):
     """Take an element slot; returns its first half-edge. The caller sets origins and twins."""
     e = m.counters[FREE_ELEMENT]
     if e >= 0:
@@ -209,6 +290,8 @@ def new_element(m, k):
         e = m.counters[ELEMENT_SLOTS]
         m.counters[ELEMENT_SLOTS] = e + 1
     m.counters[ELEMENTS] += 1
+    if m.region[e] != region:
+        put_region(m, e, region)
     return e * k
 
 
@@ -273,8 +356,8 @@ def end_step(m):
 
 @bare_kernel
 def _swap_entry(m, j):
-    index = m.journal[j, 0] // _WRITE_KINDS
-    kind = m.journal[j, 0] % _WRITE_KINDS
+    index = m.journal[j, 0] // WRITE_KINDS
+    kind = m.journal[j, 0] % WRITE_KINDS
     stored = m.journal[j, 1]
     if kind == EDGE_WRITE:
         m.journal[j, 1] = m.edge[index // 2, index % 2]
@@ -286,6 +369,12 @@ def _swap_entry(m, j):
     elif kind == POINT_WRITE:
         m.journal[j, 1] = _bits_of(m.points[index // 3, index % 3])
         m.points[index // 3, index % 3] = _float_of(stored)
+    elif kind == PARAMETER_WRITE:
+        m.journal[j, 1] = _bits_of(m.parameter[index])
+        m.parameter[index] = _float_of(stored)
+    elif kind == REGION_WRITE:
+        m.journal[j, 1] = m.region[index]
+        m.region[index] = stored
     else:
         m.journal[j, 1] = m.irregular[index]
         m.irregular[index] = stored

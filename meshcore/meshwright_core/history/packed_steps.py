@@ -2,8 +2,9 @@
 
 A journal holds 16 bytes for each write. A packed step needs less: the place of a write and an
 integer take 4 bytes each, and a moved vertex is one place with its two coordinates (three off the
-plane z = 0). Done steps hold the values before them, undone steps the values after them, as in
-:mod:`meshwright_core.history.journal`; the order of writes is kept.
+plane z = 0); parameters on curves keep their 8 bytes. Done steps hold the values before them,
+undone steps the values after them, as in :mod:`meshwright_core.history.journal`; the order of
+writes is kept.
 """
 
 from __future__ import annotations
@@ -26,9 +27,16 @@ from meshwright_core.core.arrays import (
     MeshArrays,
 )
 from meshwright_core.errors import MeshError
-from meshwright_core.history.journal import EDGE_WRITE, LIST_WRITE, POINT_WRITE, VERTEX_WRITE
+from meshwright_core.history.journal import (
+    EDGE_WRITE,
+    LIST_WRITE,
+    PARAMETER_WRITE,
+    POINT_WRITE,
+    REGION_WRITE,
+    VERTEX_WRITE,
+    WRITE_KINDS,
+)
 
-WRITE_KINDS = 4
 LENGTH, OPERATION, HALFEDGE, COUNTERS = 0, 1, 2, 3
 COLUMNS = COUNTERS + RESTORED
 
@@ -42,9 +50,11 @@ class Steps:
     places: np.ndarray
     """(w,) int32: what each write was to; a moved vertex is one write, to its x."""
     whole: np.ndarray
-    """(i,) int32: values of the writes that are no moves, in order."""
+    """(i,) int32: values of the writes of integers, in order."""
     coordinates: np.ndarray
     """(p, 2|3) float64: values of the moves, in order; without z where all z are 0."""
+    parameters: np.ndarray
+    """(t,) float64: values of the writes of parameters on curves, in order."""
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -53,7 +63,11 @@ class Steps:
     def nbytes(self) -> int:
         """Bytes of the arrays."""
         return int(
-            self.rows.nbytes + self.places.nbytes + self.whole.nbytes + self.coordinates.nbytes
+            self.rows.nbytes
+            + self.places.nbytes
+            + self.whole.nbytes
+            + self.coordinates.nbytes
+            + self.parameters.nbytes
         )
 
 
@@ -74,6 +88,7 @@ def pack(rows: np.ndarray, entries: np.ndarray) -> Steps:
     single[moved.ravel()] = False
     first = single.copy()
     first[moved[:, 0]] = True
+    slid = entries[:, 0] % WRITE_KINDS == PARAMETER_WRITE
     coordinates = entries[moved, 1].view(np.float64)
     if not entries[moved[:, 2], 1].any():
         coordinates = coordinates[:, :2].copy()
@@ -85,8 +100,9 @@ def pack(rows: np.ndarray, entries: np.ndarray) -> Steps:
     return Steps(
         packed,
         entries[first, 0].astype(np.int32),
-        entries[single, 1].astype(np.int32),
+        entries[single & ~slid, 1].astype(np.int32),
         coordinates,
+        entries[slid, 1].copy().view(np.float64),
     )
 
 
@@ -97,18 +113,21 @@ def unpack(steps: Steps, start: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """
     places = steps.places.astype(np.int64)
     moved = places % WRITE_KINDS == POINT_WRITE
+    slid = places % WRITE_KINDS == PARAMETER_WRITE
     width = np.where(moved, 3, 1)
     at = np.cumsum(width) - width
     total = int(width.sum())
     lengths = steps.rows[:, LENGTH].astype(np.int64)
-    moves = int(moved.sum())
+    moves, slides = int(moved.sum()), int(slid.sum())
     if (lengths < 0).any() or lengths.sum() != total:
         raise MeshError("a step of the history has another length than it states")
-    if len(steps.coordinates) != moves or len(steps.whole) != len(places) - moves:
+    held = len(steps.coordinates), len(steps.parameters), len(steps.whole)
+    if held != (moves, slides, len(places) - moves - slides):
         raise MeshError("the history lacks some of its values")
     entries = np.zeros((total, 2), np.int64)
     entries[at[~moved], 0] = places[~moved]
-    entries[at[~moved], 1] = steps.whole
+    entries[at[~(moved | slid)], 1] = steps.whole
+    entries[at[slid], 1] = np.ascontiguousarray(steps.parameters).view(np.int64)
     bits = np.ascontiguousarray(steps.coordinates).view(np.int64)
     for axis in range(3):
         entries[at[moved] + axis, 0] = places[moved] + axis * WRITE_KINDS
@@ -138,6 +157,8 @@ def last_done(m: MeshArrays) -> Steps:
         (VERTEX_WRITE, m.vertex, VERTEX_COLUMNS),
         (POINT_WRITE, m.points.view(np.int64), 3),
         (LIST_WRITE, m.irregular[:, None], 1),
+        (PARAMETER_WRITE, m.parameter.view(np.int64)[:, None], 1),
+        (REGION_WRITE, m.region[:, None], 1),
     ):
         these = written == form
         at = index[these]
@@ -156,6 +177,7 @@ def joined(parts: Sequence[Steps]) -> Steps:
         np.concatenate([np.zeros(0, np.int32), *(piece.places for piece in parts)]),
         np.concatenate([np.zeros(0, np.int32), *(piece.whole for piece in parts)]),
         np.concatenate([np.zeros((0, deep)), *(_deep(piece, deep) for piece in parts)]),
+        np.concatenate([np.zeros(0), *(piece.parameters for piece in parts)]),
     )
 
 

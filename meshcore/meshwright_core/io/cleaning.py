@@ -169,6 +169,21 @@ def desired(data: dict[str, NDArray[np.generic]], count: int) -> NDArray[np.int6
     return whole.astype(np.int64) if (whole == values).all() else None
 
 
+def regions(content: Content, count: int) -> NDArray[np.int64] | None:
+    """Return the region (count,) of each element of a file, numbered from 0 in ascending order.
+
+    None if they are not said, are no whole numbers, or are all the same.
+    """
+    kind = next((kind for kind in ("triangle", "quad") if kind in content.cells), "")
+    values = np.asarray((content.regions or {}).get(kind, ()))
+    if values.shape != (count,) or values.dtype.kind not in "biuf":
+        return None
+    if not (np.isfinite(values).all() and (values == np.rint(values)).all()):
+        return None
+    named, number = np.unique(values, return_inverse=True)
+    return number.ravel().astype(np.int64) if len(named) > 1 else None
+
+
 def _numbers(
     data: dict[str, NDArray[np.generic]], name: str, count: int
 ) -> NDArray[np.float64] | None:

@@ -24,8 +24,10 @@ from meshwright_core.errors import MeshError
 from meshwright_core.io import legacy_vtk, text_formats
 from meshwright_core.io.text_formats import Content
 
-SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json")
+SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json", ".poly")
 """Endings of files that hold a shape; see :mod:`meshwright_core.io.drawings`."""
+DAT = ".dat"
+"""The ending of meshes of Tecplot and of coordinates of airfoils, which hold a shape."""
 
 _ENDS = 1000
 """Empty reads at the end of a file after which its reader is taken to be stuck."""
@@ -41,6 +43,7 @@ class Format:
         write: the content to a path.
         kinds: the element types that it holds.
         data: whether it holds data by point.
+        regions: whether it holds the region of each element.
         merge: whether points at the same place are to be merged on reading.
         needs: packages that reading and writing take beyond our own dependencies.
     """
@@ -50,6 +53,7 @@ class Format:
     write: Callable[[Path, Content], None]
     kinds: tuple[str, ...] = ("triangle", "quad")
     data: bool = False
+    regions: bool = False
     merge: bool = False
     needs: tuple[str, ...] = ()
 
@@ -135,6 +139,10 @@ def _why(error: BaseException, printed: str) -> str:
     return f"{damaged}: {text if len(text) <= 120 else text[:117] + '...'}"
 
 
+_REGIONS = ("region", "gmsh:physical")
+"""Data by cell in which files keep regions."""
+
+
 def _content(mesh: Any) -> Content:
     cells: dict[str, Any] = {}
     for block in mesh.cells:
@@ -144,7 +152,19 @@ def _content(mesh: Any) -> Content:
         for kind, blocks in cells.items()
         if any(len(block) for block in blocks)
     }
-    return Content(np.asarray(mesh.points, dtype=float), joined, dict(mesh.point_data))
+    points = np.asarray(mesh.points, dtype=float)
+    return Content(points, joined, dict(mesh.point_data), _regions(mesh))
+
+
+def _regions(mesh: Any) -> dict[str, Any]:
+    """The region of each cell by type, from the first data that is one number for each cell."""
+    for name in _REGIONS:
+        found: dict[str, Any] = {}
+        for block, values in zip(mesh.cells, mesh.cell_data.get(name, ()), strict=False):
+            found.setdefault(block.type, []).append(np.asarray(values).ravel())
+        if found:
+            return {kind: np.concatenate(parts) for kind, parts in found.items()}
+    return {}
 
 
 def _meshio_path(module: str, **options: Any) -> tuple[Any, Any]:
@@ -157,7 +177,9 @@ def _meshio_path(module: str, **options: Any) -> tuple[Any, Any]:
         import meshio
 
         cells = [(kind, block.astype(np.int32)) for kind, block in content.cells.items()]
-        mesh = meshio.Mesh(content.points, cells, point_data=content.data)
+        regions = [region.astype(np.int32) for region in (content.regions or {}).values()]
+        cell_data = {"region": regions} if regions else None
+        mesh = meshio.Mesh(content.points, cells, point_data=content.data, cell_data=cell_data)
         importlib.import_module(f"meshio.{module}").write(str(path), mesh, **options)
 
     return read, write
@@ -242,6 +264,7 @@ _MSH = Format(
     _meshio_binary("gmsh.main", "read_buffer")[0],
     _own_write(text_formats.write_msh),
     data=True,
+    regions=True,
 )
 _INP = Format("Abaqus", _meshio_text("abaqus")[0], _own_write(text_formats.write_inp))
 _SU2 = Format("SU2", _meshio_text("su2")[0], _own_write(text_formats.write_su2))
@@ -251,8 +274,8 @@ _XDMF = Format("XDMF", *_meshio_path("xdmf", data_format="XML"), data=True, need
 
 FORMATS: dict[str, Format] = {
     ".msh": _MSH,
-    ".vtk": Format("VTK", _read_vtk, _meshio_path("vtk")[1], data=True),
-    ".vtu": Format("VTU", *_meshio_path("vtu"), data=True),
+    ".vtk": Format("VTK", _read_vtk, _meshio_path("vtk")[1], data=True, regions=True),
+    ".vtu": Format("VTU", *_meshio_path("vtu"), data=True, regions=True),
     ".inp": _INP,
     ".su2": _SU2,
     ".obj": _OBJ,

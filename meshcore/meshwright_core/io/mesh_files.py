@@ -27,7 +27,8 @@ def read(path: str | os.PathLike[str], corner_angle: float = CORNER_ANGLE) -> Ha
     Points that no element uses are dropped and the rest renumbered in order; plane formats get
     z = 0. In formats without shared points (STL, glTF, 3MF) points at the same place are merged.
     Where neighbouring elements run against each other they are turned to agree, and meshes in
-    a plane z = const run counter-clockwise afterwards.
+    a plane z = const run counter-clockwise afterwards. Regions are read from cell data "region"
+    (VTK, VTU) and from the physical groups of Gmsh files.
 
     Args:
         path: a file whose ending `endings` lists.
@@ -52,10 +53,12 @@ def read(path: str | os.PathLike[str], corner_angle: float = CORNER_ANGLE) -> Ha
 def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
     """Write a mesh to a file, whole or not at all.
 
-    Only live vertices and elements are written, renumbered in order. Coordinates are exact but
-    in Nastran (at least nine digits), glTF and 3MF (single precision) files. Geometric flags and
-    desired degrees go along as point data where the format has it; elsewhere `read` finds the
-    corners by angle.
+    Only live vertices and elements are written, renumbered in order. Coordinates are exact (17
+    digits where they need them) but in Nastran (at least nine digits), glTF and 3MF (single
+    precision) files. Geometric flags and desired degrees go along as point data where the format
+    has it; elsewhere `read` finds the corners by angle. Several regions become cell data "region"
+    (VTK, VTU) or physical groups (Gmsh). Edges along curves become straight: mesh files hold no
+    curves, projects do.
 
     Raises:
         MeshError: one sentence that begins with the path: the ending is unknown, the format does
@@ -68,7 +71,7 @@ def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
         kind = "triangle" if mesh.k == 3 else "quad"
         if kind not in form.kinds:
             raise MeshError(f"{form.title} files hold no {kind}s")
-        content = _live(mesh, kind, form.data)
+        content = _live(mesh, kind, form)
     except MeshError as error:
         raise MeshError(f"{place}: {error}.") from error
     with replacing(path) as temporary:
@@ -107,6 +110,7 @@ def _mesh(content: Content, form: formats.Format, head: bytes, corner_angle: flo
             f"it is cut off: {promise[0]} points and {promise[1]} elements are announced, "
             f"but {len(content.points)} and {len(elements)} are there"
         )
+    regions = cleaning.regions(content, len(elements))
     cleaning.refuse_strays(content.points, elements)
     if form.merge:
         content, elements = cleaning.merged(content, elements)
@@ -121,10 +125,11 @@ def _mesh(content: Content, form: formats.Format, head: bytes, corner_angle: flo
         cleaning.flags(content.data, len(points)),
         cleaning.desired(content.data, len(points)),
         corner_angle,
+        regions=regions,
     )
 
 
-def _live(mesh: HalfEdgeMesh, kind: str, data: bool) -> Content:
+def _live(mesh: HalfEdgeMesh, kind: str, form: formats.Format) -> Content:
     vertices = mesh.vertices()
     number = np.full(len(mesh.points), -1, dtype=np.int64)
     number[vertices] = np.arange(len(vertices))
@@ -132,6 +137,11 @@ def _live(mesh: HalfEdgeMesh, kind: str, data: bool) -> Content:
         "geometric": mesh.geometric()[vertices].astype(np.int32),
         "desired_degree": mesh.desired()[vertices].astype(np.int32),
     }
+    regions = mesh.regions()
+    several = form.regions and bool((regions != regions[:1]).any())
     return Content(
-        mesh.points[vertices].copy(), {kind: number[mesh.elements()]}, marks if data else {}
+        mesh.points[vertices].copy(),
+        {kind: number[mesh.elements()]},
+        marks if form.data else {},
+        {kind: regions} if several else {},
     )

@@ -10,6 +10,7 @@ import numpy as np
 
 from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
+    CURVE,
     DEGREE,
     DELTA_SUM,
     DESIRED,
@@ -26,6 +27,7 @@ from meshwright_core.core.arrays import (
     PLACE,
     RESTORED,
     SCORE,
+    SIDES,
     TWIN,
     VERTEX_COLUMNS,
     VERTEX_SLOTS,
@@ -34,8 +36,16 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.construction import halves_of, twins_of
 from meshwright_core.errors import MeshError
-from meshwright_core.history.journal import EDGE_WRITE, LIST_WRITE, POINT_WRITE, VERTEX_WRITE
-from meshwright_core.history.packed_steps import COUNTERS, WRITE_KINDS, Steps, unpack
+from meshwright_core.history.journal import (
+    EDGE_WRITE,
+    LIST_WRITE,
+    PARAMETER_WRITE,
+    POINT_WRITE,
+    REGION_WRITE,
+    VERTEX_WRITE,
+    WRITE_KINDS,
+)
+from meshwright_core.history.packed_steps import COUNTERS, Steps, unpack
 
 _MOST = np.iinfo(np.int32).max
 
@@ -145,13 +155,15 @@ def _follow(at: int, ahead: np.ndarray, dead: np.ndarray) -> None:
     _require(at == -1, "its list of free places is wrong")
 
 
-def require_within(steps: Steps, k: int, vertices: int, elements: int) -> None:
-    """Raise MeshError unless every write of the steps, done or undone, stays within arrays of this
-    size and puts there what may point no farther.
+def require_within(steps: Steps, m: MeshArrays) -> None:
+    """Raise MeshError unless every write of the steps, done or undone, stays within the arrays and
+    puts there what may point no farther.
     """
+    k, vertices, elements = int(m.counters[SIDES]), len(m.vertex), len(m.element_mark)
     entries = unpack(steps)[1]
     _require((steps.places >= 0).all(), "a step of the history writes nowhere")
     _require(np.isfinite(steps.coordinates).all(), "a coordinate of the history is not finite")
+    _require(np.isfinite(steps.parameters).all(), "a parameter of the history is not finite")
     halfedges = k * elements
     counters = steps.rows[:, COUNTERS:]
     lowest, highest = np.zeros(RESTORED, np.int64), np.zeros(RESTORED, np.int64)
@@ -173,6 +185,7 @@ def require_within(steps: Steps, k: int, vertices: int, elements: int) -> None:
     index, written = entries[:, 0] // WRITE_KINDS, entries[:, 0] % WRITE_KINDS
     value = entries[:, 1]
     good = (written == POINT_WRITE) & (index < 3 * vertices)
+    good |= (written == PARAMETER_WRITE) & (index < vertices)
     for form, width, length, column, low, high in (
         (EDGE_WRITE, 2, halfedges, ORIGIN, -1, vertices - 1),
         (EDGE_WRITE, 2, halfedges, TWIN, -1, halfedges - 1),
@@ -181,7 +194,9 @@ def require_within(steps: Steps, k: int, vertices: int, elements: int) -> None:
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, DESIRED, 0, _MOST),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, FLAGS, 0, GEOMETRIC | LOCKED),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, PLACE, -1, vertices - 1),
+        (VERTEX_WRITE, VERTEX_COLUMNS, vertices, CURVE, -1, len(m.interface) - 1),
         (LIST_WRITE, 1, vertices, 0, -1, vertices - 1),
+        (REGION_WRITE, 1, elements, 0, 0, int(m.region.max())),
     ):
         these = (written == form) & (index % width == column) & (index < width * length)
         good |= these & (value >= low) & (value <= high)

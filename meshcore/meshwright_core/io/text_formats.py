@@ -18,11 +18,14 @@ Cells = dict[str, NDArray[np.int64]]
 
 
 class Content(NamedTuple):
-    """What a mesh file holds: points (n, 2 or 3), cells by type, and data by point."""
+    """What a mesh file holds: points (n, 2 or 3), cells by type, data by point, and the region of
+    each cell by type, where it is known.
+    """
 
     points: NDArray[np.float64]
     cells: Cells
     data: dict[str, NDArray[np.generic]]
+    regions: dict[str, NDArray[np.generic]] | None = None
 
 
 _COUNTS = re.compile(rb"Meshwright: (\d+) points, (\d+) elements")
@@ -171,13 +174,18 @@ def write_inp(content: Content) -> str:
 
 
 def write_msh(content: Content) -> str:
-    """Return the content as a Gmsh 2.2 text file, with its data by node."""
+    """Return the content as a Gmsh 2.2 text file, with its data by node.
+
+    Regions are physical groups, numbered from 1.
+    """
     kind, elements = _block(content)
+    groups = (content.regions or {}).get(kind, np.zeros(len(elements), np.int64)) + 1
     code = {"triangle": 2, "quad": 3}[kind]
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", f"{len(content.points)}"]
     lines += [f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in _numbered(content.points)]
     lines += ["$EndNodes", "$Elements", f"{len(elements)}"]
-    lines += [f"{i} {code} 2 1 1 {' '.join(map(str, e))}" for i, e in _numbered(elements + 1)]
+    tagged = np.column_stack([groups, groups, elements + 1])
+    lines += [f"{i} {code} 2 {' '.join(map(str, row))}" for i, row in _numbered(tagged)]
     lines += ["$EndElements"]
     for name, values in content.data.items():
         lines += ["$NodeData", "1", f'"{name}"', "1", "0.0", "3", "0", "1", f"{len(values)}"]

@@ -43,12 +43,16 @@ from meshwright_core.operations.refusals import (
     CHORD_CROSSES_ITSELF,
     CHORD_PINCHES,
     DEGREE_CAP,
-    GEOMETRIC_INSIDE,
     MERGED_EDGES_MEET,
     NEED_ROOM,
-    NO_ELEMENT_LEFT,
 )
-from meshwright_core.operations.vertex_merge import check_loser, hand_over, survivor
+from meshwright_core.operations.vertex_merge import (
+    check_loser,
+    check_pair,
+    check_sides,
+    hand_over,
+    survivor,
+)
 
 
 @bare_kernel
@@ -175,19 +179,20 @@ def _check_rungs(m, start, length, ring, cap):
             refused = check_loser(m, loser, QUAD_STRAIGHT)
         elif on_boundary(m, x) and on_boundary(m, y):
             return CHORD_PINCHES
-        elif on_boundary(m, loser):
-            return GEOMETRIC_INSIDE
         else:
-            refused = check_loser(m, loser, QUAD_INSIDE)
+            rung = entry if i < length else opposite(entry)
+            refused = check_pair(m, rung, x, y, loser, 4)
+            if refused == ALLOWED:
+                refused = check_loser(m, loser, QUAD_INSIDE)
         if refused != ALLOWED:
             return refused
         merged = m.vertex[x, DEGREE] + m.vertex[y, DEGREE] - (3 if at_end else 4)
         if cap > 0 and merged > cap:
             return DEGREE_CAP
-        if i < length and (
-            m.edge[following(entry, 4), TWIN] < 0 and m.edge[preceding(entry, 4), TWIN] < 0
-        ):
-            return NO_ELEMENT_LEFT
+        if i < length:
+            refused = check_sides(m, following(entry, 4), preceding(entry, 4), 4)
+            if refused != ALLOWED:
+                return refused
         if not _rails_apart(m, x, y, i, 1, rungs, ring):
             return MERGED_EDGES_MEET
         if not _rails_apart(m, y, x, i, -1, rungs, ring):
@@ -215,7 +220,7 @@ def check_chord_collapse(m, h, cap):
         if 0 < i < length:
             entry = m.edge[opposite(entry), TWIN]
         x, y = _rung(m, start, i, entry, ring, length)
-        entries += 64 + 2 * (m.vertex[x, DEGREE] + m.vertex[y, DEGREE])
+        entries += 72 + 2 * (m.vertex[x, DEGREE] + m.vertex[y, DEGREE])
     return ALLOWED if has_room(m, 4, 0, 0, entries) else NEED_ROOM
 
 

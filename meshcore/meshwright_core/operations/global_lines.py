@@ -29,6 +29,7 @@ from meshwright_core.core.arrays import (
     ORIGIN,
     TWIN,
     VERTEX_SLOTS,
+    constrained,
     following,
     neighbour,
     on_boundary,
@@ -53,6 +54,7 @@ from meshwright_core.operations.refusals import (
     LINE_CROWDED,
     LINE_DESIRED,
     LINE_LOCKED,
+    LINE_ON_INTERFACE,
     MERGED_EDGES_MEET,
     NEED_ROOM,
     NOT_A_LINE,
@@ -197,6 +199,8 @@ def _check_marked(m, start, length, ring):
         if refused != ALLOWED:
             return refused
         p, q = _across(m, h, False)
+        if constrained(m, h, 4):
+            return LINE_ON_INTERFACE
         p_end, q_end = _across(m, h, True)
         if p == q_end or q == p_end:
             return MERGED_EDGES_MEET
@@ -223,7 +227,7 @@ def check_cleanup(m, h, cap):
     _mark_line(m, start, length, -1)
     if refused != ALLOWED:
         return refused
-    return ALLOWED if has_room(m, 4, 0, 0, 64 * (length + 1)) else NEED_ROOM
+    return ALLOWED if has_room(m, 4, 0, 0, 72 * (length + 1)) else NEED_ROOM
 
 
 @bare_kernel

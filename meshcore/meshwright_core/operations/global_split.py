@@ -17,6 +17,7 @@ from meshwright_core.core.arrays import (
     HALF,
     ORIGIN,
     TWIN,
+    constrained,
     following,
     opposite,
     preceding,
@@ -27,8 +28,8 @@ from meshwright_core.history.journal import (
     add_degree,
     has_room,
     link,
-    midway,
     new_element,
+    on_edge,
     put_edge,
     put_vertex,
     touch,
@@ -39,6 +40,7 @@ from meshwright_core.operations.refusals import (
     BOUNDARY_EDGE,
     DEGREE_CAP,
     DEGREE_TOO_LOW,
+    INTERFACE_EDGE,
     NEED_ROOM,
     NEVER_ENDS,
     SPLITS_AGAIN,
@@ -69,6 +71,8 @@ def check_global_split(m, h, cap):
     t = m.edge[h, TWIN]
     if t < 0:
         return BOUNDARY_EDGE
+    if constrained(m, h, 4):
+        return INTERFACE_EDGE
     if m.vertex[m.edge[t, ORIGIN], DEGREE] <= 2:
         return DEGREE_TOO_LOW
     if cap > 0 and m.vertex[m.edge[h, ORIGIN], DEGREE] >= cap:
@@ -82,7 +86,7 @@ def check_global_split(m, h, cap):
         return NEVER_ENDS
     # where the cuts cross, a quad is met twice and the second cut makes two new quads
     cuts = 2 * (first + second) + 3
-    return ALLOWED if has_room(m, 4, cuts, cuts, 80 * cuts) else NEED_ROOM
+    return ALLOWED if has_room(m, 4, cuts, cuts, 96 * cuts) else NEED_ROOM
 
 
 @bare_kernel
@@ -98,13 +102,15 @@ def _cut(m, entry, v, before, after):
     |   |   |
     x --v-- y    `entry` runs from x to y
     """
-    n, o, p = following(entry, 4), opposite(entry), preceding(entry, 4)
-    y, z, w = m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
+    n, o = following(entry, 4), opposite(entry)
+    y, z = m.edge[n, ORIGIN], m.edge[o, ORIGIN]
     yz, zw = m.edge[n, TWIN], m.edge[o, TWIN]
 
     inside = zw >= 0
-    far = midway(m, w, z, 3, QUAD_INSIDE if inside else QUAD_STRAIGHT)
-    q = new_element(m, 4)  # (v, y, z, far); the quad of `entry` keeps (x, v, far, w)
+    far = on_edge(m, o, 3, QUAD_INSIDE if inside else QUAD_STRAIGHT, 4)
+    q = new_element(
+        m, m.region[entry // 4], 4
+    )  # (v, y, z, far); the quad of `entry` keeps (x, v, far, w)
     put_edge(m, n, ORIGIN, v)
     put_edge(m, o, ORIGIN, far)
     put_edge(m, q, ORIGIN, v)
@@ -156,11 +162,11 @@ def global_split(m, h):
     bc, gb = m.edge[n, TWIN], m.edge[tp, TWIN]
 
     # the degree of a hanging vertex counts the cut that will leave it, added by _cut
-    n1 = midway(m, b, c, 3, QUAD_INSIDE if bc >= 0 else QUAD_STRAIGHT)
+    n1 = on_edge(m, n, 3, QUAD_INSIDE if bc >= 0 else QUAD_STRAIGHT, 4)
     touch_new(m, n1)
-    n2 = midway(m, b, g, 3, QUAD_INSIDE if gb >= 0 else QUAD_STRAIGHT)
+    n2 = on_edge(m, tp, 3, QUAD_INSIDE if gb >= 0 else QUAD_STRAIGHT, 4)
     touch_new(m, n2)
-    q = new_element(m, 4)  # (a, n2, b, n1)
+    q = new_element(m, m.region[h // 4], 4)  # (a, n2, b, n1)
     put_edge(m, n, ORIGIN, n1)
     put_edge(m, t, ORIGIN, n2)
     put_edge(m, q, ORIGIN, a)

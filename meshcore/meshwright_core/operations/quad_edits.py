@@ -19,9 +19,9 @@ from meshwright_core.core.arrays import (
     ORIGIN,
     TWIN,
     common_neighbours,
+    constrained,
     following,
     joined,
-    on_boundary,
     opposite,
     preceding,
 )
@@ -43,19 +43,18 @@ from meshwright_core.history.journal import (
 )
 from meshwright_core.operations.refusals import (
     ALLOWED,
-    BOTH_ON_BOUNDARY,
     BOUNDARY_EDGE,
     DEGREE_CAP,
     DEGREE_TOO_LOW,
     ENDS_COINCIDE,
     ENDS_JOINED,
-    GEOMETRIC_INSIDE,
+    INTERFACE_EDGE,
     LINK_CONDITION,
     NEED_ROOM,
     NO_ELEMENT_LEFT,
 )
 from meshwright_core.operations.score_terms import degree_term, merge_term
-from meshwright_core.operations.vertex_merge import check_loser, hand_over, survivor
+from meshwright_core.operations.vertex_merge import check_loser, check_pair, hand_over, survivor
 
 
 @bare_kernel
@@ -79,6 +78,8 @@ def check_flip_left(m, h, cap):
     t = m.edge[h, TWIN]
     if t < 0:
         return BOUNDARY_EDGE
+    if constrained(m, h, 4):
+        return INTERFACE_EDGE
     f, c = m.edge[opposite(t), ORIGIN], m.edge[opposite(h), ORIGIN]
     return _check_turn(m, h, f, c, cap)
 
@@ -89,6 +90,8 @@ def check_flip_right(m, h, cap):
     t = m.edge[h, TWIN]
     if t < 0:
         return BOUNDARY_EDGE
+    if constrained(m, h, 4):
+        return INTERFACE_EDGE
     d, g = m.edge[preceding(h, 4), ORIGIN], m.edge[preceding(t, 4), ORIGIN]
     return _check_turn(m, h, d, g, cap)
 
@@ -251,6 +254,8 @@ def check_split(m, h, cap):
     t = m.edge[h, TWIN]
     if t < 0:
         return BOUNDARY_EDGE
+    if constrained(m, h, 4):
+        return INTERFACE_EDGE
     if m.vertex[m.edge[h, ORIGIN], DEGREE] <= 2:
         return DEGREE_TOO_LOW
     if cap > 0:
@@ -279,7 +284,7 @@ def split(m, h):
     da, af = m.edge[p, TWIN], m.edge[tn, TWIN]
 
     v = midway(m, a, b, 3, QUAD_INSIDE)
-    q = new_element(m, 4)
+    q = new_element(m, m.region[h // 4], 4)
     put_edge(m, h, ORIGIN, v)
     put_edge(m, tn, ORIGIN, v)
     put_edge(m, q, ORIGIN, v)
@@ -316,18 +321,17 @@ def score_change_split(m, h):
 
 @bare_kernel
 def check_collapse(m, h, cap):
-    """Element collapse: a and c merge. Not both on the boundary, not joined, only b and d in
+    """Element collapse: a and c merge. Not both on curves, not joined, only b and d in
     common; b and d keep enough edges; the loser unprotected.
     """
     n, p = following(h, 4), preceding(h, 4)
     o = following(n, 4)
     a, b, c, d = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[o, ORIGIN], m.edge[p, ORIGIN]
-    if on_boundary(m, a) and on_boundary(m, c):
-        return BOTH_ON_BOUNDARY
     winner = survivor(m, a, c, 4)
     loser = a + c - winner
-    if on_boundary(m, loser):
-        return GEOMETRIC_INSIDE
+    refused = check_pair(m, -1, a, c, loser, 4)
+    if refused != ALLOWED:
+        return refused
     refused = check_loser(m, loser, QUAD_INSIDE)
     if refused != ALLOWED:
         return refused

@@ -24,6 +24,11 @@ MERGED_EDGES_MEET = 20
 CHORD_CROSSES_ITSELF = 21
 CHORD_PINCHES = 22
 OTHER_KIND = 23
+INTERFACE_EDGE = 24
+BOTH_ON_CURVE = 25
+INTERFACE_PULLED = 26
+INTERFACE_GONE = 27
+LINE_ON_INTERFACE = 28
 
 # not a refusal: the caller enlarges the arrays and checks again
 NEED_ROOM = 99
@@ -53,5 +58,11 @@ SENTENCES = {
     MERGED_EDGES_MEET: "two vertices would be joined by two edges, or a vertex to itself",
     CHORD_CROSSES_ITSELF: "the strip of quads crosses itself",
     CHORD_PINCHES: "the two sides of the strip both lie on the boundary there",
+    INTERFACE_EDGE: "the edge {a}-{b} lies on the interface of two regions",
+    BOTH_ON_CURVE: "the two vertices that would merge both lie on the boundary or an interface, and"
+    " no edge of it joins them",
+    INTERFACE_PULLED: "an interface of two regions would be pulled to a geometric vertex beside it",
+    INTERFACE_GONE: "an edge on the interface of two regions would be deleted",
+    LINE_ON_INTERFACE: "a part of the line lies on the interface of two regions",
     OTHER_KIND: "{operation} is not an operation of {kind} meshes",
 }

@@ -22,6 +22,7 @@ from meshwright_core.core.arrays import (
     ORIGIN,
     TWIN,
     common_neighbours,
+    constrained,
     following,
     joined,
     on_boundary,
@@ -35,8 +36,8 @@ from meshwright_core.history.journal import (
     drop_vertex,
     has_room,
     link,
-    midway,
     new_element,
+    on_edge,
     put_edge,
     put_vertex,
     set_degrees,
@@ -45,19 +46,23 @@ from meshwright_core.history.journal import (
 )
 from meshwright_core.operations.refusals import (
     ALLOWED,
-    BOTH_ON_BOUNDARY,
     BOUNDARY_EDGE,
     DEGREE_CAP,
     DEGREE_TOO_LOW,
     ENDS_COINCIDE,
     ENDS_JOINED,
-    GEOMETRIC_INSIDE,
+    INTERFACE_EDGE,
     LINK_CONDITION,
     NEED_ROOM,
-    NO_ELEMENT_LEFT,
 )
 from meshwright_core.operations.score_terms import degree_term, merge_term
-from meshwright_core.operations.vertex_merge import check_loser, hand_over, survivor
+from meshwright_core.operations.vertex_merge import (
+    check_loser,
+    check_pair,
+    check_sides,
+    hand_over,
+    survivor,
+)
 
 
 @bare_kernel
@@ -66,6 +71,8 @@ def check_flip(m, h, cap):
     t = m.edge[h, TWIN]
     if t < 0:
         return BOUNDARY_EDGE
+    if constrained(m, h, 3):
+        return INTERFACE_EDGE
     a, b = m.edge[h, ORIGIN], m.edge[t, ORIGIN]
     c, d = m.edge[preceding(h, 3), ORIGIN], m.edge[preceding(t, 3), ORIGIN]
     if c == d:
@@ -164,8 +171,8 @@ def split(m, h):
     bc = m.edge[n, TWIN]
 
     inside = t >= 0
-    v = midway(m, a, b, 4 if inside else 3, TRIANGLE_INSIDE if inside else TRIANGLE_STRAIGHT)
-    x = new_element(m, 3)  # (v, b, c)
+    v = on_edge(m, h, 4 if inside else 3, TRIANGLE_INSIDE if inside else TRIANGLE_STRAIGHT, 3)
+    x = new_element(m, m.region[h // 3], 3)  # (v, b, c)
     put_edge(m, n, ORIGIN, v)
     put_edge(m, x, ORIGIN, v)
     put_edge(m, x + 1, ORIGIN, b)
@@ -187,7 +194,7 @@ def split(m, h):
 
     tp = preceding(t, 3)
     d, db = m.edge[tp, ORIGIN], m.edge[tp, TWIN]
-    y = new_element(m, 3)  # (b, v, d)
+    y = new_element(m, m.region[t // 3], 3)  # (b, v, d)
     put_edge(m, t, ORIGIN, v)
     put_edge(m, y, ORIGIN, b)
     put_edge(m, y + 1, ORIGIN, v)
@@ -220,9 +227,10 @@ def score_change_split(m, h):
 
 @bare_kernel
 def check_collapse(m, h, cap):
-    """Edge collapse: the link condition, one end at most on the boundary, the loser unprotected.
+    """Edge collapse: the link condition, one end at most on a curve, the loser unprotected.
 
-    A boundary edge may be collapsed too (beyond the paper) when one end is not geometric.
+    An edge on the boundary or an interface may be collapsed too (beyond the paper) when one end is
+    not geometric, and no third vertex of its triangles lies between the ends on curves.
     """
     n, p, t = following(h, 3), preceding(h, 3), m.edge[h, TWIN]
     a, b, c = m.edge[h, ORIGIN], m.edge[n, ORIGIN], m.edge[p, ORIGIN]
@@ -231,23 +239,23 @@ def check_collapse(m, h, cap):
     if t < 0:
         refused = check_loser(m, loser, TRIANGLE_STRAIGHT)
     else:
-        if on_boundary(m, a) and on_boundary(m, b):
-            return BOTH_ON_BOUNDARY
-        if on_boundary(m, loser):
-            return GEOMETRIC_INSIDE
-        refused = check_loser(m, loser, TRIANGLE_INSIDE)
+        refused = check_pair(m, h, a, b, loser, 3)
+        if refused == ALLOWED:
+            refused = check_loser(m, loser, TRIANGLE_INSIDE)
     if refused != ALLOWED:
         return refused
-    if m.edge[n, TWIN] < 0 and m.edge[p, TWIN] < 0:
-        return NO_ELEMENT_LEFT
+    refused = check_sides(m, n, p, 3)
+    if refused != ALLOWED:
+        return refused
     if m.vertex[c, DEGREE] <= 3 and not on_boundary(m, c):
         return DEGREE_TOO_LOW
     merged = m.vertex[a, DEGREE] + m.vertex[b, DEGREE] - 3
     if t >= 0:
         tn, tp = following(t, 3), preceding(t, 3)
         d = m.edge[tp, ORIGIN]
-        if m.edge[tn, TWIN] < 0 and m.edge[tp, TWIN] < 0:
-            return NO_ELEMENT_LEFT
+        refused = check_sides(m, tn, tp, 3)
+        if refused != ALLOWED:
+            return refused
         if m.vertex[d, DEGREE] <= 3 and not on_boundary(m, d):
             return DEGREE_TOO_LOW
         merged -= 1

@@ -10,28 +10,42 @@ from meshwright_core.core.arrays import (
     HALF,
     LOCKED,
     ORIGIN,
+    TWIN,
+    along_curve,
+    constrained,
     on_boundary,
+    on_curve,
     turned,
 )
 from meshwright_core.core.compilation import bare_kernel
 from meshwright_core.core.irregularity import usual_desired
 from meshwright_core.history.journal import put_edge
-from meshwright_core.operations.refusals import ALLOWED, LOSER_DESIRED, LOSER_LOCKED, TWO_GEOMETRIC
+from meshwright_core.operations.refusals import (
+    ALLOWED,
+    BOTH_ON_BOUNDARY,
+    BOTH_ON_CURVE,
+    GEOMETRIC_INSIDE,
+    INTERFACE_GONE,
+    INTERFACE_PULLED,
+    LOSER_DESIRED,
+    LOSER_LOCKED,
+    NO_ELEMENT_LEFT,
+    TWO_GEOMETRIC,
+)
 
 
 @bare_kernel
 def _rank(m, v, k):
-    boundary = on_boundary(m, v)
     rank = 8 if m.vertex[v, FLAGS] & GEOMETRIC else 0
-    rank += 4 if boundary else 0
+    rank += 4 if on_curve(m, v) else 0
     rank += 2 if m.vertex[v, FLAGS] & LOCKED else 0
-    return rank + (1 if m.vertex[v, DESIRED] != usual_desired(k, boundary) else 0)
+    return rank + (1 if m.vertex[v, DESIRED] != usual_desired(k, on_boundary(m, v)) else 0)
 
 
 @bare_kernel
 def survivor(m, a, b, k):
-    """The one of a and b that stays: geometric before boundary before locked before a vertex with a
-    desired degree of its own; a when they are alike.
+    """The one of a and b that stays: geometric before one on a curve before locked before a vertex
+    with a desired degree of its own; a when they are alike.
     """
     return b if _rank(m, b, k) > _rank(m, a, k) else a
 
@@ -48,6 +62,34 @@ def check_loser(m, loser, desired):
         return LOSER_LOCKED
     if m.vertex[loser, DESIRED] != desired:
         return LOSER_DESIRED
+    return ALLOWED
+
+
+@bare_kernel
+def check_pair(m, h, a, b, loser, k):
+    """Whether the curves let a and b merge across an element or along the interior edge h.
+
+    h: the half-edge that joins them, -1 for none. Two vertices on curves merge only along an edge
+    of an interface; one on a curve does not leave it.
+    """
+    if on_boundary(m, a) and on_boundary(m, b):
+        return BOTH_ON_BOUNDARY
+    if h >= 0 and constrained(m, h, k):
+        return ALLOWED
+    if on_curve(m, a) and on_curve(m, b):
+        return BOTH_ON_CURVE
+    if on_boundary(m, loser):
+        return GEOMETRIC_INSIDE
+    return INTERFACE_PULLED if on_curve(m, loser) else ALLOWED
+
+
+@bare_kernel
+def check_sides(m, n, p, k):
+    """Whether two sides of an element may become one edge: not if both lie on curves."""
+    if m.edge[n, TWIN] < 0 and m.edge[p, TWIN] < 0:
+        return NO_ELEMENT_LEFT
+    if along_curve(m, n, k) and along_curve(m, p, k):
+        return INTERFACE_GONE
     return ALLOWED
 
 

@@ -12,7 +12,7 @@ from meshwright_agent.policy.network import Architecture, PolicyNetwork
 from meshwright_agent.policy.policy_files import Policy, PolicyError
 from meshwright_agent.policy.rollout import Runner
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.core.arrays import JOURNALLING, MeshArrays
+from meshwright_core.core.arrays import CURVE, JOURNALLING, MeshArrays
 from meshwright_core.domains.meshing import benchmark_mesh
 from meshwright_core.operations.catalogue import NAMES, score_change
 
@@ -74,9 +74,12 @@ def test_episodes_in_a_batch_leave_valid_meshes(kind, selection):
         assert (before - batch.scores == outcome.rewards).all()
     assert (batch.best >= batch.optima).all()
     for b, mesh in enumerate(meshes):
-        arrays = MeshArrays(*(array[b] for array in batch.meshes))
+        own = [array[b] for array in batch.meshes[:-2]]
+        arrays = MeshArrays(*own, mesh.arrays.curves, mesh.arrays.interface)
+        on_curve = arrays.vertex[:, CURVE] >= 0
+        arrays.vertex[on_curve, CURVE] -= sum(len(other.arrays.interface) for other in meshes[:b])
         arrays.counters[JOURNALLING] = 0
-        run = HalfEdgeMesh(arrays, mesh.outline)
+        run = HalfEdgeMesh(arrays, mesh.boundary_info)
         run.validate()
         assert run.optimum == mesh.optimum and run.score == batch.scores[b]
 

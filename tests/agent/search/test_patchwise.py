@@ -19,6 +19,7 @@ from meshwright_agent.search.repair_queue import FILL, agenda, dequeue, enlarged
 from meshwright_agent.search.solver import solve
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import JOURNALLING, STEP_COLUMNS, allocate
+from meshwright_core.core.mesh_boundary import MeshBoundary
 from meshwright_core.domains import meshing, quadrangulation
 from meshwright_core.operations.catalogue import CODES, NAMES, score_change
 
@@ -77,7 +78,9 @@ def patches_of(mesh, sizes=(40, 80)):
             break
         out = allocate(k, count * k, count, 1, 1)
         vertices = cut_out(arrays, a, k, found[:count], k == 4, out, ids)
-        patches.append((HalfEdgeMesh(out, []), found[:count].copy(), ids[:vertices].copy()))
+        patches.append(
+            (HalfEdgeMesh(out, MeshBoundary()), found[:count].copy(), ids[:vertices].copy())
+        )
     assert not a.place.any() and not a.number.any()
     return patches
 

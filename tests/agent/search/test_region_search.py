@@ -12,7 +12,7 @@ from meshwright_core import MeshError
 from meshwright_core.analysis.submesh import enclose, temporarily_locked
 from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.domains import gallery, meshing
-from meshwright_core.geometry.region import rings
+from meshwright_core.geometry.movable_part import rings
 from meshwright_core.geometry.smoothing import relax
 
 pytestmark = pytest.mark.slow

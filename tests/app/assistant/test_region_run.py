@@ -11,7 +11,7 @@ from meshwright.document.document import Document
 from meshwright_core.analysis.submesh import enclose
 from meshwright_core.core.arrays import ORIGIN
 from meshwright_core.domains import gallery, meshing
-from meshwright_core.geometry.region import rings
+from meshwright_core.geometry.movable_part import rings
 
 pytestmark = pytest.mark.slow
 

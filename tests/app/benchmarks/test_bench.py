@@ -34,7 +34,9 @@ def test_suite_runs(name, capsys):
 def test_fuzz_finds_no_violation(capsys):
     assert cli.main(["bench", "--suite", "fuzz", "--quick", "--json", "--seed", "3"]) == 0
     results = json.loads(capsys.readouterr().out)["results"]
-    assert results["tri"]["violations"] == results["quad"]["violations"] == 0
+    for kind in ("tri", "quad"):
+        assert list(results[kind]) == ["straight", "curved", "interfaces"]
+        assert all(row["violations"] == 0 for row in results[kind].values())
 
 
 def test_parts_suite_prints_a_table(capsys):

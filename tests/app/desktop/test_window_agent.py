@@ -9,7 +9,7 @@ from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QFileDialog
 
 from meshwright.assistant.assistant import State
-from meshwright_core.geometry.region import rings
+from meshwright_core.geometry.movable_part import rings
 
 
 def hinted(qtbot, window):

@@ -2,11 +2,22 @@
 
 import numpy as np
 import pytest
+from round_meshes import (
+    annulus_sector,
+    boundary_of,
+    curved_mesh,
+    polar,
+    round_disc,
+    round_insert,
+    round_ring,
+)
 from tiny_meshes import grid, ring
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.analysis.drawability import Obstacles
-from meshwright_core.domains import gallery, meshing
+from meshwright_core.curves.curve import Curve
+from meshwright_core.domains import gallery, mesh_on_domain, meshing
+from meshwright_core.domains.domain import Domain
 from meshwright_core.geometry import smoothing
 
 DART = [[0, 0], [1, -1], [0.4, 0], [1, 1]]
@@ -68,12 +79,62 @@ def _arch(pieces):
     return HalfEdgeMesh.from_elements(points, quads, np.arange(len(points)) < 4)
 
 
-def test_sides_that_bend_keep_their_edges():
-    # a circle keeps twelve edges; the arcs of 18 degrees a piece turn by 162 in all: six
-    assert Obstacles(ring(24, 1)).count(ring(12, 1)) == 0
-    assert Obstacles(ring(24, 1)).count(ring(8, 1)) == 4 + 4
-    assert Obstacles(_arch(10)).count(_arch(6)) == 0
-    assert Obstacles(_arch(10)).count(_arch(4)) == 2 + 2
+def test_sides_that_turn_keep_their_edges():
+    assert _count(round_ring(3)) == 0
+    assert _count(annulus_sector(90.0)) == 0
+    # one edge for half a circle would do, but not well
+    assert _count(annulus_sector(180.0)) == 1 + 1
+
+
+def test_sides_that_bend_keep_some_edges():
+    # an edge along a curve turns by 135 degrees at most: three around a circle; the arcs of 18
+    # degrees a piece turn by 162 in all
+    assert Obstacles(ring(24, 1)).count(ring(3, 1)) == 0
+    assert Obstacles(_arch(10)).count(_arch(2)) == 0
+    assert Obstacles(_arch(10)).count(_arch(1)) == 1 + 1
+
+
+def test_vertices_of_one_quad_need_a_kink():
+    """On a smooth curve their corner would be flat."""
+    points = [[1, 0], [0, 1], [-1, 0], [0, -1]]
+    square = HalfEdgeMesh.from_elements(points, [[0, 1, 2, 3]], [False] * 4)
+    assert _count(square) == 0
+    disc = Domain.from_curves([[Curve.arc((0, 0), 1.0, 0.0, 2 * np.pi)]])
+    assert _count(mesh_on_domain.placed(square, disc)) == 4
+
+
+def test_smooth_vertices_need_two_elements():
+    assert _count(round_disc()) == 0
+    # a half disc of one quad: flat at the smooth vertex, and at the middle of the diameter
+    points = np.vstack([polar(1.0, [0.0, 90.0, 180.0]), [[0.0, 0.0]]])
+    loop = [Curve.arc((0, 0), 1.0, 0.0, np.pi), Curve.polyline(points[[2, 3, 0]])]
+    mesh = curved_mesh(points, [[0, 1, 2, 3]], boundary_of([loop]), [range(4)], [0, 2])
+    assert _count(mesh) == 2
+
+
+def test_each_side_of_an_interface_needs_its_own_elements():
+    mesh = round_insert()
+    assert _count(mesh) == 0
+    # one quad for the whole insert: flat at all four vertices, from the inside only
+    elements = np.vstack([[[4, 5, 6, 7]], mesh.elements()[5:]]) - 4
+    boundary = mesh.boundary_info
+    k = np.arange(4)
+    coarse = curved_mesh(
+        mesh.points[4:, :2], elements, boundary, [k + 4, k], range(4, 8), regions=[1, 0, 0, 0, 0]
+    )
+    assert _count(coarse) == 4
+    assert len(smoothing.relax(coarse)) == 1
+
+
+def test_sectors_at_a_junction_are_counted_by_region():
+    # two unit squares side by side: the interface meets straight sides, 90 degrees each
+    points = np.array([[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [0, 1]], float)
+    mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 4, 5], [1, 2, 3, 4]], regions=[0, 1])
+    assert _count(mesh) == 0
+    # with a bay between: each region has a reflex corner of its own, and one quad there
+    points[[1, 4]] = [[1, 0.2], [1, 0.8]]
+    bay = HalfEdgeMesh.from_elements(points, [[0, 1, 4, 5], [1, 2, 3, 4]], regions=[0, 1])
+    assert _count(bay) == 0
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])

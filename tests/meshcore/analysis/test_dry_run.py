@@ -34,7 +34,7 @@ def _bits(mesh):
     }
     return [
         np.array(array[: slots.get(name, len(array))]).tobytes()
-        for name, array in zip(arrays._fields, arrays, strict=True)
+        for name, array in zip(arrays._fields[:-2], arrays[:-2], strict=True)
     ]
 
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from meshwright_core import MeshError
-from meshwright_core.domains import gallery, meshing, quadrangulation
+from meshwright_core.domains import gallery, meshing, quadrangulation, triangulation
 from meshwright_core.domains.domain import Domain
 
 SQUARE = Domain([[0, 0], [1, 0], [1, 1], [0, 1]])
@@ -137,7 +137,7 @@ def test_bad_arguments(arguments, reason):
 
 
 def test_mesh_that_would_grow_without_end_is_refused(monkeypatch):
-    monkeypatch.setattr(meshing, "MAX_TRIANGLES", 2000)
+    monkeypatch.setattr(triangulation, "MAX_TRIANGLES", 2000)
     thin = Domain([[0, 0], [1, 0], [1, 1e-5], [0, 1e-5]])
     with pytest.raises(MeshError, match="more than 2,000 triangles"):
         meshing.mesh_domain(thin, "tri")

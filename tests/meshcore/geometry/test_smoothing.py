@@ -4,8 +4,7 @@ from side_checks import assert_on_sides
 
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.domains import gallery, meshing
-from meshwright_core.geometry import quality, smoothing
-from meshwright_core.geometry import region as regions
+from meshwright_core.geometry import movable_part, quality, smoothing
 
 
 def jittered(kind, elements, amount, seed=0):
@@ -23,24 +22,20 @@ def test_smoothing_makes_the_worst_no_worse_and_keeps_the_outline(kind, name):
     mesh = meshing.mesh_domain(gallery.shape(name), kind)
     corners = np.flatnonzero(mesh.geometric())
     before = mesh.points[corners].copy()
-    region = regions.whole(mesh)
-    worst = shape_of(region).min()
-    vertices, positions = smoothing.smooth(mesh)
+    worst = shape_of(movable_part.whole(mesh)).min()
+    vertices, positions, parameters = smoothing.smooth(mesh)
     assert len(vertices)
-    mesh.move(vertices, positions)
+    mesh.move(vertices, positions, parameters)
     assert mesh.points[corners].tobytes() == before.tobytes()
     assert len(quality.inverted(mesh)) == 0
-    assert shape_of(regions.whole(mesh)).min() >= worst - 1e-12
+    assert shape_of(movable_part.whole(mesh)).min() >= worst - 1e-12
     assert_on_sides(mesh)
 
 
-def shape_of(region):
-    reference = region.references()
+def shape_of(part):
+    stars = smoothing.stars_of(part)
     return np.array(
-        [
-            smoothing.element_shape(region.points, region.elements, e, reference)
-            for e in range(len(region.elements))
-        ]
+        [smoothing.true_shape(part.points, stars, e) for e in range(len(part.elements))]
     )
 
 
@@ -87,7 +82,7 @@ def test_locked_vertices_stay():
 def test_only_the_vertices_asked_for_move():
     mesh = jittered("tri", 200, 0.02)
     wanted = np.flatnonzero(~mesh.boundary())[:5]
-    vertices, _ = smoothing.smooth(mesh, wanted)
+    vertices, *_ = smoothing.smooth(mesh, wanted)
     assert set(vertices) <= set(wanted)
     with pytest.raises(MeshError, match="Vertex 100000 is not in the mesh"):
         smoothing.smooth(mesh, [100000])
@@ -104,7 +99,7 @@ def test_relax_touches_only_what_is_near_and_is_one_step(kind):
     assert mesh.steps == steps + 1
     moved = np.flatnonzero((mesh.points != before).any(axis=1))
     assert 0 < len(moved) < 60
-    assert set(moved) <= set(regions.rings(mesh, edit.touched, 2).tolist())
+    assert set(moved) <= set(movable_part.rings(mesh, edit.touched, 2).tolist())
     assert mesh.undo()
     assert mesh.points.tobytes() == before.tobytes()
 
@@ -155,9 +150,10 @@ def test_relax_after_every_operation_keeps_the_mesh_drawn():
 
 
 def test_a_surface_is_smoothed_in_its_tangent_planes():
-    mesh = meshing.grid("quad", 100, np.random.default_rng(0))
-    mesh.points[:, 2] = 0.2 * np.sin(3 * mesh.points[:, 0])
-    mesh.outline = [(ids, mesh.points[ids].copy()) for ids, _ in mesh.outline]
+    flat = meshing.grid("quad", 100, np.random.default_rng(0))
+    points = flat.points.copy()
+    points[:, 2] = 0.2 * np.sin(3 * points[:, 0])
+    mesh = HalfEdgeMesh.from_elements(points, flat.elements(), flat.geometric())
     before = mesh.points.copy()
     assert len(smoothing.relax(mesh)) == 0
     assert (mesh.points != before).any()

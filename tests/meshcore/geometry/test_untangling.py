@@ -1,14 +1,24 @@
+import itertools
 import time
 
 import numpy as np
 import pytest
+from round_meshes import (
+    boundary_of,
+    curved_mesh,
+    dragged_plate,
+    fan,
+    round_disc,
+    round_insert,
+    round_ring,
+)
 from side_checks import assert_on_sides
 
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.curves.curve import Curve
 from meshwright_core.domains import gallery, meshing
-from meshwright_core.geometry import foldover_energy, quality, untangling
-from meshwright_core.geometry import region as regions
-from meshwright_core.geometry.sides import Sides
+from meshwright_core.geometry import foldover_energy, movable_part, quality, untangling
+from meshwright_core.geometry.edge_curves import element_areas
 from meshwright_core.geometry.unfixable import unfixable, unfixable_corners
 
 
@@ -16,7 +26,7 @@ def untangled(mesh, vertices=None):
     found = untangling.untangle(mesh, vertices)
     fixed = mesh.geometric()
     before = mesh.points[fixed].copy()
-    mesh.move(found.vertices, found.positions)
+    mesh.move(found.vertices, found.positions, found.parameters)
     assert mesh.points[fixed].tobytes() == before.tobytes()
     assert sorted(quality.inverted(mesh)) == found.inverted.tolist()
     assert_on_sides(mesh)
@@ -28,21 +38,13 @@ def untangled(mesh, vertices=None):
 @pytest.mark.parametrize("eps", [1.0, 1e-2])
 def test_gradient_against_finite_differences(kind, name, eps):
     mesh = meshing.mesh_domain(gallery.shape(name), kind)
-    region = regions.whole(mesh)
+    part = movable_part.whole(mesh)
     rng = np.random.default_rng(0)
-    free = np.flatnonzero(region.free)
-    region.points[free, :2] += 0.3 * rng.normal(size=(len(free), 2))
+    free = np.flatnonzero(part.free)
+    part.points[free, :2] += 0.3 * rng.normal(size=(len(free), 2))
     unit = 0.3
-    targets = np.full(len(region.elements), unit * unit)
-    centre = region.points.mean(axis=0)[:2]
-    problem, x = untangling.energy_problem(
-        region,
-        np.zeros(region.elements.shape, bool),
-        (region.points[:, :2] - centre) / unit,
-        centre,
-        unit,
-        targets,
-    )
+    targets = np.full(len(part.elements), unit * unit)
+    problem, x = untangling.energy_problem(part, np.zeros(part.elements.shape, bool), unit, targets)
     x = x + 1e-3  # off the bends of polylines, where there is no gradient
     gradient, unused = np.zeros(len(x)), np.zeros(len(x))
     value, _ = foldover_energy.energy(problem, x, gradient, eps, 0.5)
@@ -54,6 +56,55 @@ def test_gradient_against_finite_differences(kind, name, eps):
         below, _ = foldover_energy.energy(problem, x - step, unused, eps, 0.5)
         scale = max(1.0, np.abs(gradient).max())
         assert (above - below) / 2e-6 == pytest.approx(gradient[i], rel=1e-4, abs=1e-5 * scale)
+
+
+@pytest.mark.parametrize("eps", [1.0, 1e-2])
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        pytest.param(round_disc(), id="disc"),
+        pytest.param(round_ring(3, rows=2), id="ring"),
+        pytest.param(round_ring(9, rows=2), id="fine ring"),
+        pytest.param(round_insert(), id="insert"),
+        pytest.param(fan(5), id="triangles"),
+        pytest.param(dragged_plate(), id="corner off its curve"),
+    ],
+)
+def test_gradient_on_curves_against_finite_differences(mesh, eps):
+    part = movable_part.whole(mesh)
+    rng = np.random.default_rng(1)
+    free = np.flatnonzero(part.free)
+    part.points[free, :2] += 0.2 * rng.normal(size=(len(free), 2))
+    unit = 0.7
+    targets = np.full(len(part.elements), unit * unit)
+    dropped = np.zeros(part.elements.shape, bool)
+    problem, x = untangling.energy_problem(part, dropped, unit, targets)
+    assert len(problem.curved.element)
+    gradient, unused = np.zeros(len(x)), np.zeros(len(x))
+    foldover_energy.energy(problem, x, gradient, eps, 0.5)
+    for i in range(len(x)):
+        step = np.zeros(len(x))
+        step[i] = 1e-6
+        above, _ = foldover_energy.energy(problem, x + step, unused, eps, 0.5)
+        below, _ = foldover_energy.energy(problem, x - step, unused, eps, 0.5)
+        scale = max(1.0, np.abs(gradient).max())
+        assert (above - below) / 2e-6 == pytest.approx(gradient[i], rel=1e-5, abs=1e-6 * scale)
+
+
+@pytest.mark.parametrize("name", ["disc", "ring", "insert", "triangles"])
+def test_curved_meshes_are_untangled_from_bad_positions(name):
+    mesh = {
+        "disc": round_disc(), "ring": round_ring(5, rows=3), "insert": round_insert(),
+        "triangles": fan(5),
+    }[name]  # fmt: skip
+    free = np.flatnonzero(~mesh.geometric())
+    areas = np.abs(element_areas(mesh).sum())
+    places = mesh.points[free].copy()
+    mesh.points[free] = places[0] + 0.3 * (places - places[0]) + [0.1, 0.2, 0.0]
+    found = untangled(mesh)
+    assert len(found.inverted) == 0
+    assert quality.scaled_jacobian(mesh).min() > 0.2
+    assert element_areas(mesh).sum() == pytest.approx(areas, rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
@@ -70,8 +121,10 @@ def test_untangling_from_bad_starting_positions(kind, start, name):
     elif start == "random":
         mesh.points[inside, :2] = rng.uniform(-1, 1, (len(inside), 2))
     else:  # all vertices of a side at one point, and not even on the side
-        for chain in Sides(mesh).chains:
-            if mesh.geometric()[chain].any():
+        for loop in mesh.boundary_loops():
+            ends = np.flatnonzero(mesh.geometric()[loop])
+            for a, b in itertools.pairwise(ends.tolist()):
+                chain = loop[a : b + 1]
                 mesh.points[chain[1:-1]] = mesh.points[chain].mean(axis=0) + [0.1, 0.1, 0]
     found = untangled(mesh)
     assert len(found.inverted) == 0
@@ -137,22 +190,21 @@ def test_a_doublet_is_unfixable():
 def test_boundary_vertices_of_one_quad_find_the_bends_of_a_circle(pieces, turn):
     # 2 x 2 quads whose outline is a polygon of so many pieces, none of its points geometric
     angle = 2 * np.pi * np.arange(pieces) / pieces
-    circle = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(pieces)])
-    boundary = [0, 1, 2, 5, 8, 7, 6, 3]
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    boundary_vertices = [0, 1, 2, 5, 8, 7, 6, 3]
     quads = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]]
     angle = 2 * np.pi * np.arange(8) / 8 + turn
     points = np.zeros((9, 2))
-    points[boundary] = 0.9 * np.column_stack([np.cos(angle), np.sin(angle)])
-    mesh = HalfEdgeMesh.from_elements(points, quads, np.zeros(9, bool))
-    mesh.outline = [(np.arange(100, 100 + pieces), circle)]
+    points[boundary_vertices] = 0.9 * np.column_stack([np.cos(angle), np.sin(angle)])
+    boundary = boundary_of([[Curve.polyline(np.vstack([circle, circle[:1]]))]])
+    mesh = curved_mesh(points, quads, boundary, [boundary_vertices], [])
     assert len(untangled(mesh).inverted) == 0
 
 
 def test_a_circle_seen_from_outside_is_unfixable_for_a_single_quad():
     mesh = meshing.mesh_domain(gallery.shape("annulus"), "tri")
     inner = min(mesh.boundary_loops(), key=len)
-    region = regions.whole(mesh)
-    assert not unfixable_corners(region).any()
+    assert not unfixable_corners(movable_part.whole(mesh)).any()
     h = next(
         h
         for a, b in zip(inner, np.roll(inner, -1), strict=True)

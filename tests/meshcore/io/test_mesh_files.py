@@ -433,3 +433,61 @@ def test_mesh_libraries_are_not_imported_with_the_package():
 
 def test_endings_are_listed():
     assert {".msh", ".vtk", ".vtu", ".inp", ".su2", ".obj", ".ply", ".stl"} <= set(endings())
+
+
+def two_halves(kind: str) -> HalfEdgeMesh:
+    """A rectangle of two squares, each a region."""
+    points = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]]
+    quads = [[0, 1, 4, 3], [1, 2, 5, 4]]
+    triangles = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]]
+    if kind == "quad":
+        return HalfEdgeMesh.from_elements(points, quads, regions=[0, 1])
+    return HalfEdgeMesh.from_elements(points, triangles, regions=[0, 0, 1, 1])
+
+
+@pytest.mark.parametrize("ending", [e for e, form in FORMATS.items() if form.regions])
+@pytest.mark.parametrize("kind", ["quad", "tri"])
+def test_regions_go_along(ending, kind, tmp_path):
+    mesh = two_halves(kind)
+    path = tmp_path / f"mesh{ending}"
+    meshwright_core.write(path, mesh)
+    again = meshwright_core.read(path)
+    assert again.regions().tolist() == mesh.regions().tolist()
+    assert len(again.interfaces) == 1
+    shared = again.halfedge(1, 4)
+    assert shared >= 0
+    assert not again.check("collapse", shared)
+
+
+def test_physical_groups_of_a_gmsh_file_are_regions(tmp_path):
+    path = tmp_path / "mesh.msh"
+    meshwright_core.write(path, two_halves("quad"))
+    text = path.read_text()
+    assert "\n1 3 2 1 1 " in text and "\n2 3 2 2 2 " in text
+    path.write_text(text.replace("\n2 3 2 2 2 ", "\n2 3 2 17 4 "))
+    assert meshwright_core.read(path).regions().tolist() == [0, 1]
+
+
+def test_data_by_element_that_makes_no_regions_is_left(tmp_path):
+    path = tmp_path / "mesh.vtu"
+    meshwright_core.write(path, two_halves("quad"))
+    import meshio
+
+    for values in ([0.5, 1.0], [np.nan, 1.0], [3, 3]):
+        mesh = meshio.read(path)
+        mesh.cell_data = {"region": [np.array(values)]}
+        mesh.write(path)
+        assert meshwright_core.read(path).regions().tolist() == [0, 0]
+
+
+@pytest.mark.parametrize(
+    "ending", [e for e in HERE if e not in (*SINGLE_PRECISION, ".bdf", ".nas", ".fem", ".stl")]
+)
+def test_positions_are_written_with_all_their_digits(ending, tmp_path):
+    rng = np.random.default_rng(5)
+    points = np.array(SQUARE, float) + np.column_stack([rng.random((4, 2)) / 7.0, np.zeros(4)])
+    points[:, 0] *= 1e-7
+    points[:, 1] += 1e5
+    mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 2], [0, 2, 3]])
+    meshwright_core.write(tmp_path / f"mesh{ending}", mesh)
+    assert np.array_equal(meshwright_core.read(tmp_path / f"mesh{ending}").points, mesh.points)

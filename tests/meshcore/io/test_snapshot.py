@@ -1,5 +1,7 @@
 """A mesh with its history as arrays and back; arrays that lie are refused in words."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mesh_edits import state, wander
@@ -9,6 +11,7 @@ from meshwright_core.domains import gallery, meshing
 from meshwright_core.history import step_archive
 from meshwright_core.history.packed_steps import WRITE_KINDS
 from meshwright_core.io import snapshot
+from meshwright_core.testing.fuzzing import start_mesh
 
 
 @pytest.fixture(params=["tri", "quad"])
@@ -102,9 +105,15 @@ def test_changed_numbers_are_refused_or_give_a_valid_mesh(mesh):
         ("done.places", lambda a: a.__setitem__(0, 1 << 30), "beyond|lacks|length"),
         ("done.rows", lambda a: a.__setitem__((0, 0), 1 << 20), "length"),
         ("done.rows", lambda a: a.__setitem__((0, 3), 1 << 20), "impossible"),
-        ("outline.ids", lambda a: a.__setitem__(0, 1 << 40), "outline"),
+        ("curve", lambda a: a.__setitem__(0, 1 << 30), "curve that does not exist"),
+        ("parameter", lambda a: a.__setitem__(0, 1e9), "beyond the ends"),
+        ("region", lambda a: a.__setitem__(0, 1), "region that does not exist"),
+        ("curves.control", lambda a: a.__setitem__((0, 3), 0.0), "curves"),
+        ("curves.first_control", lambda a: a.__setitem__(1, 1 << 40), "curves"),
+        ("interface", lambda a: a.__setitem__((0, 0), 0), "interface|curve"),
+        ("boundary", lambda a: a.__setitem__(0, 255), "names"),
         ("sizes", lambda a: a.__setitem__(0, 5), "sizes"),
-        ("sizes", lambda a: a.__setitem__(2, 1 << 27), "room"),
+        ("sizes", lambda a: a.__setitem__(2, 1 << 24), "room"),
     ],
 )
 def test_messages_name_what_is_wrong(mesh, name, change, words):
@@ -121,3 +130,45 @@ def test_a_write_to_the_scratch_of_the_checks_is_refused(mesh):
     places[vertex_write] = 5 * WRITE_KINDS + 1
     with pytest.raises(MeshError, match="beyond the mesh"):
         snapshot.from_arrays(arrays)
+
+
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+def test_curves_and_regions_are_stored(kind):
+    mesh = start_mesh(kind, 7, np.random.default_rng(5), curved=True, interfaces=True)
+    wander(mesh, 20, 2)
+    other = snapshot.from_arrays(copied(snapshot.to_arrays(mesh)))
+    other.validate()
+    assert state(other) == state(mesh)
+    info, got = mesh.boundary_info, other.boundary_info
+    assert (got.loops, got.interfaces, got.pieces) == (info.loops, info.interfaces, info.pieces)
+    assert got.region_names == info.region_names
+    for array, stored in zip(info.curves, got.curves, strict=True):
+        assert array.tobytes() == stored.tobytes()
+    while mesh.undo():
+        assert other.undo()
+        assert state(other) == state(mesh)
+
+
+@pytest.mark.parametrize("kind", ["tri", "quad"])
+def test_files_from_before_meshes_had_curves_are_read(kind):
+    """`without_curves_*.npz` hold a star after 30 random edits of which 7 are undone."""
+    path = Path(__file__).parent / "snapshots" / f"without_curves_{kind}.npz"
+    with np.load(path) as arrays:
+        mesh = snapshot.from_arrays(dict(arrays))
+    mesh.validate()
+    assert mesh.boundary_info.lengths() == pytest.approx(
+        meshing.mesh_domain(gallery.shape("star"), kind).boundary_info.lengths()
+    )
+    assert mesh.off_curve()[mesh.geometric()].max() < 0.05
+    assert (mesh.steps, mesh.can_redo) == (23, True)
+    before = state(mesh)
+    for step in ("redo", "undo"):
+        while getattr(mesh, step)():
+            mesh.validate()
+    for _ in range(23):
+        mesh.redo()
+    assert state(mesh) == before
+    again = snapshot.from_arrays(copied(snapshot.to_arrays(mesh)))
+    assert state(again) == before
+    while again.undo():
+        again.validate()

@@ -8,7 +8,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 
 from meshwright_core import HalfEdgeMesh, OperationRefused
 from meshwright_core.testing.face_list_oracle import Refused
-from meshwright_core.testing.fuzzing import agree, face_list, snapshot, start_mesh
+from meshwright_core.testing.fuzzing import agree, face_list, same_ranges, snapshot, start_mesh
 
 pytestmark = pytest.mark.slow
 
@@ -16,10 +16,16 @@ pytestmark = pytest.mark.slow
 class _Machine(RuleBasedStateMachine):
     kind = "tri"
 
-    @initialize(seed=st.integers(0, 2**32 - 1), size=st.integers(3, 9), cap=st.sampled_from([0, 7]))
-    def begin(self, seed, size, cap):
+    @initialize(
+        seed=st.integers(0, 2**32 - 1),
+        size=st.integers(3, 9),
+        cap=st.sampled_from([0, 7]),
+        curved=st.booleans(),
+        interfaces=st.booleans(),
+    )
+    def begin(self, seed, size, cap, curved, interfaces):
         self.rng = np.random.default_rng(seed)
-        self.mesh: HalfEdgeMesh = start_mesh(self.kind, size, self.rng)
+        self.mesh: HalfEdgeMesh = start_mesh(self.kind, size, self.rng, curved, interfaces)
         self.oracle = face_list(self.mesh)
         self.delta_sum, self.euler = self.oracle.delta_sum(), self.mesh.euler
         self.history = [snapshot(self.mesh)]
@@ -76,7 +82,9 @@ class _Machine(RuleBasedStateMachine):
     def holds(self):
         if hasattr(self, "mesh"):
             self.mesh.validate()
-            assert face_list(self.mesh).faces == self.oracle.faces
+            found = face_list(self.mesh)
+            assert found.regions == self.oracle.regions
+            assert same_ranges(self.mesh, self.oracle.ranges, found.ranges)
             assert self.oracle.delta_sum() == self.delta_sum
             assert self.mesh.optimum == abs(self.delta_sum)
             assert self.mesh.euler == self.euler == self.oracle.euler()

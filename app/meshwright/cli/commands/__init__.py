@@ -33,8 +33,10 @@ class Command(Protocol):
     def add_arguments(self, parser: argparse.ArgumentParser) -> None:
         """Add the arguments; the caller adds ``--json`` to every command."""
 
-    def run(self, arguments: argparse.Namespace, report: Report) -> None:
-        """Do the work and report the result, or raise UserError."""
+    def run(self, arguments: argparse.Namespace, report: Report) -> int | None:
+        """Do the work and report the result, or raise UserError; return an exit code other than 0
+        where the result is there but flawed.
+        """
 
 
 COMMANDS: dict[str, Command] = {

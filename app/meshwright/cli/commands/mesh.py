@@ -7,14 +7,15 @@ import time
 from typing import Any
 
 from meshwright.cli import arguments as inputs
-from meshwright.cli import mesh_output
+from meshwright.cli import mesh_input, mesh_output
 from meshwright.console import Report
 
 SUMMARY = "make a triangle or quad mesh of a shape and write it to a file"
 DESCRIPTION = (
     "Mesh a shape of the gallery, or the shape in a file: a drawing (.dxf, .svg), geometry "
-    '(.geojson, .wkt), or JSON as {"outline": [[x, y], ...], "holes": [[[x, y], ...], ...]}; '
-    "and write the mesh."
+    "(.geojson, .wkt, .poly of Triangle), coordinates of an airfoil (.dat), or JSON as "
+    '{"outline": [[x, y], ...], "holes": [[[x, y], ...], ...]}; and write the mesh. Curves stay '
+    "curves. Regions that touch are meshed together."
 )
 
 
@@ -31,13 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=inputs.positive_float,
         help="no edge longer than this, in the units of the shape",
     )
-    parser.add_argument(
-        "--corner-angle",
-        metavar="DEGREES",
-        type=inputs.angle,
-        help="a point of a file's outline is a corner where it turns by more (0.01); raise it "
-        "where curved sides are drawn as short straight pieces",
-    )
+    mesh_input.add_drawing_arguments(parser)
     parser.add_argument("--seed", metavar="N", type=inputs.seed, default=0, help="random seed (0)")
 
 
@@ -46,7 +41,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     from meshwright.document.position_repair import settle
 
     output = mesh_output.checked_mesh_output(arguments.output, arguments.kind)
-    domain = inputs.read_domain(arguments.shape, arguments.corner_angle)
+    domain = mesh_input.read_domain(arguments.shape, arguments)
     start = time.perf_counter()
     with report.progress(f"meshing {domain.name or arguments.shape}"):
         mesh = inputs.make_mesh(domain, arguments.kind, arguments.max_edge, arguments.seed)
@@ -63,6 +58,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         "corners": int(mesh.geometric()[mesh.vertices()].sum()),
         "score": mesh.score,
         "optimum": mesh.optimum,
+        **mesh_output.measures(mesh),
         "inverted_elements": len(inverted),
         "inverted_ids": inverted,
         "seconds": round(time.perf_counter() - start, 3),
@@ -76,6 +72,8 @@ def _text(values: dict[str, Any]) -> str:
     noun = KIND_NOUN[str(values["kind"])]
     text = (
         f"{values['output']}: {values['elements']} {noun}, {values['vertices']} vertices, "
-        f"s = {values['score']}, s* = {values['optimum']}"
+        f"s = {values['score']}, s* = {values['optimum']}, area {values['area']:.10g}"
     )
-    return text + mesh_output.inverted_words(values["inverted_ids"], lead="; ")
+    text += mesh_output.inverted_words(values["inverted_ids"], lead="; ")
+    regions = mesh_output.region_words(values, noun)
+    return f"{text}\n  {regions}" if regions else text

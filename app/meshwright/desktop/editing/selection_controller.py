@@ -183,7 +183,7 @@ class SelectionController(Controller):
         if not drag.moved:
             return
         folded = len(drag.folded)
-        self._document.move(drag.vertices, drag.places)
+        self._document.move(drag.vertices, drag.places, parameters=drag.parameters)
         moved = f"Moved {plural(len(drag.vertices), 'vertex', 'vertices')}."
         if folded:
             verb = "is" if folded == 1 else "are"

@@ -15,19 +15,32 @@ from meshwright.document.storage.document_state import DocumentState
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.io import mesh_files
-from meshwright_core.io.formats import SHAPES
+from meshwright_core.io.formats import DAT, SHAPES
 
 if TYPE_CHECKING:
     from meshwright_core.domains.domain import Domain
 
 
 def is_drawing(path: str | Path) -> bool:
-    """Whether the ending is that of a file with a shape, which has to be meshed."""
-    return Path(path).suffix.lower() in SHAPES
+    """Whether a file holds a shape, which has to be meshed: by its ending.
+
+    Of .dat files those with coordinates of an airfoil do; the others are meshes of Tecplot.
+    """
+    ending = Path(path).suffix.lower()
+    if ending != DAT:
+        return ending in SHAPES
+    from meshwright_core.io import drawings
+
+    return drawings.is_geometry(path)
 
 
 def read(
-    path: str | Path, corner_angle: float | None = None, curve_step: float | None = None
+    path: str | Path,
+    corner_angle: float | None = None,
+    curve_step: float | None = None,
+    region: str | None = None,
+    gap: float | None = None,
+    fit: str | None = None,
 ) -> DocumentState | Domain:
     """Read a file: a drawing as a domain, a project or a mesh file as the state of a document.
 
@@ -35,8 +48,11 @@ def read(
         path: the file.
         corner_angle: degrees by which the boundary of a mesh or drawing must turn at a corner;
             None for the default, 0.01. A project stores its corners.
-        curve_step: degrees by which a polyline that replaces a curve turns at each point, at most;
-            None for the default, 15.
+        curve_step: degrees that an edge of a mesh turns along a curve of a drawing, at most; None
+            for as much as the shape allows.
+        region: names or numbers of regions of a drawing, or "all"; None for all if they touch.
+        gap: width of gaps of a drawing that are closed, in its units; None for 0.001 of its size.
+        fit: "arcs" or "splines" that are to be found in polylines of a drawing.
 
     Raises MeshError, one sentence that names the file, if it cannot be read.
     """
@@ -48,8 +64,7 @@ def read(
         # imported late: the readers of drawings need shapely
         from meshwright_core.io import drawings
 
-        step = drawings.CURVE_STEP if curve_step is None else curve_step
-        return drawings.read_domain(path, angle, step)
+        return drawings.read_domain(path, angle, curve_step, region, gap=gap, fit=fit)
     mesh = mesh_files.read(path, angle)
     return DocumentState(mesh, History(mesh.score, mesh.optimum), path.stem, path)
 

@@ -17,14 +17,17 @@ from meshwright.document.score_series import ScoreSeries
 from meshwright.graphics.drawing import raster
 from meshwright.graphics.export import video
 from meshwright.graphics.markers import label
-from meshwright.graphics.mesh_figure import FigureOptions, HistoryMoment, edges, figure, fitted
+from meshwright.graphics.mesh_figure import FigureOptions, HistoryMoment, figure, fitted
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
+from meshwright_core.geometry.true_edges import TrueEdges
 
 SAMPLES = 2
 """Frames are drawn at this many times their size and scaled down; single pictures at more."""
 FIRST, LAST = 1.0, 2.5
 """The least duration of the first and of the last frame in seconds."""
+FINENESS = 1e-4
+"""Distance of drawn edges from their curves, relative to the extent of the mesh."""
 
 
 class Film:
@@ -97,35 +100,37 @@ class Film:
         """
         before = max(state - 1, 0) if since is None else since
         self.go_to(before)
-        former, places = edges(self._mesh), self._mesh.points.copy()
+        former = self._edges()
         self.go_to(state)
-        return self._moment(former, places, before)[0]
+        return self._moment(former, before)[0]
 
     def moments(self, stops: Sequence[int]) -> Iterator[HistoryMoment]:
         """Go to each of ``stops`` in turn and compare it with the one before."""
-        former, places, before = np.empty((0, 2), dtype=np.int64), np.empty((0, 3)), -1
+        former, before = None, -1
         for state in stops:
             self.go_to(state)
-            moment, former = self._moment(former, places, before)
-            places, before = self._mesh.points.copy(), state
+            moment, former = self._moment(former, before)
+            before = state
             yield moment
 
-    def _moment(
-        self, former: np.ndarray, places: np.ndarray, before: int
-    ) -> tuple[HistoryMoment, np.ndarray]:
-        """The present moment and the edges of the mesh (n, 2)."""
-        state, present = self._state, edges(self._mesh)
-        points = self._mesh.points
+    def _edges(self) -> TrueEdges:
+        """The edges of the present state."""
+        extent = np.ptp(self._mesh.points[self._mesh.vertices(), :2], axis=0).max(initial=0.0)
+        return TrueEdges(self._mesh, max(FINENESS * float(extent), 1e-300))
+
+    def _moment(self, former: TrueEdges | None, before: int) -> tuple[HistoryMoment, TrueEdges]:
+        """The present moment and the edges of the mesh."""
+        state, present = self._state, self._edges()
         added, removed = np.empty((0, 2, 2)), np.empty((0, 2, 2))
-        if 0 <= before < state:
-            new, old = _keys(present), _keys(former)
-            added = points[present[~np.isin(new, old)]][:, :, :2]
-            gone = former[~np.isin(old, new)]
-            # vertices that still exist may have moved; removed edges are drawn at their new places
-            alive = self._mesh.degree()[np.minimum(gone, len(points) - 1)] > 0
-            alive &= gone < len(points)
-            here = points[np.where(alive, gone, 0)]
-            removed = np.where(alive[:, :, None], here, places[gone])[:, :, :2]
+        if former is not None and 0 <= before < state:
+            here, there = present.once(), former.once()
+            new, old = _keys(present.ends(here)), _keys(former.ends(there))
+            added = present.pieces(here[~np.isin(new, old)])
+            gone = there[~np.isin(old, new)]
+            curved = former.curved(gone)
+            removed = np.concatenate(
+                [self._at_new_places(former, gone[~curved]), former.pieces(gone[curved])]
+            )
         moment = HistoryMoment(
             title=self.title(state),
             detail=self._detail(state),
@@ -136,6 +141,15 @@ class Film:
             state=state,
         )
         return moment, present
+
+    def _at_new_places(self, former: TrueEdges, gone: np.ndarray) -> np.ndarray:
+        """(n, 2, 2) ends of edges that were straight and are gone: vertices that still exist may
+        have moved, so that the edges are drawn from where they are now.
+        """
+        ends, points = former.ends(gone), self._mesh.points
+        alive = (self._mesh.degree()[np.minimum(ends, len(points) - 1)] > 0) & (ends < len(points))
+        now = points[np.where(alive, ends, 0), :2]
+        return np.where(alive[:, :, None], now, former.pieces(gone))
 
     def title(self, state: int) -> str:
         """The title of the step to ``state``, with its change of the score."""

@@ -134,6 +134,7 @@ def palette(colours: Theme) -> tuple[int, ...]:
         (t.fill, t.faint),
         (t.background, t.line),
         (t.fill, t.warning),
+        *((tint, t.edge) for tint in t.tints[1:]),
     )
     shares = np.linspace(0.0, 1.0, LEVELS)[:, None]
     mixed = [(1 - shares) * _rgb(a) + shares * _rgb(b) for a, b in meeting]

@@ -10,8 +10,8 @@ from meshwright.document.document import Document
 from meshwright.document.score_series import ScoreSeries
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN
-from meshwright_core.geometry.outline import Outline
-from meshwright_core.geometry.quality import TOLERANCE, corner_sines, inverted
+from meshwright_core.geometry.planes import plane_normal
+from meshwright_core.geometry.quality import Measure, inverted
 
 BLOCKS_UP_TO = 20_000
 """Number of elements above which the blocks of a quad mesh are not counted after every step."""
@@ -29,7 +29,7 @@ class InvertedElements:
 
     def reset(self, mesh: HalfEdgeMesh) -> None:
         """Test all elements."""
-        self._normal = Outline.of(mesh).normal(mesh.points[mesh.vertices()])
+        self._normal = plane_normal(mesh)
         self._inverted = np.zeros(_element_slots(mesh), dtype=bool)
         self._inverted[inverted(mesh)] = True
 
@@ -50,9 +50,7 @@ class InvertedElements:
         found[:kept] = self._inverted[:kept]
         found[look] = False
         elements = np.flatnonzero(look & (corners[:, 0] >= 0))
-        reference = np.broadcast_to(self._normal, (len(elements), 3))
-        sines = corner_sines(mesh.points, corners[elements].astype(np.int64), reference)
-        found[elements] = sines.min(axis=1, initial=np.inf) <= TOLERANCE
+        found[elements] = Measure(mesh, elements, self._normal).everything().inverted
         self._inverted = found
 
 

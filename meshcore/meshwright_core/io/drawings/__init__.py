@@ -1,40 +1,42 @@
-"""Files that hold a shape rather than a mesh: DXF, SVG, GeoJSON, WKT, and our own JSON."""
+"""Files that hold a shape rather than a mesh.
+
+Drawings (DXF, SVG), geometry (GeoJSON, WKT, Triangle's .poly), coordinates of airfoils (.dat), and
+our own JSON. Each reader gives curves; :mod:`.tracing` finds the regions that they enclose.
+"""
 
 from __future__ import annotations
 
-import json
 import os
-import re
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
 
-import shapely
-
 from meshwright_core.domains.domain import CORNER_ANGLE, Domain, load_json
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings import curves, dxf, svg
-from meshwright_core.io.drawings.curves import CURVE_STEP, Piece
-from meshwright_core.io.drawings.loop_tracing import traced
+from meshwright_core.io.drawings import airfoil, dxf, geojson, own_json, svg, triangle_poly, wkt
+from meshwright_core.io.drawings.domains import FITS, domain_of
+from meshwright_core.io.drawings.drawn import Drawing
+from meshwright_core.io.drawings.report import DrawingReport, FoundRegion
+from meshwright_core.io.drawings.tracing import traced
 from meshwright_core.io.file_checks import naming, size_of
-from meshwright_core.io.formats import SHAPES
+from meshwright_core.io.formats import DAT, SHAPES
 
-MAX_BYTES = 256 * 2**20
+__all__ = [
+    "FITS",
+    "MAX_BYTES",
+    "DrawingReport",
+    "FoundRegion",
+    "endings",
+    "is_geometry",
+    "read_domain",
+    "read_regions",
+]
+
+MAX_BYTES = 64 * 2**20
 """Size of a file beyond which it is not read."""
 
-_GEOJSON = (
-    "Feature",
-    "FeatureCollection",
-    "GeometryCollection",
-    "LineString",
-    "MultiLineString",
-    "MultiPolygon",
-    "Polygon",
-)
-_SRID = re.compile(r"\s*SRID\s*=\s*\d+\s*;", re.IGNORECASE)
-
-Read = Callable[[bytes, float, float], list[Piece]]
+_HEAD = 4096
+"""Bytes of a .dat file by which airfoils are told from meshes of Tecplot."""
 
 
 def endings() -> tuple[str, ...]:
@@ -43,43 +45,124 @@ def endings() -> tuple[str, ...]:
 
 
 def is_geometry(path: str | os.PathLike[str]) -> bool:
-    """Whether a file, by its ending, holds a shape, which must be meshed first."""
-    return Path(path).suffix.lower() in SHAPES
+    """Whether a file holds a shape, which must be meshed first: by its ending.
+
+    A .dat file is one if its beginning is that of the coordinates of an airfoil; else it is a mesh
+    of Tecplot.
+    """
+    ending = Path(path).suffix.lower()
+    if ending != DAT:
+        return ending in SHAPES
+    try:
+        with open(path, "rb") as file:
+            return airfoil.is_airfoil(file.read(_HEAD))
+    except (OSError, ValueError):
+        return False
+
+
+def read_regions(
+    path: str | os.PathLike[str],
+    corner_angle: float = CORNER_ANGLE,
+    gap: float | None = None,
+    layers: Collection[str] | None = None,
+) -> DrawingReport:
+    """Find all regions in a file; coordinates and units stay those of the drawing.
+
+    Lines and curves may come in any order and direction. Ends that all but meet are joined, what is
+    drawn twice counts once, and a line that ends on another one splits it. Loops inside others are
+    holes, and islands in holes are regions again; regions may touch. What encloses nothing is left
+    out.
+
+    Args:
+        path: a file whose ending `endings` lists, or coordinates of an airfoil (.dat). A .json file
+            holds a domain in our own form (see `Domain.from_json`) or GeoJSON. The coordinates of
+            GeoJSON are taken as plane ones.
+        corner_angle: degrees by which the boundary turns at a corner; where a curve is involved 1
+            degree at least.
+        gap: width of gaps at loose ends that are closed, in the units of the drawing; None: 0.001
+            of its size.
+        layers: of DXF, or groups or ids of SVG, that are read; None: all.
+
+    Raises:
+        MeshError: one sentence that begins with the path: the file is missing, empty, cut off,
+            damaged or of another kind; or nothing in it is closed, with the place and width of the
+            gap.
+    """
+    place = Path(path)
+    drawing = _drawing(place)
+    with naming(place):
+        return traced(drawing, corner_angle, gap, layers)
 
 
 def read_domain(
     path: str | os.PathLike[str],
     corner_angle: float = CORNER_ANGLE,
-    curve_step: float = CURVE_STEP,
+    curve_step: float | None = None,
+    region: str | int | None = None,
+    *,
+    gap: float | None = None,
+    layers: Collection[str] | None = None,
+    fit: str | None = None,
 ) -> Domain:
-    """Read the shape in a file; coordinates and units stay those of the drawing.
+    """Read the shape in a file: one region of it, or several that are meshed together.
 
-    Lines and curves may come in any order and direction; their ends are joined where they all but
-    meet. The longest way round is the outline, the loops inside it are holes. The domain is named
-    after the file.
+    The domain is named after the file, or after the region that was chosen.
 
     Args:
-        path: a file whose ending `endings` lists. A .json file holds a domain in our own form
-            (see `Domain.from_json`) or GeoJSON. The coordinates of GeoJSON are taken as plane ones.
-        corner_angle: degrees by which the boundary must turn at a corner; where a curve is
-            involved 1 degree at least. A .json file in our own form may name its corners itself.
-        curve_step: degrees by which the polyline that stands for a curve turns at a point, at
-            most; smaller values follow the curve more closely.
+        path: as for `read_regions`.
+        corner_angle: as there. A .json file in our own form may name its corners itself.
+        curve_step: degrees that an edge of a mesh turns along a curve, at most; None: as much as
+            the shape allows.
+        region: names or numbers of regions, separated by commas, or "all"; None: all of them, if
+            they touch, directly or through others.
+        gap: as there.
+        layers: as there.
+        fit: "arcs" or "splines" that are to be found in polylines; None: they stay as they are.
 
     Raises:
-        MeshError: one sentence that begins with the path: the file is missing, empty, cut off,
-            damaged or of another kind; the outline is open, or there are several; and all that
+        MeshError: as `read_regions`; there is no such region; regions lie apart, and none was
+            named; a boundary crosses itself or another one; an outline is open; and all that
             `Domain` refuses.
     """
     place = Path(path)
+    if fit not in (None, *FITS):
+        raise MeshError(f"Curves are fitted as {' or '.join(FITS)}, not {fit!r}.")
+    plain = region is None and gap is None and layers is None and fit is None
+    if place.suffix.lower() == ".json" and plain:
+        content = load_json(place)
+        if not geojson.is_geojson(content):
+            # which may name its corners
+            domain = Domain.from_json(place, corner_angle)
+            domain.curve_step = curve_step
+            return domain
+    report = read_regions(place, corner_angle, gap, layers)
+    with naming(place):
+        chosen = report.chosen(region)
+        alone = region is not None and len(chosen) == 1 and len(report.regions) > 1
+        name = f"{place.stem} {chosen[0].name}" if alone else place.stem
+        domain = domain_of(chosen, name, corner_angle, fit)
+        domain.curve_step = curve_step
+        return domain
+
+
+def _drawing(place: Path) -> Drawing:
     ending = place.suffix.lower()
     if ending == ".json":
-        return _json(place, corner_angle)
+        content = load_json(place)
+        with naming(place):
+            return _of_json(content)
     with naming(place):
+        if ending == ".poly":
+            return triangle_poly.read(_bytes(place), place)
         if ending not in _READERS:
             raise MeshError(f"a file of a shape ends in one of {' '.join(endings())}")
-        pieces = _READERS[ending](_bytes(place), corner_angle, curve_step)
-        return traced(pieces, corner_angle, place.stem)
+        return _READERS[ending](_bytes(place))
+
+
+def _of_json(content: Any) -> Drawing:
+    if isinstance(content, Mapping) and geojson.is_geojson(content):
+        return geojson.collected(content)
+    return own_json.collected(content)
 
 
 def _bytes(path: Path) -> bytes:
@@ -88,77 +171,10 @@ def _bytes(path: Path) -> bytes:
     return path.read_bytes()
 
 
-def _json(path: Path, corner_angle: float) -> Domain:
-    """Read a .json file, which may be GeoJSON too."""
-    content = load_json(path)
-    if not _is_geojson(content):
-        return Domain.from_json(path, corner_angle)
-    with naming(path):
-        return traced(_collected(content, corner_angle), corner_angle, path.stem)
-
-
-def _geojson(content: bytes, corner_angle: float, step: float) -> list[Piece]:
-    try:
-        collection = json.loads(_text(content))
-    except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        raise MeshError(f"{place}: this is not JSON ({error.msg})") from error
-    except (RecursionError, ValueError) as error:
-        raise MeshError("this JSON is too deep or its numbers too long") from error
-    if not _is_geojson(collection):
-        raise MeshError("it is JSON but not a GeoJSON geometry, feature or collection of them")
-    return _collected(collection, corner_angle)
-
-
-def _is_geojson(content: Any) -> bool:
-    return isinstance(content, Mapping) and content.get("type") in _GEOJSON
-
-
-def _collected(collection: Any, corner_angle: float) -> list[Piece]:
-    with _geos("it is not sound GeoJSON"):
-        shape = shapely.from_geojson(json.dumps(collection))
-    return list(_pieces(shape, corner_angle))
-
-
-def _wkt(content: bytes, corner_angle: float, step: float) -> list[Piece]:
-    with _geos("it is not sound WKT"):
-        shape = shapely.from_wkt(_SRID.sub("", _text(content), count=1))
-    return list(_pieces(shape, corner_angle))
-
-
-def _text(content: bytes) -> str:
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise MeshError("this is not a text file") from error
-
-
-@contextmanager
-def _geos(lead: str) -> Iterator[None]:
-    """Turn what shapely raises into a MeshError that begins with `lead`."""
-    try:
-        yield
-    except (shapely.GEOSException, ValueError, TypeError) as error:
-        reason = " ".join(str(error).split()).rsplit("Exception: ", 1)[-1].rstrip(".")
-        reason = reason if len(reason) <= 100 else reason[:97] + "..."
-        raise MeshError(f"{lead} ({reason[:1].lower() + reason[1:]})") from error
-
-
-def _pieces(shape: Any, corner_angle: float) -> Iterator[Piece]:
-    """Yield the rings and lines of a shapely geometry, however deep its collections."""
-    pending = [shape]
-    while pending:
-        part = pending.pop()
-        if part is None or part.is_empty:
-            continue
-        if hasattr(part, "geoms"):
-            pending += list(part.geoms)
-        elif part.geom_type == "Polygon":
-            pending += [part.exterior, *part.interiors]
-        elif part.geom_type in ("LineString", "LinearRing"):
-            piece = curves.straight(shapely.get_coordinates(part), corner_angle)
-            if piece is not None:
-                yield piece
-
-
-_READERS: dict[str, Read] = {".dxf": dxf.read, ".svg": svg.read, ".geojson": _geojson, ".wkt": _wkt}
+_READERS: dict[str, Callable[[bytes], Drawing]] = {
+    ".dxf": dxf.read,
+    ".svg": svg.read,
+    ".geojson": geojson.read,
+    ".wkt": wkt.read,
+    DAT: airfoil.read,
+}

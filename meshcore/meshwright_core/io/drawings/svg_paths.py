@@ -1,4 +1,4 @@
-"""The path language of SVG: its commands as straight and curved pieces.
+"""The path language of SVG: its commands as lines, elliptical arcs and Bezier curves.
 
 After the SVG 1.1 recommendation, section 8.3; arcs by its appendix F.6.
 """
@@ -10,10 +10,9 @@ import re
 
 import numpy as np
 
-from meshwright_core.domains.domain import Points
+from meshwright_core.curves.curve import Curve
 from meshwright_core.errors import MeshError
-from meshwright_core.io.drawings import curves
-from meshwright_core.io.drawings.curves import Piece
+from meshwright_core.io.drawings.drawn import LARGEST, Points, polyline
 
 _BLANK = re.compile(r"[\s,]*")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
@@ -22,7 +21,7 @@ _TAKEN_UP = {"S": "CS", "T": "QT"}
 """The commands whose last control point a smooth one takes up."""
 
 
-Subpath = list[Piece]
+Subpath = list[Curve]
 """Pieces one after the other; a Z has become the one that leads back."""
 
 
@@ -54,7 +53,10 @@ class _Scanner:
             raise self._error("a number")
         self.at = match.end()
         self._skip()
-        return float(match.group())
+        value = float(match.group())
+        if not abs(value) < LARGEST:
+            raise self._error("a number", match.group())
+        return value
 
     def flag(self) -> float:
         """Return a flag of an arc, which needs no space after it."""
@@ -69,18 +71,14 @@ class _Scanner:
         match = _BLANK.match(self.text, self.at)
         self.at = match.end() if match else self.at
 
-    def _error(self, wanted: str) -> MeshError:
-        found = self.text[self.at : self.at + 12]
+    def _error(self, wanted: str, found: str = "") -> MeshError:
+        found = (found or self.text[self.at :])[:12]
         shown = repr(found) if found else "its end"
         return MeshError(f"a path has {shown} where {wanted} was expected")
 
 
-def parse(text: str, step: float) -> list[Subpath]:
-    """Return the subpaths of the `d` of a path.
-
-    Args:
-        text: commands and numbers.
-        step: degrees by which a polyline that stands for a curve may turn at a point.
+def parse(text: str) -> list[Subpath]:
+    """Return the subpaths of the `d` of a path; straight runs are polylines.
 
     Raises:
         MeshError: the text is not in the language.
@@ -88,6 +86,7 @@ def parse(text: str, step: float) -> list[Subpath]:
     scanner = _Scanner(text)
     subpaths: list[Subpath] = []
     place = start = np.zeros(2)
+    run = [place]  # of straight lines, which become one polyline
     control = None  # the last control point of the command before, for S and T
     before = ""
     while not scanner.done():
@@ -99,60 +98,74 @@ def parse(text: str, step: float) -> list[Subpath]:
             given = [scanner.flag() if i in (3, 4) else scanner.number() for i in range(7)]
         else:
             given = [scanner.number() for _ in range(_TAKES[name])]
-        if name == "M":
-            place = start = np.array(given) + offset
+        if name in "MZ":
+            if name == "Z":
+                run.append(start)
+                place = start
+            else:
+                place = start = np.array(given) + offset
+            _end(subpaths, run)
             subpaths.append([])
-        elif name == "Z":
-            _add(subpaths, curves.straight([place, start], 0.0))
-            place = start
-            subpaths.append([])
+            run, control = [place], None
+        elif (end := _straight(name, np.array(given), place, offset)) is not None:
+            run.append(end)
+            place, control = end, None
         else:
             taken = control if before.upper() in _TAKEN_UP.get(name, "") else None
-            piece, place, control = _piece(name, np.array(given), place, offset, taken, step)
-            _add(subpaths, piece)
+            _end(subpaths, run)
+            curve, place, control = _curved(name, np.array(given), place, offset, taken)
+            if curve is not None:
+                subpaths[-1].append(curve)
+            run = [place]
         before = command
+    _end(subpaths, run)
     return [subpath for subpath in subpaths if subpath]
 
 
-def _add(subpaths: list[Subpath], piece: Piece | None) -> None:
-    if piece is not None:
-        subpaths[-1].append(piece)
+def _end(subpaths: list[Subpath], run: list[Points]) -> None:
+    """Add a run of straight lines to the last subpath."""
+    curve = polyline(run) if len(run) > 1 else None
+    if curve is not None:
+        subpaths[-1].append(curve)
 
 
-def _piece(
-    name: str,
-    given: Points,
-    place: Points,
-    offset: Points,
-    control: Points | None,
-    step: float,
-) -> tuple[Piece | None, Points, Points | None]:
-    """Return what a command draws from `place`, where it ends, and its last control point."""
+def _straight(name: str, given: Points, place: Points, offset: Points) -> Points | None:
+    """Where a straight command ends; None if it is not straight."""
+    if name == "L":
+        return given + offset
     if name in "HV":
         axis = "HV".index(name)
         end = place.copy()
         end[axis] = given[0] + offset[axis]
-        return curves.straight([place, end], 0.0), end, None
+        return end
+    if name == "A" and not (given[0] and given[1]):
+        return given[5:] + offset
+    return None
+
+
+def _curved(
+    name: str, given: Points, place: Points, offset: Points, control: Points | None
+) -> tuple[Curve | None, Points, Points | None]:
+    """Return what a command draws from `place`, where it ends, and its last control point."""
     if name == "A":
         end = given[5:] + offset
-        return _arc(place, end, given[:5], step), end, None
+        return _arc(place, end, given[:5]), end, None
     points = given.reshape(-1, 2) + offset
     end = points[-1]
-    if name == "L":
-        return curves.straight([place, end], 0.0), end, None
     if name in "ST":
         mirrored = place if control is None else 2 * place - control
         points = np.vstack([mirrored, points])
-    return curves.bezier(np.vstack([place, points]), step), end, points[-2]
+    control = np.vstack([place, points])
+    if (control == place).all():
+        return None, end, points[-2]
+    return Curve.bezier(control), end, points[-2]
 
 
-def _arc(start: Points, end: Points, given: Points, step: float) -> Piece | None:
+def _arc(start: Points, end: Points, given: Points) -> Curve | None:
     """Return an elliptical arc from its ends: radii, rotation, large-arc and sweep flags."""
     rx, ry = abs(given[0]), abs(given[1])
     if (start == end).all():
         return None
-    if rx == 0 or ry == 0:
-        return curves.straight([start, end], 0.0)
     angle = math.radians(given[2])
     axes = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     # in the frame where the ellipse is the unit circle; radii too small are scaled up
@@ -168,5 +181,10 @@ def _arc(start: Points, end: Points, given: Points, step: float) -> Piece | None
     sweep = (stop - begin) % (2 * math.pi)
     if not given[4]:
         sweep -= 2 * math.pi
+    if sweep == 0.0:
+        return None
+    if rx == ry:
+        return Curve.arc_by_bulge(start, end, math.tan(sweep / 4))
     back = np.diag([rx, ry]) @ axes
-    return curves.arc(centre, 1.0, begin, sweep, step, lambda points: points @ back)
+    made = Curve.ellipse(centre @ back, back[0], back[1], begin, sweep)
+    return made.moved_ends(start, end)

@@ -25,7 +25,6 @@ from meshwright.desktop.widgets.number_box import DecimalBox
 from meshwright.graphics.theme import GRID, Theme
 from meshwright_core.domains.domain import CORNER_ANGLE
 from meshwright_core.io import drawings, mesh_files
-from meshwright_core.io.drawings.curves import CURVE_STEP
 
 NO_FILE = "Choose a file, or drop one here."
 MESH_WORDS = "A mesh is opened unchanged."
@@ -44,7 +43,8 @@ class FilePage(Page):
         self.choose = QPushButton("Choose\u2026")
         self.choose.setAutoDefault(False)
         self.corner_angle = _angle(CORNER_ANGLE, 0.0, 180.0, 2, "Corner angle")
-        self.curve_step = _angle(CURVE_STEP, 0.5, 45.0, 1, "Curve step")
+        self.curve_step = _angle(0.0, 0.0, 90.0, 1, "Curve step")
+        self.curve_step.setSpecialValueText("automatic")
         self.words_label = named(NO_FILE, "Hint")
         self.words_label.setWordWrap(True)
         self._arrange()
@@ -112,7 +112,7 @@ class FilePage(Page):
         return {
             "file": self._asked,
             "corner_angle": self.corner_angle.value(),
-            "curve_step": self.curve_step.value(),
+            "curve_step": self.curve_step.value() or None,
         }
 
     @property

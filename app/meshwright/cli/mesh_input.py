@@ -1,0 +1,128 @@
+"""The mesh that a command starts from: a mesh file, perhaps on the curves of a drawing, or the mesh
+of a drawing.
+"""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from meshwright.cli import arguments as inputs
+from meshwright.console import UserError
+
+if TYPE_CHECKING:
+    from meshwright_core import HalfEdgeMesh
+    from meshwright_core.domains.domain import Domain
+
+
+def add_geometry_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that :func:`read_mesh` reads."""
+    parser.add_argument(
+        "--kind", choices=("tri", "quad"), help="elements that a drawing is meshed with (quad)"
+    )
+    parser.add_argument(
+        "--max-edge",
+        metavar="H",
+        type=inputs.positive_float,
+        help="no edge of the first mesh of a drawing is longer; as coarse as the shape allows "
+        "where it is left out",
+    )
+    parser.add_argument(
+        "--geometry",
+        metavar="DRAWING",
+        help="the boundary of the mesh lies on the curves of this drawing and stays on them",
+    )
+    add_drawing_arguments(parser)
+
+
+def add_drawing_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that say how drawings, and boundaries of mesh files, are read."""
+    parser.add_argument(
+        "--region",
+        metavar="NAME",
+        help="take this region of a drawing, by its name or number (see shapes FILE), several with "
+        "commas between them, or all; by default all that touch",
+    )
+    add_tracing_arguments(parser)
+    parser.add_argument(
+        "--curve-step",
+        metavar="DEGREES",
+        type=inputs.angle,
+        help="an edge along a curve of a drawing turns by no more; as much as the shape allows "
+        "where it is left out",
+    )
+    parser.add_argument(
+        "--fit-arcs",
+        action="store_true",
+        help="find arcs in polylines, of a drawing or of the boundary of a mesh file",
+    )
+
+
+def add_tracing_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that say what is found in a drawing."""
+    parser.add_argument(
+        "--gap",
+        metavar="WIDTH",
+        type=inputs.length,
+        help="close gaps of a drawing up to this width, in its units (0.001 of its size)",
+    )
+    parser.add_argument(
+        "--corner-angle",
+        metavar="DEGREES",
+        type=inputs.angle,
+        help="a boundary vertex is a corner where the boundary turns by more (0.01, or 1 beside a "
+        "curve); raise it where curved sides are drawn as short straight pieces",
+    )
+
+
+def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
+    """Return the mesh in a mesh file, on its geometry, or the mesh of a drawing or a shape.
+
+    Raises UserError with the reason.
+    """
+    from meshwright.document.storage.document_file import is_drawing
+    from meshwright.sources import resolve
+
+    word = arguments.input
+    if not resolve.names_file(word) or is_drawing(word):
+        if arguments.geometry is not None:
+            raise UserError(f"--geometry {arguments.geometry}: {word} is itself a shape, no mesh")
+        domain, kind = read_domain(word, arguments), arguments.kind or "quad"
+        return inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed)
+    for option in ("kind", "max_edge", "region"):
+        drawn = option == "region" and arguments.geometry is not None
+        if getattr(arguments, option) is not None and not drawn:
+            name = option.replace("_", "-")
+            raise UserError(f"--{name}: this is for drawings, and {word} is a mesh")
+    mesh = inputs.read_mesh(word, arguments.corner_angle)
+    if arguments.geometry is not None:
+        return _on_drawing(word, mesh, read_domain(arguments.geometry, arguments))
+    if arguments.fit_arcs:
+        return _with_arcs(word, mesh, arguments.corner_angle)
+    return mesh
+
+
+def read_domain(word: str, arguments: argparse.Namespace) -> Domain:
+    """Return the domain that a gallery name or a drawing means, as the arguments say."""
+    return inputs.read_domain(
+        word,
+        arguments.corner_angle,
+        arguments.curve_step,
+        arguments.region,
+        arguments.gap,
+        "arcs" if arguments.fit_arcs else None,
+    )
+
+
+def _on_drawing(word: str, mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:
+    from meshwright_core.domains import mesh_on_domain
+
+    with inputs.bad_input(word):
+        return mesh_on_domain.placed(mesh, domain)
+
+
+def _with_arcs(word: str, mesh: HalfEdgeMesh, corner_angle: float | None) -> HalfEdgeMesh:
+    from meshwright_core.domains import arc_fitting
+
+    with inputs.bad_input(word):
+        return arc_fitting.mesh_with_arcs(mesh, corner_angle)
