@@ -85,19 +85,31 @@ LENGTH, EVALUATED, ACCEPTED = 0, 1, 2
 
 
 @by_reference
-class Guard(NamedTuple):
-    """What a layout is judged by."""
+class Aims(NamedTuple):
+    """What makes a layout good."""
 
     target: float
-    """Worst corner sine beyond which more does not count."""
+    """Worst corner sine that counts before the number of elements."""
+    comfort: float
+    """Worst corner sine, at least the target, up to which more is worth more elements."""
+    price: float
+    """How much more: a difference d of the worst sine counts as a factor exp(price d) of the number
+    of elements."""
+    spread: bool
+    """Whether the sum of the squared irregularities counts before the number of elements."""
+
+
+@by_reference
+class Guard(NamedTuple):
+    """What a layout must keep to."""
+
+    aims: Aims
     cap: int
     """Highest degree that an operation may produce."""
     floor: int
     """Least number of elements."""
     angle: np.ndarray
     """(slots,) inner angles, as in :class:`meshwright_core.geometry.layout_positions.Rails`."""
-    spread: bool
-    """Whether the sum of the squared irregularities counts before the number of elements."""
 
 
 @by_reference
@@ -125,7 +137,13 @@ def squares(m):
 
 
 @bare_kernel
-def is_better(first, second, target):
+def cost(worst, elements, aims):
+    """Elements, weighed against the worst sine: see :class:`Aims`."""
+    return elements * np.exp(-aims.price * min(worst, aims.comfort))
+
+
+@bare_kernel
+def is_better(first, second, aims):
     """Whether the first of two (s, worst sine, sum of squares, elements) is the better layout.
 
     One without inverted elements always is better than one with them.
@@ -134,12 +152,12 @@ def is_better(first, second, target):
         return first[1] > 0.0
     if first[0] != second[0]:
         return first[0] < second[0]
-    a, b = min(first[1], target), min(second[1], target)
+    a, b = min(first[1], aims.target), min(second[1], aims.target)
     if abs(a - b) > ALIKE:
         return a > b
-    if first[2] != second[2]:
+    if aims.spread and first[2] != second[2]:
         return first[2] < second[2]
-    return first[3] < second[3]
+    return cost(first[1], first[3], aims) < (1.0 - ALIKE) * cost(second[1], second[3], aims)
 
 
 @kernel
@@ -203,13 +221,13 @@ def coarsen_layout(m, trial, rails, guard, record, key, most, rng):
             copy_mesh(m, trial)
             rewrite(trial, operation, h)
             other[0], other[1] = trial.counters[SCORE], layout_bound(trial, guard.angle)
-            other[2] = squares(trial) if guard.spread else 0
+            other[2] = squares(trial)
             other[3] = trial.counters[ELEMENTS]
-            if not is_better(other, key, guard.target):
+            if not is_better(other, key, guard.aims):
                 continue
-            other[1] = max(0.0, position(trial, rails, guard.target, STEPS))
+            other[1] = max(0.0, position(trial, rails, guard.aims.comfort, STEPS))
             state[EVALUATED] += 1
-            if not is_better(other, key, guard.target):
+            if not is_better(other, key, guard.aims):
                 continue
             copy_mesh(trial, m)
             _log(record, operation, h)
@@ -337,7 +355,7 @@ class Layout:
     arrays: MeshArrays
     """Connectivity and positions."""
     key: np.ndarray
-    """(4,) s, worst corner sine up to the target (0: folded), sum of squares, elements."""
+    """(4,) s, worst corner sine up to what counts (0: folded), sum of squares, elements."""
     record: Record
     """How it is reached from the start."""
 
@@ -357,26 +375,28 @@ class Layout:
         return [(NAMES[code], h) for code, h in done]
 
 
+FINEST = Aims(1.0, 1.0, 0.0, False)
+"""Aims for the best positions of a given layout."""
+
+
 class Coarsener:
     """Layouts of one plane quad mesh, made from operations on it, coarsened and kicked.
 
     Args:
         mesh: the start; not changed.
-        target: worst corner sine beyond which more does not count.
+        aims: what makes a layout good.
         seed: of all random choices.
         floor: least number of elements.
         ceiling: largest number of elements; by default twice that of the start.
-        spread: whether small irregularities count before few elements.
     """
 
     def __init__(
         self,
         mesh: HalfEdgeMesh,
-        target: float,
+        aims: Aims,
         seed: int = 0,
         floor: int = 1,
         ceiling: int | None = None,
-        spread: bool = True,
     ) -> None:
         """Prepare the arrays that all layouts are copied from."""
         task = Task("quad")
@@ -385,7 +405,8 @@ class Coarsener:
         self.rng = np.random.default_rng(seed)
         self.start = with_room(mesh, ceiling)
         self.rails = rails_of(mesh, len(self.start.vertex))
-        self.guard = Guard(float(target), task.cap, floor, self.rails.angle, spread)
+        self.aims = aims
+        self.guard = Guard(aims, task.cap, floor, self.rails.angle)
         self._rules = task.rules(floor, ceiling)
         self._weights = np.array(WEIGHTS["quad"][:5])
         self._weights /= self._weights.sum()
@@ -413,9 +434,8 @@ class Coarsener:
     def judge(self, layout: Layout, steps: int = STEPS) -> None:
         """Position the vertices of a layout and update its key."""
         m = layout.arrays
-        worst = position(m, self.rails, self.guard.target, steps)
-        spread = squares(m) if self.guard.spread else 0
-        layout.key[:] = (m.counters[SCORE], max(0.0, worst), spread, m.counters[ELEMENTS])
+        worst = position(m, self.rails, self.aims.comfort, steps)
+        layout.key[:] = (m.counters[SCORE], max(0.0, worst), squares(m), m.counters[ELEMENTS])
 
     def positions(self, layout: Layout) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Ids (n,) of the vertices that may move, their places (n, 3), and parameters (n,)."""
@@ -459,4 +479,4 @@ class Coarsener:
 
     def better(self, first: Layout, second: Layout) -> bool:
         """Whether the first is the better layout."""
-        return bool(is_better(first.key, second.key, self.guard.target))
+        return bool(is_better(first.key, second.key, self.aims))

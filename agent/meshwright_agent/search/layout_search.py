@@ -12,14 +12,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from meshwright_agent.search.annealing import Operations
-from meshwright_agent.search.guarded_coarsening import Coarsener, Layout
+from meshwright_agent.search.guarded_coarsening import Aims, Coarsener, Layout
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.mesh import HalfEdgeMesh
 
 PREFERENCES = ("blocks", "balanced", "shape")
-SHARE = {"blocks": (0.0, 0.0), "balanced": (0.85, 0.82), "shape": (1.0, 1.0)}
-"""Target of the worst scaled Jacobian, as a share of the best that is attainable and as one of q*;
-the larger counts."""
+USABLE = 0.5
+"""Worst scaled Jacobian that a balanced answer has before the number of blocks counts..."""
+CLOSE, COMFORT = 0.9, 0.85
+"""... or this share of the best that is attainable; and the share of the larger of that and q* up
+to which more is worth more blocks."""
+PRICE = 3.0
+"""Each tenth of the bound is worth exp(0.3) times the blocks, a third more."""
 LEAST = 0.05
 """The least target: a corner below it is as good as folded."""
 SLACK = 3e-3
@@ -59,20 +63,18 @@ class Preference:
         if self.min_shape is not None and not 0.0 <= self.min_shape <= 1.0:
             raise ValueError(f"min_shape must lie between 0 and 1, not {self.min_shape}")
 
-    def target(self, attainable: float, bound: float) -> float:
-        """The target where `attainable` is the best worst scaled Jacobian, and `bound` is q*."""
-        by_best, by_bound = SHARE[self.prefer]
-        wanted = max(by_best * attainable, by_bound * bound)
+    def aims(self, attainable: float, bound: float) -> Aims:
+        """What is aimed at where `attainable` is the best worst scaled Jacobian, `bound` is q*."""
+        most = max(attainable - SLACK, LEAST)
         if self.min_shape is not None:
-            wanted = self.min_shape
-        return max(min(wanted, attainable - SLACK), LEAST)
-
-    @property
-    def spread(self) -> bool:
-        """Whether many small irregularities are better than few large ones, whatever the number
-        of blocks.
-        """
-        return self.prefer != "blocks"
+            target = comfort = max(min(self.min_shape, most), LEAST)
+        elif self.prefer == "balanced":
+            target = max(min(USABLE, CLOSE * attainable), LEAST)
+            comfort = max(min(COMFORT * max(attainable, bound), most), target)
+        else:
+            target = comfort = LEAST if self.prefer == "blocks" else most
+        price = PRICE / max(bound, LEAST) if self.prefer == "balanced" else 0.0
+        return Aims(target, comfort, price, self.prefer != "blocks")
 
 
 class LayoutSearch:
@@ -90,8 +92,8 @@ class LayoutSearch:
     ) -> None:
         """Prepare the arrays; the pool is empty."""
         self.optimum = mesh.optimum
-        self.target = preference.target(attainable_bound(mesh), shape_bound(mesh))
-        self.coarsener = Coarsener(mesh, self.target, seed, floor, spread=preference.spread)
+        self.aims = preference.aims(attainable_bound(mesh), shape_bound(mesh))
+        self.coarsener = Coarsener(mesh, self.aims, seed, floor)
         self.pool: list[Layout] = []
         self.best: Layout | None = None
         self.kicks = self.idle = self._served = 0
@@ -99,7 +101,7 @@ class LayoutSearch:
     @property
     def goal_reached(self) -> bool:
         """Whether the best layout has the target shape."""
-        return self.best is not None and self.best.key[1] >= self.target
+        return self.best is not None and self.best.key[1] >= self.aims.target
 
     @property
     def exhausted(self) -> bool:
@@ -140,13 +142,14 @@ class LayoutSearch:
         parent = self.pool[i]
         jumps = 1 + int(rng.integers(JUMPS))
         # degrees that forbid the target are not worth positioning, unless nothing better is known
-        bound = self.target if rng.random() < 0.5 else min(self.target, float(parent.key[1]))
+        comfort = self.aims.comfort
+        bound = comfort if rng.random() < 0.5 else min(self.aims.target, float(parent.key[1]))
         self.kicks += 1
         self.idle += 1
         score = int(parent.key[0])
         if score > self.optimum and rng.random() < 0.7:
             score = self.optimum
-        at_worst = parent.key[1] < self.target and rng.random() < AT_WORST
+        at_worst = parent.key[1] < comfort and rng.random() < AT_WORST
         child = coarsener.kicked(
             parent, jumps, score, bound, PROPOSALS * int(parent.key[3]), at_worst
         )

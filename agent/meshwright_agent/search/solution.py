@@ -9,7 +9,7 @@ import numpy as np
 
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.guarded_coarsening import ALIKE, Coarsener
+from meshwright_agent.search.guarded_coarsening import ALIKE, FINEST, Aims, Coarsener, cost
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
@@ -22,6 +22,10 @@ FINE_STEPS = 150
 """Steps of each stage of the max-min positions of an answer."""
 NEAR = 40
 """Vertices of a larger mesh that are smoothed at a time."""
+
+
+NO_AIMS = Aims(0.0, 0.0, 0.0, False)
+"""Where only s, inverted elements and their number count."""
 
 
 @dataclass
@@ -52,8 +56,8 @@ class Solution:
     """The same for the best distribution of the s* irregularities."""
     sum_delta2: int = 0
     """Sum of the squared irregularities."""
-    target: float = 0.0
-    """Worst scaled Jacobian beyond which more did not count."""
+    aims: Aims = NO_AIMS
+    """What counted besides s."""
     reason: str = ""
     """Why the search ended, or what stands in the way of the optimum, in words."""
     vertices: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64), repr=False)
@@ -64,15 +68,16 @@ class Solution:
     """(n,) their places on curves."""
 
     @property
-    def rank(self) -> tuple[bool, int, int, int, int, int, int]:
+    def rank(self) -> tuple[bool, int, int, int, int, float, int]:
         """Solutions with a lower rank are better: valid; s; inverted elements; worst scaled
-        Jacobian up to the target; sum of squares; elements; operations.
+        Jacobian up to the target; sum of squares; elements, weighed against shape; operations.
         """
-        shape = -int(min(self.worst_scaled_jacobian, self.target) / ALIKE)
-        spread = self.sum_delta2 if self.target else 0
-        elements = self.elements if self.coarse else 0
+        aims = self.aims
+        shape = -int(min(self.worst_scaled_jacobian, aims.target) / ALIKE)
+        spread = self.sum_delta2 if aims.spread else 0
+        weighed = cost(self.worst_scaled_jacobian, self.elements, aims) if self.coarse else 0.0
         return (
-            self.inverted > 0, self.score, self.inverted, shape, spread, elements,
+            self.inverted > 0, self.score, self.inverted, shape, spread, round(weighed, 3),
             len(self.operations),
         )  # fmt: skip
 
@@ -134,7 +139,7 @@ def _best_positions(mesh: HalfEdgeMesh, reached: HalfEdgeMesh) -> np.ndarray:
     """Move the vertices of `reached`; returns the ids of those that have moved."""
     before = reached.points.copy()
     if mesh.kind == "quad" and not mesh.points[mesh.vertices(), 2].any():
-        coarsener = Coarsener(reached, 1.0, ceiling=1)
+        coarsener = Coarsener(reached, FINEST, ceiling=1)
         other = reached.copy()
         reached.move(*coarsener.positions(coarsener.layout([], steps=FINE_STEPS)))
         if left := len(inverted(reached)):

@@ -185,7 +185,7 @@ def _search_layouts(
     return judged(
         Solution(
             operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
-            method=method if operations else "none", target=first.guard.target,
+            method=method if operations else "none", aims=first.aims,
         ),
         mesh,
     )  # fmt: skip

@@ -8,9 +8,7 @@ from meshwright_core.domains import gallery
 from meshwright_core.domains.domain import Domain
 from meshwright_core.domains.meshing import mesh_domain
 from meshwright_core.geometry import layout_positions as positions
-from meshwright_core.geometry import quality
 from meshwright_core.geometry.worst_corner import LayoutProblem, _objective
-from meshwright_core.mesh import HalfEdgeMesh
 
 
 def problem_of(mesh):
