@@ -12,8 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from meshwright_agent.search.annealing import Operations
+from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import Aims, Coarsener, Layout
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
+from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 
 PREFERENCES = ("blocks", "balanced", "shape")
@@ -91,7 +93,7 @@ class LayoutSearch:
         self, mesh: HalfEdgeMesh, preference: Preference, seed: int = 0, floor: int = 1
     ) -> None:
         """Prepare the arrays; the pool is empty."""
-        self.optimum = mesh.optimum
+        self._mesh, self.optimum = mesh, mesh.optimum
         self.aims = preference.aims(attainable_bound(mesh), shape_bound(mesh))
         self.coarsener = Coarsener(mesh, self.aims, seed, floor)
         self.pool: list[Layout] = []
@@ -117,6 +119,8 @@ class LayoutSearch:
         """Add the layout that operations lead to, coarsened unless `stop` comes first."""
         self._served = self.idle // STALE
         layout = self.coarsener.layout(operations)
+        if not layout.key[1] and not (self.pool and stop()):
+            self._unfold(layout, operations)
         if coarsen:
             self._coarsen(layout, stop)
         self._note(layout)
@@ -125,6 +129,16 @@ class LayoutSearch:
             place += 1
         self.pool.insert(place, layout)
         del self.pool[POOL:]
+
+    def _unfold(self, layout: Layout, operations: Operations) -> None:
+        """Position a layout from smoothed and untangled positions, which takes longer."""
+        reached = replayed(self._mesh, operations)
+        if len(relax(reached)):
+            return
+        live, m = reached.vertices(), layout.arrays
+        m.points[live] = reached.points[live]
+        m.parameter[live] = reached.arrays.parameter[live]
+        self.coarsener.judge(layout)
 
     def _note(self, layout: Layout) -> None:
         if self.best is None or self.coarsener.better(layout, self.best):

@@ -117,7 +117,7 @@ def judged(
     if reached.n_elements > RELAXED:
         vertices = _relax_touched(mesh, reached, solution.operations, stop)
     elif solution.operations or len(inverted(reached)):
-        vertices = _best_positions(mesh, reached)
+        vertices = _best_positions(mesh, reached, stop)
     shapes = scaled_jacobian(reached)
     return replace(
         solution,
@@ -135,23 +135,37 @@ def judged(
     )
 
 
-def _best_positions(mesh: HalfEdgeMesh, reached: HalfEdgeMesh) -> np.ndarray:
+def _best_positions(
+    mesh: HalfEdgeMesh, reached: HalfEdgeMesh, stop: Callable[[], bool]
+) -> np.ndarray:
     """Move the vertices of `reached`; returns the ids of those that have moved."""
-    before = reached.points.copy()
+    before, parameters = reached.points.copy(), reached.parameters()
     if mesh.kind == "quad" and not mesh.points[mesh.vertices(), 2].any():
-        coarsener = Coarsener(reached, FINEST, ceiling=1)
-        other = reached.copy()
-        reached.move(*coarsener.positions(coarsener.layout([], steps=FINE_STEPS)))
-        if left := len(inverted(reached)):
-            smoothing.relax(other)
-            if len(inverted(other)) < left:
+        _raise_worst(reached)
+        if (left := len(inverted(reached))) and not stop():
+            other = mesh_at(reached, before, parameters)
+            if len(smoothing.relax(other)) < left:
+                _raise_worst(other)
                 ids = other.vertices()
                 reached.move(ids, other.points[ids], other.arrays.parameter[ids])
-    else:
+    elif not stop():
         smoothing.relax(reached)
     live = reached.vertices()
     moved: np.ndarray = live[(reached.points[live] != before[live]).any(axis=1)]
     return moved
+
+
+def _raise_worst(mesh: HalfEdgeMesh) -> None:
+    """Give a plane quad mesh its max-min positions."""
+    coarsener = Coarsener(mesh, FINEST, ceiling=1)
+    mesh.move(*coarsener.positions(coarsener.layout([], steps=FINE_STEPS)))
+
+
+def mesh_at(mesh: HalfEdgeMesh, points: np.ndarray, parameters: np.ndarray) -> HalfEdgeMesh:
+    """A copy of a mesh with its vertices elsewhere; rows of both by vertex id."""
+    copy, ids = mesh.copy(), mesh.vertices()
+    copy.move(ids, points[ids], parameters[ids])
+    return copy
 
 
 def _relax_touched(

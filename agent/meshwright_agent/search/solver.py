@@ -187,7 +187,7 @@ def _search_layouts(
             operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
             method=method if operations else "none", aims=first.aims,
         ),
-        mesh,
+        mesh, search.stopped,
     )  # fmt: skip
 
 

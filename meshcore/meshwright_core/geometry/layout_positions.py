@@ -67,7 +67,7 @@ SWEEPS = 40
 """Sweeps of averaging in the second attempt."""
 ROUNDS, INNER, POLISH = 12, 30, 20
 """The most values of its regularisation, L-BFGS steps at each, and steps for shape after them."""
-MOST_TURN = np.radians(120.0)
+MOST_TURN = np.radians(135.0)
 """Radians that one edge may turn."""
 _ASIDE = 1e-3
 """Share of a curve's length by which a direction is looked up: which side of a joint."""
@@ -178,28 +178,37 @@ def _find_gaps(m, variable, gaps, offsets):
 
 @kernel
 def _spread(m, variable, x):
-    """Spread the sliding vertices of each side evenly between those that stay."""
-    for g in range(len(variable)):
-        if m.vertex[g, HALF] < 0 or m.vertex[g, CURVE] < 0 or variable[g] >= 0:
-            continue
-        c = m.vertex[g, CURVE]
-        length = curve_length(m.curves, c)
-        members, v = 0, g
-        for _ in range(len(variable)):
-            v = beside(m, v, c, True, 4)
-            if v < 0 or variable[v] < 0:
-                break
-            members += 1
-        if members == 0 or v < 0:
-            continue
-        start, stop = _parameter(m, g, c, False), _parameter(m, v, c, True)
-        if stop <= start and m.curves.closed[c]:
-            stop += length
-        v = g
-        for i in range(members):
-            v = beside(m, v, c, True, 4)
-            t = start + (stop - start) * (i + 1) / (members + 1)
-            x[variable[v]] = t - length if t >= length and m.curves.closed[c] else t
+    """Spread the sliding vertices of each side evenly between those that stay; those of a closed
+    curve without any evenly all around.
+    """
+    done = np.zeros(len(variable), np.bool_)
+    for closed in range(2):
+        for g in range(len(variable)):
+            if m.vertex[g, HALF] < 0 or m.vertex[g, CURVE] < 0:
+                continue
+            if (variable[g] >= 0) != (closed == 1) or done[g]:
+                continue
+            c = m.vertex[g, CURVE]
+            length = curve_length(m.curves, c)
+            members, v = 0, g
+            for _ in range(len(variable)):
+                v = beside(m, v, c, True, 4)
+                if v < 0 or v == g or variable[v] < 0:
+                    break
+                members += 1
+            if members == 0 or v < 0:
+                continue
+            start, stop = _parameter(m, g, c, False), _parameter(m, v, c, True)
+            if v == g:
+                start, stop = m.parameter[g], m.parameter[g] + length
+            elif stop <= start and m.curves.closed[c]:
+                stop += length
+            v = g
+            for i in range(members):
+                v = beside(m, v, c, True, 4)
+                done[v] = True
+                t = start + (stop - start) * (i + 1) / (members + 1)
+                x[variable[v]] = t - length if t >= length and m.curves.closed[c] else t
 
 
 @bare_kernel
