@@ -67,7 +67,7 @@ SWEEPS = 40
 """Sweeps of averaging in the second attempt."""
 ROUNDS, INNER, POLISH = 12, 30, 20
 """The most values of its regularisation, L-BFGS steps at each, and steps for shape after them."""
-MOST_TURN = np.radians(135.0)
+MOST_TURN = np.radians(150.0)
 """Radians that one edge may turn."""
 _ASIDE = 1e-3
 """Share of a curve's length by which a direction is looked up: which side of a joint."""
@@ -150,7 +150,7 @@ def _number(m, points, variable, seat, x):
 
 
 @kernel
-def _find_gaps(m, variable, gaps, offsets):
+def _find_gaps(m, turning, variable, gaps, offsets):
     """The gaps between neighbours on curves of which at least one slides; returns their number."""
     count = 0
     for v in range(len(variable)):
@@ -171,7 +171,9 @@ def _find_gaps(m, variable, gaps, offsets):
                 offsets[count, 0] -= a
             if variable[high] < 0:
                 offsets[count, 0] += b
-            offsets[count, 1] = 1.0 / max(b + turn - a, 1e-3 * length)
+            gap = max(b + turn - a, 1e-3 * length)
+            offsets[count, 1] = 1.0 / gap
+            offsets[count, 2] = turning_between(m.curves, turning, c, a, a + gap) / gap
             count += 1
     return count
 
@@ -328,10 +330,10 @@ def assemble(m, rails, afresh):
     n = m.counters[VERTEX_SLOTS]
     points, slope, tangent = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 4))
     variable, seat, bends = np.full(n, -1), np.full(n, -1), np.zeros(n, np.bool_)
-    gaps, offsets = np.zeros((2 * n, 3), np.int64), np.zeros((2 * n, 2))
+    gaps, offsets = np.zeros((2 * n, 3), np.int64), np.zeros((2 * n, 3))
     values = np.zeros(2 * n)
     x = values[: _number(m, points, variable, seat, values)]
-    gap_count = _find_gaps(m, variable, gaps, offsets)
+    gap_count = _find_gaps(m, rails.turning, variable, gaps, offsets)
     if afresh:
         _spread(m, variable, x)
         # the order on closed curves has changed where a seam was passed

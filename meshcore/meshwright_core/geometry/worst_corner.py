@@ -43,6 +43,8 @@ NO_LEVEL = 1e3
 EVEN_WEIGHTS, GIVEN = (0.005, 0.02, 0.08), 0.02
 """Weights w once the worst corner is as good as it gets, and the share of its sine that may be
 given for better shapes."""
+TURN_WEIGHT = 0.5
+"""Weight of the price on edges that turn by more than a radian."""
 PRECISION = 1e-5
 """Gain of a step below which the ascent ends."""
 FOLDED = 1e-6
@@ -83,7 +85,8 @@ class LayoutProblem(NamedTuple):
     gaps: np.ndarray
     """(g, 3) variables of neighbours on a curve, -1 for one that stays, and the curve."""
     offsets: np.ndarray
-    """(g, 2) what the gap has besides the difference of its variables; one over its target."""
+    """(g, 3) what the gap has besides the difference of its variables; one over its target; the
+    turning of its curve by length."""
     size: np.ndarray
     """(1,) the mean size of an element."""
     curves: Curves
@@ -186,7 +189,9 @@ def worst_sine(problem):
 
 @kernel
 def _gap_energy(problem, x, gradient, weight):
-    """Barrier between neighbours on curves; infinite where a gap closes."""
+    """Barrier between neighbours on curves, infinite where a gap closes, and a price on edges that
+    turn far.
+    """
     total = 0.0
     for i in range(len(problem.gaps)):
         a, b = problem.gaps[i, 0], problem.gaps[i, 1]
@@ -200,6 +205,11 @@ def _gap_energy(problem, x, gradient, weight):
             return np.inf
         total += weight / gap
         slope = weight / (gap * gap) * problem.offsets[i, 1]
+        far = 0.5 * gap / problem.offsets[i, 1] * problem.offsets[i, 2]
+        if far > 0.5:
+            price = TURN_WEIGHT * (far - 0.5) ** 3
+            total += price
+            slope -= 3.0 * price / (far - 0.5) * 0.5 * problem.offsets[i, 2]
         if a >= 0:
             gradient[a] += slope
         if b >= 0:
