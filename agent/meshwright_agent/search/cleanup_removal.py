@@ -43,7 +43,7 @@ def without_cleanups(mesh: HalfEdgeMesh, operations: Operations) -> Operations:
     done = nothing_replayed(len(left))
     stop = replay(
         _copy(start), first_names(mesh.slots, len(start.vertex), names), left, 0, len(left),
-        ReplayLimits(0, 0, int(states[-1, 1]), _UNLIMITED), done,
+        ReplayLimits(0, 0, int(states[-1, 1]), _UNLIMITED, 0, np.zeros((2, 0), np.uint64)), done,
     )  # fmt: skip
     if stop < 0:
         return operations

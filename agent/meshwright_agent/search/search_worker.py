@@ -29,7 +29,7 @@ SIDE_BY_SIDE = 20_000
 """Elements up to which several rollouts are made at a time; all of them together have as many."""
 FIRST, TOGETHER = 8, 32
 """Rollouts side by side on smaller meshes: at first, and later, when nothing was easy."""
-KEPT = 4
+KEPT = 16
 """States of equal score that are kept."""
 _SHORTEST = 0.02  # seconds of a turn
 
@@ -74,7 +74,8 @@ class Shared(Protocol):
     mesh: HalfEdgeMesh
     policy: Policy
     max_steps: int | None
-    wanted: int | None
+    thorough: bool
+    """Whether rollouts go on after one of those side by side has reached s*."""
     annealing: bool
     score: int
     best: Candidate
@@ -128,6 +129,10 @@ class Worker:
                 self._opening = False
                 self._arms = [Arm(kind) for kind in Kind]
 
+    def roll(self, count: int) -> None:
+        """So many rollouts from the start; what they reach is offered."""
+        self._roll(count, [])
+
     def _together(self) -> int:
         most = FIRST if self._opening else TOGETHER
         return max(1, min(most, SIDE_BY_SIDE // max(self._mesh.n_elements, 1)))
@@ -173,12 +178,12 @@ class Worker:
             halfedges.append(observation.chosen[rows, actions // task.operations])
             codes.append(task.first_operation + actions % task.operations)
             batch.step(observation, actions)
-            if search.wanted is None and (batch.best <= start.optimum).any():
+            if not search.thorough and (batch.best <= start.optimum).any():
                 break
         best = int(batch.best.min())
         if best > search.score or (before and best == start.score):
             return
-        for b in np.flatnonzero(batch.best == best)[:KEPT].tolist():
+        for b in np.flatnonzero(batch.best == best).tolist():
             length = int(batch.best_step[b])
             decisions = [(int(codes[t][b]), int(halfedges[t][b])) for t in range(length)]
             operations = before + self._with_cleanups(start, decisions)

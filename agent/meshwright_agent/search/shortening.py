@@ -17,18 +17,24 @@ import numpy as np
 from meshwright_agent.env.task import Task
 from meshwright_agent.search.annealing import Operations, copy_mesh, with_room
 from meshwright_core.core.arrays import (
+    DEGREE,
     ELEMENT_SLOTS,
     ELEMENTS,
+    FLAGS,
+    GEOMETRIC,
     HALF,
     NEW_COUNT,
     ORIGIN,
     SCORE,
     SIDES,
     TRACE_IDS,
+    VERTEX_SLOTS,
     MeshArrays,
     copied,
     find,
     following,
+    neighbour,
+    turned,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
@@ -38,6 +44,9 @@ from meshwright_core.operations.refusals import ALLOWED
 
 SLICE = 20_000
 """Operations replayed between two checks of the time."""
+
+COLOURINGS = 6
+"""How far vertices see each other in :func:`layout_hash`, in edges."""
 
 _NOWHERE = -1
 
@@ -64,6 +73,10 @@ class ReplayLimits(NamedTuple):
     """Largest s at the end."""
     most: int
     """Largest number of elements at the end."""
+    layout: int
+    """:func:`layout_hash` at the end; 0 for any."""
+    hashes: np.ndarray
+    """(2, vertex slots) uint64: scratch for it."""
 
 
 @by_reference
@@ -180,8 +193,49 @@ def named_halfedge(m, k, entry, names):
 
 
 @bare_kernel
+def _mixed(x):
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return x ^ (x >> np.uint64(31))
+
+
+@bare_kernel
+def layout_hash(m, hashes):
+    """A hash of the connectivity seen from the geometric vertices, whatever the ids of the others:
+    equal for equal layouts, and hardly ever for others. Not 0. hashes (2, slots): scratch.
+
+    Colours spread from neighbour to neighbour (Weisfeiler and Leman), so that each vertex comes to
+    know the layout around it.
+    """
+    k = m.counters[SIDES]
+    slots = m.counters[VERTEX_SLOTS]
+    for v in range(slots):
+        known = v + 2 if m.vertex[v, FLAGS] & GEOMETRIC else 1
+        hashes[0, v] = _mixed(np.uint64(known))
+    total = np.uint64(0)
+    for spread in range(COLOURINGS):
+        now, then = spread % 2, 1 - spread % 2
+        total = np.uint64(0)
+        for v in range(slots):
+            if m.vertex[v, HALF] < 0:
+                continue
+            around = np.uint64(m.vertex[v, DEGREE])
+            h = m.vertex[v, HALF]
+            for _ in range(m.vertex[v, DEGREE]):
+                around += _mixed(hashes[now, neighbour(m, h, k)])
+                if h < 0:
+                    break
+                h = turned(m, h, k)
+            hashes[then, v] = _mixed(hashes[now, v] * np.uint64(3) + around)
+            total += hashes[then, v]
+    return np.int64(total | np.uint64(1))
+
+
+@bare_kernel
 def _is_at(m, goal):
-    return m.counters[SCORE] <= goal.score and m.counters[ELEMENTS] <= goal.most
+    if m.counters[SCORE] > goal.score or m.counters[ELEMENTS] > goal.most:
+        return False
+    return goal.layout == 0 or layout_hash(m, goal.hashes) == goal.layout
 
 
 @bare_kernel
@@ -246,7 +300,8 @@ def debug_pass(prefix, names, work, work_names, deletion, goal, done, chunk):
             continue
         end = min(at + chunk, total)
         # goal and bounds apply to the whole list, so they are switched off for this part
-        replay(prefix, names, entries, at, end, ReplayLimits(goal.cap, 0, -1, 0), done)
+        free = ReplayLimits(goal.cap, 0, -1, 0, 0, goal.hashes)
+        replay(prefix, names, entries, at, end, free, done)
         progress[0] = end
     return True
 
@@ -274,23 +329,33 @@ def shorten(
     mesh: HalfEdgeMesh,
     operations: Operations,
     *,
-    seconds: float = 0.3,
+    seconds: float | None = 0.3,
+    slices: int | None = None,
+    keep_layout: bool = False,
     cancelled: Callable[[], bool] | None = None,
 ) -> Operations:
     """The same result with fewer operations, where that is possible within `seconds`.
+
+    slices: stop after so many slices of :data:`SLICE` operations replayed, which does not depend on
+    how fast the machine is. keep_layout: the connectivity at the end stays as it is, but for ids.
 
     The returned list is never longer. Applied to `mesh`, which is not changed, it ends with s no
     higher and no more elements than `operations`, and at no step has fewer elements than the fewest
     of theirs. Raises ValueError if `operations` cannot be applied to `mesh`.
     """
-    deadline = time.perf_counter() + seconds
+    deadline = np.inf if seconds is None else time.perf_counter() + seconds
+    asked = 0
 
     def time_is_up() -> bool:
+        nonlocal asked
+        asked += 1
+        if slices is not None and asked > slices:
+            return True
         return time.perf_counter() > deadline or (cancelled is not None and cancelled())
 
     if not operations:
         return []
-    shortener = _Shortener(mesh, operations)
+    shortener = _Shortener(mesh, operations, keep_layout)
     shortener.cut_loops()
     shortener.debug(time_is_up)
     return shortener.result(operations)
@@ -299,7 +364,7 @@ def shorten(
 class _Shortener:
     """A list of operations that is shortened in place, with the work arrays for that."""
 
-    def __init__(self, mesh: HalfEdgeMesh, operations: Operations) -> None:
+    def __init__(self, mesh: HalfEdgeMesh, operations: Operations, keep_layout: bool) -> None:
         codes = CODES[mesh.k]
         self.codes = np.array([codes[operation] for operation, _ in operations], np.int32)
         self.halfedges = np.array([h for _, h in operations], np.int64)
@@ -317,9 +382,11 @@ class _Shortener:
                 break
             self._relax_bounds(-1 - int(names), operations)
         self.names = int(names)
+        hashes = np.zeros((2, len(work.vertex)), np.uint64)
+        layout = int(layout_hash(work, hashes)) if keep_layout else 0
         self.goal = ReplayLimits(
             self.cap, int(self.states[:, 2].min()), int(self.states[-1, 1]),
-            int(self.states[-1, 2]),
+            int(self.states[-1, 2]), layout, hashes,
         )  # fmt: skip
 
     def _relax_bounds(self, failed: int, operations: Operations) -> None:
@@ -346,7 +413,7 @@ class _Shortener:
     def cut_loops(self) -> None:
         """End at the first state that reaches the goal, and remove loops."""
         good = (self.states[:, 1] <= self.goal.score) & (self.states[:, 2] <= self.goal.most)
-        end = int(np.argmax(good))
+        end = len(good) - 1 if self.goal.layout else int(np.argmax(good))
         shorter = self.entries[:end][without_loops(self.states[: end + 1, 0])]
         stop, done = self._replayed(shorter)
         self.entries = shorter[done.kept] if stop >= 0 else self.entries[:end]

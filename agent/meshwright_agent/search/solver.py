@@ -1,8 +1,9 @@
-"""The anytime solver: rollouts of a policy and annealing, then shortening and coarsening.
+"""The anytime solver: rollouts of a policy and annealing, then layouts of good shape.
 
-Better means lower s; at equal s fewer elements that stay inverted when the mesh is smoothed; then,
-for quads, fewer elements; then fewer operations. s = s* proves that s cannot be lower (section
-4.1). The result is a list of operations that can be applied to the given mesh.
+Better means, in this order: no inverted elements; lower s; a better worst corner, up to a target;
+a smaller sum of squared irregularities; for quads, fewer elements; fewer operations. s = s* proves
+that s cannot be lower (section 4.1). The result is a list of operations that can be applied to the
+given mesh, and positions for the vertices after them.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
@@ -19,13 +20,15 @@ import numpy as np
 from meshwright_agent.env.task import Task
 from meshwright_agent.env.vector_env import Batch
 from meshwright_agent.policy.policy_files import Policy, require_kind
-from meshwright_agent.search.annealing import Operations, anneal
+from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import PATIENCE, replayed, undrawable
 from meshwright_agent.search.coarsening import coarsen as coarser
+from meshwright_agent.search.layout_search import LayoutSearch, Preference
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
 from meshwright_agent.search.shortening import shorten as shorter
+from meshwright_agent.search.solution import Solution, judged
 from meshwright_core.domains.meshing import benchmark_mesh
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -33,52 +36,24 @@ POLISH = 0.15
 """Share of the time that is reserved for shortening."""
 POLISHED = 0.5
 """Largest share of the time that shortening and coarsening may take."""
-ALONE = 0.5
-"""Most seconds for shortening, and for coarsening, if only a number of rollouts is given."""
+OPENING = 0.5
+"""Share of the time after which a search for s* gives way to one among the layouts found."""
+LAYOUTS = 800
+"""Elements up to which the layouts of a mesh are searched; positioning more takes too long."""
+SLICES, PROPOSALS_EACH = 60, 3000
+"""Slices of shortening, and proposals of coarsening relative to the number of elements, if only a
+number of rollouts is given."""
+KICKS_EACH = 40
+"""Layouts tried for each rollout, likewise."""
+SHORTENED = 4
+"""States that are shortened."""
+FIRST_ROLLOUTS = 8
+"""Rollouts that are added when the search among layouts makes no progress."""
+TRIED = 24
+"""States on the way to one that cannot be drawn that are tried in its place."""
 
 PER_IRREGULAR = 50
 """Steps of a rollout per irregular vertex that is left on a large mesh after the patches."""
-
-
-@dataclass
-class Solution:
-    """The best result of a search."""
-
-    operations: Operations
-    """Operations and their half-edges, to be applied in this order."""
-    score: int
-    optimum: int
-    inverted: int
-    """Elements that stay inverted or degenerate when the mesh is smoothed."""
-    elements: int = 0
-    rollouts: int = 0
-    seconds: float = 0.0
-    method: str = "none"
-    """The method that found it: "rollouts", "annealing", "patches" (large meshes), or "none" if
-    nothing better than the start was found."""
-    coarse: bool = True
-    """Whether fewer elements count as better."""
-
-    @property
-    def rank(self) -> tuple[int, int, int, int]:
-        """Solutions with a lower rank are better."""
-        elements = self.elements if self.coarse else 0
-        return self.score, self.inverted, elements, len(self.operations)
-
-    def replay(self, mesh: HalfEdgeMesh) -> None:
-        """Apply the operations to `mesh`, the mesh that they were found for.
-
-        Raises RuntimeError if the score reached is not :attr:`score`.
-        """
-        for operation, halfedge in self.operations:
-            mesh.apply(operation, halfedge)
-        if mesh.score != self.score:
-            raise RuntimeError(f"the replay ends at s = {mesh.score}, the search at {self.score}")
-
-    @property
-    def perfect(self) -> bool:
-        """Whether s = s*, so that it cannot be lower, without inverted elements."""
-        return self.score == self.optimum and self.inverted == 0
 
 
 def solve(
@@ -92,14 +67,19 @@ def solve(
     workers: int = 1,
     coarsen: bool = True,
     shorten: bool = True,
+    prefer: str = "balanced",
+    min_shape: float | None = None,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Solution:
     """The best state found from `mesh`, which is not changed.
 
     A mesh with many irregular vertices is first improved patch by patch
-    (:mod:`meshwright_agent.search.patchwise`); the remaining time is used for the whole mesh. Ends
-    early at s* if no element stays inverted.
+    (:mod:`meshwright_agent.search.patchwise`); the remaining time is used for the whole mesh. Plane
+    quad meshes of up to :data:`LAYOUTS` elements are then searched for layouts of good shape with
+    few blocks (:mod:`meshwright_agent.search.layout_search`). Ends early where nothing more can be
+    won. A mesh without inverted elements never becomes one with them. With a number of rollouts and
+    no time limit the result depends on the arguments alone, not on the machine or its load.
 
     Args:
         mesh: the start.
@@ -111,33 +91,147 @@ def solve(
         workers: number of threads, each with a seed of its own.
         coarsen: whether to look for fewer elements at equal s (quads only).
         shorten: whether to leave out operations that are not needed.
+        prefer: "blocks", "balanced" or "shape", see
+            :class:`meshwright_agent.search.layout_search.Preference`.
+        min_shape: worst scaled Jacobian beyond which more does not count, in place of that of
+            `prefer`.
         progress: called with (rollouts done, lowest s) after rollouts and whenever s falls, from
             the worker threads.
         cancelled: polled; the search ends with the best result so far when it is true.
     """
     require_kind(policy, mesh.kind)
+    preference = Preference(prefer, min_shape)
     if seconds is not None:
         prepare(policy)  # so that loading the kernels takes none of the time
     if is_large(mesh):
-        go_on = partial(solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten)
+        go_on = partial(
+            solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten,
+            prefer=prefer, min_shape=min_shape,
+        )  # fmt: skip
         return _patch_by_patch(mesh, policy, seconds, max_steps, seed, progress, cancelled, go_on)
     search = _Search(mesh, policy, rollouts, seconds, max_steps, seed, progress, cancelled)
     best = search.nothing(coarsen)
-    again = False
+    if _has_layouts(mesh):
+        found = _search_layouts(search, preference, workers, coarsen, shorten)
+    else:
+        found = _search_states(search, best, workers, coarsen, shorten)
+    best = min(best, found, key=lambda solution: solution.rank)
+    if found.inverted and not best.operations:
+        # what was found cannot be drawn: as much of it as can be
+        best = min(best, _valid_part(search, found), key=lambda solution: solution.rank)
+    best.rollouts, best.seconds = search.done, time.perf_counter() - search.began
+    best.reason = best.reason or search.reason(best)
+    return best
+
+
+def _has_layouts(mesh: HalfEdgeMesh) -> bool:
+    """Whether the layouts of a mesh are searched: quads in the plane z = 0, not too many."""
+    plane = mesh.kind == "quad" and not mesh.points[mesh.vertices(), 2].any()
+    return plane and mesh.n_elements <= LAYOUTS
+
+
+def _search_layouts(
+    search: _Search, preference: Preference, workers: int, coarsen: bool, shorten: bool
+) -> Solution:
+    """Rollouts until s* is reached, then a search among layouts of the lowest s."""
+    mesh, timed = search.mesh, search.seconds is not None
+    search.thorough = True
+    if search.score > mesh.optimum:
+        search.look(workers, share=OPENING)
+    candidates = search.take()
+    total = 0 if not coarsen else None if timed else KICKS_EACH * search.wanted_rollouts
+    seekers = [
+        LayoutSearch(mesh, preference, search.seed + 7919 * i) for i in range(max(1, workers))
+    ]
+
+    def stop() -> bool:
+        return search.over(1.0 - POLISH)
+
+    def run(i: int) -> None:
+        seeker = seekers[i]
+        # every thread has all candidates where there are few, and its share of them otherwise
+        mine = candidates if len(candidates) < 2 * workers else candidates[i::workers]
+        for candidate in mine:
+            if seeker.pool and stop():
+                break
+            seeker.add(candidate.operations, coarsen, stop)
+        while not stop():
+            seeker.run(stop, 100 if total is None else total // len(seekers))
+            if total is not None or not coarsen or seeker.exhausted:
+                break
+            if seeker.needs_layouts and search.annealing:
+                for candidate in search.more_rollouts(search.seed + 31 * seeker.kicks + 7919 * i):
+                    seeker.add(candidate.operations, coarsen, stop)
+
+    if len(seekers) == 1:
+        run(0)
+    else:
+        with ThreadPoolExecutor(len(seekers), thread_name_prefix="layouts") as pool:
+            list(pool.map(run, range(len(seekers))))
+    first = seekers[0].coarsener
+    layout = seekers[0].best
+    for seeker in seekers[1:]:
+        if seeker.best is not None and (layout is None or first.better(seeker.best, layout)):
+            layout = seeker.best
+    assert layout is not None
+    operations = layout.operations()
+    search.finished_early = all(seeker.exhausted for seeker in seekers) and coarsen
+    if shorten:
+        operations = shorter(
+            mesh, operations, seconds=search.share(1.0), slices=None if timed else SLICES,
+            keep_layout=True, cancelled=search.stopped,
+        )  # fmt: skip
+    method = candidates[0].method if not any(seeker.kicks for seeker in seekers) else "layouts"
+    return judged(
+        Solution(
+            operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
+            method=method if operations else "none", aims=first.aims,
+        ),
+        mesh, search.stopped,
+    )  # fmt: skip
+
+
+def _search_states(
+    search: _Search, best: Solution, workers: int, coarsen: bool, shorten: bool
+) -> Solution:
+    """Rollouts and annealing for lower s, then shortening and, for quads, coarsening."""
+    mesh, found, again = search.mesh, best, False
     while True:
         if search.score > mesh.optimum or again:
             search.look(workers, past_optimum=again)
         candidates = search.shortened() if shorten else search.take()
         for candidate in candidates:
-            found = search.finished(candidate, coarsen, shorten, best)
-            best = min(best, found, key=lambda solution: solution.rank)
-            if best.perfect or search.over(1.0):
+            one = search.finished(candidate, coarsen, shorten, best)
+            if found is best or one.rank < found.rank:
+                found = one
+            if found.perfect or search.over(1.0):
                 break
         again = True
-        if best.perfect or seconds is None or search.over(1.0 - POLISH) or search.exhausted:
+        if found.perfect or not search.timed or search.over(1.0 - POLISH) or search.exhausted:
+            return found
+
+
+def _valid_part(search: _Search, found: Solution) -> Solution:
+    """The first operations of `found`, as many as leave the lowest s without inverted elements.
+
+    Of the states on the way those with the lowest s are tried first, at most :data:`TRIED` and as
+    long as there is time.
+    """
+    mesh, work = search.mesh, search.mesh.copy()
+    states = [(mesh.score, 0)]
+    for i, (operation, h) in enumerate(found.operations):
+        work.apply(operation, h)
+        states.append((work.score, i + 1))
+    states.sort(key=lambda state: (state[0], -state[1]))
+    best = replace(found, operations=[])
+    for _, length in states[:: max(1, len(states) // TRIED)]:
+        part = judged(replace(found, operations=found.operations[:length]), mesh, search.stopped)
+        if not part.inverted:
+            obstacle = f"at s = {found.score} {found.inverted} elements would stay inverted"
+            return replace(part, reason=obstacle)
+        if search.over(1.0):
             break
-    best.rollouts, best.seconds = search.done, time.perf_counter() - search.began
-    return best
+    return judged(best, mesh, search.stopped)
 
 
 def _patch_by_patch(
@@ -157,9 +251,17 @@ def _patch_by_patch(
         progress=None if progress is None else lambda _, score: progress(0, score),
     )  # fmt: skip
     reached, operations = run.mesh, run.steps()
-    best = Solution(
-        operations, run.score, run.optimum, undrawable(reached, []), reached.n_elements, 1,
-        method="patches" if operations else "none",
+
+    def late() -> bool:
+        over = seconds is not None and time.perf_counter() - began > seconds
+        return over or (cancelled is not None and cancelled())
+
+    best = judged(
+        Solution(
+            operations, run.score, run.optimum, 0, rollouts=1,
+            method="patches" if operations else "none",
+        ),
+        mesh, late,
     )  # fmt: skip
     left = None if seconds is None else max(0.0, seconds - (time.perf_counter() - began))
     if not is_large(reached) and left != 0.0 and not (cancelled is not None and cancelled()):
@@ -170,7 +272,8 @@ def _patch_by_patch(
             cancelled=cancelled,
         )  # fmt: skip
         if rest.operations:
-            best = replace(rest, operations=operations + rest.operations, method="patches")
+            rest = replace(rest, operations=operations + rest.operations, method="patches")
+            best = min(best, rest, key=lambda solution: solution.rank)
     best.seconds = time.perf_counter() - began
     return best
 
@@ -181,6 +284,11 @@ def _warm_up(task: Task) -> None:
     operations = anneal(mesh, proposals=2000)[0]
     shorter(mesh, operations)
     coarser(mesh, proposals=500, seconds=None)
+    if task.kind == "quad":
+        seeker = LayoutSearch(mesh, Preference("shape"))
+        seeker.add(operations, True, lambda: False)
+        seeker.run(lambda: False, 8)
+        judged(Solution(seeker.pool[0].operations(), 0, 0, 0), mesh)
     batch = Batch(task, [mesh], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
 
@@ -215,15 +323,15 @@ class _Search:
         self.best = Candidate([], mesh.score, "none")
         self._candidates: list[Candidate] = []
         self._rounds = 0
+        self.finished_early = False
+        self.thorough = rollouts is not None
 
     def nothing(self, coarse: bool) -> Solution:
         """Doing nothing: the solution to beat."""
         mesh = self.mesh
         self._candidates.append(self.best)
-        return Solution(
-            [], mesh.score, mesh.optimum, undrawable(mesh, []), mesh.n_elements,
-            coarse=coarse and mesh.kind == "quad",
-        )  # fmt: skip
+        start = Solution([], mesh.score, mesh.optimum, 0, coarse=coarse and mesh.kind == "quad")
+        return judged(start, mesh, self.stopped)
 
     def over(self, share: float) -> bool:
         """Whether that share of the time is used up, or the search was cancelled."""
@@ -275,19 +383,23 @@ class _Search:
         if self._progress is not None:
             self._progress(done, score)
 
-    def look(self, workers: int, past_optimum: bool) -> None:
-        """Search until the optimum, the end of the time, or the last rollout.
+    def look(self, workers: int, past_optimum: bool = False, share: float = 1.0 - POLISH) -> None:
+        """Search until the optimum, the end of that share of the time, or the last rollout.
 
-        past_optimum: s* is reached, but no state there can be drawn: look for one more.
+        past_optimum: s* is reached, but no state there can be drawn: look for one more. Without a
+        time limit the rollouts are made one batch after another, each with a seed of its own, so
+        that the result does not depend on the threads.
         """
         self._rounds += 1
 
         def stop() -> bool:
             goal = mesh.optimum
             found = bool(self._candidates) if past_optimum else self.score <= goal
-            return found or self.over(1.0 - POLISH)
+            return (found and self.timed) or self.over(share)
 
         mesh = self.mesh
+        if not self.timed:
+            workers = 1
         if workers <= 1:
             Worker(self, self.seed + 104729 * self._rounds, stop).work()
             return
@@ -299,18 +411,47 @@ class _Search:
             for future in futures:
                 future.result()
 
+    def more_rollouts(self, seed: int) -> list[Candidate]:
+        """Some more rollouts from the start; those that reach the lowest s known."""
+        found: list[Candidate] = []
+        shadow = _Rollouts(self, found)
+        Worker(shadow, seed, self.stopped).roll(FIRST_ROLLOUTS)
+        self.count(FIRST_ROLLOUTS)
+        return found
+
+    @property
+    def timed(self) -> bool:
+        """Whether there is a time limit."""
+        return self.seconds is not None
+
+    @property
+    def wanted_rollouts(self) -> int:
+        """The number of rollouts that was asked for, at least 1."""
+        return max(1, self.wanted or 1)
+
+    def reason(self, best: Solution) -> str:
+        """Why the search ended with `best`."""
+        if self._cancelled is not None and self._cancelled():
+            return "cancelled"
+        if self.finished_early:
+            return "nothing better was found for long"
+        if self.seconds is not None and self.over(1.0 - POLISH):
+            return f"all {self.seconds:g} seconds are used"
+        return "at the optimum" if best.perfect else "all rollouts are made"
+
     def shortened(self) -> list[Candidate]:
         """The best states not taken yet, with fewer operations where possible; shortest first."""
         found = []
-        for left, candidate in enumerate(reversed(self.take()), 1):
+        for left, candidate in enumerate(reversed(self.take()[:SHORTENED]), 1):
             operations = shorter(
-                self.mesh, candidate.operations, seconds=self._share(0.4 / left),
-                cancelled=self._stopped,
+                self.mesh, candidate.operations, seconds=self.share(0.4 / left),
+                slices=None if self.timed else SLICES, cancelled=self.stopped,
             )  # fmt: skip
             found.append(replace(candidate, operations=operations))
         return sorted(found, key=lambda candidate: len(candidate.operations))
 
-    def _stopped(self) -> bool:
+    def stopped(self) -> bool:
+        """Whether the time is up, or the search was cancelled."""
         return self.over(1.0)
 
     def finished(
@@ -325,23 +466,45 @@ class _Search:
         if coarsen and mesh.kind == "quad" and mesh.n_elements <= SIDE_BY_SIDE:
             reached = replayed(mesh, operations)
             added = coarser(
-                reached, seconds=self._share(0.7), seed=self.seed + self.done,
-                patience=PATIENCE if self.seconds is None else None, cancelled=self._stopped,
+                reached, seconds=self.share(0.7), seed=self.seed + self.done,
+                proposals=None if self.timed else PROPOSALS_EACH * mesh.n_elements,
+                patience=PATIENCE if self.seconds is None else None, cancelled=self.stopped,
             )  # fmt: skip
             operations = operations + added
             if added and shorten:
                 operations = shorter(
-                    mesh, operations, seconds=self._share(1.0), cancelled=self._stopped
-                )
-        reached = replayed(mesh, operations)
-        return Solution(
-            operations, reached.score, mesh.optimum, undrawable(mesh, operations),
-            reached.n_elements, method=candidate.method, coarse=best.coarse,
-        )  # fmt: skip
+                    mesh, operations, seconds=self.share(1.0),
+                    slices=None if self.timed else SLICES, cancelled=self.stopped,
+                )  # fmt: skip
+        one = Solution(
+            operations, mesh.score, mesh.optimum, 0, method=candidate.method, coarse=best.coarse
+        )
+        return judged(one, mesh, self.stopped)
 
-    def _share(self, share: float) -> float:
-        """Seconds for a part of the polish: `share` of what is left for it."""
+    def share(self, share: float) -> float | None:
+        """Seconds for a part of the polish: `share` of what is left for it; None: no limit."""
         if self.seconds is None:
-            return ALONE
+            return None
         left = self.seconds - (time.perf_counter() - self.began)
         return max(0.0, share * min(left, POLISHED * self.seconds))
+
+
+class _Rollouts:
+    """What a worker needs to make rollouts apart from the search, which share its mesh."""
+
+    def __init__(self, search: _Search, found: list[Candidate]) -> None:
+        self.mesh, self.policy, self.max_steps = search.mesh, search.policy, search.max_steps
+        self.thorough, self.annealing = True, False
+        self.score, self.best, self._found = search.score, search.best, found
+
+    def offer(self, candidate: Candidate) -> None:
+        """Keep what is as good as the best known."""
+        if candidate.score <= self.score:
+            self._found.append(candidate)
+
+    def book(self, wanted: int) -> int:
+        """As many as are wanted."""
+        return wanted
+
+    def count(self, rollouts: int) -> None:
+        """The search counts them."""

@@ -1,0 +1,183 @@
+"""Search among quad layouts of equal s for good shapes with few blocks.
+
+A pool of layouts, made by coarsening what rollouts have found under a guard
+(:mod:`meshwright_agent.search.guarded_coarsening`), is improved by local search: one of them is
+kicked, coarsened again, and takes the place of its parent unless it is worse. What is better, and
+by how much the shape counts, follows from :class:`Preference`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from meshwright_agent.search.annealing import Operations
+from meshwright_agent.search.coarsening import replayed
+from meshwright_agent.search.guarded_coarsening import Aims, Coarsener, Layout
+from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
+from meshwright_core.geometry.smoothing import relax
+from meshwright_core.mesh import HalfEdgeMesh
+
+PREFERENCES = ("blocks", "balanced", "shape")
+USABLE = 0.5
+"""Worst scaled Jacobian that a balanced answer has before the number of blocks counts..."""
+CLOSE, COMFORT = 0.9, 0.85
+"""... or this share of the best that is attainable; and the share of the larger of that and q* up
+to which more is worth more blocks."""
+PRICE = 3.0
+"""Each tenth of the bound is worth exp(0.3) times the blocks, a third more."""
+LEAST = 0.05
+"""The least target: a corner below it is as good as folded."""
+SLACK = 3e-3
+"""How far below the bound a target stays: maximising comes close to it, not to the last digit."""
+POOL = 3
+"""Layouts that are kicked in turn."""
+FIRST = 0.6
+"""Probability of kicking the best of them; each next one with the same share of the rest."""
+JUMPS = 7
+"""The most random operations of a kick."""
+AT_WORST = 0.7
+"""Probability that a kick of a layout below the target begins near its worst corner."""
+PROPOSALS = 200
+"""The most proposals of a kick, relative to the number of elements."""
+SLICE = 4000
+"""Elements positioned between two looks at the clock: some tens of milliseconds."""
+STALE = 400
+"""Kicks without an improvement after which other starts are asked for, below the target."""
+PATIENCE = 4000
+"""Kicks without an improvement after which the search gives up, once the target is reached."""
+
+
+@dataclass(frozen=True)
+class Preference:
+    """What counts besides s."""
+
+    prefer: str = "balanced"
+    """"blocks": as few as possible, whatever their shape, but none inverted; "shape": the best
+    worst corner, whatever the number; "balanced": a good worst corner, then few blocks."""
+    min_shape: float | None = None
+    """Worst scaled Jacobian beyond which more does not count, in place of that of `prefer`."""
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for an unknown word, or a shape beyond 0 to 1."""
+        if self.prefer not in PREFERENCES:
+            raise ValueError(f'prefer must be one of {PREFERENCES}, not "{self.prefer}"')
+        if self.min_shape is not None and not 0.0 <= self.min_shape <= 1.0:
+            raise ValueError(f"min_shape must lie between 0 and 1, not {self.min_shape}")
+
+    def aims(self, attainable: float, bound: float) -> Aims:
+        """What is aimed at where `attainable` is the best worst scaled Jacobian, `bound` is q*."""
+        most = max(attainable - SLACK, LEAST)
+        if self.min_shape is not None:
+            target = comfort = max(min(self.min_shape, most), LEAST)
+        elif self.prefer == "balanced":
+            target = max(min(USABLE, CLOSE * attainable), LEAST)
+            comfort = max(min(COMFORT * max(attainable, bound), most), target)
+        else:
+            target = comfort = LEAST if self.prefer == "blocks" else most
+        price = PRICE / max(bound, LEAST) if self.prefer == "balanced" else 0.0
+        return Aims(target, comfort, price, self.prefer != "blocks")
+
+
+class LayoutSearch:
+    """The pool of one thread.
+
+    Args:
+        mesh: the start, plane, of quads.
+        preference: what counts.
+        seed: of all random choices.
+        floor: least number of elements.
+    """
+
+    def __init__(
+        self, mesh: HalfEdgeMesh, preference: Preference, seed: int = 0, floor: int = 1
+    ) -> None:
+        """Prepare the arrays; the pool is empty."""
+        self._mesh, self.optimum = mesh, mesh.optimum
+        self.aims = preference.aims(attainable_bound(mesh), shape_bound(mesh))
+        self.coarsener = Coarsener(mesh, self.aims, seed, floor)
+        self.pool: list[Layout] = []
+        self.best: Layout | None = None
+        self.kicks = self.idle = self._served = 0
+
+    @property
+    def goal_reached(self) -> bool:
+        """Whether the best layout has the target shape."""
+        return self.best is not None and self.best.key[1] >= self.aims.target
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether the target is reached and nothing better was found for long."""
+        return self.idle >= PATIENCE and self.goal_reached
+
+    @property
+    def needs_layouts(self) -> bool:
+        """Whether other starts are called for, as nothing has come of kicks lately."""
+        return self.idle >= STALE and not self.goal_reached and self.idle // STALE > self._served
+
+    def add(self, operations: Operations, coarsen: bool, stop: Callable[[], bool]) -> None:
+        """Add the layout that operations lead to, coarsened unless `stop` comes first."""
+        self._served = self.idle // STALE
+        layout = self.coarsener.layout(operations)
+        if not layout.key[1] and not (self.pool and stop()):
+            self._unfold(layout, operations)
+        if coarsen:
+            self._coarsen(layout, stop)
+        self._note(layout)
+        place = 0
+        while place < len(self.pool) and not self.coarsener.better(layout, self.pool[place]):
+            place += 1
+        self.pool.insert(place, layout)
+        del self.pool[POOL:]
+
+    def _unfold(self, layout: Layout, operations: Operations) -> None:
+        """Position a layout from smoothed and untangled positions, which takes longer."""
+        reached = replayed(self._mesh, operations)
+        if len(relax(reached)):
+            return
+        live, m = reached.vertices(), layout.arrays
+        m.points[live] = reached.points[live]
+        m.parameter[live] = reached.arrays.parameter[live]
+        self.coarsener.judge(layout)
+
+    def _note(self, layout: Layout) -> None:
+        if self.best is None or self.coarsener.better(layout, self.best):
+            self.best, self.idle, self._served = layout, 0, 0
+
+    def _coarsen(self, layout: Layout, stop: Callable[[], bool]) -> None:
+        while not stop():
+            if self.coarsener.coarsen(layout, max(1, SLICE // int(layout.key[3]))):
+                break
+
+    def kick(self, stop: Callable[[], bool]) -> None:
+        """Kick one layout of the pool and coarsen it; it stays unless it is worse."""
+        rng, coarsener = self.coarsener.rng, self.coarsener
+        i = min(int(rng.geometric(FIRST)) - 1, len(self.pool) - 1)
+        parent = self.pool[i]
+        jumps = 1 + int(rng.integers(JUMPS))
+        # degrees that forbid the target are not worth positioning, unless nothing better is known
+        comfort = self.aims.comfort
+        bound = comfort if rng.random() < 0.5 else min(self.aims.target, float(parent.key[1]))
+        self.kicks += 1
+        self.idle += 1
+        score = int(parent.key[0])
+        if score > self.optimum and rng.random() < 0.7:
+            score = self.optimum
+        at_worst = parent.key[1] < comfort and rng.random() < AT_WORST
+        child = coarsener.kicked(
+            parent, jumps, score, bound, PROPOSALS * int(parent.key[3]), at_worst
+        )
+        if child is None:
+            return
+        self._coarsen(child, stop)
+        if not coarsener.better(parent, child):
+            self.pool[i] = child
+            self._note(child)
+
+    def run(self, stop: Callable[[], bool], kicks: int | None = None) -> None:
+        """Kick until `stop`, for so many `kicks`, or until nothing has come of it for long."""
+        last = None if kicks is None else self.kicks + kicks
+        while self.pool and not stop() and (last is None or self.kicks < last):
+            if self.exhausted:
+                break
+            self.kick(stop)

@@ -1,0 +1,188 @@
+"""The answer of a search: operations, positions, and what the mesh is like after them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from meshwright_agent.search.annealing import Operations
+from meshwright_agent.search.coarsening import replayed
+from meshwright_agent.search.guarded_coarsening import ALIKE, FINEST, Aims, Coarsener, cost
+from meshwright_core.geometry import smoothing
+from meshwright_core.geometry.element_shapes import element_shapes
+from meshwright_core.geometry.quality import inverted, scaled_jacobian
+from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
+from meshwright_core.mesh import HalfEdgeMesh
+
+RELAXED = 2_000
+"""Elements up to which a mesh is smoothed as a whole before it is judged."""
+FINE_STEPS = 150
+"""Steps of each stage of the max-min positions of an answer."""
+NEAR = 40
+"""Vertices of a larger mesh that are smoothed at a time."""
+
+
+NO_AIMS = Aims(0.0, 0.0, 0.0, False)
+"""Where only s, inverted elements and their number count."""
+
+
+@dataclass
+class Solution:
+    """The best result of a search."""
+
+    operations: Operations
+    """Operations and their half-edges, to be applied in this order."""
+    score: int
+    optimum: int
+    inverted: int
+    """Elements that stay inverted or degenerate at the positions found."""
+    elements: int = 0
+    rollouts: int = 0
+    seconds: float = 0.0
+    method: str = "none"
+    """The method that found it: "rollouts", "annealing", "layouts", "patches" (large meshes), or
+    "none" if nothing better than the start was found."""
+    coarse: bool = True
+    """Whether fewer elements count as better."""
+    worst_scaled_jacobian: float = 0.0
+    """Smallest scaled Jacobian of an element."""
+    worst_shape: float = 0.0
+    """Smallest :func:`meshwright_core.geometry.element_shapes.element_shapes`."""
+    shape_bound: float = 1.0
+    """q*, what the corners permit of the worst scaled Jacobian where they are regular."""
+    attainable: float = 1.0
+    """The same for the best distribution of the s* irregularities."""
+    sum_delta2: int = 0
+    """Sum of the squared irregularities."""
+    aims: Aims = NO_AIMS
+    """What counted besides s."""
+    reason: str = ""
+    """Why the search ended, or what stands in the way of the optimum, in words."""
+    vertices: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64), repr=False)
+    """(n,) vertices that move after the operations."""
+    positions: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)), repr=False)
+    """(n, 3) where to."""
+    parameters: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
+    """(n,) their places on curves."""
+
+    @property
+    def rank(self) -> tuple[bool, int, int, int, int, float, int]:
+        """Solutions with a lower rank are better: valid; s; inverted elements; worst scaled
+        Jacobian up to the target; sum of squares; elements, weighed against shape; operations.
+        """
+        aims = self.aims
+        shape = -int(min(self.worst_scaled_jacobian, aims.target) / ALIKE)
+        spread = self.sum_delta2 if aims.spread else 0
+        weighed = cost(self.worst_scaled_jacobian, self.elements, aims) if self.coarse else 0.0
+        return (
+            self.inverted > 0, self.score, self.inverted, shape, spread, round(weighed, 3),
+            len(self.operations),
+        )  # fmt: skip
+
+    def replay(self, mesh: HalfEdgeMesh) -> None:
+        """Apply the operations to `mesh`, the mesh that they were found for.
+
+        Raises RuntimeError if the score reached is not :attr:`score`.
+        """
+        for operation, halfedge in self.operations:
+            mesh.apply(operation, halfedge)
+        if mesh.score != self.score:
+            raise RuntimeError(f"the replay ends at s = {mesh.score}, the search at {self.score}")
+
+    def place(self, mesh: HalfEdgeMesh) -> None:
+        """Move the vertices of `mesh`, after :meth:`replay`, to the positions that it was judged
+        by.
+        """
+        if len(self.vertices):
+            mesh.move(self.vertices, self.positions, self.parameters)
+
+    @property
+    def perfect(self) -> bool:
+        """Whether s = s*, so that it cannot be lower, without inverted elements."""
+        return self.score == self.optimum and self.inverted == 0
+
+
+def judged(
+    solution: Solution, mesh: HalfEdgeMesh, stop: Callable[[], bool] = lambda: False
+) -> Solution:
+    """The solution with positions, its measures and counts; `mesh` is the start.
+
+    Positions: max-min ones for quads in a plane of moderate number, else smoothed and untangled
+    ones. On large meshes only vertices that the operations have touched are smoothed, until `stop`.
+    """
+    reached = replayed(mesh, solution.operations)
+    vertices = np.zeros(0, np.int64)
+    if reached.n_elements > RELAXED:
+        vertices = _relax_touched(mesh, reached, solution.operations, stop)
+    elif solution.operations or len(inverted(reached)):
+        vertices = _best_positions(mesh, reached, stop)
+    shapes = scaled_jacobian(reached)
+    return replace(
+        solution,
+        score=reached.score,
+        elements=reached.n_elements,
+        inverted=len(inverted(reached)),
+        worst_scaled_jacobian=float(shapes.min(initial=1.0)),
+        worst_shape=float(element_shapes(reached).min(initial=1.0)),
+        shape_bound=shape_bound(mesh),
+        attainable=attainable_bound(mesh),
+        sum_delta2=int((reached.irregularity() ** 2).sum()),
+        vertices=vertices,
+        positions=reached.points[vertices].copy(),
+        parameters=reached.arrays.parameter[vertices].copy(),
+    )
+
+
+def _best_positions(
+    mesh: HalfEdgeMesh, reached: HalfEdgeMesh, stop: Callable[[], bool]
+) -> np.ndarray:
+    """Move the vertices of `reached`; returns the ids of those that have moved."""
+    before, parameters = reached.points.copy(), reached.parameters()
+    if mesh.kind == "quad" and not mesh.points[mesh.vertices(), 2].any():
+        _raise_worst(reached)
+        if (left := len(inverted(reached))) and not stop():
+            other = mesh_at(reached, before, parameters)
+            if len(smoothing.relax(other)) < left:
+                _raise_worst(other)
+                ids = other.vertices()
+                reached.move(ids, other.points[ids], other.arrays.parameter[ids])
+    elif not stop():
+        smoothing.relax(reached)
+    live = reached.vertices()
+    moved: np.ndarray = live[(reached.points[live] != before[live]).any(axis=1)]
+    return moved
+
+
+def _raise_worst(mesh: HalfEdgeMesh) -> None:
+    """Give a plane quad mesh its max-min positions."""
+    coarsener = Coarsener(mesh, FINEST, ceiling=1)
+    mesh.move(*coarsener.positions(coarsener.layout([], steps=FINE_STEPS)))
+
+
+def mesh_at(mesh: HalfEdgeMesh, points: np.ndarray, parameters: np.ndarray) -> HalfEdgeMesh:
+    """A copy of a mesh with its vertices elsewhere; rows of both by vertex id."""
+    copy, ids = mesh.copy(), mesh.vertices()
+    copy.move(ids, points[ids], parameters[ids])
+    return copy
+
+
+def _relax_touched(
+    mesh: HalfEdgeMesh, reached: HalfEdgeMesh, operations: Operations, stop: Callable[[], bool]
+) -> np.ndarray:
+    """Smooth around what the operations have touched, as long as `stop` is false."""
+    work = mesh.copy()
+    touched: dict[int, None] = {}
+    for operation, h in operations:
+        touched.update(dict.fromkeys(work.apply(operation, h).touched))
+    before = reached.points.copy()
+    alive = set(reached.vertices().tolist())
+    pending = [v for v in touched if v in alive]
+    for at in range(0, len(pending), NEAR):
+        if stop():
+            break
+        smoothing.relax(reached, pending[at : at + NEAR], thorough=False)
+    live = reached.vertices()
+    moved: np.ndarray = live[(reached.points[live] != before[live]).any(axis=1)]
+    return moved
