@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import Aims, Coarsener, Layout
+from meshwright_core.geometry.quality import scaled_jacobian
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
@@ -136,9 +137,15 @@ class LayoutSearch:
         if len(relax(reached)):
             return
         live, m = reached.vertices(), layout.arrays
-        m.points[live] = reached.points[live]
-        m.parameter[live] = reached.arrays.parameter[live]
-        self.coarsener.judge(layout)
+        for attempt in range(2):
+            m.points[live] = reached.points[live]
+            m.parameter[live] = reached.arrays.parameter[live]
+            if attempt == 0:
+                self.coarsener.judge(layout)
+                if layout.key[1]:
+                    return
+        # raising the corners folds a quad along a curve in the middle: keep what is valid
+        layout.key[1] = max(float(scaled_jacobian(reached).min()), 1e-3)
 
     def _note(self, layout: Layout) -> None:
         if self.best is None or self.coarsener.better(layout, self.best):

@@ -12,8 +12,7 @@ from typing import Any
 
 import torch
 
-from meshwright.benchmarks.parts import _aligned, _shown
-from meshwright.console import Update
+from meshwright.console import Update, table
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
@@ -39,17 +38,17 @@ def run(
     quick: bool,
     update: Update,
     seconds: float = SECONDS,
-    count: int = PARTS,
+    meshes: int = PARTS,
     prefer: str = "balanced",
 ) -> dict[str, Any]:
-    """Improve `count` parts of each row; quick: two of each, a tenth of the time."""
+    """Improve `meshes` parts of each row; quick: two of each, a tenth of the time."""
     policy = policy_files.load(policy_files.shipped("quad")[0])
     torch.set_num_threads(1)
     solver.prepare(policy)
     found: dict[str, Any] = {}
     for low, high in ROWS:
         rows = {}
-        for number, domain in enumerate(parts(QUICK if quick else count, (low, high), seed)):
+        for number, domain in enumerate(parts(QUICK if quick else meshes, (low, high), seed)):
             update(number, f"{low}-{high} corners: {number}")
             took = 0.1 * seconds if quick else seconds
             rows[f"{number} {domain.name}"] = solved(domain, policy, took, seed, prefer)
@@ -108,7 +107,7 @@ def text(results: dict[str, Any]) -> str:
     tables = []
     for group, found in results.items():
         rows = [["part", *next(iter(found["shapes"].values()))]]
-        rows += [[name, *map(_shown, row.values())] for name, row in found["shapes"].items()]
+        rows += [[name, *map(str, row.values())] for name, row in found["shapes"].items()]
         lines = [f"{name}: {value:.3g}" for name, value in found.items() if name != "shapes"]
-        tables.append("\n".join([group, _aligned(rows), *lines]))
+        tables.append("\n".join([group, table([tuple(row) for row in rows], indent=""), *lines]))
     return "\n\n".join(tables)
