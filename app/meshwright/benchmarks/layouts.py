@@ -12,7 +12,8 @@ from typing import Any
 
 import torch
 
-from meshwright.console import Update, table
+from meshwright.benchmarks.parts import aligned, shown
+from meshwright.console import Update
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
@@ -107,7 +108,7 @@ def text(results: dict[str, Any]) -> str:
     tables = []
     for group, found in results.items():
         rows = [["part", *next(iter(found["shapes"].values()))]]
-        rows += [[name, *map(str, row.values())] for name, row in found["shapes"].items()]
+        rows += [[name, *map(shown, row.values())] for name, row in found["shapes"].items()]
         lines = [f"{name}: {value:.3g}" for name, value in found.items() if name != "shapes"]
-        tables.append("\n".join([group, table([tuple(row) for row in rows], indent=""), *lines]))
+        tables.append("\n".join([group, aligned(rows), *lines]))
     return "\n\n".join(tables)
