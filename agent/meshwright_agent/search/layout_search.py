@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import Aims, Coarsener, Layout
+from meshwright_core.geometry.quality import scaled_jacobian
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
@@ -24,8 +25,8 @@ USABLE = 0.5
 CLOSE, COMFORT = 0.9, 0.85
 """... or this share of the best that is attainable; and the share of the larger of that and q* up
 to which more is worth more blocks."""
-PRICE = 3.0
-"""Each tenth of the bound is worth exp(0.3) times the blocks, a third more."""
+PRICE = 4.5
+"""Each tenth of the bound is worth exp(0.45) times the blocks, half as many more."""
 LEAST = 0.05
 """The least target: a corner below it is as good as folded."""
 SLACK = 3e-3
@@ -136,9 +137,15 @@ class LayoutSearch:
         if len(relax(reached)):
             return
         live, m = reached.vertices(), layout.arrays
-        m.points[live] = reached.points[live]
-        m.parameter[live] = reached.arrays.parameter[live]
-        self.coarsener.judge(layout)
+        for attempt in range(2):
+            m.points[live] = reached.points[live]
+            m.parameter[live] = reached.arrays.parameter[live]
+            if attempt == 0:
+                self.coarsener.judge(layout)
+                if layout.key[1]:
+                    return
+        # raising the corners folds a quad along a curve in the middle: keep what is valid
+        layout.key[1] = max(float(scaled_jacobian(reached).min()), 1e-3)
 
     def _note(self, layout: Layout) -> None:
         if self.best is None or self.coarsener.better(layout, self.best):

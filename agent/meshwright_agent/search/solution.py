@@ -145,7 +145,10 @@ def _best_positions(
         if (left := len(inverted(reached))) and not stop():
             other = mesh_at(reached, before, parameters)
             if len(smoothing.relax(other)) < left:
-                _raise_worst(other)
+                better = other.copy()
+                _raise_worst(better)
+                if len(inverted(better)) <= len(inverted(other)):
+                    other = better
                 ids = other.vertices()
                 reached.move(ids, other.points[ids], other.arrays.parameter[ids])
     elif not stop():

@@ -102,7 +102,7 @@ def solve(
     require_kind(policy, mesh.kind)
     preference = Preference(prefer, min_shape)
     if seconds is not None:
-        prepare(policy)  # so that loading the kernels takes none of the time
+        prepare(policy)  # so that loading compiled code takes none of the time
     if is_large(mesh):
         go_on = partial(
             solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten,
@@ -178,7 +178,7 @@ def _search_layouts(
     search.finished_early = all(seeker.exhausted for seeker in seekers) and coarsen
     if shorten:
         operations = shorter(
-            mesh, operations, seconds=search.share(1.0), slices=None if timed else SLICES,
+            mesh, operations, seconds=search.share(0.4), slices=None if timed else SLICES,
             keep_layout=True, cancelled=search.stopped,
         )  # fmt: skip
     method = candidates[0].method if not any(seeker.kicks for seeker in seekers) else "layouts"
@@ -187,7 +187,7 @@ def _search_layouts(
             operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
             method=method if operations else "none", aims=first.aims,
         ),
-        mesh, search.stopped,
+        mesh,
     )  # fmt: skip
 
 

@@ -39,17 +39,17 @@ def run(
     quick: bool,
     update: Update,
     seconds: float = SECONDS,
-    count: int = PARTS,
+    meshes: int = PARTS,
     prefer: str = "balanced",
 ) -> dict[str, Any]:
-    """Improve `count` parts of each row; quick: two of each, a tenth of the time."""
+    """Improve `meshes` parts of each row; quick: two of each, a tenth of the time."""
     policy = policy_files.load(policy_files.shipped("quad")[0])
     torch.set_num_threads(1)
     solver.prepare(policy)
     found: dict[str, Any] = {}
     for low, high in ROWS:
         rows = {}
-        for number, domain in enumerate(parts(QUICK if quick else count, (low, high), seed)):
+        for number, domain in enumerate(parts(QUICK if quick else meshes, (low, high), seed)):
             update(number, f"{low}-{high} corners: {number}")
             took = 0.1 * seconds if quick else seconds
             rows[f"{number} {domain.name}"] = solved(domain, policy, took, seed, prefer)
