@@ -282,13 +282,14 @@ def _patch_by_patch(
 def _warm_up(task: Task) -> None:
     mesh = benchmark_mesh(task.kind, 8, np.random.default_rng(0))
     operations = anneal(mesh, proposals=2000)[0]
-    shorter(mesh, operations)
+    shorter(mesh, operations, keep_layout=True)
     coarser(mesh, proposals=500, seconds=None)
     if task.kind == "quad":
         seeker = LayoutSearch(mesh, Preference("shape"))
         seeker.add(operations, True, lambda: False)
         seeker.run(lambda: False, 8)
-        judged(Solution(seeker.pool[0].operations(), 0, 0, 0), mesh)
+        found = Solution(seeker.pool[0].operations(), 0, 0, 0, coarse=True)
+        assert judged(found, mesh).rank
     batch = Batch(task, [mesh], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
 
