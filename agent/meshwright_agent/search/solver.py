@@ -13,6 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -215,6 +216,7 @@ class _Search:
         self.best = Candidate([], mesh.score, "none")
         self._candidates: list[Candidate] = []
         self._rounds = 0
+        self._undrawable: dict[tuple[Any, ...], int] = {}
 
     def nothing(self, coarse: bool) -> Solution:
         """Doing nothing: the solution to beat."""
@@ -318,9 +320,9 @@ class _Search:
     ) -> Solution:
         """The candidate coarsened and shortened again, within its share of the time."""
         mesh, operations = self.mesh, candidate.operations
-        if mesh.kind == "quad" and (inverted := undrawable(mesh, operations)):
+        if mesh.kind == "quad" and (inverted := self._inverted(operations)):
             finer = without_cleanups(mesh, operations)
-            if undrawable(mesh, finer) < inverted:
+            if self._inverted(finer) < inverted:
                 operations = finer
         if coarsen and mesh.kind == "quad" and mesh.n_elements <= SIDE_BY_SIDE:
             reached = replayed(mesh, operations)
@@ -328,16 +330,27 @@ class _Search:
                 reached, seconds=self._share(0.7), seed=self.seed + self.done,
                 patience=PATIENCE if self.seconds is None else None, cancelled=self._stopped,
             )  # fmt: skip
-            operations = operations + added
-            if added and shorten:
-                operations = shorter(
-                    mesh, operations, seconds=self._share(1.0), cancelled=self._stopped
-                )
+            if added and self._inverted(operations + added) <= self._inverted(operations):
+                operations = operations + added
+                if shorten:
+                    operations = self._shorter(operations)
         reached = replayed(mesh, operations)
         return Solution(
-            operations, reached.score, mesh.optimum, undrawable(mesh, operations),
+            operations, reached.score, mesh.optimum, self._inverted(operations),
             reached.n_elements, method=candidate.method, coarse=best.coarse,
         )  # fmt: skip
+
+    def _shorter(self, operations: Operations) -> Operations:
+        """Fewer operations, unless they lead to another mesh in which more stays inverted."""
+        fewer = shorter(self.mesh, operations, seconds=self._share(1.0), cancelled=self._stopped)
+        return fewer if self._inverted(fewer) <= self._inverted(operations) else operations
+
+    def _inverted(self, operations: Operations) -> int:
+        """`undrawable` after the operations, computed once: it can take a second."""
+        key = tuple(operations)
+        if key not in self._undrawable:
+            self._undrawable[key] = undrawable(self.mesh, operations)
+        return self._undrawable[key]
 
     def _share(self, share: float) -> float:
         """Seconds for a part of the polish: `share` of what is left for it."""
