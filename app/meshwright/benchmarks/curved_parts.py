@@ -14,15 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from meshwright.benchmarks.parts import aligned, shown
+from meshwright.benchmarks.parts import aligned, improve, shown
 from meshwright.console import Update
-from meshwright.document.position_repair import settle
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import Policy
-from meshwright_agent.search import solver
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.core.arrays import CURVE
-from meshwright_core.core.composite_curves import place_all
 from meshwright_core.domains import meshing
 from meshwright_core.domains.curved_parts import curved_suite
 from meshwright_core.domains.domain import Domain
@@ -58,12 +54,7 @@ def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[st
     meshed = time.perf_counter() - began
     before = mesh.copy()
     flat = meshing.mesh_domain(domain.flattened(FLAT_STEP), "quad")
-    began = time.perf_counter()
-    solution = solver.solve(mesh, policy, seconds=seconds, seed=seed)
-    took = time.perf_counter() - began
-    solution.replay(mesh)
-    settle(mesh)
-    mesh.validate()
+    solution, took = improve(mesh, policy, seconds, seed)
     return {
         "corners": sum(int(flags.sum()) for flags in domain.loop_corners),
         "holes": len(domain.holes),
@@ -88,11 +79,8 @@ def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[st
 def off_curves(mesh: HalfEdgeMesh) -> float:
     """The largest distance of a vertex from its place on its curve, in sizes of the mesh."""
     rows = mesh.vertices()
-    rows = rows[mesh.arrays.vertex[rows, CURVE] >= 0]
-    curve = mesh.arrays.vertex[rows, CURVE].astype(np.int64)
-    places = place_all(mesh.boundary_info.curves, curve, mesh.arrays.parameter[rows])
-    away = np.linalg.norm(places - mesh.points[rows], axis=1).max()
-    return float(away / np.ptp(mesh.points[rows], axis=0).max())
+    rows = rows[mesh.curve_ids()[rows] >= 0]
+    return float(mesh.off_curve()[rows].max() / np.ptp(mesh.points[rows], axis=0).max())
 
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from meshwright.document.position_repair import settle
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
+from meshwright_agent.search.solution import Solution
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.analysis.blocks import block_count
 from meshwright_core.domains import gallery, meshing
@@ -55,12 +56,7 @@ def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[st
     """Return one row of the table."""
     mesh = meshing.mesh_domain(domain, "quad")
     before, places = mesh.copy(), corners(mesh)
-    began = time.perf_counter()
-    solution = solver.solve(mesh, policy, seconds=seconds, seed=seed)
-    took = time.perf_counter() - began
-    solution.replay(mesh)
-    settle(mesh)
-    mesh.validate()
+    solution, took = improve(mesh, policy, seconds, seed)
     return {
         "corners": sum(int(flags.sum()) for flags in domain.loop_corners),
         "holes": len(domain.holes),
@@ -77,6 +73,19 @@ def solved(domain: Domain, policy: Policy, seconds: float, seed: int) -> dict[st
         "operations": len(solution.operations),
         "seconds": round(took, 2),
     }
+
+
+def improve(
+    mesh: HalfEdgeMesh, policy: Policy, seconds: float, seed: int
+) -> tuple[Solution, float]:
+    """Search, replay what was found, smooth and untangle; also the seconds that the search took."""
+    began = time.perf_counter()
+    solution = solver.solve(mesh, policy, seconds=seconds, seed=seed)
+    took = time.perf_counter() - began
+    solution.replay(mesh)
+    settle(mesh)
+    mesh.validate()
+    return solution, took
 
 
 def _area(mesh: HalfEdgeMesh) -> float:

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components
 from meshwright_core.core.arrays import TWIN
 from meshwright_core.core.mesh_boundary import Seats
 from meshwright_core.errors import MeshError
-from meshwright_core.geometry.edge_curves import EdgePlaces, edge_points
+from meshwright_core.geometry.edge_parts import EdgeParts
 from meshwright_core.geometry.quality import scaled_jacobian
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -98,13 +98,14 @@ def divided(mesh: HalfEdgeMesh, pieces: NDArray[np.int64]) -> HalfEdgeMesh:
         """Vertices of a divided edge from a to b, along half-edge h."""
         if (a, b) not in edges:
             shares = np.arange(1, count) / count
-            places = EdgePlaces(mesh, [h])
-            on = int(places.curve[0])
+            part = EdgeParts.of(mesh.arrays, np.array([h]), mesh.k)
+            on = int(part.curve[0])
+            places = part.points(np.zeros(count - 1, np.int64), shares)
             made = []
-            for w, place in zip(shares, edge_points(mesh, h, shares), strict=True):
+            for w, place in zip(shares, places, strict=True):
                 made.append(len(points))
                 points.append(place)
-                low, high = places.span[0]
+                low, high = part.span[0]
                 along = low + w * (high - low)
                 curve.append(on)
                 t.append(float(along % lengths[on]) if on >= 0 else 0.0)
