@@ -40,6 +40,8 @@ AFRESH = 0.2
 """Probability of starting a new sweep with another least number of elements after a state."""
 SWEEP = 300
 """Proposals in a sweep, relative to the number of elements."""
+OBSTACLE = DRAWN
+"""Flaws of a mesh with obstacles, which are more than elements can be inverted."""
 PATIENCE = 1000
 """Sweeps without an improvement after which :func:`coarsen` may end early. Over 40 random meshes of
 4 to 85 elements, 1 found something better within 0.6 s after 400 such sweeps."""
@@ -113,14 +115,15 @@ class _Coarser:
         self._keep()
 
     def _flaws_of(self, operations: Operations) -> int:
-        """Obstacles, plus elements inverted after smoothing unless the former are too many."""
+        """Elements inverted after smoothing; of a mesh with obstacles these, all of them worse.
+
+        What has obstacles is not smoothed: with curved sides that is in vain for a second or so.
+        """
         if self._mesh.n_elements > DRAWN:
             return 0
         reached = replayed(self._mesh, operations)
         obstacles = self._obstacles.count(reached)
-        if operations and obstacles > self._flaws:
-            return obstacles
-        return obstacles + len(smoothing.relax(reached))
+        return OBSTACLE + obstacles if obstacles else len(smoothing.relax(reached))
 
     def _keep(self) -> None:
         self._kept = copied(self._annealer.best)
@@ -151,6 +154,9 @@ class _Coarser:
         if not found or self._annealer.rng.random() < AFRESH:
             # the coarsest states often have flaws, so the floor of a sweep is random
             most = max(self._floor + 1, int(self._kept.counters[ELEMENTS]))
+            if self._flaws:
+                # it may be too coarse already, as the start of a round part often is
+                most = self._annealer.ceiling + 1
             self._annealer.floor = int(self._annealer.rng.integers(self._floor, most))
             self._annealer.restart()
 

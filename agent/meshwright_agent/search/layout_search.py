@@ -116,13 +116,34 @@ class LayoutSearch:
         """Whether other starts are called for, as nothing has come of kicks lately."""
         return self.idle >= STALE and not self.goal_reached and self.idle // STALE > self._served
 
-    def add(self, operations: Operations, coarsen: bool, stop: Callable[[], bool]) -> None:
-        """Add the layout that operations lead to, coarsened unless `stop` comes first."""
+    @property
+    def valid(self) -> bool:
+        """Whether the best layout has no inverted element."""
+        return self.best is not None and self.best.key[1] > 0.0
+
+    def add(
+        self,
+        operations: Operations,
+        coarsen: bool,
+        stop: Callable[[], bool],
+        placed: HalfEdgeMesh | None = None,
+        unfold: bool = True,
+    ) -> None:
+        """Add the layout that operations lead to, coarsened unless `stop` comes first.
+
+        placed: the same state of the mesh, with other positions, which are taken where those of the
+        layout are folded. unfold: whether it is smoothed and untangled where they are folded and
+        none are given, which may take seconds.
+        """
         self._served = self.idle // STALE
         layout = self.coarsener.layout(operations)
-        if not layout.key[1] and not (self.pool and stop()):
-            self._unfold(layout, operations)
-        if coarsen:
+        if not layout.key[1] and placed is not None:
+            self._take_positions(layout, placed)
+        elif not layout.key[1] and unfold and not (self.pool and stop()):
+            reached = replayed(self._mesh, operations)
+            if not len(relax(reached)):
+                self._take_positions(layout, reached)
+        if coarsen and layout.key[1]:
             self._coarsen(layout, stop)
         self._note(layout)
         place = 0
@@ -131,11 +152,8 @@ class LayoutSearch:
         self.pool.insert(place, layout)
         del self.pool[POOL:]
 
-    def _unfold(self, layout: Layout, operations: Operations) -> None:
-        """Position a layout from smoothed and untangled positions, which takes longer."""
-        reached = replayed(self._mesh, operations)
-        if len(relax(reached)):
-            return
+    def _take_positions(self, layout: Layout, reached: HalfEdgeMesh) -> None:
+        """Position a layout from the valid positions of the same state of the mesh."""
         live, m = reached.vertices(), layout.arrays
         for attempt in range(2):
             m.points[live] = reached.points[live]

@@ -10,6 +10,7 @@ import numpy as np
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import ALIKE, FINEST, Aims, Coarsener, cost
+from meshwright_core.core.arrays import MeshArrays
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
@@ -105,19 +106,26 @@ class Solution:
 
 
 def judged(
-    solution: Solution, mesh: HalfEdgeMesh, stop: Callable[[], bool] = lambda: False
+    solution: Solution,
+    mesh: HalfEdgeMesh,
+    stop: Callable[[], bool] = lambda: False,
+    placed: MeshArrays | None = None,
 ) -> Solution:
     """The solution with positions, its measures and counts; `mesh` is the start.
 
     Positions: max-min ones for quads in a plane of moderate number, else smoothed and untangled
     ones. On large meshes only vertices that the operations have touched are smoothed, until `stop`.
+    placed: the state that the operations lead to, with positions to begin with.
     """
     reached = replayed(mesh, solution.operations)
+    if placed is not None:
+        ids = reached.vertices()
+        reached.move(ids, placed.points[ids], placed.parameter[ids])
     vertices = np.zeros(0, np.int64)
     if reached.n_elements > RELAXED:
         vertices = _relax_touched(mesh, reached, solution.operations, stop)
     elif solution.operations or len(inverted(reached)):
-        vertices = _best_positions(mesh, reached, stop)
+        vertices = _best_positions(mesh, solution.operations, reached, stop)
     shapes = scaled_jacobian(reached)
     return replace(
         solution,
@@ -136,13 +144,18 @@ def judged(
 
 
 def _best_positions(
-    mesh: HalfEdgeMesh, reached: HalfEdgeMesh, stop: Callable[[], bool]
+    mesh: HalfEdgeMesh, operations: Operations, reached: HalfEdgeMesh, stop: Callable[[], bool]
 ) -> np.ndarray:
     """Move the vertices of `reached`; returns the ids of those that have moved."""
     before, parameters = reached.points.copy(), reached.parameters()
+    valid = not len(inverted(reached))
     if mesh.kind == "quad" and not mesh.points[mesh.vertices(), 2].any():
         _raise_worst(reached)
-        if (left := len(inverted(reached))) and not stop():
+        left = len(inverted(reached))
+        if left and valid:
+            ids = reached.vertices()
+            reached.move(ids, before[ids], parameters[ids])
+        elif left and not stop():
             other = mesh_at(reached, before, parameters)
             if len(smoothing.relax(other)) < left:
                 better = other.copy()
@@ -153,8 +166,10 @@ def _best_positions(
                 reached.move(ids, other.points[ids], other.arrays.parameter[ids])
     elif not stop():
         smoothing.relax(reached)
+    # also those whose positions were given
+    fresh = replayed(mesh, operations)
     live = reached.vertices()
-    moved: np.ndarray = live[(reached.points[live] != before[live]).any(axis=1)]
+    moved: np.ndarray = live[(reached.points[live] != fresh.points[live]).any(axis=1)]
     return moved
 
 

@@ -29,7 +29,9 @@ from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
 from meshwright_agent.search.shortening import shorten as shorter
 from meshwright_agent.search.solution import Solution, judged
+from meshwright_agent.search.valid_descent import ValidDescent
 from meshwright_core.domains.meshing import benchmark_mesh
+from meshwright_core.geometry.quality import inverted
 from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
@@ -52,6 +54,8 @@ FIRST_ROLLOUTS = 8
 TRIED = 24
 """States on the way to one that cannot be drawn that are tried in its place."""
 
+DESCENT = 0.7
+"""Share of the time after which no more rollouts are followed from one valid state to the next."""
 PER_IRREGULAR = 50
 """Steps of a rollout per irregular vertex that is left on a large mesh after the patches."""
 
@@ -144,6 +148,8 @@ def _search_layouts(
         LayoutSearch(mesh, preference, search.seed + 7919 * i) for i in range(max(1, workers))
     ]
 
+    startable = not len(inverted(mesh))
+
     def stop() -> bool:
         return search.over(1.0 - POLISH)
 
@@ -154,7 +160,13 @@ def _search_layouts(
         for candidate in mine:
             if seeker.pool and stop():
                 break
-            seeker.add(candidate.operations, coarsen, stop)
+            seeker.add(candidate.operations, coarsen, stop, unfold=not startable)
+        if not seeker.valid and startable:
+            descent = ValidDescent(mesh, search.policy, search.max_steps, search.seed + 101 * i)
+            descent.follow(mine, stop)
+            if timed:
+                descent.run(lambda: search.over(DESCENT))
+            seeker.add(descent.operations, coarsen, stop, descent.mesh)
         while not stop():
             seeker.run(stop, 100 if total is None else total // len(seekers))
             if total is not None or not coarsen or seeker.exhausted:
@@ -182,13 +194,15 @@ def _search_layouts(
             keep_layout=True, cancelled=search.stopped,
         )  # fmt: skip
     method = candidates[0].method if not any(seeker.kicks for seeker in seekers) else "layouts"
-    return judged(
-        Solution(
-            operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
-            method=method if operations else "none", aims=first.aims,
-        ),
-        mesh,
+    answer = Solution(
+        operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
+        method=method if operations else "none", aims=first.aims,
     )  # fmt: skip
+    found = judged(answer, mesh)
+    if found.inverted and layout.key[1]:
+        # valid only at the positions that the search has come by
+        found = judged(replace(answer, operations=layout.operations()), mesh, placed=layout.arrays)
+    return found
 
 
 def _search_states(

@@ -6,8 +6,11 @@ import pytest
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import PolicyError
 from meshwright_agent.search.solver import Solution, prepare, solve
+from meshwright_core.curves.curve import Curve
 from meshwright_core.domains import gallery
+from meshwright_core.domains.domain import Domain
 from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
+from meshwright_core.geometry.smoothing import relax
 
 
 @pytest.fixture(scope="module", params=["tri", "quad"])
@@ -109,3 +112,14 @@ def test_a_disc_stays_a_disc(policy):
     assert after.score == found.score < mesh.score
     assert len(after.boundary_loops()[0]) >= 12
     assert not after.locked().any()
+
+
+def test_half_a_disc_is_drawn_at_the_optimum():
+    # the first states at s* have two or three quads, too few for a valid one
+    disc = Domain.from_curves([[Curve.arc((0, 0), 10, 0, np.pi), Curve.line((-10, 0), (10, 0))]])
+    mesh = mesh_domain(disc, "quad")
+    policy = policy_files.load(policy_files.shipped("quad")[0])
+    found = solve(mesh, policy, seconds=4.0)
+    assert found.perfect and found.optimum == 2
+    after = replayed(mesh, found)
+    assert len(relax(after)) == 0 and after.score == 2
