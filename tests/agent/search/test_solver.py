@@ -10,6 +10,7 @@ from meshwright_core.curves.curve import Curve
 from meshwright_core.domains import gallery
 from meshwright_core.domains.domain import Domain
 from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
+from meshwright_core.geometry.edge_curves import element_areas
 from meshwright_core.geometry.smoothing import relax
 
 
@@ -91,13 +92,13 @@ def test_quads_are_coarsened_only_on_request():
     assert coarse.elements < fine.elements
 
 
-def test_the_order_of_solutions_is_s_flaws_elements_operations():
+def test_the_order_of_solutions_is_validity_s_flaws_elements_operations():
     def rank(score, inverted, elements, length):
         return Solution([("flip", 0)] * length, score, 0, inverted, elements).rank
 
-    ranks = [rank(1, 0, 9, 9), rank(1, 0, 9, 10), rank(1, 0, 10, 1), rank(1, 1, 1, 1)]
+    ranks = [rank(1, 0, 9, 9), rank(1, 0, 9, 10), rank(1, 0, 10, 1), rank(2, 0, 1, 1)]
+    ranks += [rank(1, 1, 1, 1), rank(1, 2, 1, 1)]
     assert ranks == sorted(ranks)
-    assert rank(2, 0, 1, 1) > ranks[-1]
 
 
 def test_a_policy_of_the_other_kind_is_refused(policy):
@@ -107,11 +108,10 @@ def test_a_policy_of_the_other_kind_is_refused(policy):
 
 def test_a_disc_stays_a_disc(policy):
     mesh = mesh_domain(gallery.shape("disc"), policy.kind)
-    found = solve(mesh, policy, rollouts=1, seconds=1.0)
+    found = solve(mesh, policy, rollouts=1)
     after = replayed(mesh, found)
     assert after.score == found.score < mesh.score
-    assert len(after.boundary_loops()[0]) >= 12
-    assert not after.locked().any()
+    assert element_areas(after).sum() == pytest.approx(element_areas(mesh).sum(), rel=1e-12)
 
 
 def test_half_a_disc_is_drawn_at_the_optimum():
