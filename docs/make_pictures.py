@@ -191,8 +191,8 @@ def make_parts() -> None:
         if number % columns == 0:
             tiles += [[], []]
         tiles[-2].append(plain(mesh, size))
-        solve(mesh, policy, seconds=PARTS_SECONDS).replay(mesh)
-        smoothing.relax(mesh)
+        if not solve(mesh, policy, seconds=PARTS_SECONDS).carry_out(mesh):
+            smoothing.relax(mesh)
         tiles[-1].append(with_blocks(mesh, size))
     whole = Image.new("RGB", (columns * size[0], len(tiles) * size[1]), LIGHT.background)
     for row, images in enumerate(tiles):
@@ -213,8 +213,8 @@ def make_curves() -> None:
         if number % columns == 0:
             tiles += [[], []]
         tiles[-2].append(plain(mesh, size))
-        solve(mesh, policy, seconds=PARTS_SECONDS).replay(mesh)
-        smoothing.relax(mesh)
+        if not solve(mesh, policy, seconds=PARTS_SECONDS).carry_out(mesh):
+            smoothing.relax(mesh)
         tiles[-1].append(plain(mesh, size))
     whole = Image.new("RGB", (columns * size[0], len(tiles) * size[1]), LIGHT.background)
     for row, images in enumerate(tiles):

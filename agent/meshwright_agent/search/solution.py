@@ -99,6 +99,12 @@ class Solution:
         if len(self.vertices):
             mesh.move(self.vertices, self.positions, self.parameters)
 
+    def carry_out(self, mesh: HalfEdgeMesh) -> bool:
+        """:meth:`replay` and :meth:`place`; whether the mesh then has no inverted element."""
+        self.replay(mesh)
+        self.place(mesh)
+        return not len(inverted(mesh))
+
     @property
     def perfect(self) -> bool:
         """Whether s = s*, so that it cannot be lower, without inverted elements."""

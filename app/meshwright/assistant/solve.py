@@ -108,8 +108,7 @@ def solve(
     before = start.score
     with one_thread():
         found = solver.solve(start, chosen, seconds=float(seconds), seed=seed)
-    found.replay(start)
-    inverted = settle(start)
+    inverted = [] if found.carry_out(start) else settle(start)
     return SolvedMesh(
         start, before, found.score, found.optimum, found.operations, found.seconds, chosen.name,
         inverted,

@@ -140,8 +140,7 @@ def _improved(
     from meshwright.document.position_repair import settle
 
     mesh = start.copy()
-    solution.replay(mesh)
-    inverted = settle(mesh)
+    inverted = [] if solution.carry_out(mesh) else settle(mesh)
     if not (inverted and sound):
         return mesh, solution.operations, inverted
     best, done = start.copy(), 0
