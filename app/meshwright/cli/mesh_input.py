@@ -89,8 +89,8 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
             raise UserError(f"--geometry {arguments.geometry}: {word} is itself a shape, no mesh")
         domain, kind = read_domain(word, arguments), arguments.kind or "quad"
         return inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed)
-    for option in ("kind", "max_edge", "region"):
-        drawn = option == "region" and arguments.geometry is not None
+    for option in ("kind", "max_edge", "region", "gap", "curve_step"):
+        drawn = option in ("region", "gap") and arguments.geometry is not None
         if getattr(arguments, option) is not None and not drawn:
             name = option.replace("_", "-")
             raise UserError(f"--{name}: this is for drawings, and {word} is a mesh")

@@ -137,6 +137,8 @@ def test_arcs_are_found_in_the_boundary_of_a_mesh(run):
         (["plate.json", "--geometry", "plate.json"], "plate.json is itself a shape, no mesh"),
         (["in.vtk", "--kind", "tri"], "--kind: this is for drawings, and in.vtk is a mesh"),
         (["in.vtk", "--max-edge", "1"], "--max-edge: this is for drawings"),
+        (["in.vtk", "--curve-step", "20"], "--curve-step: this is for drawings"),
+        (["in.vtk", "--gap", "0.1"], "--gap: this is for drawings"),
         (["none.vtk"], "none.vtk: there is no such file"),
     ],
 )

@@ -86,6 +86,10 @@ def test_gaps_are_closed_as_wide_as_one_asks(run, tmp_path):
         (["shapes", "parts.svg", "--layer", "lid"], "nothing on the layer lid"),
         (["mesh", "star", "-o", "out.vtk", "--region", "1"], "--region: this is for drawings"),
         (["mesh", "parts.svg", "-o", "out.vtk", "--region", "lug", "--curve-step", "0"], "0 deg"),
+        (
+            ["mesh", "parts.svg", "-o", "out.vtk", "--region", "lug", "--curve-step", "1e-6"],
+            "no more than 50,000 are made",
+        ),
     ],
 )
 def test_wrong_use(run, words, reason):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from meshwright_core.core.composite_curves import place_all, tangents
 from meshwright_core.domains.loops.region_loops import RegionLoops
 from meshwright_core.domains.loops.side_curves import piece_starts, side_curves
+from meshwright_core.errors import MeshError
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]
@@ -27,6 +28,9 @@ SAMPLES = np.linspace(0.0, 1.0, 17)
 """Fractions of an edge's parameters at which its shape is looked at."""
 STRAIGHT = 1e-7
 """Radians of turning up to which an edge counts as straight."""
+
+MAX_EDGES = 50_000
+"""Edges along curves beyond which a request for short ones is refused."""
 
 
 class SideEdges:
@@ -50,6 +54,7 @@ class SideEdges:
         self.curves = side_curves(sides)
         self.starts = [piece_starts(self.curves, i, side) for i, side in enumerate(every)]
         self._tables = [self._turning_table(number) for number in range(len(every))]
+        self._refuse_too_many()
         self.curve, self.parameter, self.node = (np.zeros(0, int), np.zeros(0), np.zeros(0, int))
         self.side, self.ends = np.zeros(0, int), np.zeros((0, 2), int)
         self.span, self.turnings = np.zeros((0, 2)), np.zeros(0)
@@ -70,6 +75,18 @@ class SideEdges:
             for (low, first), (high, last) in pairwise(at):
                 rows += self._divided(number, (low, high), (first, last))
         self._append(rows)
+
+    def _refuse_too_many(self) -> None:
+        """Raise MeshError if the turning allowed to an edge needs more edges than are made."""
+        step = self.sides.curve_step
+        if step is None:
+            return
+        needed = sum(float(total[-1]) for _, total in self._tables) / np.radians(step)
+        if needed > MAX_EDGES:
+            raise MeshError(
+                f"Edges that turn by {step:g} degrees at most would be about {needed:.2g} along "
+                f"the curves; no more than {MAX_EDGES:,} are made."
+            )
 
     # Measures of the sides
 
