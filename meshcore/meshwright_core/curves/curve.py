@@ -345,14 +345,14 @@ class Curve:
     def _own_area(self) -> float:
         """:meth:`area_about` its start."""
         total = 0.0
-        for span in self.spans:
-            if len(span) == 2:
-                (x, y), (z, w) = (row[:2] / row[3] - self.start for row in span)
-                total += 0.5 * float(x * w - y * z)
-                continue
-            point, slope = span_points(span, _GAUSS)
-            x, y = (point[:, :2] - self.start).T
-            total += 0.5 * float(_WEIGHTS @ (x * slope[:, 1] - y * slope[:, 0]))
+        for degree in {len(span) - 1 for span in self.spans}:
+            spans = np.stack([span for span in self.spans if len(span) == degree + 1])
+            value, slope = _at_nodes(spans)
+            weight = value[..., 2:]
+            point = value[..., :2] / weight
+            along = (slope[..., :2] - point * slope[..., 2:]) / weight
+            x, y = np.moveaxis(point - self.start, -1, 0)
+            total += 0.5 * float(((x * along[..., 1] - y * along[..., 0]) @ _WEIGHTS).sum())
         return total
 
     @property
@@ -528,6 +528,18 @@ def polygon_area(chain: Sequence[Curve]) -> float:
     """Signed area inside a closed chain of curves, about its first point."""
     origin = chain[0].start
     return sum(curve.area_about(origin) for curve in chain)
+
+
+def _at_nodes(spans: Array) -> tuple[Array, Array]:
+    """Homogeneous (x, y, w) at the Gauss nodes of spans (s, d + 1, 4), and derivatives by u:
+    (s, 24, 3) each.
+    """
+    u = _GAUSS[:, None]
+    level = [row[:, None, [0, 1, 3]] for row in np.moveaxis(spans, 1, 0)]
+    while len(level) > 2:
+        level = [(1.0 - u) * a + u * b for a, b in pairwise(level)]
+    slope = (spans.shape[1] - 1) * (level[1] - level[0])
+    return (1.0 - u) * level[0] + u * level[1], np.broadcast_to(slope, (len(spans), len(u), 3))
 
 
 def _extent(span: Array) -> float:
