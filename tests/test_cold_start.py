@@ -71,9 +71,6 @@ def run(code: list[str], cache: Path, folder: Path) -> str:
     return done.stdout
 
 
-pytestmark = pytest.mark.timeout(900)  # a warm-up compiles everything, on slow machines for minutes
-
-
 @pytest.fixture(scope="module")
 def cache(tmp_path_factory):
     """A cache that the warm-up of the agent has filled."""
