@@ -121,6 +121,10 @@ class LayoutSearch:
         """Whether the best layout has no inverted element."""
         return self.best is not None and self.best.key[1] > 0.0
 
+    def valid_at(self, score: int) -> bool:
+        """Whether the best layout has no inverted element and this s."""
+        return self.best is not None and self.best.key[1] > 0.0 and self.best.key[0] <= score
+
     def add(
         self,
         operations: Operations,

@@ -31,6 +31,7 @@ from meshwright_agent.search.shortening import shorten as shorter
 from meshwright_agent.search.solution import Solution, judged
 from meshwright_agent.search.valid_descent import ValidDescent
 from meshwright_core.domains.meshing import benchmark_mesh
+from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.quality import inverted
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -54,6 +55,9 @@ FIRST_ROLLOUTS = 8
 TRIED = 24
 """States on the way to one that cannot be drawn that are tried in its place."""
 
+COARSEST = 0.5
+"""Share of the time for the polish that coarsening without regard to shape takes, where nothing that
+rollouts found at s* can be drawn."""
 DESCENT = 0.7
 """Share of the time after which no more rollouts are followed from one valid state to the next."""
 PER_IRREGULAR = 50
@@ -161,6 +165,8 @@ def _search_layouts(
             if seeker.pool and stop():
                 break
             seeker.add(candidate.operations, coarsen, stop, unfold=not startable)
+        if startable and not seeker.valid_at(mesh.optimum) and mine:
+            _add_coarsest(search, seeker, mine[0], coarsen, stop)
         if not seeker.valid and startable:
             descent = ValidDescent(mesh, search.policy, search.max_steps, search.seed + 101 * i)
             descent.follow(mine, stop)
@@ -203,6 +209,28 @@ def _search_layouts(
         # valid only at the positions that the search has come by
         found = judged(replace(answer, operations=layout.operations()), mesh, placed=layout.arrays)
     return found
+
+
+def _add_coarsest(
+    search: _Search,
+    seeker: LayoutSearch,
+    candidate: Candidate,
+    coarsen: bool,
+    stop: Callable[[], bool],
+) -> None:
+    """Add what coarsening without regard to shape makes of a candidate, if that can be drawn.
+
+    With few elements around a hole there is less that can fold than in a rollout's result.
+    """
+    reached = replayed(search.mesh, candidate.operations)
+    seconds = search.share(COARSEST)
+    proposals = None if search.timed else PROPOSALS_EACH * reached.n_elements
+    operations = candidate.operations + coarser(
+        reached, seconds=seconds, proposals=proposals, seed=search.seed, cancelled=stop
+    )
+    placed = replayed(search.mesh, operations)
+    if not len(smoothing.relax(placed)):
+        seeker.add(operations, coarsen, stop, placed)
 
 
 def _search_states(
