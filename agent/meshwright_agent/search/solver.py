@@ -56,8 +56,8 @@ TRIED = 24
 """States on the way to one that cannot be drawn that are tried in its place."""
 
 COARSEST = 0.5
-"""Share of the time for the polish that coarsening without regard to shape takes, where nothing that
-rollouts found at s* can be drawn."""
+"""Share of the time for the polish that coarsening without regard to shape takes where nothing
+that rollouts found at s* can be drawn."""
 DESCENT = 0.7
 """Share of the time after which no more rollouts are followed from one valid state to the next."""
 PER_IRREGULAR = 50
