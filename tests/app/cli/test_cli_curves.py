@@ -184,11 +184,12 @@ def test_a_valid_mesh_stays_valid(star, greedy, monkeypatch):
 
     monkeypatch.setattr(position_repair, "settle", fails_late)
 
-    def replay(mesh):
+    def carry_out(mesh):
         for operation, halfedge in operations:
             mesh.apply(operation, halfedge)
+        return False
 
-    solution = SimpleNamespace(operations=operations, replay=replay)
+    solution = SimpleNamespace(operations=operations, carry_out=carry_out)
     start = star.copy()
     mesh, done, inverted = improve._improved(star, solution, sound=True)
     assert (star.elements() == start.elements()).all()
