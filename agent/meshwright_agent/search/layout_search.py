@@ -116,11 +116,6 @@ class LayoutSearch:
         """Whether other starts are called for, as nothing has come of kicks lately."""
         return self.idle >= STALE and not self.goal_reached and self.idle // STALE > self._served
 
-    @property
-    def valid(self) -> bool:
-        """Whether the best layout has no inverted element."""
-        return self.best is not None and self.best.key[1] > 0.0
-
     def valid_at(self, score: int) -> bool:
         """Whether the best layout has no inverted element and this s."""
         return self.best is not None and self.best.key[1] > 0.0 and self.best.key[0] <= score
@@ -159,14 +154,17 @@ class LayoutSearch:
     def _take_positions(self, layout: Layout, reached: HalfEdgeMesh) -> None:
         """Position a layout from the valid positions of the same state of the mesh."""
         live, m = reached.vertices(), layout.arrays
-        for attempt in range(2):
+
+        def take() -> None:
             m.points[live] = reached.points[live]
             m.parameter[live] = reached.arrays.parameter[live]
-            if attempt == 0:
-                self.coarsener.judge(layout)
-                if layout.key[1]:
-                    return
+
+        take()
+        self.coarsener.judge(layout)
+        if layout.key[1]:
+            return
         # raising the corners folds a quad along a curve in the middle: keep what is valid
+        take()
         layout.key[1] = max(float(scaled_jacobian(reached).min()), 1e-3)
 
     def _note(self, layout: Layout) -> None:

@@ -90,6 +90,39 @@ class Shared(Protocol):
         """Add to the number of rollouts done."""
 
 
+class RolloutBatch:
+    """What a worker needs to make rollouts from one state apart from a search; keeps what they
+    reach.
+
+    Args:
+        mesh: the state, which is not changed.
+        policy: for meshes of this kind.
+        max_steps: length of a rollout, by default that of the policy's task.
+        score: s that a rollout must reach to be kept.
+    """
+
+    thorough, annealing = True, False
+
+    def __init__(
+        self, mesh: HalfEdgeMesh, policy: Policy, max_steps: int | None, score: int
+    ) -> None:
+        self.mesh, self.policy, self.max_steps = mesh, policy, max_steps
+        self.score, self.best = score, Candidate([], mesh.score, "none")
+        self.found: list[Candidate] = []
+
+    def offer(self, candidate: Candidate) -> None:
+        """Keep it if it has the wanted s."""
+        if candidate.score <= self.score:
+            self.found.append(candidate)
+
+    def book(self, wanted: int) -> int:
+        """As many as are wanted."""
+        return wanted
+
+    def count(self, rollouts: int) -> None:
+        """They are counted by the caller, if at all."""
+
+
 class Worker:
     """One thread's search."""
 

@@ -124,14 +124,16 @@ def judged(
     placed: the state that the operations lead to, with positions to begin with.
     """
     reached = replayed(mesh, solution.operations)
+    unplaced = reached.points.copy()
     if placed is not None:
         ids = reached.vertices()
         reached.move(ids, placed.points[ids], placed.parameter[ids])
-    vertices = np.zeros(0, np.int64)
     if reached.n_elements > RELAXED:
-        vertices = _relax_touched(mesh, reached, solution.operations, stop)
+        _relax_touched(mesh, reached, solution.operations, stop)
     elif solution.operations or len(inverted(reached)):
-        vertices = _best_positions(mesh, solution.operations, reached, stop)
+        _best_positions(reached, stop)
+    live = reached.vertices()
+    vertices = live[(reached.points[live] != unplaced[live]).any(axis=1)]
     shapes = scaled_jacobian(reached)
     return replace(
         solution,
@@ -149,13 +151,11 @@ def judged(
     )
 
 
-def _best_positions(
-    mesh: HalfEdgeMesh, operations: Operations, reached: HalfEdgeMesh, stop: Callable[[], bool]
-) -> np.ndarray:
-    """Move the vertices of `reached`; returns the ids of those that have moved."""
+def _best_positions(reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:
+    """Move the vertices of `reached`."""
     before, parameters = reached.points.copy(), reached.parameters()
     valid = not len(inverted(reached))
-    if mesh.kind == "quad" and not mesh.points[mesh.vertices(), 2].any():
+    if reached.kind == "quad" and not reached.points[reached.vertices(), 2].any():
         _raise_worst(reached)
         left = len(inverted(reached))
         if left and valid:
@@ -172,11 +172,6 @@ def _best_positions(
                 reached.move(ids, other.points[ids], other.arrays.parameter[ids])
     elif not stop():
         smoothing.relax(reached)
-    # also those whose positions were given
-    fresh = replayed(mesh, operations)
-    live = reached.vertices()
-    moved: np.ndarray = live[(reached.points[live] != fresh.points[live]).any(axis=1)]
-    return moved
 
 
 def _raise_worst(mesh: HalfEdgeMesh) -> None:
@@ -194,19 +189,15 @@ def mesh_at(mesh: HalfEdgeMesh, points: np.ndarray, parameters: np.ndarray) -> H
 
 def _relax_touched(
     mesh: HalfEdgeMesh, reached: HalfEdgeMesh, operations: Operations, stop: Callable[[], bool]
-) -> np.ndarray:
+) -> None:
     """Smooth around what the operations have touched, as long as `stop` is false."""
     work = mesh.copy()
     touched: dict[int, None] = {}
     for operation, h in operations:
         touched.update(dict.fromkeys(work.apply(operation, h).touched))
-    before = reached.points.copy()
     alive = set(reached.vertices().tolist())
     pending = [v for v in touched if v in alive]
     for at in range(0, len(pending), NEAR):
         if stop():
             break
         smoothing.relax(reached, pending[at : at + NEAR], thorough=False)
-    live = reached.vertices()
-    moved: np.ndarray = live[(reached.points[live] != before[live]).any(axis=1)]
-    return moved

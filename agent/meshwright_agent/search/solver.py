@@ -22,11 +22,17 @@ from meshwright_agent.env.vector_env import Batch
 from meshwright_agent.policy.policy_files import Policy, require_kind
 from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
-from meshwright_agent.search.coarsening import PATIENCE, replayed, undrawable
 from meshwright_agent.search.coarsening import coarsen as coarser
+from meshwright_agent.search.coarsening import replayed, undrawable
 from meshwright_agent.search.layout_search import LayoutSearch, Preference
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
-from meshwright_agent.search.search_worker import KEPT, SIDE_BY_SIDE, Candidate, Worker
+from meshwright_agent.search.search_worker import (
+    KEPT,
+    SIDE_BY_SIDE,
+    Candidate,
+    RolloutBatch,
+    Worker,
+)
 from meshwright_agent.search.shortening import shorten as shorter
 from meshwright_agent.search.solution import Solution, judged
 from meshwright_agent.search.valid_descent import ValidDescent
@@ -142,7 +148,7 @@ def _search_layouts(
     search: _Search, preference: Preference, workers: int, coarsen: bool, shorten: bool
 ) -> Solution:
     """Rollouts until s* is reached, then a search among layouts of the lowest s."""
-    mesh, timed = search.mesh, search.seconds is not None
+    mesh, timed = search.mesh, search.timed
     search.thorough = True
     if search.score > mesh.optimum:
         search.look(workers, share=OPENING)
@@ -167,7 +173,7 @@ def _search_layouts(
             seeker.add(candidate.operations, coarsen, stop, unfold=not startable)
         if startable and not seeker.valid_at(mesh.optimum) and mine:
             _add_coarsest(search, seeker, mine[0], coarsen, stop)
-        if not seeker.valid and startable:
+        if startable and not seeker.valid_at(mesh.score):
             descent = ValidDescent(mesh, search.policy, search.max_steps, search.seed + 101 * i)
             descent.follow(mine, stop)
             if timed:
@@ -223,11 +229,11 @@ def _add_coarsest(
     With few elements around a hole there is less that can fold than in a rollout's result.
     """
     reached = replayed(search.mesh, candidate.operations)
-    seconds = search.share(COARSEST)
     proposals = None if search.timed else PROPOSALS_EACH * reached.n_elements
     operations = candidate.operations + coarser(
-        reached, seconds=seconds, proposals=proposals, seed=search.seed, cancelled=stop
-    )
+        reached, seconds=search.share(COARSEST), proposals=proposals, seed=search.seed,
+        cancelled=stop,
+    )  # fmt: skip
     placed = replayed(search.mesh, operations)
     if not len(smoothing.relax(placed)):
         seeker.add(operations, coarsen, stop, placed)
@@ -456,11 +462,10 @@ class _Search:
 
     def more_rollouts(self, seed: int) -> list[Candidate]:
         """Some more rollouts from the start; those that reach the lowest s known."""
-        found: list[Candidate] = []
-        shadow = _Rollouts(self, found)
-        Worker(shadow, seed, self.stopped).roll(FIRST_ROLLOUTS)
+        batch = RolloutBatch(self.mesh, self.policy, self.max_steps, self.score)
+        Worker(batch, seed, self.stopped).roll(FIRST_ROLLOUTS)
         self.count(FIRST_ROLLOUTS)
-        return found
+        return batch.found
 
     @property
     def timed(self) -> bool:
@@ -502,16 +507,15 @@ class _Search:
     ) -> Solution:
         """The candidate coarsened and shortened again, within its share of the time."""
         mesh, operations = self.mesh, candidate.operations
-        if mesh.kind == "quad" and (inverted := undrawable(mesh, operations)):
+        if mesh.kind == "quad" and (folded := undrawable(mesh, operations)):
             finer = without_cleanups(mesh, operations)
-            if undrawable(mesh, finer) < inverted:
+            if undrawable(mesh, finer) < folded:
                 operations = finer
         if coarsen and mesh.kind == "quad" and mesh.n_elements <= SIDE_BY_SIDE:
-            reached = replayed(mesh, operations)
             added = coarser(
-                reached, seconds=self.share(0.7), seed=self.seed + self.done,
+                replayed(mesh, operations), seconds=self.share(0.7), seed=self.seed + self.done,
                 proposals=None if self.timed else PROPOSALS_EACH * mesh.n_elements,
-                patience=PATIENCE if self.seconds is None else None, cancelled=self.stopped,
+                cancelled=self.stopped,
             )  # fmt: skip
             operations = operations + added
             if added and shorten:
@@ -530,24 +534,3 @@ class _Search:
             return None
         left = self.seconds - (time.perf_counter() - self.began)
         return max(0.0, share * min(left, POLISHED * self.seconds))
-
-
-class _Rollouts:
-    """What a worker needs to make rollouts apart from the search, which share its mesh."""
-
-    def __init__(self, search: _Search, found: list[Candidate]) -> None:
-        self.mesh, self.policy, self.max_steps = search.mesh, search.policy, search.max_steps
-        self.thorough, self.annealing = True, False
-        self.score, self.best, self._found = search.score, search.best, found
-
-    def offer(self, candidate: Candidate) -> None:
-        """Keep what is as good as the best known."""
-        if candidate.score <= self.score:
-            self._found.append(candidate)
-
-    def book(self, wanted: int) -> int:
-        """As many as are wanted."""
-        return wanted
-
-    def count(self, rollouts: int) -> None:
-        """The search counts them."""

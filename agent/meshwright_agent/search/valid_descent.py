@@ -15,7 +15,7 @@ import numpy as np
 
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations
-from meshwright_agent.search.search_worker import Candidate, Worker
+from meshwright_agent.search.search_worker import Candidate, RolloutBatch, Worker
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.quality import inverted
 from meshwright_core.mesh import HalfEdgeMesh
@@ -61,7 +61,7 @@ class ValidDescent:
 
     def _advance(self, stop: Callable[[], bool]) -> bool:
         """One batch of rollouts from here; whether a lower s was reached."""
-        batch = _Batch(self.mesh, self._policy, self._max_steps)
+        batch = RolloutBatch(self.mesh, self._policy, self._max_steps, self.mesh.score)
         Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(TOGETHER)
         return self.follow(batch.found, stop)
 
@@ -90,25 +90,3 @@ class ValidDescent:
             return False
         self.mesh, self.operations = reached, self.operations + chosen
         return True
-
-
-class _Batch:
-    """What a worker needs to make rollouts from one state; keeps what they reach."""
-
-    thorough, annealing = True, False
-
-    def __init__(self, mesh: HalfEdgeMesh, policy: Policy, max_steps: int | None) -> None:
-        self.mesh, self.policy, self.max_steps = mesh, policy, max_steps
-        self.score, self.best = mesh.score, Candidate([], mesh.score, "none")
-        self.found: list[Candidate] = []
-
-    def offer(self, candidate: Candidate) -> None:
-        """Keep all."""
-        self.found.append(candidate)
-
-    def book(self, wanted: int) -> int:
-        """As many as are wanted."""
-        return wanted
-
-    def count(self, rollouts: int) -> None:
-        """They are not counted."""
