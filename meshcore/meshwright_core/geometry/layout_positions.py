@@ -74,6 +74,22 @@ _ASIDE = 1e-3
 
 
 @by_reference
+class Effort(NamedTuple):
+    """How far positions are improved."""
+
+    goal: float
+    """Worst corner sine at which to end; with 1 all elements are given better shapes after that."""
+    iterations: int
+    """L-BFGS steps of each stage of :func:`meshwright_core.geometry.worst_corner.climb`."""
+    rounds: int
+    """The most values of the regularisation while unfolding."""
+    inner: int
+    """L-BFGS steps at each of them."""
+    polish: int
+    """Steps for shape once nothing is folded."""
+
+
+@by_reference
 class Rails(NamedTuple):
     """What is known of the curves of a layout, whatever its connectivity."""
 
@@ -128,15 +144,18 @@ def _parameter(m, v, c, ahead):
 
 
 @kernel
-def _number(m, points, variable, seat, x):
-    """Fill `points`, number the variables of all vertices that may move; returns their count."""
+def _number(m, points, variable, seat, x, active):
+    """Fill `points`, number the variables of all vertices that may move; returns their count.
+
+    active: bool by vertex, whether it may move; all may if it is empty.
+    """
     count = 0
     for v in range(len(points)):
         if m.vertex[v, HALF] < 0:
             continue
         for c in range(3):
             points[v, c] = m.points[v, c]
-        if m.vertex[v, FLAGS] & (GEOMETRIC | LOCKED):
+        if m.vertex[v, FLAGS] & (GEOMETRIC | LOCKED) or (len(active) and not active[v]):
             continue
         variable[v] = count
         if m.vertex[v, CURVE] >= 0:
@@ -289,18 +308,18 @@ def _average(problem, x):
 
 
 @kernel
-def _improve(problem, x, goal, iterations, afresh):
+def _improve(problem, x, effort, afresh):
     """Untangle where needed, then raise the worst corner; returns its sine."""
     place_layout(problem, x)
     if afresh:
         _average(problem, x)
     worst = worst_sine(problem)
     if worst < POOR:
-        worst = unfold_layout(problem, x, ROUNDS, INNER, POLISH)
-    if FOLDED < worst < goal and len(x):
-        worst = climb(problem, x, goal, iterations)
-        if goal >= 1.0:
-            worst = even_out(problem, x, iterations)
+        worst = unfold_layout(problem, x, effort.rounds, effort.inner, effort.polish)
+    if FOLDED < worst < effort.goal and len(x):
+        worst = climb(problem, x, effort.goal, effort.iterations)
+        if effort.goal >= 1.0:
+            worst = even_out(problem, x, effort.iterations)
     return worst
 
 
@@ -321,18 +340,29 @@ def _seams(m, x, gaps, offsets, count):
         offsets[i, 1] = 1.0 / max(gap, 1e-3 * length)
 
 
+@bare_kernel
+def _any_moves(m, h, variable):
+    """Whether a vertex of the element of half-edge h may move."""
+    e = h - h % 4
+    for i in range(4):
+        if variable[m.edge[e + i, ORIGIN]] >= 0:
+            return True
+    return False
+
+
 @kernel
-def assemble(m, rails, afresh):
+def assemble(m, rails, afresh, active):
     """The arrays of a :class:`LayoutProblem` in their order, but for the curves, and its variables.
 
-    afresh: the vertices on curves are spread evenly.
+    afresh: the vertices on curves are spread evenly. active: bool by vertex, whether it may move,
+    empty for all; corners of elements that stay are left out.
     """
     n = m.counters[VERTEX_SLOTS]
     points, slope, tangent = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 4))
     variable, seat, bends = np.full(n, -1), np.full(n, -1), np.zeros(n, np.bool_)
     gaps, offsets = np.zeros((2 * n, 3), np.int64), np.zeros((2 * n, 3))
     values = np.zeros(2 * n)
-    x = values[: _number(m, points, variable, seat, values)]
+    x = values[: _number(m, points, variable, seat, values, active)]
     gap_count = _find_gaps(m, rails.turning, variable, gaps, offsets)
     if afresh:
         _spread(m, variable, x)
@@ -343,7 +373,7 @@ def assemble(m, rails, afresh):
     ways = np.zeros((total, 4))
     row, area = 0, 0.0
     for h in range(4 * m.counters[ELEMENT_SLOTS]):
-        if m.edge[h, ORIGIN] < 0:
+        if m.edge[h, ORIGIN] < 0 or (len(active) and not _any_moves(m, h, variable)):
             continue
         o, s = m.edge[h, ORIGIN], m.edge[following(h, 4), ORIGIN]
         corners[row, 0], corners[row, 1] = o, s
@@ -352,24 +382,25 @@ def assemble(m, rails, afresh):
         area += 0.5 * (points[o, 0] * points[s, 1] - points[o, 1] * points[s, 0])
         row += 1
     size = np.zeros(1)
-    size[0] = np.sqrt(abs(area) / max(1, m.counters[ELEMENTS]) + 1e-300)
+    size[0] = np.sqrt(abs(area) / max(1, row // 4) + 1e-300)
     return (
-        points, slope, tangent, variable, seat, bends, corners, kind, ways, gaps[:gap_count],
+        points, slope, tangent, variable, seat, bends, corners[:row], kind[:row], ways[:row],
+        gaps[:gap_count],
         offsets[:gap_count], size, x,
     )  # fmt: skip
 
 
 @kernel
-def _position(m, rails, goal, iterations, afresh):
+def _position(m, rails, effort, afresh, active):
     """The worst sine at new positions, these (n, 3), the numbers (n,) and values of variables."""
     (
         points, slope, tangent, variable, seat, bends, corners, kind, ways, gaps, offsets, size, x,
-    ) = assemble(m, rails, afresh)  # fmt: skip
+    ) = assemble(m, rails, afresh, active)  # fmt: skip
     problem = LayoutProblem(
         points, slope, tangent, variable, seat, bends, corners, kind, ways, gaps, offsets, size,
         m.curves,
     )  # fmt: skip
-    worst = _improve(problem, x, goal, iterations, afresh)
+    worst = _improve(problem, x, effort, afresh)
     # the problem only points to these arrays: their last use must come after its own
     used = len(slope) + len(tangent) + len(seat) + len(bends) + len(corners) + len(kind)
     used += len(ways) + len(gaps) + len(offsets) + len(size)
@@ -422,19 +453,8 @@ def _worst_turned(m, rails, worst):
 
 
 @kernel
-def position(m, rails, goal, iterations):
-    """Give all movable vertices of the layout better positions, in place.
-
-    Ends as soon as the worst corner sine reaches `goal`; with a goal of 1 all elements are given
-    better shapes after that. Where corners stay folded a second attempt starts from evenly spread
-    vertices. iterations: of each stage of :func:`climb`. Returns the worst corner sine, also that
-    in the middle of edges that bend; 0 or less if the layout stays folded.
-    """
-    worst, points, variable, x = _position(m, rails, goal, iterations, False)
-    if worst <= FOLDED:
-        other, others, _, other_x = _position(m, rails, goal, iterations, True)
-        if other > worst:
-            worst, points, x = other, others, other_x
+def _write_back(m, points, variable, x):
+    """Move the vertices of `m` to `points` (n, 3), those on curves to the parameters in `x`."""
     for v in range(len(points)):
         if variable[v] < 0:
             continue
@@ -448,4 +468,34 @@ def position(m, rails, goal, iterations):
             m.parameter[v] = min(max(t, 0.0), length)
             if m.curves.closed[c] and m.parameter[v] >= length:
                 m.parameter[v] = 0.0
+
+
+@kernel
+def position_some(m, rails, effort, active):
+    """Give the vertices marked in `active` better positions, in place.
+
+    Returns the worst corner sine of the elements at these vertices, 0 or less if one stays folded.
+    """
+    worst, points, variable, x = _position(m, rails, effort, False, active)
+    _write_back(m, points, variable, x)
+    return worst
+
+
+@kernel
+def position(m, rails, goal, iterations):
+    """Give all movable vertices of the layout better positions, in place.
+
+    Ends as soon as the worst corner sine reaches `goal`; with a goal of 1 all elements are given
+    better shapes after that. Where corners stay folded a second attempt starts from evenly spread
+    vertices. iterations: of each stage of :func:`climb`. Returns the worst corner sine, also that
+    in the middle of edges that bend; 0 or less if the layout stays folded.
+    """
+    effort = Effort(goal, iterations, ROUNDS, INNER, POLISH)
+    every = np.zeros(0, np.bool_)
+    worst, points, variable, x = _position(m, rails, effort, False, every)
+    if worst <= FOLDED:
+        other, others, _, other_x = _position(m, rails, effort, True, every)
+        if other > worst:
+            worst, points, x = other, others, other_x
+    _write_back(m, points, variable, x)
     return _worst_turned(m, rails, worst) if worst > 0.0 else worst

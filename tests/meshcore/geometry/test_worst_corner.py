@@ -13,7 +13,7 @@ from meshwright_core.geometry.worst_corner import LayoutProblem, _objective
 
 def problem_of(mesh):
     rails = positions.rails_of(mesh, len(mesh.arrays.vertex))
-    *fields, x = positions.assemble(mesh.arrays, rails, False)
+    *fields, x = positions.assemble(mesh.arrays, rails, False, np.zeros(0, np.bool_))
     return LayoutProblem(*fields, mesh.arrays.curves), x.copy()
 
 
