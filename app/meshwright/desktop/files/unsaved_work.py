@@ -81,7 +81,9 @@ def counted(document: Document) -> str:
     if undone:
         words += f", {undone:,} of them undone,"
     branches = sum(1 for _ in every(history.branches))
-    return f"{words} and {plural(branches, 'branch', 'branches')}" if branches else words.rstrip(",")
+    return (
+        f"{words} and {plural(branches, 'branch', 'branches')}" if branches else words.rstrip(",")
+    )
 
 
 class UnsavedWorkGuard:

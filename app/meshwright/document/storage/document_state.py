@@ -113,7 +113,9 @@ def unpacked(header: Any, arrays: Mapping[str, Any]) -> DocumentState:
         raise MeshError("its history counts its rows wrong")
     history = History.of(*record.first, record.rows, record.cursor, branches, *record.given)
     path = Path(record.path) if record.path else None
-    return DocumentState(mesh, history, record.name, path, record.saved, record.settings, record.stamp)
+    return DocumentState(
+        mesh, history, record.name, path, record.saved, record.settings, record.stamp
+    )
 
 
 def _branch_record(branch: Branch, name: str, arrays: Arrays) -> _BranchRecord:
