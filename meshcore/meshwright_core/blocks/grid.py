@@ -138,7 +138,7 @@ def block_grid(
 
 def interpolated(structure: BlockStructure, wanted: Division) -> BlockGrid:
     """The grid by transfinite interpolation of the divided block edges alone."""
-    layout = _layout(structure, wanted.counts)
+    layout = grid_layout(structure, wanted.counts)
     edges = len(structure.edges)
     corners, outer = len(structure.points), int(layout.edge_first[-1])
     share = np.zeros(int(layout.block_first[-1]))
@@ -166,7 +166,8 @@ def _evened(wanted: Division) -> Division:
     return Division(counts, zeros, zeros, np.ones(len(counts)))
 
 
-def _layout(structure: BlockStructure, counts: np.ndarray) -> Layout:
+def grid_layout(structure: BlockStructure, counts: np.ndarray) -> Layout:
+    """The numbering of a grid with so many cells (c,) across the chords."""
     on_edges = counts[structure.chord] - 1
     shape = np.ascontiguousarray(counts[structure.crossing])
     inside = (shape - 1).prod(axis=1)

@@ -10,6 +10,7 @@ from typing import Protocol
 
 from meshwright.cli.commands import (
     bench,
+    blocks,
     demo,
     evaluate,
     improve,
@@ -45,6 +46,7 @@ COMMANDS: dict[str, Command] = {
     "shapes": shapes,
     "mesh": mesh,
     "improve": improve,
+    "blocks": blocks,
     "evaluate": evaluate,
     "train": train,
     "lessons": lessons,
