@@ -73,6 +73,8 @@ class HalfEdgeMesh(MeshView):
         they seat the boundary vertices by projection."""
         self.degree_cap = degree_cap
         """The highest degree that an operation may produce; 0 for no limit."""
+        self.left_out: tuple[str, ...] = ()
+        """What the file that it was read from held and this mesh does not, such as fields."""
         self._codes = catalogue.CODES[self.k]
         self._archive = Archive()
 
@@ -274,7 +276,7 @@ class HalfEdgeMesh(MeshView):
         """
         if not flag and vertex in self.junctions():
             raise MeshError(f"vertex {vertex} must stay geometric: an interface ends there")
-        if not flag and vertex in side_names.changes(self._arrays, self._boundary):
+        if not flag and vertex in self.side_ends():
             raise MeshError(f"vertex {vertex} must stay geometric: a named side ends there")
         self._set_flag(vertex, GEOMETRIC, flag)
 
@@ -483,6 +485,7 @@ class HalfEdgeMesh(MeshView):
                 arrays.counters[counter] = 0
         recorded = self.seats_recorded or not history
         twin = HalfEdgeMesh(arrays, self._boundary, self.degree_cap, seats_recorded=recorded)
+        twin.left_out = self.left_out
         if history:
             twin._archive = self._archive.copy()
             twin._namings = dict(self._namings)

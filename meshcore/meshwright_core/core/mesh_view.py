@@ -105,6 +105,10 @@ class MeshView:
             rows.setdefault(name, []).append(row)
         return {name: ends[some] for name, some in rows.items()}
 
+    def side_ends(self) -> set[int]:
+        """The vertices where the name of a side changes; they are geometric."""
+        return set(side_names.changes(self._arrays, self._boundary).tolist())
+
     def side_of(self, h: int) -> str:
         """The name of the side that half-edge h lies on, "" for none."""
         curve, span = edge_places(self._arrays, np.array([h]), self.k)
