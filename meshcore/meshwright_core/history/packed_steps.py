@@ -95,7 +95,7 @@ class Steps:
 
 
 def _compressed(numbers: np.ndarray) -> bytes:
-    """int32 numbers, compressed: first bytes, second bytes, and so on, as the higher ones repeat."""
+    """The bytes of int32 numbers, lowest ones first and highest ones last, which repeat most."""
     numbers = np.ascontiguousarray(numbers, dtype=np.int32)
     return zlib.compress(numbers.view(np.uint8).reshape(-1, 4).T.tobytes(), level=1)
 

@@ -1,6 +1,5 @@
 """Undo and redo far back, steps cut out and grafted on again; all exact to the bit."""
 
-
 import numpy as np
 import pytest
 from mesh_edits import state, wander
