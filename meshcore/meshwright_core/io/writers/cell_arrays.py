@@ -16,6 +16,8 @@ from meshwright_core.io.content import Content
 from meshwright_core.io.named_groups import group_edges, group_rows, tags_of
 from meshwright_core.io.writers import lines as form
 
+_PLAIN = ":=&()[]{}<>,;.+*/!?@#$"
+"""Signs that names in legacy VTK files may have."""
 REGION, SIDE = "region:", "side:"
 """How the names of the arrays of named groups begin."""
 
@@ -34,22 +36,40 @@ def named_cells(
     if len(ends):
         cells["line"] = names.edges[np.unique(place.ravel(), return_index=True)[1]]
     counts = [len(block) for block in cells.values()]
-    data: dict[str, list[NDArray[np.int32]]] = {}
-
-    def array(name: str, rest: int) -> list[NDArray[np.int32]]:
-        name = quote(name, safe=":=&()[]{}<>,;.+*/!?@#$") if quoted else name
-        return data.setdefault(name, [np.full(n, rest, np.int32) for n in counts])
-
+    arrays = _Arrays(counts, quoted)
     regions = (content.regions or {}).get(kind)
     if regions is not None:
-        array("region", -1)[0][:] = regions
+        arrays.of("region", -1)[0][:] = regions
     for name, rows in group_rows(names, kind).items():
-        _put(array, REGION, name, 0, rows)
+        arrays.put(REGION, name, 0, rows)
     keys = {tuple(pair): row for row, pair in enumerate(ends.tolist())}
     for name, edges in group_edges(names).items():
-        rows = np.array([keys[tuple(sorted(pair))] for pair in edges.tolist()], np.int64)
-        _put(array, SIDE, name, 1, rows)
-    return cells, data
+        members = [keys[a, b] for a, b in np.sort(edges, axis=1).tolist()]
+        arrays.put(SIDE, name, 1, np.array(members, np.int64))
+    return cells, arrays.data
+
+
+class _Arrays:
+    """Arrays of whole numbers by cell, one for each type of cells."""
+
+    def __init__(self, counts: list[int], quoted: bool) -> None:
+        self.data: dict[str, list[NDArray[np.int32]]] = {}
+        self._counts, self._quoted = counts, quoted
+
+    def of(self, name: str, rest: int) -> list[NDArray[np.int32]]:
+        """The arrays of this name; `rest` is the value of cells that are given none."""
+        name = quote(name, safe=_PLAIN) if self._quoted else name
+        if name not in self.data:
+            self.data[name] = [np.full(count, rest, np.int32) for count in self._counts]
+        return self.data[name]
+
+    def put(self, prefix: str, name: str, block: int, rows: NDArray[np.int64]) -> None:
+        """The cells `rows` of a type are in a group."""
+        called = numbered(name)
+        if called is not None and abs(called[1]) < 2**31:
+            self.of(called[0], 0)[block][rows] = called[1]
+        else:
+            self.of(prefix + name, 0)[block][rows] = 1
 
 
 def referenced_cells(
@@ -75,11 +95,3 @@ def referenced_cells(
         cells["line"] = names.edges
         data.append(np.array([side[name] for name in names.sides], np.int32)[names.edge_sides])
     return cells, {array: data}
-
-
-def _put(array, prefix: str, name: str, block: int, rows: NDArray[np.int64]) -> None:  # type: ignore[no-untyped-def]
-    called = numbered(name)
-    if called is not None and abs(called[1]) < 2**31:
-        array(called[0], 0)[block][rows] = called[1]
-    else:
-        array(prefix + name, 0)[block][rows] = 1
