@@ -186,11 +186,12 @@ def displace(coarse, moved, layout, graded, points):
                     continue
                 done[v] = True
                 x, y = place_of(layout, graded, b, i, j)
-                k, l = _weights(x * p, p, across), _weights(y * q, q, along)
+                column = _weights(x * p, p, across)
+                lowest = _weights(y * q, q, along)
                 for s in range(4):
                     if along[s] == 0.0:
                         continue
-                    row = coarse.start[b] + (l + s) * (p + 1) + k
+                    row = coarse.start[b] + (lowest + s) * (p + 1) + column
                     for r in range(4):
                         if across[r] != 0.0:
                             a = coarse.ids[row + r]

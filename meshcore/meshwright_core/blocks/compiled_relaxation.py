@@ -20,7 +20,6 @@ import numpy as np
 
 from meshwright_core.core.compilation import bare_kernel, kernel
 
-
 POWER = 4
 """Exponent of the energy of a corner in the sum, so that the worst corners count most."""
 
@@ -63,9 +62,9 @@ def cells_around(cells, first, around):
 def _corner(grid, points, c, k, least, out):
     """Energy of corner k of cell c; `out` gets d, its regularised value and the vectors."""
     p, q, r = grid.cells[c, k], grid.cells[c, (k + 1) % 4], grid.cells[c, (k + 3) % 4]
-    l, m = grid.sizes[c, k % 2], grid.sizes[c, 1 - k % 2]
-    ax, ay = (points[q, 0] - points[p, 0]) / l, (points[q, 1] - points[p, 1]) / l
-    bx, by = (points[r, 0] - points[p, 0]) / m, (points[r, 1] - points[p, 1]) / m
+    one, other = grid.sizes[c, k % 2], grid.sizes[c, 1 - k % 2]
+    ax, ay = (points[q, 0] - points[p, 0]) / one, (points[q, 1] - points[p, 1]) / one
+    bx, by = (points[r, 0] - points[p, 0]) / other, (points[r, 1] - points[p, 1]) / other
     d = ax * by - ay * bx
     shown = d if least <= 0.0 else 0.5 * (d + np.sqrt(d * d + least * least))
     out[0], out[1], out[2], out[3], out[4], out[5] = d, shown, ax, ay, bx, by
@@ -105,23 +104,22 @@ def _slopes(grid, points, v, least, out, found):
             if energy == np.inf:
                 continue
             d, shown, ax, ay, bx, by = out[0], out[1], out[2], out[3], out[4], out[5]
-            l, m = 1.0 / grid.sizes[c, k % 2], 1.0 / grid.sizes[c, 1 - k % 2]
+            p, q = 1.0 / grid.sizes[c, k % 2], 1.0 / grid.sizes[c, 1 - k % 2]
             # gradients of half the sum of squares (x, y), of d (dx, dy), and its second derivative
             if turn == 0:
-                x, y = -(l * ax + m * bx), -(l * ay + m * by)
-                dx, dy = -l * by + m * ay, l * bx - m * ax
-                second = l * l + m * m
+                x, y = -(p * ax + q * bx), -(p * ay + q * by)
+                dx, dy = -p * by + q * ay, p * bx - q * ax
+                second = p * p + q * q
             elif turn == 1:  # v is the previous corner of k
-                x, y = m * bx, m * by
-                dx, dy = -m * ay, m * ax
-                second = m * m
+                x, y = q * bx, q * by
+                dx, dy = -q * ay, q * ax
+                second = q * q
             else:
-                x, y = l * ax, l * ay
-                dx, dy = l * by, -l * bx
-                second = l * l
+                x, y = p * ax, p * ay
+                dx, dy = p * by, -p * bx
+                second = p * p
             rise = 1.0 if least <= 0.0 else shown / np.sqrt(d * d + least * least)
             dx, dy = rise * dx, rise * dy
-            half = 0.5 * (ax * ax + ay * ay + bx * bx + by * by)
             gx, gy = (x - energy * dx) / shown, (y - energy * dy) / shown
             # of energy ** POWER: the factor of its first derivative, and of the square of it
             w = weight * POWER * energy ** (POWER - 1)

@@ -216,7 +216,9 @@ def _fixed(structure: BlockStructure, sizing: Sizing) -> dict[int, int]:
 
     for chord, count in sizing.chord_counts.items():
         if not 0 <= chord < structure.chord_count:
-            raise MeshError(f"There is no chord {chord}; there are 0 to {structure.chord_count-1}.")
+            raise MeshError(
+                f"There is no chord {chord}; there are 0 to {structure.chord_count - 1}."
+            )
         note(chord, count, f"chord {chord}")
     for (a, b), count in sizing.edge_counts.items():
         edge = structure.edge_between(a, b)

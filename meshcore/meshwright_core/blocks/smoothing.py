@@ -17,7 +17,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright_core.blocks.compiled_grid import Graded, Layout, displace, measure_cells, space_layers
+from meshwright_core.blocks.compiled_grid import (
+    Graded,
+    Layout,
+    displace,
+    measure_cells,
+    space_layers,
+)
 from meshwright_core.blocks.compiled_relaxation import Grid, cells_around, least_corner, relax
 
 if TYPE_CHECKING:
@@ -61,7 +67,9 @@ def smoothed(
             _add_coarse(coarse, grid, frame, trial, pool)
             if work.sine(trial) > 0.0 or work.sine(first) <= 0.0:
                 work.points[:] = trial
-        found = work.between(first, work.run(pool, max(SWEEPS, min(COARSE_SWEEPS, MOVES // len(first)))))
+        found = work.between(
+            first, work.run(pool, max(SWEEPS, min(COARSE_SWEEPS, MOVES // len(first))))
+        )
     division = grid.division
     if (division.first > 0.0).any() or (division.last > 0.0).any():
         spaced = found.copy()

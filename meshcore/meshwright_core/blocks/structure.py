@@ -188,5 +188,3 @@ def _directed(parts: EdgeParts, along: np.ndarray) -> EdgeParts:
     span = np.where(along[:, None], parts.span, parts.span[:, ::-1])
     ends = np.where(along[:, None, None], parts.ends, parts.ends[:, ::-1])
     return EdgeParts(parts.curves, parts.curve, span, ends)
-
-

@@ -9,6 +9,7 @@ import argparse
 from typing import Protocol
 
 from meshwright.cli.commands import (
+    batch,
     bench,
     blocks,
     demo,
@@ -47,6 +48,7 @@ COMMANDS: dict[str, Command] = {
     "mesh": mesh,
     "improve": improve,
     "blocks": blocks,
+    "batch": batch,
     "evaluate": evaluate,
     "train": train,
     "lessons": lessons,

@@ -29,9 +29,7 @@ def endings() -> tuple[str, ...]:
     return (*STRUCTURED, *quads)
 
 
-def check_format(
-    path: str | os.PathLike[str], order: int = 1, extruded: bool = False
-) -> None:
+def check_format(path: str | os.PathLike[str], order: int = 1, extruded: bool = False) -> None:
     """Raise MeshError, one sentence that names no path, if nothing can be written there so."""
     kind = _kind(Path(path))
     if order > HIGHEST_ORDER.get(kind, 1):

@@ -85,9 +85,7 @@ def _add_zone(base: Any, grid: BlockGrid, block: int, joints: list[tuple[Any, ..
         _node(coordinates, f"Coordinate{letter}", "DataArray_t", values)
     links = _node(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
     for number, (donor, own, theirs, transform) in enumerate(joints, start=1):
-        joint = _node(
-            links, f"Joint{number}", "GridConnectivity1to1_t", _text(_zone_name(donor))
-        )
+        joint = _node(links, f"Joint{number}", "GridConnectivity1to1_t", _text(_zone_name(donor)))
         _node(joint, "PointRange", "IndexRange_t", own)
         _node(joint, "PointRangeDonor", "IndexRange_t", theirs)
         _node(joint, "Transform", '"int[IndexDimension]"', np.array(transform, np.int32))

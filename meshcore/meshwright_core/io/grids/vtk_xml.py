@@ -30,7 +30,9 @@ def _array(name: str, values: np.ndarray) -> str:
     code = base64.b64encode(np.array([len(data)], "<u8").tobytes() + data).decode()
     width = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
     kind = _NAMES[str(values.dtype)]
-    return f'<DataArray type="{kind}" Name={quoteattr(name)}{width} format="binary">{code}</DataArray>'
+    return (
+        f'<DataArray type="{kind}" Name={quoteattr(name)}{width} format="binary">{code}</DataArray>'
+    )
 
 
 def _file(kind: str, body: list[str]) -> str:
