@@ -114,6 +114,8 @@ class Kept:
     rollouts: int
     reason: str
     """Why the search ended, or what stands in the way of a lower s."""
+    target: float
+    """Worst scaled Jacobian that was aimed at."""
 
 
 def keep_size(
@@ -139,8 +141,13 @@ def keep_size(
         policy: for meshes of the same kind.
         preference: what counts besides s.
         by_blocks: whether quads may go by way of blocks; otherwise only operations change the mesh.
-        rollouts, seconds, max_steps, seed, workers, progress, cancelled: as for
-            :func:`meshwright_agent.search.solver.solve`.
+        rollouts: these and the others as for :func:`meshwright_agent.search.solver.solve`.
+        seconds: time limit of all together.
+        max_steps: of a rollout.
+        seed: of the random choices.
+        workers: number of threads.
+        progress: called with (rollouts done, lowest s).
+        cancelled: polled.
     """
     if seconds is not None:
         solver.prepare(policy)
@@ -154,9 +161,9 @@ def keep_size(
         "rollouts": rollouts, "max_steps": max_steps, "seed": seed, "workers": workers,
         "prefer": preference.prefer, "min_shape": preference.min_shape, "cancelled": cancelled,
     }  # fmt: skip
-    best = Kept(mesh.copy(), [], "none", None, 0, "")
-    done, obstacles, blocks = 0, list[str](), None
     target = preference.aims(attainable_bound(mesh), shape_bound(mesh)).target
+    best = Kept(mesh.copy(), [], "none", None, 0, "", target)
+    done, obstacles, blocks = 0, list[str](), None
     sound = fit.valid and float(scaled_jacobian(mesh).min(initial=1.0)) >= target - LOSS
     if mesh.score == mesh.optimum and sound:
         best.reason = "s = s* and the target shape are there already"
@@ -170,7 +177,7 @@ def keep_size(
             obstacles += fit.faults(made)
             if fit.rank(made) < fit.rank(best.mesh):
                 reason = "at the optimum" if made.score == made.optimum else ""
-                best = Kept(made, [], "blocks", blocks, done, reason)
+                best = Kept(made, [], "blocks", blocks, done, reason, target)
     over = cancelled is not None and cancelled()
     enough = best.method == "blocks" and best.mesh.score == mesh.optimum
     if not over and not (enough and fit.sized(best.mesh) >= USUAL) and left() != 0.0:
@@ -184,7 +191,7 @@ def keep_size(
         made, operations, obstacle = _in_place(mesh, found, fit, there)
         obstacles += [obstacle] if obstacle else []
         if fit.rank(made) < fit.rank(best.mesh):
-            best = Kept(made, operations, "in place", blocks, done, found.reason)
+            best = Kept(made, operations, "in place", blocks, done, found.reason, target)
     if best.method == "none" and not over:
         smoothed = _smoothed(mesh)
         if fit.rank(smoothed) < fit.rank(best.mesh):

@@ -49,19 +49,33 @@ def coarse_mesh(mesh: HalfEdgeMesh, seed: int = 0) -> HalfEdgeMesh | None:
         coarse = mesh_domain(domain, "quad", seed=seed)
     except MeshError:
         return None
-    corners = np.flatnonzero(boundary & geometric)
-    found = np.flatnonzero(coarse.boundary() & coarse.geometric())
-    if len(corners) != len(found):
+    if not _take_corners(coarse, mesh):
         return None
-    if len(corners):
-        size = float(np.ptp(mesh.points[live], axis=0).max())
-        away, nearest = cKDTree(mesh.points[corners]).query(coarse.points[found])
-        if away.max() > _SAME * size or len(np.unique(nearest)) < len(corners):
-            return None
-        for vertex, degree in zip(found, desired[corners[nearest]], strict=True):
-            coarse.set_desired(int(vertex), int(degree))
     coarse = coarse.copy()
     return coarse if coarse.optimum == mesh.optimum else None
+
+
+def _take_corners(coarse: HalfEdgeMesh, mesh: HalfEdgeMesh) -> bool:
+    """Give the coarse mesh the corners of the other with their desired degrees; whether each of
+    them has a vertex there. Smooth joints of the polylines are no corners.
+    """
+    corners = np.flatnonzero(mesh.boundary() & mesh.geometric())
+    found = np.flatnonzero(coarse.boundary() & coarse.geometric())
+    size = float(np.ptp(mesh.points[mesh.vertices()], axis=0).max())
+    same = np.zeros(len(found), bool)
+    if len(corners):
+        away, nearest = cKDTree(mesh.points[corners]).query(coarse.points[found])
+        same = away <= _SAME * size
+        if len(np.unique(nearest[same])) < len(corners) or same.sum() > len(corners):
+            return False
+        desired = mesh.desired()[corners[nearest]]
+        for vertex, degree in zip(found[same], desired[same], strict=True):
+            coarse.set_desired(int(vertex), int(degree))
+    for vertex in found[~same].tolist():
+        if coarse.desired()[vertex] != 3:
+            return False
+        coarse.set_geometric(vertex, False)
+    return True
 
 
 def on_curves_of(mesh: HalfEdgeMesh, made: HalfEdgeMesh) -> HalfEdgeMesh:
