@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.errors import MeshError
-from meshwright_core.io.text_formats import Cells, Content
+from meshwright_core.io.content import Cells, Content
 
 _IGNORED = frozenset({"vertex", "line", "line3", "line4"})
 _MOST_DEGREE = 10_000

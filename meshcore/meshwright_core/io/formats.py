@@ -22,7 +22,7 @@ import numpy as np
 
 from meshwright_core.errors import MeshError
 from meshwright_core.io import legacy_vtk, text_formats
-from meshwright_core.io.text_formats import Content
+from meshwright_core.io.content import Content
 
 SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json", ".poly")
 """Endings of files that hold a shape; see :mod:`meshwright_core.io.drawings`."""

@@ -11,8 +11,8 @@ from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.errors import MeshError
 from meshwright_core.io import cleaning, formats, text_formats
 from meshwright_core.io.atomic_write import replacing
+from meshwright_core.io.content import Content
 from meshwright_core.io.file_checks import naming, size_of
-from meshwright_core.io.text_formats import Content
 from meshwright_core.mesh import HalfEdgeMesh
 
 

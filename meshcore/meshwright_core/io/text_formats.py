@@ -7,26 +7,12 @@ count points and elements, so that a file that was cut off is noticed on reading
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.errors import MeshError
-
-Cells = dict[str, NDArray[np.int64]]
-
-
-class Content(NamedTuple):
-    """What a mesh file holds: points (n, 2 or 3), cells by type, data by point, and the region of
-    each cell by type, where it is known.
-    """
-
-    points: NDArray[np.float64]
-    cells: Cells
-    data: dict[str, NDArray[np.generic]]
-    regions: dict[str, NDArray[np.generic]] | None = None
-
+from meshwright_core.io.content import Content
 
 _COUNTS = re.compile(rb"Meshwright: (\d+) points, (\d+) elements")
 _COUNTED = 512
