@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.errors import MeshError
-from meshwright_core.io import cleaning, formats, text_formats
+from meshwright_core.io import (
+    cleaning,
+    formats,
+    parts,
+    surface,
+    text_formats,
+    welding,
+)
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.io.content import Content
 from meshwright_core.io.file_checks import naming, size_of
@@ -21,33 +29,68 @@ def endings() -> tuple[str, ...]:
     return tuple(formats.FORMATS)
 
 
-def read(path: str | os.PathLike[str], corner_angle: float = CORNER_ANGLE) -> HalfEdgeMesh:
+class Loaded(NamedTuple):
+    """What has been read from a mesh file.
+
+    Attributes:
+        mesh: the mesh.
+        notes: what was mended, merged or read otherwise than it stands there, a sentence each.
+        dropped: what of the file is not kept, such as fields: a phrase each, "point data 'height'".
+        parts: names of the parts that can be read alone.
+    """
+
+    mesh: HalfEdgeMesh
+    notes: tuple[str, ...] = ()
+    dropped: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
+
+
+def read(
+    path: str | os.PathLike[str],
+    corner_angle: float = CORNER_ANGLE,
+    part: str | None = None,
+    to_quads: bool = False,
+) -> HalfEdgeMesh:
+    """Read a mesh file; see :func:`load`, which also says what was changed on the way."""
+    return load(path, corner_angle, part, to_quads).mesh
+
+
+def load(
+    path: str | os.PathLike[str],
+    corner_angle: float = CORNER_ANGLE,
+    part: str | None = None,
+    to_quads: bool = False,
+) -> Loaded:
     """Read a mesh file.
 
     Points that no element uses are dropped and the rest renumbered in order; plane formats get
-    z = 0. In formats without shared points (STL, glTF, 3MF) points at the same place are merged.
-    Where neighbouring elements run against each other they are turned to agree, and meshes in
-    a plane z = const run counter-clockwise afterwards. Regions are read from cell data "region"
-    (VTK, VTU) and from the physical groups of Gmsh files.
+    z = 0. In formats without shared points (STL, glTF, 3MF) points at the same place are merged;
+    in others where that makes one surface of two. Elements that are there more than once are read
+    once, and those of higher order with straight sides. Where neighbouring elements run against
+    each other they are turned to agree, and meshes in a plane z = const run counter-clockwise
+    afterwards.
 
     Args:
         path: a file whose ending `endings` lists.
         corner_angle: degrees by which the boundary must turn at a geometric vertex. A file that
             carries our own point data "geometric" and "desired_degree" (VTK, VTU, Gmsh, PLY,
             AVS-UCD, Tecplot, XDMF) keeps its corners and desired degrees instead.
+        part: the name or number of the part to read: a zone, piece or instance, or a connected
+            component where the file has one part; all of them by default.
+        to_quads: make quads of triangles, in pairs, and split what is left.
 
     Raises:
         MeshError: one sentence that begins with the path: the file is missing, a folder, empty,
-            cut off or in another format; it mixes triangles and quads or holds other cells; a
-            coordinate is not a finite number; the mesh is not manifold.
+            cut off or in another format; it mixes triangles and quads, and `to_quads` is not set,
+            or holds other cells; it has no such part; a coordinate is not a finite number; the
+            mesh is not manifold.
     """
     place = Path(path)
     with naming(place):
         head = _head(place)
         form = formats.of(place)
-        with formats.contained():
-            content = form.read(place)
-        return _mesh(content, form, head, corner_angle)
+        content = _prepared(form.read(place), form, head, part, to_quads)
+        return _loaded(content, corner_angle)
 
 
 def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
@@ -85,13 +128,12 @@ def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
 
 def _refuse_incomplete(form: formats.Format, path: Path, content: Content) -> None:
     """Read a file back; numpy's tofile does not notice when its last buffer meets a full disk."""
+    ((kind, block),) = content.cells.items()
     try:
-        with formats.contained():
-            there = form.read(path)
-        elements = cleaning.single_kind(there)
-    except MeshError as error:
+        there = form.read(path)
+        elements = surface.surface_of(there).cells[kind]
+    except (MeshError, KeyError) as error:
         raise OSError("it did not arrive whole") from error
-    (block,) = content.cells.values()
     if len(elements) != len(block) or not (form.merge or len(there.points) == len(content.points)):
         raise OSError("it did not arrive whole")
 
@@ -102,31 +144,48 @@ def _head(path: Path) -> bytes:
         return file.read(1024)
 
 
-def _mesh(content: Content, form: formats.Format, head: bytes, corner_angle: float) -> HalfEdgeMesh:
-    elements = cleaning.single_kind(content)
+def _prepared(
+    content: Content, form: formats.Format, head: bytes, part: str | None, to_quads: bool
+) -> Content:
+    """One kind of elements, which share the points that are theirs."""
+    content = surface.surface_of(content)
     promise = text_formats.announced_counts(head)
-    if promise and promise != (len(content.points), len(elements)):
+    count = sum(len(block) for block in content.cells.values())
+    if promise and promise != (len(content.points), count):
         raise MeshError(
             f"it is cut off: {promise[0]} points and {promise[1]} elements are announced, "
-            f"but {len(content.points)} and {len(elements)} are there"
+            f"but {len(content.points)} and {count} are there"
         )
-    regions = cleaning.regions(content, len(elements))
-    cleaning.refuse_strays(content.points, elements)
-    if form.merge:
-        content, elements = cleaning.merged(content, elements)
-    content, elements = cleaning.compacted(content, elements)
+    content = surface.without_repeats(surface.compacted(content))
+    content = welding.welded(content, form.merge)
+    if part is not None:
+        content = parts.one_part(content, part)
+    if to_quads:
+        # imported late: domains need shapely
+        from meshwright_core.io import all_quads
+
+        content = all_quads.converted(content)
+    cleaning.refuse_mixed(content)
+    return surface.compacted(content)
+
+
+def _loaded(content: Content, corner_angle: float) -> Loaded:
+    (elements,) = content.cells.values()
     points = content.points
-    if points.shape[1] < 3:
-        points = np.column_stack([points, np.zeros((len(points), 3 - points.shape[1]))])
     elements = cleaning.oriented(points, elements)
-    return HalfEdgeMesh.from_elements(
+    mesh = HalfEdgeMesh.from_elements(
         points,
         elements,
         cleaning.flags(content.data, len(points)),
         cleaning.desired(content.data, len(points)),
         corner_angle,
-        regions=regions,
+        regions=cleaning.regions(content, len(elements)),
     )
+    there = parts.part_names(content)
+    notes = content.warnings
+    if len(there) > 1:
+        notes = (*notes, f"there {parts.listed_parts(content)}")
+    return Loaded(mesh, notes, content.dropped, tuple(there))
 
 
 def _live(mesh: HalfEdgeMesh, kind: str, form: formats.Format) -> Content:
