@@ -368,7 +368,7 @@ class HalfEdgeMesh(MeshView):
         self._archive = Archive(done, undone)
 
     def trim(self) -> None:
-        """Pack the steps far from the present, which halves their memory; no step is lost."""
+        """Pack the steps far from the present into a third of the memory; no step is lost."""
         self._refuse_in_transaction()
         self._arrays = self._archive.trimmed(self._arrays)
 

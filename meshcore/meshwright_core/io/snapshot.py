@@ -155,7 +155,7 @@ def restored_steps(
         if (index > MOST).any():
             raise MeshError("a step of the history points beyond the mesh")
         places = index * np.int32(WRITE_KINDS) + kind
-    steps = Steps(rows, places, whole, coordinates, parameters)
+    steps = Steps.of(rows, places, whole, coordinates, parameters)
     m = mesh.arrays
     require_within(steps, m)
     return tuple(divided(steps, step_archive.PIECE))

@@ -160,8 +160,8 @@ def require_within(steps: Steps, m: MeshArrays) -> None:
     puts there what may point no farther.
     """
     k, vertices, elements = int(m.counters[SIDES]), len(m.vertex), len(m.element_mark)
-    entries = unpack(steps)[1]
-    _require((steps.places >= 0).all(), "a step of the history writes nowhere")
+    entries, places = unpack(steps)[1], steps.places
+    _require((places >= 0).all(), "a step of the history writes nowhere")
     _require(np.isfinite(steps.coordinates).all(), "a coordinate of the history is not finite")
     _require(np.isfinite(steps.parameters).all(), "a parameter of the history is not finite")
     halfedges = k * elements
@@ -201,5 +201,5 @@ def require_within(steps: Steps, m: MeshArrays) -> None:
         these = (written == form) & (index % width == column) & (index < width * length)
         good |= these & (value >= low) & (value <= high)
     _require(good.all(), "a step of the history points beyond the mesh")
-    first = steps.places[steps.places % WRITE_KINDS == POINT_WRITE] // WRITE_KINDS
+    first = places[places % WRITE_KINDS == POINT_WRITE] // WRITE_KINDS
     _require((first % 3 == 0).all(), "a move of the history begins in the middle")

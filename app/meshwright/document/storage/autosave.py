@@ -1,7 +1,8 @@
 """Autosave: writes every step to a file at once, so that a killed process loses at most the last.
 
 The first step after a mesh was opened or saved writes the whole document; each later event appends
-its change. Saving and closing remove the file. Files of processes that died are found by
+its change. Saving all of it and closing remove the file; saving to a mesh file, which has no
+history, begins it anew. Files of processes that died are found by
 :mod:`meshwright.document.storage.recovery`.
 """
 
@@ -97,6 +98,8 @@ class Autosave:
     def _on_recorded(self, event: str, number: int) -> None:
         if event == "saved" or self._document.passing:
             self._remove()
+            if self._enabled and self._document.modified:
+                self._begin()
         elif self._enabled and self._path is None:
             self._begin()
         elif self._enabled:
