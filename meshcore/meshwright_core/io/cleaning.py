@@ -131,24 +131,6 @@ def desired(data: dict[str, NDArray[np.generic]], count: int) -> NDArray[np.int6
     return whole.astype(np.int64) if (whole == values).all() else None
 
 
-def regions(content: Content, count: int) -> NDArray[np.int64] | None:
-    """Return the region (count,) of each element of a file, numbered from 0 in ascending order.
-
-    By the numbers of regions in the file and by their names; None if all are in the same.
-    """
-    kind = next((kind for kind in ("triangle", "quad") if kind in content.cells), "")
-    found = [(content.regions or {}).get(kind, ())]
-    if content.names is not None:
-        found.append(content.names.elements.get(kind, ()))
-    columns = [np.asarray(values) for values in found]
-    columns = [one for one in columns if one.shape == (count,) and one.dtype.kind in "biuf"]
-    columns = [one for one in columns if np.isfinite(one).all() and (one == np.rint(one)).all()]
-    if not columns:
-        return None
-    named, number = np.unique(np.column_stack(columns), axis=0, return_inverse=True)
-    return number.ravel().astype(np.int64) if len(named) > 1 else None
-
-
 def _numbers(
     data: dict[str, NDArray[np.generic]], name: str, count: int
 ) -> NDArray[np.float64] | None:

@@ -40,6 +40,12 @@ from meshwright_core.io.readers import (
     xdmf,
 )
 from meshwright_core.io.readers.binary_scenes import require_bounded
+from meshwright_core.io.writers import abaqus as abaqus_writer
+from meshwright_core.io.writers import cell_arrays
+from meshwright_core.io.writers import gmsh as gmsh_writer
+from meshwright_core.io.writers import nastran as nastran_writer
+from meshwright_core.io.writers import su2 as su2_writer
+from meshwright_core.io.writers import xdmf as xdmf_writer
 
 SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json", ".poly")
 """Endings of files that hold a shape; see :mod:`meshwright_core.io.drawings`."""
@@ -58,6 +64,8 @@ class Format:
         kinds: the element types that it holds.
         data: whether it holds data by point.
         regions: whether it holds the region of each element.
+        sides: whether it holds sides.
+        numbers: whether sides and regions have numbers there, in place of names.
         merge: whether points at the same place are to be merged on reading.
         needs: packages that reading and writing take beyond our own dependencies.
     """
@@ -68,6 +76,8 @@ class Format:
     kinds: tuple[str, ...] = ("triangle", "quad")
     data: bool = False
     regions: bool = False
+    sides: bool = False
+    numbers: bool = False
     merge: bool = False
     needs: tuple[str, ...] = ()
 
@@ -135,9 +145,13 @@ def _meshio_write(module: str, **options: Any) -> Callable[[Path, Content], None
     def write(path: Path, content: Content) -> None:
         import meshio
 
-        cells = [(kind, block.astype(np.int32)) for kind, block in content.cells.items()]
-        regions = [region.astype(np.int32) for region in (content.regions or {}).values()]
-        cell_data = {"region": regions} if regions else None
+        named: dict[str, Any] = content.cells
+        cell_data: dict[str, Any] = {}
+        if module in _ARRAYS:
+            named, cell_data = cell_arrays.named_cells(content, quoted=module == "vtk")
+        elif module in _REFERENCES:
+            named, cell_data = cell_arrays.referenced_cells(content, *_REFERENCES[module])
+        cells = [(kind, block.astype(np.int32)) for kind, block in named.items()]
         mesh = meshio.Mesh(content.points, cells, point_data=content.data, cell_data=cell_data)
         importlib.import_module(f"meshio.{module}").write(str(path), mesh, **options)
 
@@ -175,6 +189,10 @@ def _own_write(write: Callable[[Content], str]) -> Callable[[Path, Content], Non
     return put
 
 
+write_msh_4 = _own_write(lambda content: gmsh_writer.write(content, "4.1"))
+"""Writes a Gmsh file of version 4.1."""
+
+
 def _trimesh(kind: str) -> tuple[Any, Any]:
     def read(path: Path) -> Content:
         require_bounded(path, kind)
@@ -196,6 +214,12 @@ def _trimesh(kind: str) -> tuple[Any, Any]:
     return read, write
 
 
+_ARRAYS = ("vtk", "vtu")
+"""Modules that write data by cell under any name."""
+_REFERENCES = {"medit": ("medit:ref", True), "avsucd": ("avsucd:material", False)}
+"""Modules that write one number for each cell: the array that holds it, and whether edges have one
+too."""
+
 _TRIANGLES = ("triangle",)
 _OBJ = Format("OBJ", _own_read(surfaces.read_obj), _own_write(text_formats.write_obj))
 _OFF = Format("OFF", _own_read(surfaces.read_off), _own_write(text_formats.write_off))
@@ -207,21 +231,41 @@ _STL = Format(
     merge=True,
 )
 _MSH = Format(
-    "Gmsh", _own_read(gmsh.read), _own_write(text_formats.write_msh), data=True, regions=True
+    "Gmsh",
+    _own_read(gmsh.read),
+    _own_write(gmsh_writer.write),
+    data=True,
+    regions=True,
+    sides=True,
 )
-_VTK = Format("VTK", _own_read(legacy_vtk.read), _meshio_write("vtk"), data=True, regions=True)
-_VTU = Format("VTU", _own_read(vtk_xml.read), _meshio_write("vtu"), data=True, regions=True)
-_INP = Format("Abaqus", _own_read(abaqus.read), _own_write(text_formats.write_inp))
-_SU2 = Format("SU2", _own_read(su2.read), _own_write(text_formats.write_su2))
-_BDF = Format("Nastran", _own_read(nastran.read), _own_write(text_formats.write_bdf))
+_VTK = Format(
+    "VTK", _own_read(legacy_vtk.read), _meshio_write("vtk"), data=True, regions=True, sides=True
+)
+_VTU = Format(
+    "VTU", _own_read(vtk_xml.read), _meshio_write("vtu"), data=True, regions=True, sides=True
+)
+_INP = Format(
+    "Abaqus", _own_read(abaqus.read), _own_write(abaqus_writer.write), regions=True, sides=True
+)
+_SU2 = Format("SU2", _own_read(su2.read), _own_write(su2_writer.write), sides=True)
+_BDF = Format("Nastran", _own_read(nastran.read), _own_write(nastran_writer.write), regions=True)
 _DAT = Format("Tecplot", _own_read(tecplot.read), _meshio_write("tecplot"), data=True)
 _PLY = Format("PLY", _own_read(ply.read), _meshio_write("ply"), data=True)
-_MESH = Format("Medit", _own_read(medit.read), _meshio_write("medit"))
-_AVS = Format("AVS-UCD", _own_read(avs.read), _meshio_write("avsucd"), data=True)
+_MESH = Format(
+    "Medit", _own_read(medit.read), _meshio_write("medit"), regions=True, sides=True, numbers=True
+)
+_AVS = Format(
+    "AVS-UCD", _own_read(avs.read), _meshio_write("avsucd"), data=True, regions=True, numbers=True
+)
 _XML = Format("DOLFIN XML", _own_read(dolfin.read), _meshio_write("dolfin"), kinds=_TRIANGLES)
 _VOL = Format("Netgen", _own_read(netgen.read), _meshio_write("netgen"))
 _XDMF = Format(
-    "XDMF", _own_path(xdmf.read_path), _own_write(text_formats.write_xdmf), data=True, regions=True
+    "XDMF",
+    _own_path(xdmf.read_path),
+    _own_write(xdmf_writer.write),
+    data=True,
+    regions=True,
+    sides=True,
 )
 
 FORMATS: dict[str, Format] = {

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
+import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from meshwright_core.core.irregularity import CORNER_ANGLE
-from meshwright_core.errors import MeshError
+from meshwright_core.errors import FileWarning, MeshError
 from meshwright_core.io import (
     cleaning,
     formats,
+    named_groups,
     parts,
     surface,
     text_formats,
@@ -22,6 +25,8 @@ from meshwright_core.io.atomic_write import replacing
 from meshwright_core.io.content import Content
 from meshwright_core.io.file_checks import naming, size_of
 from meshwright_core.mesh import HalfEdgeMesh
+
+_SHOWN = 6
 
 
 def endings() -> tuple[str, ...]:
@@ -51,8 +56,14 @@ def read(
     part: str | None = None,
     to_quads: bool = False,
 ) -> HalfEdgeMesh:
-    """Read a mesh file; see :func:`load`, which also says what was changed on the way."""
-    return load(path, corner_angle, part, to_quads).mesh
+    """Read a mesh file; see :func:`load`. What it notes is said by a FileWarning each."""
+    found = load(path, corner_angle, part, to_quads)
+    said = list(found.notes)
+    if found.dropped:
+        said.append(f"{', '.join(found.dropped)} {_are(found.dropped)} not kept")
+    for line in said:
+        warnings.warn(f"{path}: {line.rstrip('.')}.", FileWarning, stacklevel=2)
+    return found.mesh
 
 
 def load(
@@ -68,7 +79,8 @@ def load(
     in others where that makes one surface of two. Elements that are there more than once are read
     once, and those of higher order with straight sides. Where neighbouring elements run against
     each other they are turned to agree, and meshes in a plane z = const run counter-clockwise
-    afterwards.
+    afterwards. Named groups of elements become regions, those of edges and points sides: see
+    :meth:`HalfEdgeMesh.sides` and `region_names`.
 
     Args:
         path: a file whose ending `endings` lists.
@@ -99,8 +111,9 @@ def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
     Only live vertices and elements are written, renumbered in order. Coordinates are exact (17
     digits where they need them) but in Nastran (at least nine digits), glTF and 3MF (single
     precision) files. Geometric flags and desired degrees go along as point data where the format
-    has it; elsewhere `read` finds the corners by angle. Several regions become cell data "region"
-    (VTK, VTU) or physical groups (Gmsh). Edges along curves become straight: mesh files hold no
+    has it; elsewhere `read` finds the corners by angle. Names of sides and regions are written
+    where the format has them, see `losses`; a FileWarning says which are lost. A Gmsh file of
+    version 4 that is replaced stays one. Edges along curves become straight: mesh files hold no
     curves, projects do.
 
     Raises:
@@ -115,15 +128,63 @@ def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
         if kind not in form.kinds:
             raise MeshError(f"{form.title} files hold no {kind}s")
         content = _live(mesh, kind, form)
+        lost = losses(place, mesh)
     except MeshError as error:
         raise MeshError(f"{place}: {error}.") from error
+    put = form.write
+    if place.suffix.lower() == ".msh" and _is_version_4(place):
+        put = formats.write_msh_4
     with replacing(path) as temporary:
         try:
             with formats.contained():
-                form.write(temporary, content)
+                put(temporary, content)
         except MeshError as error:
             raise MeshError(f"{place}: it cannot be written: {error}.") from error
         _refuse_incomplete(form, temporary, content)
+    for line in lost:
+        warnings.warn(f"{place}: {line}", FileWarning, stacklevel=2)
+
+
+def losses(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> tuple[str, ...]:
+    """What a mesh file of this ending cannot hold of the names of a mesh: a sentence each.
+
+    Raises:
+        MeshError: the ending is unknown.
+    """
+    form = formats.of(path)
+    sides = [name for name in mesh.sides() if name]
+    regions = [name for name in dict.fromkeys(mesh.region_names) if name]
+    lost = []
+    if sides and not form.sides:
+        lost.append(f"of the sides {_listed(sides)}")
+    if regions and not form.regions:
+        lost.append(f"of the regions {_listed(regions)}")
+    if lost:
+        return (f"{form.title} files hold no such names: those {' and '.join(lost)} are lost.",)
+    if form.numbers and (sides or regions):
+        return (
+            f"{form.title} files hold numbers in place of names: {_listed([*sides, *regions])} "
+            "become numbers.",
+        )
+    return ()
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = [repr(name) for name in names[:_SHOWN]]
+    more = len(names) - len(shown)
+    return ", ".join(shown) + (f" and {more} more" if more else "")
+
+
+def _are(things: Sequence[str]) -> str:
+    return "is" if len(things) == 1 else "are"
+
+
+def _is_version_4(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return file.read(64).split()[:2][-1:] in ([b"4.1"], [b"4.0"], [b"4"])
+    except OSError:
+        return False
 
 
 def _refuse_incomplete(form: formats.Format, path: Path, content: Content) -> None:
@@ -170,19 +231,22 @@ def _prepared(
 
 
 def _loaded(content: Content, corner_angle: float) -> Loaded:
-    (elements,) = content.cells.values()
+    ((kind, elements),) = content.cells.items()
     points = content.points
     elements = cleaning.oriented(points, elements)
+    found = named_groups.named(content, kind, elements)
     mesh = HalfEdgeMesh.from_elements(
         points,
         elements,
         cleaning.flags(content.data, len(points)),
         cleaning.desired(content.data, len(points)),
         corner_angle,
-        regions=cleaning.regions(content, len(elements)),
+        regions=found.regions,
+        names=found.names,
     )
+    mesh.left_out = content.dropped
     there = parts.part_names(content)
-    notes = content.warnings
+    notes = (*content.warnings, *found.warnings)
     if len(there) > 1:
         notes = (*notes, f"there {parts.listed_parts(content)}")
     return Loaded(mesh, notes, content.dropped, tuple(there))
@@ -198,9 +262,11 @@ def _live(mesh: HalfEdgeMesh, kind: str, form: formats.Format) -> Content:
     }
     regions = mesh.regions()
     several = form.regions and bool((regions != regions[:1]).any())
+    names = named_groups.names_of(mesh, number, kind) if form.regions or form.sides else None
     return Content(
         mesh.points[vertices].copy(),
         {kind: number[mesh.elements()]},
         marks if form.data else {},
         {kind: regions} if several else {},
+        names,
     )

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from meshwright_core.core.names import SEPARATOR, joined
 from meshwright_core.errors import MeshError
-from meshwright_core.io import cleaning
+from meshwright_core.io import cleaning, named_groups
 from meshwright_core.io.content import Content, Names
 
 Ints = NDArray[np.int64]
@@ -40,17 +40,6 @@ def renumbered(content: Content, number: Ints, first: Ints) -> Content:
     """The content with other points: `number` (n,) is the new index of each old point, -1 for
     none; `first` (n',) is the old point that each new one is.
     """
-    names = content.names
-    if names is not None:
-        edges = number[names.edges]
-        kept = (edges >= 0).all(axis=1) & (edges[:, 0] != edges[:, 1])
-        points = {name: number[ids] for name, ids in names.points.items()}
-        names = replace(
-            names,
-            edges=edges[kept],
-            edge_sides=names.edge_sides[kept],
-            points={name: np.unique(ids[ids >= 0]) for name, ids in points.items()},
-        )
     data = {
         name: np.asarray(values)[first]
         for name, values in content.data.items()
@@ -60,7 +49,7 @@ def renumbered(content: Content, number: Ints, first: Ints) -> Content:
         points=content.points[first],
         cells={kind: number[block] for kind, block in content.cells.items()},
         data=data,
-        names=names,
+        names=named_groups.renumbered(content.names, number),
     )
 
 
