@@ -30,6 +30,7 @@ _HOMES = {
     "blocks": "meshwright.graphics.block_grids",
     "compare": "meshwright.experiments",
     "exercise": "meshwright.teaching",
+    "improve": "meshwright.assistant.solve",
     "learning_curves": "meshwright.experiments",
     "mesh": "meshwright.sources.resolve",
     "patch": "meshwright.teaching",

@@ -13,6 +13,7 @@ import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -211,7 +212,7 @@ def _ranges(layout: Layout) -> list[tuple[int, int]]:
     for stop in first[1:].tolist():
         if stop - cuts[-1] >= CHUNK or stop == first[-1]:
             cuts.append(stop)
-    return [(a, b) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
+    return [(a, b) for a, b in pairwise(cuts) if b > a]
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -149,7 +150,7 @@ class BlockStructure:
         w, share = self.samples
         at = np.empty(len(edges))
         bounds = np.flatnonzero(np.diff(edges, prepend=-1, append=-1))
-        for low, high in zip(bounds[:-1], bounds[1:], strict=True):
+        for low, high in pairwise(bounds.tolist()):
             edge = int(edges[low])
             at[low:high] = np.interp(fractions[low:high], share[edge], w[edge])
         return self.parts.points(edges, at)

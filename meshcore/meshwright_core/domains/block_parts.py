@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains import gallery
-from meshwright_core.domains.airfoils import airfoil_curves, naca4
+from meshwright_core.domains.airfoils import airfoil_curves
 from meshwright_core.domains.curved_shapes import HALF, QUARTER, box, circle, polygon
 from meshwright_core.domains.domain import Domain
 
@@ -42,7 +42,7 @@ def _cylinder() -> Domain:
 
 
 def _airfoil() -> Domain:
-    wing = airfoil_curves(naca4("0012", 60))
+    wing = airfoil_curves("0012")
     far = [
         Curve.line((-1, -2), (3, -2)), Curve.line((3, -2), (3, 2)), Curve.line((3, 2), (-1, 2)),
         Curve.arc((-1, 0), 2, QUARTER, HALF),

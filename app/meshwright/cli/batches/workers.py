@@ -82,7 +82,8 @@ def _start() -> subprocess.Popen[str]:
 
 def _ask(worker: subprocess.Popen[str], words: Sequence[str]) -> dict[str, Any] | None:
     """The record of a task; None if the process has ended."""
-    assert worker.stdin is not None and worker.stdout is not None
+    assert worker.stdin is not None
+    assert worker.stdout is not None
     try:
         worker.stdin.write(json.dumps(list(words)) + "\n")
         worker.stdin.flush()
@@ -94,7 +95,8 @@ def _ask(worker: subprocess.Popen[str], words: Sequence[str]) -> dict[str, Any] 
 
 
 def _end(worker: subprocess.Popen[str]) -> None:
-    assert worker.stdin is not None and worker.stdout is not None
+    assert worker.stdin is not None
+    assert worker.stdout is not None
     with suppress(OSError):
         worker.stdin.close()
     try:

@@ -1,4 +1,4 @@
-"""VTK's XML formats: the blocks as `.vtm` with one `.vts` each, and cells of higher order as `.vtu`.
+"""VTK's XML formats: the blocks as `.vtm`, a `.vts` each, and cells of higher order as `.vtu`.
 
 Arrays are in base64, each with its length before it.
 """
