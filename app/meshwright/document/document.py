@@ -211,13 +211,16 @@ class Document:
         self._passing = passing
         self._announce_replacement()
 
-    def open(self, path: str | Path) -> None:
+    def open(self, path: str | Path, to_quads: bool = False) -> None:
         """Read a mesh file or a project, or mesh the shape in a drawing.
+
+        to_quads: make quads of the triangles of a mesh file; it is then not where the mesh is
+            saved.
 
         A shape gets elements of the present kind, quads if there is no mesh; its file is not where
         the mesh is saved. On MeshError or OSError the document stays as it was.
         """
-        self.adopt(document_file.read_meshed(path, self.kind or "quad"))
+        self.adopt(document_file.read_meshed(path, self.kind or "quad", to_quads))
 
     def adopt(self, state: DocumentState) -> None:
         """Continue from a stored state: a mesh with its history, at the cursor it had."""
