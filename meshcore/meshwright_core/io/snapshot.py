@@ -167,7 +167,7 @@ def restored_steps(
     return tuple(divided(steps, step_archive.PIECE))
 
 
-MOST_CHECKED = 20_000_000
+MOST_CHECKED = 1_000_000
 """Steps times elements up to which the whole history of a file is checked at once."""
 
 
