@@ -75,7 +75,7 @@ class Curve:
     def line(cls, a: ArrayLike, b: ArrayLike) -> Curve:
         """The segment from a (2,) to b (2,)."""
         ends = np.array([a, b], np.float64)
-        return cls("line", {"points": ends}, [segment(*ends)])
+        return cls("line", {"points": ends}, [segment(*ends)], _distances(ends))
 
     @classmethod
     def polyline(cls, points: ArrayLike) -> Curve:
@@ -86,7 +86,7 @@ class Curve:
         if len(corners) == 2:
             return cls.line(*corners)
         spans = [segment(a, b) for a, b in pairwise(corners)]
-        return cls("polyline", {"points": corners}, spans)
+        return cls("polyline", {"points": corners}, spans, _distances(corners))
 
     @classmethod
     def arc(cls, centre: ArrayLike, radius: float, start: float, sweep: float) -> Curve:
@@ -351,6 +351,8 @@ class Curve:
     @cached_property
     def _own_area(self) -> float:
         """:meth:`area_about` its start; of arcs, unless all but straight, in closed form."""
+        if self.kind == "line":
+            return 0.0
         if self.kind == "arc" and abs(self.data["sweep"]) > _FLAT:
             (x, y), (dx, dy) = self.data["centre"] - self.start, self.end - self.start
             return 0.5 * float(self.data["radius"] ** 2 * self.data["sweep"] + x * dy - y * dx)
@@ -560,6 +562,12 @@ def _point_of(control: Array) -> Array:
     place: Array = control[:2] / control[3]
     place.flags.writeable = False
     return place
+
+
+def _distances(points: Array) -> Array:
+    """(n - 1,) distances between each two points of (n, 2) that follow each other."""
+    found: Array = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return found
 
 
 def _extent(span: Array) -> float:

@@ -1,4 +1,4 @@
-"""Many curves evaluated in one call: a drawing of thousands of circles is all overhead otherwise."""
+"""Evaluates many curves in one call: drawings hold thousands of circles."""
 
 from __future__ import annotations
 

@@ -228,14 +228,14 @@ class _Tracer:
 
     def _inner_points(self, faces: Faces) -> Points:
         """A point in each face, outside of the islands in it."""
-        rims = [faces.outline(island.rim) for island in faces.islands]
-        shapes = []
-        for i, face in enumerate(faces.faces):
-            holes = [rims[island] for island in self.children.get(i, [])]
-            shapes.append(shapely.Polygon(faces.outline(face.ways), holes))
-        self._shapes = np.array(shapes)
-        if not shapes:
+        if not faces.faces:
+            self._shapes = np.zeros(0, object)
             return np.zeros((0, 2))
+        self._shapes = faces.polygons.copy()
+        for i, islands in self.children.items():
+            if i >= 0:
+                holes = [faces.outline(faces.islands[island].rim) for island in islands]
+                self._shapes[i] = shapely.Polygon(faces.outline(faces.faces[i].ways), holes)
         found: Points = shapely.get_coordinates(shapely.point_on_surface(self._shapes))
         return found
 
