@@ -27,13 +27,14 @@ from meshwright.graphics.export.export_job import save_mesh_picture
 from meshwright_core import HalfEdgeMesh, warm_up
 from meshwright_core.domains import gallery
 
+BRACKET = "filleted-bracket"
 SETTLE = 800
 """Milliseconds until all animations of the page have ended."""
 
 
 def fillet() -> tuple[float, float]:
     """The middle of the arc between the arms of the bracket: it turns to the right."""
-    outline = gallery.shape("filleted-bracket").boundary[0]
+    outline = gallery.shape(BRACKET).boundary[0]
     arc = next(curve for curve in outline if curve.data.get("sweep", 0.0) < 0.0)
     x, y = arc.point(0.5 * arc.length).tolist()
     return x, y
@@ -101,8 +102,8 @@ def main(folder: Path) -> None:
         "window, bracket, dark": lambda: window(
             shape("filleted-bracket"), "filleted-bracket", "dark"
         ),
-        "a fillet, 8 times": lambda: zoomed("filleted-bracket", fillet(), 8.0, "light"),
-        "the same, 200 times": lambda: zoomed("filleted-bracket", fillet(), 200.0, "dark"),
+        "a fillet, 8 times": lambda: zoomed(BRACKET, fillet(), 8.0, "light"),
+        "the same, 200 times": lambda: zoomed(BRACKET, fillet(), 200.0, "dark"),
         "preview between arcs": lambda: preview("plate-with-round-hole", "light"),
         "three regions": lambda: window(shape("motor-segment"), "motor-segment", "dark"),
         "--png, airfoil": lambda: picture_file("airfoil-in-box", folder),
