@@ -23,7 +23,7 @@ from meshwright_core.geometry.jacobian_bound import jacobian_bound
 
 SUMMARY = "random curved quads: how often the sampled Jacobian misses a fold, and how deep"
 
-QUADS = 5_000
+QUADS = 1_000
 """Quads of each kind and number of curved sides."""
 QUICK = 50
 KINDS = (("arcs up to 90", 90.0), ("arcs up to 120", 120.0), ("splines", 0.0))
