@@ -49,8 +49,8 @@ class MeshWidget(anywidget.AnyWidget):
     """An editor for a mesh in a notebook cell, with the agent.
 
     Browser and Python edit the same document; several widgets on one document stay synchronised.
-    Change the mesh through the widget or its document: ``widget.mesh.apply`` records no history
-    and updates no view.
+    ``widget.mesh`` is live: what a cell changes on it directly, without smoothing, is recorded as
+    steps "Edit in Python" when the cell has ended, or at the next use of the widget.
     """
 
     # anywidget sends only traits of the class; their texts are defaults of the instance
@@ -138,7 +138,7 @@ class MeshWidget(anywidget.AnyWidget):
 
     @property
     def mesh(self) -> HalfEdgeMesh:
-        """The live mesh; change it by the widget's methods only. MeshError while there is none."""
+        """The live mesh; MeshError while there is none."""
         return self.session.mesh
 
     @property

@@ -19,6 +19,7 @@ from meshwright_core.core.arrays import (
     IRREGULAR,
     LOCKED,
     ORIGIN,
+    PINNED,
     SCORE,
     SIDES,
     TWIN,
@@ -202,6 +203,10 @@ class MeshView:
     def geometric(self) -> np.ndarray:
         """(slots,) whether a vertex is part of the geometry: it neither moves nor vanishes."""
         return (self._arrays.vertex[: self.slots, FLAGS] & GEOMETRIC) > 0
+
+    def pinned(self) -> np.ndarray:
+        """(slots,) whether the user has put a vertex where it is: smoothing does not move it."""
+        return (self._arrays.vertex[: self.slots, FLAGS] & PINNED) > 0
 
     def locked(self) -> np.ndarray:
         """(slots,) whether the user has locked a vertex: it neither moves nor vanishes."""

@@ -95,3 +95,53 @@ def test_a_selection_moves_as_one_without_those_that_stay(board):
     assert moved[6] == pytest.approx([1.2, 1.1, 0.0])
     assert moved[12] == pytest.approx([2.2, 2.1, 0.0])
     assert moved[1] == pytest.approx([1.2, 0.0, 0.0]) and moved[2] == pytest.approx([2.2, 0.0, 0.0])
+
+
+def test_a_vertex_put_by_hand_stays_when_the_mesh_is_smoothed(board):
+    document = Document(board)
+    drag = Drag(board, [12, 2], 12)
+    drag.to(2.4, 2.3)
+    document.move(drag.vertices, drag.places, parameters=drag.parameters, pin=True)
+    there = board.points[[2, 12]].copy()
+    assert board.pinned().nonzero()[0].tolist() == [2, 12]
+    document.smooth()
+    document.smooth(vertices=np.array([2, 12]))
+    document.submit("flip_left", board.halfedge(12, 13))
+    document.untangle()
+    assert np.array_equal(board.points[[2, 12]], there)
+    document.go_to(1)
+    document.undo()  # one step: position and pin
+    assert not board.pinned().any()
+    assert board.points[12].tolist() == [2.0, 2.0, 0.0]
+    document.redo()
+    document.set_pinned(12, False)
+    document.smooth()
+    assert not np.array_equal(board.points[12], there[1])
+    assert np.array_equal(board.points[2], there[0])
+
+
+def test_a_pinned_vertex_survives_a_merge_in_its_place(board):
+    board.set_pinned(12)
+    board.set_pinned(18)
+    edit = board.apply("collapse", board.halfedge(6, 7))  # merges 6 and 12
+    assert edit.score_change is not None
+    assert board.points[12].tolist() == [2.0, 2.0, 0.0]
+    assert board.pinned()[12] and not board.locked()[12]
+    board.undo()
+    assert board.check("collapse", board.halfedge(12, 13))  # 12 and 18, both pinned
+
+
+@pytest.mark.skip
+def test_no_search_moves_a_pinned_vertex():
+    import meshwright as mw
+
+    mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
+    inner = int(np.flatnonzero(~mesh.boundary() & (mesh.degree() > 0))[0])
+    place = mesh.points[inner] + (0.01, 0.013, 0.0)
+    mesh.move(np.array([inner]), place[None])
+    mesh.set_pinned(inner)
+    solution = mw.solve(mesh, rollouts=2, seed=1)
+    kept = np.flatnonzero(solution.mesh.pinned())
+    assert len(kept) <= 1
+    if len(kept):
+        assert np.array_equal(solution.mesh.points[kept[0]], place)

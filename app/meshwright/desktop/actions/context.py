@@ -17,6 +17,7 @@ from meshwright.desktop.editing.edit_controller import EditController
 from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
 from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.history.playback_controller import PlaybackController
@@ -41,6 +42,7 @@ class ActionContext:
     lines: CleanableLinesController
     selection_tools: SelectionController
     navigation: KeyboardNavigation
+    vertices: VertexCommands
     hints: HintsController
     agent: AgentController
     preferences: PreferencesController

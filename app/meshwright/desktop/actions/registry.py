@@ -12,6 +12,7 @@ from meshwright.desktop.actions import (
     mesh,
     navigate,
     select,
+    vertex,
     view,
 )
 from meshwright.desktop.actions.action import Action
@@ -21,6 +22,7 @@ ACTIONS: tuple[Action, ...] = (
     *edit.ACTIONS,
     *select.ACTIONS,
     *mesh.ACTIONS,
+    *vertex.ACTIONS,
     *view.ACTIONS,
     *navigate.ACTIONS,
     *history.ACTIONS,

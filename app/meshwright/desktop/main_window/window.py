@@ -22,6 +22,7 @@ from meshwright.desktop.actions.dispatcher import ActionDispatcher
 from meshwright.desktop.agent.agent_controller import AgentController
 from meshwright.desktop.agent.agent_panel import AgentPanel
 from meshwright.desktop.agent.hints_controller import HintsController
+from meshwright.desktop.application.error_notice import ErrorNotice
 from meshwright.desktop.application.kernel_warmup import KernelWarmup
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.application.preferences_controller import PreferencesController, theme_name
@@ -36,6 +37,7 @@ from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.inverted_controller import InvertedController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
 from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.help.tour import TourPlaces
@@ -127,6 +129,8 @@ class MainWindow(QMainWindow):
         self.navigation = KeyboardNavigation(
             document, canvas, self.quality.highlight, status, colours
         )
+        self.vertices = VertexCommands(document, canvas, self.levels, readiness, status, colours)
+        self.errors = ErrorNotice(document, notice, colours)
         self.agent_panel = AgentPanel(document, assistant, settings, actions, colours)
         self.hints = HintsController(
             document, assistant, canvas, self.agent_panel, status, notice, colours
@@ -169,6 +173,8 @@ class MainWindow(QMainWindow):
             self.lines,
             self.selection_tools,
             self.navigation,
+            self.vertices,
+            self.errors,
             self.hints,
             self.agent,
             self.clicks,
@@ -217,6 +223,7 @@ class MainWindow(QMainWindow):
             lines=self.lines,
             selection_tools=self.selection_tools,
             navigation=self.navigation,
+            vertices=self.vertices,
             hints=self.hints,
             agent=self.agent,
             preferences=self.preferences,
@@ -300,9 +307,10 @@ class MainWindow(QMainWindow):
     # Session
 
     def start_session(self) -> None:
-        """Restore the position, save every step, offer unsaved work, and show the tour at the first
-        start: for a window that a user has started.
+        """Show errors, restore the position, save every step, offer unsaved work, and show the tour
+        at the first start: for a window that a user has started.
         """
+        self.errors.watch()
         self.preferences.restore_place()
         self.files.watch()
         self.opened.connect(self.help.welcome)
