@@ -131,7 +131,6 @@ def test_a_pinned_vertex_survives_a_merge_in_its_place(board):
     assert board.check("collapse", board.halfedge(12, 13))  # 12 and 18, both pinned
 
 
-@pytest.mark.skip
 def test_no_search_moves_a_pinned_vertex():
     import meshwright as mw
 
@@ -140,7 +139,7 @@ def test_no_search_moves_a_pinned_vertex():
     place = mesh.points[inner] + (0.01, 0.013, 0.0)
     mesh.move(np.array([inner]), place[None])
     mesh.set_pinned(inner)
-    solution = mw.solve(mesh, rollouts=2, seed=1)
+    solution = mw.solve(mesh, 0.5)
     kept = np.flatnonzero(solution.mesh.pinned())
     assert len(kept) <= 1
     if len(kept):
