@@ -28,9 +28,9 @@ def test_an_edit_of_the_mesh_is_recorded_as_a_step(document):
     assert document.catch_up()
     assert not document.catch_up()
     assert [row.title for row in document.history][1:] == ["Edit in Python"] * 2
-    assert [row.after for row in document.history][:-1] == [
-        row.before for row in document.history
-    ][1:]
+    assert [row.after for row in document.history][:-1] == [row.before for row in document.history][
+        1:
+    ]
     assert document.history.last.after == mesh.score == document.score
     document.undo()
     document.go_to(0)
