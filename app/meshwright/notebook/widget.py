@@ -25,6 +25,7 @@ from meshwright.notebook.arguments import (
     whole,
 )
 from meshwright.notebook.export import html_page, images
+from meshwright.notebook.export.film_progress import shown_progress
 from meshwright.notebook.export.images import SECONDS, SIZE, File
 from meshwright.notebook.protocol.level_bridge import LevelBridge
 from meshwright.notebook.protocol.mesh_sync import Packet
@@ -329,14 +330,18 @@ class MeshWidget(anywidget.AnyWidget):
     def to_gif(
         self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
     ) -> bytes:
-        """The history as an animated GIF; each frame lasts ``seconds``."""
-        return self._do(lambda: images.gif(self.document, seconds, size, path, self._export_theme))
+        """The history as an animated GIF; each frame lasts ``seconds``. It can be interrupted."""
+        theme = self._export_theme
+        with shown_progress() as report:
+            return self._do(lambda: images.gif(self.document, seconds, size, path, theme, report))
 
     def to_mp4(
         self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
     ) -> bytes:
-        """The history as MP4 (H.264); each frame lasts ``seconds``."""
-        return self._do(lambda: images.mp4(self.document, path, seconds, size, self._export_theme))
+        """The history as MP4 (H.264); each frame lasts ``seconds``. It can be interrupted."""
+        theme = self._export_theme
+        with shown_progress() as report:
+            return self._do(lambda: images.mp4(self.document, path, seconds, size, theme, report))
 
     @property
     def _export_theme(self) -> str:
