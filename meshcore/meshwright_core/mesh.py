@@ -21,7 +21,6 @@ from meshwright_core.core.arrays import (
     JOURNAL_TOP,
     LOCKED,
     NAMING,
-    PINNED,
     STEP,
     STEP_COLUMNS,
     STEP_END,
@@ -38,6 +37,7 @@ from meshwright_core.core.mesh_view import MeshView
 from meshwright_core.core.names import clean
 from meshwright_core.core.projected_seats import take_projected_seats
 from meshwright_core.core.side_names import Names
+from meshwright_core.core.vertex_flags import PINNED
 from meshwright_core.errors import MeshError, OperationRefused
 from meshwright_core.history import journal
 from meshwright_core.history.packed_steps import Steps, last_done

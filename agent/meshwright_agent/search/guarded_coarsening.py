@@ -32,13 +32,14 @@ from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ELEMENTS,
     FLAGS,
+    GEOMETRIC,
     HALF,
     IRREGULAR,
+    LOCKED,
     ORIGIN,
     SCORE,
     SIDES,
     TWIN,
-    UNMOVED,
     VERTEX_SLOTS,
     MeshArrays,
     copied,
@@ -440,7 +441,7 @@ class Coarsener:
         """Ids (n,) of the vertices that may move, their places (n, 3), and parameters (n,)."""
         m = layout.arrays
         rows = m.vertex[: m.counters[VERTEX_SLOTS]]
-        free = (rows[:, HALF] >= 0) & ((rows[:, FLAGS] & UNMOVED) == 0)
+        free = (rows[:, HALF] >= 0) & ((rows[:, FLAGS] & (GEOMETRIC | LOCKED)) == 0)
         ids = np.flatnonzero(free).astype(np.int64)
         return ids, m.points[ids].copy(), m.parameter[ids].copy()
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh, Operation
+from meshwright_core.core.arrays import FLAGS, LOCKED
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
@@ -70,6 +71,9 @@ class SearchRunner:
         return [self._left.pop(0)] if self._left else []
 
     def _search(self) -> list[tuple[Operation, int]]:
+        # a search also finds positions: it leaves what a person has put where it is
+        pinned = self._mesh.pinned().nonzero()[0]
+        self._mesh.arrays.vertex[pinned, FLAGS] |= LOCKED
         if self._effort.elements is not None:
             return self._search_within(self._effort.elements)
         from meshwright_agent.search.solver import solve

@@ -56,8 +56,7 @@ ORIGIN, TWIN = 0, 1
 HALF, DEGREE, DESIRED, FLAGS, PLACE, MARK, CURVE, NAMING = 0, 1, 2, 3, 4, 5, 6, 7
 VERTEX_COLUMNS = 8  # 32 bytes: half a cache line
 # bits of vertex[:, FLAGS]
-GEOMETRIC, LOCKED, PINNED = 1, 2, 4
-UNMOVED = GEOMETRIC | LOCKED | PINNED  # any of these: smoothing does not move the vertex
+GEOMETRIC, LOCKED = 1, 2
 # columns of MeshArrays.interface
 LEFT, RIGHT, START, END = 0, 1, 2, 3
 # counters that an undo restores

@@ -20,7 +20,6 @@ from meshwright_core.core.arrays import (
     LOCKED,
     NAMING,
     ORIGIN,
-    PINNED,
     SCORE,
     SIDES,
     TWIN,
@@ -33,6 +32,7 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.composite_curves import place_all
 from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.core.mesh_boundary import Interface, MeshBoundary
+from meshwright_core.core.vertex_flags import PINNED
 
 _KINDS = {3: "tri", 4: "quad"}
 

@@ -22,10 +22,10 @@ from meshwright_core.core.arrays import (
     GEOMETRIC,
     HALF,
     LEFT,
+    LOCKED,
     ORIGIN,
     START,
     TWIN,
-    UNMOVED,
     VERTEX_SLOTS,
     along_curve,
     following,
@@ -136,7 +136,7 @@ def _number(m, points, variable, seat, x):
             continue
         for c in range(3):
             points[v, c] = m.points[v, c]
-        if m.vertex[v, FLAGS] & UNMOVED:
+        if m.vertex[v, FLAGS] & (GEOMETRIC | LOCKED):
             continue
         variable[v] = count
         if m.vertex[v, CURVE] >= 0:

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from meshwright_core.core.arrays import CURVE, FLAGS, HALF, TWIN, UNMOVED
+from meshwright_core.core.arrays import CURVE, FLAGS, HALF, TWIN
 from meshwright_core.core.composite_curves import Curves, place_all
+from meshwright_core.core.vertex_flags import UNMOVED
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.coons import CurvedElements, curved_corners
 from meshwright_core.geometry.curved_elements import table

@@ -30,13 +30,13 @@ from meshwright_core.core.arrays import (
     SCORE,
     SIDES,
     TWIN,
-    UNMOVED,
     VERTEX_COLUMNS,
     VERTEX_SLOTS,
     VERTICES,
     MeshArrays,
 )
 from meshwright_core.core.construction import halves_of, twins_of
+from meshwright_core.core.vertex_flags import UNMOVED
 from meshwright_core.errors import MeshError
 from meshwright_core.history.journal import (
     EDGE_WRITE,

@@ -10,7 +10,6 @@ from meshwright_core.core.arrays import (
     HALF,
     LOCKED,
     ORIGIN,
-    PINNED,
     TWIN,
     along_curve,
     constrained,
@@ -37,17 +36,16 @@ from meshwright_core.operations.refusals import (
 
 @bare_kernel
 def _rank(m, v, k):
-    rank = 16 if m.vertex[v, FLAGS] & GEOMETRIC else 0
-    rank += 8 if on_curve(m, v) else 0
-    rank += 4 if m.vertex[v, FLAGS] & LOCKED else 0
-    rank += 2 if m.vertex[v, DESIRED] != usual_desired(k, on_boundary(m, v)) else 0
-    return rank + (1 if m.vertex[v, FLAGS] & PINNED else 0)
+    rank = 8 if m.vertex[v, FLAGS] & GEOMETRIC else 0
+    rank += 4 if on_curve(m, v) else 0
+    rank += 2 if m.vertex[v, FLAGS] & LOCKED else 0
+    return rank + (1 if m.vertex[v, DESIRED] != usual_desired(k, on_boundary(m, v)) else 0)
 
 
 @bare_kernel
 def survivor(m, a, b, k):
     """The one of a and b that stays: geometric before one on a curve before locked before a vertex
-    with a desired degree of its own before a pinned one; a when they are alike.
+    with a desired degree of its own; a when they are alike.
     """
     return b if _rank(m, b, k) > _rank(m, a, k) else a
 

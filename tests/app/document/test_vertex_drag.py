@@ -1,5 +1,9 @@
 """Dragging vertices: where they may go."""
 
+import sys
+from threading import Event
+from types import SimpleNamespace
+
 import curved_meshes
 import numpy as np
 import pytest
@@ -120,27 +124,21 @@ def test_a_vertex_put_by_hand_stays_when_the_mesh_is_smoothed(board):
     assert np.array_equal(board.points[2], there[0])
 
 
-def test_a_pinned_vertex_survives_a_merge_in_its_place(board):
+def test_no_search_moves_or_removes_a_pinned_vertex(board, monkeypatch):
+    from meshwright.assistant.search_runner import Effort, SearchRunner
+
     board.set_pinned(12)
-    board.set_pinned(18)
-    edit = board.apply("collapse", board.halfedge(6, 7))  # merges 6 and 12
-    assert edit.score_change is not None
-    assert board.points[12].tolist() == [2.0, 2.0, 0.0]
-    assert board.pinned()[12] and not board.locked()[12]
-    board.undo()
-    assert board.check("collapse", board.halfedge(12, 13))  # 12 and 18, both pinned
+    seen = []
+    runner = SearchRunner(board.copy(), None, 0, Effort(), Event(), lambda *_: None)
+    solver = SimpleNamespace(solve=lambda mesh, *_, **__: seen.append(mesh) or Found())
+    monkeypatch.setitem(sys.modules, "meshwright_agent.search.solver", solver)
+    runner.step()
+    assert np.flatnonzero(seen[0].locked()).tolist() == [12]
+    assert not board.locked().any()
 
 
-def test_no_search_moves_a_pinned_vertex():
-    import meshwright as mw
+class Found:
+    """An answer without operations."""
 
-    mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
-    inner = int(np.flatnonzero(~mesh.boundary() & (mesh.degree() > 0))[0])
-    place = mesh.points[inner] + (0.01, 0.013, 0.0)
-    mesh.move(np.array([inner]), place[None])
-    mesh.set_pinned(inner)
-    solution = mw.solve(mesh, 0.5)
-    kept = np.flatnonzero(solution.mesh.pinned())
-    assert len(kept) <= 1
-    if len(kept):
-        assert np.array_equal(solution.mesh.points[kept[0]], place)
+    operations = ()
+    seconds = 0.0

@@ -32,12 +32,12 @@ from meshwright_core.core.arrays import (
     HALF,
     LOCKED,
     ORIGIN,
-    PINNED,
     TWIN,
 )
 from meshwright_core.core.composite_curves import Curves
 from meshwright_core.core.irregularity import usual_desired_degree
 from meshwright_core.core.mesh_boundary import MeshBoundary
+from meshwright_core.core.vertex_flags import PINNED
 
 VERSION = 2
 ALIVE, BOUNDARY, CORNER, FIXED, ANCHOR, PIN = 1, 2, 4, 8, 16, 32
