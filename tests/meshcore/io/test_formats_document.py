@@ -44,8 +44,8 @@ QUADRATIC = {
     ".vtu": '<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="6" '
     f'NumberOfCells="1"><Points><DataArray type="Float64">{PLAIN}</DataArray></Points><Cells>'
     '<DataArray type="Int64" Name="connectivity">0 1 2 3 4 5</DataArray><DataArray type="Int64" '
-    'Name="offsets">6</DataArray><DataArray type="UInt8" Name="types">22</DataArray></Cells></Piece>'
-    "</UnstructuredGrid></VTKFile>",
+    'Name="offsets">6</DataArray><DataArray type="UInt8" Name="types">22</DataArray></Cells>'
+    "</Piece></UnstructuredGrid></VTKFile>",
     ".inp": f"*NODE\n{POINTS.replace(' ', ',')}*ELEMENT,TYPE=CPS6\n1,1,2,3,4,5,6\n",
     ".su2": f"NDIME= 3\nNELEM= 1\n22 0 1 2 3 4 5 0\nNPOIN= 6\n{PLAIN}",
     ".mesh": "MeshVersionFormatted 2\nDimension 3\nVertices 6\n"
