@@ -28,6 +28,7 @@ class State(StrEnum):
     PLAYING = "playing"
     PAUSED = "paused"
     SEARCHING = "searching"
+    GOING = "going"
 
 
 class RunnerProtocol(Protocol):

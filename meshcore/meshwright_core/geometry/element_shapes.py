@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry import movable_part
 from meshwright_core.geometry.coons import curved_shape
+from meshwright_core.geometry.curved_elements import curved_elements
+from meshwright_core.geometry.planes import plane_normal
+from meshwright_core.geometry.quality import reference_normals
 from meshwright_core.geometry.smoothing import element_shape
 
 if TYPE_CHECKING:
@@ -33,10 +35,25 @@ def _shapes(points, elements, curved, reference):
     return found
 
 
-def element_shapes(mesh: HalfEdgeMesh) -> np.ndarray:
-    """(m,) shape of each element, in the order of `mesh.elements()`; 0 or less where folded."""
-    part = movable_part.whole(mesh)
-    found: np.ndarray = _shapes(
-        part.points, part.elements, part.curved, np.ascontiguousarray(part.references())
-    )
+def element_shapes(
+    mesh: HalfEdgeMesh, ids: np.ndarray | None = None, normal: np.ndarray | None = None
+) -> np.ndarray:
+    """(m,) shape of each element, in the order of `mesh.elements()`; 0 or less where folded.
+
+    Args:
+        mesh: the mesh.
+        ids: (m,) the elements to measure, ascending, of a mesh in a plane; None: all.
+        normal: (3,) that of the mesh's plane, if the caller knows it.
+    """
+    if ids is None:
+        ids, elements, halfedges = mesh.element_ids(), mesh.elements(), None
+    else:
+        elements, halfedges = mesh.corners(ids), mesh.halfedges_of(ids).ravel()
+    plane = plane_normal(mesh) if normal is None else normal
+    if plane is None:  # on other surfaces all sides count as straight
+        halfedges = np.zeros(0, np.int64)
+    reference = reference_normals(mesh.points, elements, plane)
+    elements = np.ascontiguousarray(elements, np.int64)
+    curved = curved_elements(mesh, ids, elements, halfedges)
+    found: np.ndarray = _shapes(mesh.points, elements, curved, np.ascontiguousarray(reference))
     return found

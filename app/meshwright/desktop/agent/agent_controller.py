@@ -88,14 +88,20 @@ class AgentController(Controller):
         else:
             self._assistant.play()
 
+    def complete(self) -> None:
+        """Search until s* is reached or nothing more is won."""
+        self._assistant.search(Effort(prefer=self._panel.preference, until_done=True))
+
     def best_of(self) -> None:
         """Run the policy as often as set in the panel, and apply the best result."""
         rollouts = self._panel.rollouts
-        self._assistant.search(Effort(rollouts=rollouts, seconds=None))
+        self._assistant.search(
+            Effort(rollouts=rollouts, seconds=None, prefer=self._panel.preference)
+        )
 
     def search(self) -> None:
         """Search for the time set in the panel."""
-        self._assistant.search(Effort(seconds=self._panel.seconds))
+        self._assistant.search(Effort(seconds=self._panel.seconds, prefer=self._panel.preference))
 
     def finish_region(self) -> None:
         """Search in the selected region for the time set in the panel; the rest of the mesh is

@@ -42,6 +42,7 @@ class QualityController(Controller):
         canvas.overlay.add(self.highlight, below=canvas.overlay.card)
         self.score.delta_chosen.connect(self.go_to_next)
         self.score.inverted_chosen.connect(self.go_to_inverted)
+        self.score.element_chosen.connect(self.go_to_element)
         self.quality.worst_chosen.connect(self.go_to_element)
         self._connections.add(document.changed, self.highlight.clear)
 
