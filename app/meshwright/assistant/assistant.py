@@ -359,9 +359,8 @@ class Assistant:
 
     def _on_document_replaced(self) -> None:
         """Counts of runs on another mesh are out of date."""
-        self.cancel()
         self.progress.forget()
-        self.changed.emit()
+        self._set_outcome("")
 
     def _on_document_changed(self) -> None:
         self.hinting.forget()

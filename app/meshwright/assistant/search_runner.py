@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from meshwright_agent.search.solution import Solution
 
 COMPLETE_SECONDS = 3.0
-"""Time of the first round of *Complete*; each further one gets twice the time of the last."""
-LONGEST_ROUND = 30.0
-"""Seconds of a round at most."""
+"""Time of a round of *Complete*; after one that has won nothing the next gets twice as much."""
+PATIENCE = 2
+"""Rounds without success after which *Complete* ends."""
 PREFERENCES = ("blocks", "balanced", "shape")
 """What counts at s*: few blocks, a good worst corner, or both."""
 
@@ -65,6 +65,7 @@ class SearchRunner:
         self._mesh, self._policy, self._seed, self._effort = mesh, policy, seed, effort
         self._enough, self._progress = enough, progress
         self._began = time.monotonic()
+        self._rounds = 0
         self.finished = False
         """Whether the operations have been returned."""
         self.reason = ""
@@ -93,45 +94,44 @@ class SearchRunner:
         return time.monotonic() - self._began
 
     def _search(self) -> list[tuple[Operation, int]]:
-        """Rounds of the solver. A large mesh is improved from round to round; for a small one each
-        round begins at the start, with other random choices.
-        """
-        from meshwright_agent.search.solver import LAYOUTS
-
+        """Rounds of the solver, each from the best state so far, as long as s can fall."""
         effort, start = self._effort, self._mesh
         operations: list[tuple[Operation, int]] = []
+        before: list[tuple[Operation, int]] = []  # those that lead to the start of the round
         best: Solution | None = None
-        seconds, done = effort.seconds, 0
-        for number in range(1 << 20):
-            found = self._round(start, seconds, number, done)
+        seconds, done, lost = effort.seconds, 0, 0
+        while True:
+            found = self._round(start, seconds, done)
             done += found.rollouts
-            goes_on = start is not self._mesh
             won = best is None or found.rank[:-1] < best.rank[:-1]
-            if won and (found.operations or best is None):
-                operations = (operations if goes_on else []) + list(found.operations)
+            if won:
+                operations = before + list(found.operations)
                 best, self.target = found, start.copy()
                 found.carry_out(self.target)
-                if self._mesh.n_elements > LAYOUTS:
-                    start = self.target
             assert best is not None
+            assert self.target is not None
+            lost = 0 if won and found.operations else lost + 1
             if self._enough.is_set() or not effort.until_done or seconds is None:
                 break
-            if _is_done(best) or not won:
+            if _is_done(best) or lost >= PATIENCE:
                 break
-            seconds = min(2.0 * seconds, LONGEST_ROUND)
+            if best.perfect:  # others of the same s are found from the start
+                start, before = self._mesh, []
+            else:
+                start, before = self.target, operations
+            seconds = (effort.seconds or 0.0) * 2.0**lost
         return operations
 
-    def _round(
-        self, start: HalfEdgeMesh, seconds: float | None, number: int, done: int
-    ) -> Solution:
+    def _round(self, start: HalfEdgeMesh, seconds: float | None, done: int) -> Solution:
         from meshwright_agent.search.solver import solve
 
+        self._rounds += 1
         return solve(
             start,
             self._policy,
             rollouts=self._effort.rollouts,
             seconds=seconds,
-            seed=self._seed + 1009 * number,
+            seed=self._seed + 1009 * self._rounds,
             workers=max(1, (os.cpu_count() or 2) - 1),
             coarsen=self._effort.coarsen,
             prefer=self._effort.prefer,

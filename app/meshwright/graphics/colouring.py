@@ -37,6 +37,12 @@ BLOCK_SHARE = 0.3
 """Share of the hue in the fill of a block."""
 
 
+def named(colour: str) -> str:
+    """A title of :data:`TITLES` within a sentence: ``scaled Jacobian``."""
+    title = TITLES[colour]
+    return title[:1].lower() + title[1:]
+
+
 def scale(theme: Theme) -> list[str]:
     """The colours at :data:`STOPS`."""
     return [colour or theme.fill for colour in SCALES[theme.name]]

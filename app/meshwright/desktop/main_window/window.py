@@ -44,6 +44,7 @@ from meshwright.desktop.levels.level_controller import LevelController
 from meshwright.desktop.main_window.empty_page import EmptyPage
 from meshwright.desktop.main_window.left_column import LeftColumn
 from meshwright.desktop.main_window.sidebar import Section, Sidebar
+from meshwright.desktop.quality.colour_controller import ColourController
 from meshwright.desktop.quality.quality_controller import QualityController
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
@@ -111,6 +112,9 @@ class MainWindow(QMainWindow):
             document, assistant, canvas, self.files, self.playback, status, notice, self, colours
         )
         self.quality = QualityController(document, canvas, settings, status, colours)
+        self.colours = ColourController(
+            document, canvas, self.quality.monitor, settings, status, colours
+        )
         self.inverted = InvertedController(document, canvas, self.quality.monitor, colours)
         self.hover = HoverController(
             document, assistant, canvas, settings, readiness, status, colours
@@ -163,6 +167,7 @@ class MainWindow(QMainWindow):
             self.playback,
             self.levels,
             self.quality,
+            self.colours,
             self.inverted,
             self.hover,
             self.editing,
@@ -215,6 +220,8 @@ class MainWindow(QMainWindow):
             hover=self.hover,
             editing=self.editing,
             lines=self.lines,
+            quality=self.quality,
+            colours=self.colours,
             selection_tools=self.selection_tools,
             navigation=self.navigation,
             hints=self.hints,
@@ -295,6 +302,8 @@ class MainWindow(QMainWindow):
         for title, members in self.actions_by_id.menus(self.document.kind):
             menu = bar.addMenu(title)
             for entry in members:
+                if entry.id in registry.DIVIDERS:
+                    menu.addSeparator()
                 menu.addAction(self.actions_by_id[entry.id])
 
     # Session
