@@ -4,7 +4,7 @@ Imports neither Qt nor torch nor the agent. One call that changes the mesh is on
 history.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,19 +13,23 @@ import numpy as np
 
 from meshwright.document.history import YOU, History, HistoryStep
 from meshwright.document.selection import Selection
-from meshwright.document.storage import document_file, project_file
+from meshwright.document.storage import document_file, file_stamp, project_file
 from meshwright.document.storage.document_state import DocumentState
 from meshwright.document.timeline import NO_MESH as NO_MESH
 from meshwright.document.timeline import UndoTimeline
 from meshwright.signals import Signal
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 from meshwright_core.analysis.submesh import temporarily_locked
+from meshwright_core.core.names import clean
 from meshwright_core.core.notebook_display import Bundle, bundle
 from meshwright_core.core.score import normalised_return
 from meshwright_core.history.packed_steps import Steps
 from meshwright_core.operations.catalogue import CATALOGUE
 
 Result = TypeVar("Result")
+
+NAME = "name"
+"""The action of steps that name sides or regions."""
 
 
 def title_of(operation: Operation | str, kind: str) -> str:
@@ -72,6 +76,7 @@ class Document:
         self._path = Path(path) if path is not None else None
         self._hover = -1
         self._saved = (0, 0)
+        self._stamp = file_stamp.of(self._path)
         self._passing = False
         self._together = 0
         self._unannounced = False
@@ -161,16 +166,24 @@ class Document:
 
     @property
     def modified(self) -> bool:
-        """True if the mesh differs from its file, or from the state it began in.
+        """True if closing would lose anything: the mesh, or steps and branches of the history.
 
-        A project stores the history too: there an undone step counts as a change. A document that
-        is :attr:`passing` never counts as modified.
+        Only projects store the history: after saving to a mesh file it still counts, and so do
+        steps that were undone. A document that is :attr:`passing` never counts as modified.
         """
-        if self._passing:
-            return False
-        mark, given = self.saved_state
-        keeps_all = self._path is not None and project_file.is_project(self._path)
-        return mark != self._saved[0] or (keeps_all and given != self._saved[1])
+        return not self._passing and self.saved_state != self._saved
+
+    @property
+    def mesh_modified(self) -> bool:
+        """True if the mesh itself differs from its file, or from the state it began in."""
+        return not self._passing and self.history.mark != self._saved[0]
+
+    @property
+    def changed_on_disk(self) -> bool:
+        """True if the file at :attr:`path` is not as it was when this document last read or wrote
+        it: another window or program has saved to it, or deleted it.
+        """
+        return self._path is not None and file_stamp.of(self._path) != self._stamp
 
     @property
     def saved_state(self) -> tuple[int, int]:
@@ -212,26 +225,37 @@ class Document:
         """Continue from a stored state: a mesh with its history, at the cursor it had."""
         self._take(UndoTimeline(state.mesh, state.history), state.name, state.path)
         self._saved = state.saved
+        if state.stamp is not None:
+            self._stamp = state.stamp
         self.settings = dict(state.settings)
         self._announce_replacement()
 
     def state(self) -> DocumentState:
         """All that is stored of the document; the mesh in it is the document's own, not a copy."""
         return DocumentState(
-            self._need(), self.history, self._name, self._path, self._saved, dict(self.settings)
+            self._need(),
+            self.history,
+            self._name,
+            self._path,
+            self._saved,
+            dict(self.settings),
+            self._stamp,
         )
 
     def save(self, path: str | Path | None = None) -> Path:
         """Write the mesh to ``path`` or where it came from; returns where it is now.
 
-        A path that ends in ``.meshwright`` gets the whole history too.
+        A path that ends in ``.meshwright`` gets the whole history too. What another program has
+        written there is overwritten: see :attr:`changed_on_disk`.
         """
         target = Path(path) if path is not None else self._path
         if target is None:
             raise MeshError("This mesh has no file yet: choose a name with 'Save as'.")
         document_file.write(target, self.state())
         self._path, self._name, self._passing = target, target.stem, False
-        self._saved = self.saved_state
+        self._stamp = file_stamp.of(target)
+        mark, given = self.saved_state
+        self._saved = mark, given if project_file.is_project(target) else self._saved[1]
         self.recorded.emit("saved", 0)
         self.saved_changed.emit()
         return target
@@ -248,6 +272,7 @@ class Document:
         self._path = Path(path) if path is not None else None
         self._hover = -1
         self._saved = (0, 0)
+        self._stamp = file_stamp.of(self._path)
         self._passing = False
         self.settings = {}
 
@@ -442,14 +467,32 @@ class Document:
     def set_geometric(self, vertices: int | np.ndarray, flag: bool) -> None:
         """Set or clear the corner flag of one vertex or several (n,), as one step.
 
-        Junctions of interfaces keep it.
+        Junctions of interfaces, and the ends of named sides, keep it.
         """
         mesh = self._need()
         now = mesh.geometric()
-        kept = mesh.junctions()
+        kept = mesh.junctions() | mesh.side_ends()
         wanted = [v for v in _ids(vertices) if bool(now[v]) != flag and v not in kept]
         title = _counted("Make corner" if flag else "Free corner", wanted)
         self._do("geometric", title, -1, YOU, lambda: _each(wanted, mesh.set_geometric, flag))
+
+    def name_sides(self, halfedges: np.ndarray, name: str) -> None:
+        """Name edges (n,) of the boundary or of interfaces, "" for none, as one step."""
+        mesh = self._need()
+        title = f"Name sides {shown}" if (shown := clean(name)) else "Sides without name"
+        self._do(NAME, title, -1, YOU, lambda: mesh.name_sides(halfedges, name))
+
+    def name_regions(self, regions: Sequence[int], name: str) -> None:
+        """Name regions, "" for none, as one step."""
+        mesh = self._need()
+        title = f"Name regions {shown}" if (shown := clean(name)) else "Regions without name"
+        self._do(NAME, title, -1, YOU, lambda: mesh.name_regions(regions, name))
+
+    def rename(self, old: str, new: str) -> None:
+        """Rename a group of sides and regions wherever it occurs, as one step."""
+        mesh = self._need()
+        title = f"Rename {old} {shown}" if (shown := clean(new)) else f"Remove name {old}"
+        self._do(NAME, title, -1, YOU, lambda: mesh.rename(old, new))
 
     def set_locked(self, vertices: int | np.ndarray, flag: bool) -> None:
         """Lock one vertex or several (n,), or unlock them, as one step."""

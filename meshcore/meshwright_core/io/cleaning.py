@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.errors import MeshError
-from meshwright_core.io.text_formats import Cells, Content
+from meshwright_core.io.content import Cells, Content
+from meshwright_core.io.named_groups import renumbered
 
 _IGNORED = frozenset({"vertex", "line", "line3", "line4"})
 _MOST_DEGREE = 10_000
@@ -82,16 +83,26 @@ def compacted(content: Content, elements: Elements) -> tuple[Content, Elements]:
         for name, values in content.data.items()
         if len(values) == len(used)
     }
-    return Content(content.points[used], {}, data), number[elements]
+    number = np.where(used, number, -1)
+    kept = content._replace(
+        points=content.points[used],
+        cells={},
+        data=data,
+        names=renumbered(content.names, number),
+    )
+    return kept, number[elements]
 
 
 def merged(content: Content, elements: Elements) -> tuple[Content, Elements]:
-    """Merge points at exactly the same place; the first one stays, cells and data are dropped."""
+    """Merge points at exactly the same place; the first one stays, data are dropped."""
     points = content.points + 0.0  # so that -0.0 is 0.0
     _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
     rank = np.empty(len(first), dtype=np.int64)
     rank[np.argsort(first)] = np.arange(len(first))
-    return Content(content.points[np.sort(first)], {}, {}), rank[inverse.ravel()][elements]
+    number = rank[inverse.ravel()]
+    names = renumbered(content.names, number)
+    kept = content._replace(points=content.points[np.sort(first)], cells={}, data={}, names=names)
+    return kept, number[elements]
 
 
 def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:
@@ -167,21 +178,6 @@ def desired(data: dict[str, NDArray[np.generic]], count: int) -> NDArray[np.int6
         return None
     whole = np.rint(values)
     return whole.astype(np.int64) if (whole == values).all() else None
-
-
-def regions(content: Content, count: int) -> NDArray[np.int64] | None:
-    """Return the region (count,) of each element of a file, numbered from 0 in ascending order.
-
-    None if they are not said, are no whole numbers, or are all the same.
-    """
-    kind = next((kind for kind in ("triangle", "quad") if kind in content.cells), "")
-    values = np.asarray((content.regions or {}).get(kind, ()))
-    if values.shape != (count,) or values.dtype.kind not in "biuf":
-        return None
-    if not (np.isfinite(values).all() and (values == np.rint(values)).all()):
-        return None
-    named, number = np.unique(values, return_inverse=True)
-    return number.ravel().astype(np.int64) if len(named) > 1 else None
 
 
 def _numbers(

@@ -22,7 +22,8 @@ import numpy as np
 
 from meshwright_core.errors import MeshError
 from meshwright_core.io import legacy_vtk, text_formats
-from meshwright_core.io.text_formats import Content
+from meshwright_core.io.content import Content
+from meshwright_core.io.writers import abaqus, cell_arrays, gmsh, nastran, su2
 
 SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json", ".poly")
 """Endings of files that hold a shape; see :mod:`meshwright_core.io.drawings`."""
@@ -44,6 +45,8 @@ class Format:
         kinds: the element types that it holds.
         data: whether it holds data by point.
         regions: whether it holds the region of each element.
+        sides: whether it holds sides.
+        numbers: whether sides and regions have numbers there, in place of names.
         merge: whether points at the same place are to be merged on reading.
         needs: packages that reading and writing take beyond our own dependencies.
     """
@@ -54,6 +57,8 @@ class Format:
     kinds: tuple[str, ...] = ("triangle", "quad")
     data: bool = False
     regions: bool = False
+    sides: bool = False
+    numbers: bool = False
     merge: bool = False
     needs: tuple[str, ...] = ()
 
@@ -176,9 +181,13 @@ def _meshio_path(module: str, **options: Any) -> tuple[Any, Any]:
     def write(path: Path, content: Content) -> None:
         import meshio
 
-        cells = [(kind, block.astype(np.int32)) for kind, block in content.cells.items()]
-        regions = [region.astype(np.int32) for region in (content.regions or {}).values()]
-        cell_data = {"region": regions} if regions else None
+        named: dict[str, Any] = content.cells
+        cell_data: dict[str, Any] = {}
+        if module in _ARRAYS:
+            named, cell_data = cell_arrays.named_cells(content, quoted=module == "vtk")
+        elif module in _REFERENCES:
+            named, cell_data = cell_arrays.referenced_cells(content, *_REFERENCES[module])
+        cells = [(kind, block.astype(np.int32)) for kind, block in named.items()]
         mesh = meshio.Mesh(content.points, cells, point_data=content.data, cell_data=cell_data)
         importlib.import_module(f"meshio.{module}").write(str(path), mesh, **options)
 
@@ -218,6 +227,10 @@ def _own_write(write: Callable[[Content], str]) -> Callable[[Path, Content], Non
     return put
 
 
+write_msh_4 = _own_write(lambda content: gmsh.write(content, "4.1"))
+"""Writes a Gmsh file of version 4.1."""
+
+
 def _trimesh(kind: str) -> tuple[Any, Any]:
     def read(path: Path) -> Content:
         import trimesh
@@ -249,6 +262,12 @@ def _read_vtk(path: Path) -> Content:
         return legacy_vtk.read(path.read_bytes())
 
 
+_ARRAYS = ("vtk", "vtu", "xdmf")
+"""Modules that write data by cell under any name."""
+_REFERENCES = {"medit": ("medit:ref", True), "avsucd": ("avsucd:material", False)}
+"""Modules that write one number for each cell: the array that holds it, and whether edges have one
+too."""
+
 _TRIANGLES = ("triangle",)
 _OBJ = Format("OBJ", _own_read(text_formats.read_obj), _own_write(text_formats.write_obj))
 _OFF = Format("OFF", _own_read(text_formats.read_off), _own_write(text_formats.write_off))
@@ -262,28 +281,38 @@ _STL = Format(
 _MSH = Format(
     "Gmsh",
     _meshio_binary("gmsh.main", "read_buffer")[0],
-    _own_write(text_formats.write_msh),
+    _own_write(gmsh.write),
     data=True,
     regions=True,
+    sides=True,
 )
-_INP = Format("Abaqus", _meshio_text("abaqus")[0], _own_write(text_formats.write_inp))
-_SU2 = Format("SU2", _meshio_text("su2")[0], _own_write(text_formats.write_su2))
-_BDF = Format("Nastran", _meshio_text("nastran")[0], _own_write(text_formats.write_bdf))
+_INP = Format(
+    "Abaqus", _meshio_text("abaqus")[0], _own_write(abaqus.write), regions=True, sides=True
+)
+_SU2 = Format("SU2", _meshio_text("su2")[0], _own_write(su2.write), sides=True)
+_BDF = Format("Nastran", _meshio_text("nastran")[0], _own_write(nastran.write), regions=True)
 _DAT = Format("Tecplot", *_meshio_text("tecplot"), data=True)
-_XDMF = Format("XDMF", *_meshio_path("xdmf", data_format="XML"), data=True, needs=("h5py",))
+_XDMF = Format(
+    "XDMF",
+    *_meshio_path("xdmf", data_format="XML"),
+    data=True,
+    regions=True,
+    sides=True,
+    needs=("h5py",),
+)
 
 FORMATS: dict[str, Format] = {
     ".msh": _MSH,
-    ".vtk": Format("VTK", _read_vtk, _meshio_path("vtk")[1], data=True, regions=True),
-    ".vtu": Format("VTU", *_meshio_path("vtu"), data=True, regions=True),
+    ".vtk": Format("VTK", _read_vtk, _meshio_path("vtk")[1], data=True, regions=True, sides=True),
+    ".vtu": Format("VTU", *_meshio_path("vtu"), data=True, regions=True, sides=True),
     ".inp": _INP,
     ".su2": _SU2,
     ".obj": _OBJ,
     ".ply": Format("PLY", *_meshio_binary("ply"), data=True),
     ".stl": _STL,
     ".off": _OFF,
-    ".mesh": Format("Medit", *_meshio_text("medit")),
-    ".avs": Format("AVS-UCD", *_meshio_text("avsucd"), data=True),
+    ".mesh": Format("Medit", *_meshio_text("medit"), regions=True, sides=True, numbers=True),
+    ".avs": Format("AVS-UCD", *_meshio_text("avsucd"), data=True, regions=True, numbers=True),
     ".xml": Format("DOLFIN XML", *_meshio_path("dolfin"), kinds=_TRIANGLES),
     ".vol": Format("Netgen", *_meshio_text("netgen")),
     ".bdf": _BDF,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.errors import MeshError
-from meshwright_core.io.text_formats import Content
+from meshwright_core.io.content import Content
 
 _TYPES = {
     "bit": "u1",

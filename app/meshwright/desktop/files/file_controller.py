@@ -19,7 +19,8 @@ from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.controller import Controller
 from meshwright.desktop.files.drop_target import DropTarget
 from meshwright.desktop.files.recent_menu import RecentMenu
-from meshwright.desktop.files.unsaved_work import Guard, NoGuard, UnsavedWorkGuard
+from meshwright.desktop.files.save_question import QuestionDialog
+from meshwright.desktop.files.unsaved_work import Guard, NoGuard, UnsavedWorkGuard, counted
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
@@ -91,6 +92,7 @@ class FileController(Controller):
             self._notice,
             self._window,
             self.save,
+            self.save_as,
             self.show_all,
             folder,
         )
@@ -113,7 +115,10 @@ class FileController(Controller):
 
     def _on_saved_changed(self) -> None:
         document = self._document
-        self._window.setWindowTitle(f"{document.name or 'No mesh'}[*] \u2013 Meshwright")
+        name = document.name or "No mesh"
+        only_history = document.modified and document.path and not document.mesh_modified
+        note = ", history not saved" if only_history else ""
+        self._window.setWindowTitle(f"{name}[*]{note} \u2013 Meshwright")
         self._window.setWindowModified(document.modified)
 
     # Another mesh
@@ -212,22 +217,61 @@ class FileController(Controller):
     # Saving
 
     def save(self) -> bool:
-        """Save the mesh to its file, or ask for one; returns whether it was saved."""
-        if self._document.path is None:
+        """Save the mesh to its file, or ask for one; returns whether it was saved.
+
+        Where another window or program has changed the file meanwhile, asks what to do.
+        """
+        document = self._document
+        if document.path is None:
             return self.save_as()
+        if document.changed_on_disk:
+            answer = self._ask_about_change(document.path)
+            if answer == "save_as":
+                return self.save_as()
+            if answer == "reload":
+                return self._reload(document.path)
+            if answer != "overwrite":
+                return False
         return self._save(None)
 
+    def _ask_about_change(self, path: Path) -> str:
+        there = path.exists()
+        what = "changed" if there else "deleted or moved"
+        reload = (("reload", "Reload"),) if there else ()
+        return QuestionDialog(
+            f"{path.name} was {what} by another program",
+            "Another window or program has saved to it since it was opened or saved here."
+            " Overwrite replaces what was saved there, Reload drops what was changed here."
+            if there
+            else "It is no longer where it was opened or saved.",
+            (("cancel", "Cancel"), *reload, ("save_as", "Save as\u2026")),
+            ("overwrite", "Overwrite" if there else "Save it there again"),
+            self._window,
+        ).ask()
+
+    def _reload(self, path: Path) -> bool:
+        """Read the file again; returns whether it could be read."""
+        try:
+            with waiting():
+                self._document.open(path)
+        except (ValueError, OSError) as error:
+            self._notice.show_message(one_line(error))
+            return False
+        self.show_all()
+        self._status.show_message(f"Reloaded {path.name}.")
+        return True
+
     def save_as(self) -> bool:
-        """Ask for a file and save the mesh to it, or mesh and history to a project."""
+        """Ask for a file and save mesh and history to a project, which is proposed, or the mesh
+        alone to a mesh file.
+        """
         document = self._document
-        start = str(document.path or f"{document.name or 'mesh'}{USUAL}")
-        chosen = PROJECTS if document.path and is_project(document.path) else MESHES
-        filters = {one.partition(" (")[0]: one for one in to_save().split(";;")}
+        start = (document.path or Path(document.name or "mesh")).with_suffix(ENDING)
         path, kind = QFileDialog.getSaveFileName(
-            self._window, "Save as", start, to_save(), filters[chosen]
+            self._window, "Save as", str(start), to_save(), to_save().split(";;")[0]
         )
         if path and not Path(path).suffix:
-            path += ENDING if kind.startswith(PROJECTS) else USUAL
+            path += USUAL if kind.startswith(MESHES) else ENDING
         return bool(path) and self._save(path)
 
     def _save(self, path: str | None) -> bool:
@@ -243,7 +287,8 @@ class FileController(Controller):
             self._notice.show_message(one_line(error))
             return False
         self._remember(written)
-        self._status.show_message(f"Saved {written.name}.{left_out(written)}")
+        lost = left_out(written) or unsaved_history(self._document, written)
+        self._status.show_message(f"Saved {written.name}.{lost}")
         return True
 
     def _forget(self, path: Path) -> None:
@@ -271,7 +316,7 @@ def to_open() -> str:
 
 def to_save() -> str:
     """The filters of the Save dialog."""
-    return _filters({MESHES: mesh_files.endings(), PROJECTS: (ENDING,)})
+    return _filters({PROJECTS: (ENDING,), MESHES: mesh_files.endings()})
 
 
 def _filters(groups: dict[str, tuple[str, ...]]) -> str:
@@ -285,6 +330,13 @@ def left_out(path: Path) -> str:
         return ""
     title = formats.of(path).title
     return f" {title} files store no corners, desired degrees or history; projects do."
+
+
+def unsaved_history(document: Document, path: Path) -> str:
+    """That the history is not in the file just written, as a sentence; empty if it is."""
+    if not document.modified:
+        return ""
+    return f" {formats.of(path).title} files store no history ({counted(document)}); projects do."
 
 
 def _found(report: DrawingReport) -> str:

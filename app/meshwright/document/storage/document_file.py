@@ -6,11 +6,12 @@ shape that has to be meshed first), or a mesh file.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from meshwright.document.history import History
-from meshwright.document.storage import project_file
+from meshwright.document.storage import file_stamp, project_file
 from meshwright.document.storage.document_state import DocumentState
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.irregularity import CORNER_ANGLE
@@ -58,15 +59,16 @@ def read(
     """
     path = Path(path)
     angle = CORNER_ANGLE if corner_angle is None else corner_angle
+    stamp = file_stamp.of(path)  # before it is read: what is written meanwhile counts as a change
     if project_file.is_project(path):
-        return project_file.read(path)
+        return replace(project_file.read(path), stamp=stamp)
     if is_drawing(path):
         # imported late: the readers of drawings need shapely
         from meshwright_core.io import drawings
 
         return drawings.read_domain(path, angle, curve_step, region, gap=gap, fit=fit)
     mesh = mesh_files.read(path, angle)
-    return DocumentState(mesh, History(mesh.score, mesh.optimum), path.stem, path)
+    return DocumentState(mesh, History(mesh.score, mesh.optimum), path.stem, path, stamp=stamp)
 
 
 def read_meshed(path: str | Path, kind: str) -> DocumentState:
