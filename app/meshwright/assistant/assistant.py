@@ -183,7 +183,11 @@ class Assistant:
         if not self._can_work() or mesh is None:
             return
         self._loading = not self._worker.has(self._policy)
-        self.hinting.ask(self._policy, near)
+        runner = self._runner
+        if runner is None or self._runner_at != self._document.revision or runner.finished:
+            self._seed += 1
+            runner = None
+        self.hinting.ask(self._policy, near, self._seed, runner)
         self.changed.emit()
 
     def step(self) -> None:
@@ -416,7 +420,9 @@ class Assistant:
         """A request for hints has been answered."""
         if not self.hinting.close(question):
             return
-        self.hinting.show(choices)
+        if self._run is None and question.runner is not None:
+            self._runner, self._runner_at = question.runner, question.revision
+        self.hinting.show(choices, question.next_step)
         self.changed.emit()
         if not choices:
             self.message.emit("The policy finds no allowed operation here.")

@@ -171,6 +171,13 @@ class PolicyWorker:
     def _answer(self, question: HintRequest) -> None:
         policy = self._policy_of(question.policy)
         choices = self._ask(question.mesh, policy, question.near)
+        if question.runner is None:
+            question.runner = self._make_runner(question.mesh.copy(), policy, question.seed)
+        insight = question.runner.look()
+        if insight is not None:
+            first = question.next_step = insight.wanted
+            others = (one for one in choices if not _alike(question.mesh, one, first))
+            choices = (first, *others)[: max(len(choices), 1)]
         self._dispatch(partial(self._listener.answered, question, choices))
 
     def _work(self, run: AgentRun) -> None:
@@ -243,6 +250,19 @@ class PolicyWorker:
             left = run.due - time.monotonic()
             if left <= 0 or not run.wake.wait(left):
                 break
+
+
+def _alike(mesh: HalfEdgeMesh, one: PolicyAction, other: PolicyAction) -> bool:
+    """Whether two actions do the same, perhaps named by two half-edges."""
+    if one.operation != other.operation:
+        return False
+    h = one.halfedge
+    same = {h}
+    if mesh.k == 3 or one.operation.value in ("flip_left", "flip_right"):
+        same.add(mesh.twin(h))
+    elif one.operation.value == "collapse":
+        same.add(h - h % 4 + (h + 2) % 4)  # the diagonal from its other end
+    return other.halfedge in same
 
 
 def _sentence(error: Exception) -> str:

@@ -39,6 +39,7 @@ from meshwright.desktop.editing.selection_controller import SelectionController
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.help.tour import TourPlaces
+from meshwright.desktop.history.changes_controller import ChangesController
 from meshwright.desktop.history.playback_controller import PlaybackController
 from meshwright.desktop.levels.level_controller import LevelController
 from meshwright.desktop.main_window.empty_page import EmptyPage
@@ -108,6 +109,7 @@ class MainWindow(QMainWindow):
         self.playback = PlaybackController(
             document, settings, readiness, actions, status, notice, self, colours
         )
+        self.changes = ChangesController(document, assistant, canvas, self.playback, colours)
         self.levels = LevelController(
             document, assistant, canvas, self.files, self.playback, status, notice, self, colours
         )
@@ -165,6 +167,7 @@ class MainWindow(QMainWindow):
         self.controllers += [
             self.files,
             self.playback,
+            self.changes,
             self.levels,
             self.quality,
             self.colours,
@@ -313,6 +316,7 @@ class MainWindow(QMainWindow):
         start: for a window that a user has started.
         """
         self.preferences.restore_place()
+        self.agent.prepare_while_idle(self.readiness)
         self.files.watch()
         self.opened.connect(self.help.welcome)
         # after everything else that starts with the window

@@ -8,8 +8,9 @@ import numpy as np
 
 from meshwright.document.document import Document
 from meshwright.document.element_quality import ElementQuality
-from meshwright.document.quality_summary import shape_in_order, shape_words
+from meshwright.document.quality_summary import decimal, shape_words
 from meshwright.document.score_series import ScoreSeries
+from meshwright.document.verdict import findings
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.geometry.shape_bound import shape_bound
 
@@ -82,7 +83,9 @@ class DocumentStatus:
     def _measures(self, mesh: HalfEdgeMesh | None) -> dict[str, Any]:
         """Inverted elements, worst elements and the bound on shape."""
         if mesh is None:
-            return {"inverted": 0, "inverted_curved": [], "shape": None, "curved": []}
+            return {
+                "inverted": 0, "inverted_curved": [], "shape": None, "findings": [], "curved": [],
+            }  # fmt: skip
         quality = self._quality
         quality.follow(mesh)
         inverted, curved = quality.inverted, quality.curved(mesh)
@@ -91,27 +94,29 @@ class DocumentStatus:
         return {
             "inverted": len(inverted),
             "inverted_curved": np.intersect1d(inverted, curved).tolist(),
-            "shape": self._shape(mesh),
+            **self._shape(mesh),
             "curved": [[int(e), *pair] for e, *pair in values.round(3).tolist()],
         }
 
-    def _shape(self, mesh: HalfEdgeMesh) -> dict[str, Any] | None:
-        """Worst elements, by both measures, the bound q*, and the largest irregularity."""
+    def _shape(self, mesh: HalfEdgeMesh) -> dict[str, Any]:
+        """Worst elements by both measures, the bound q*, and what is in order."""
         quality, ids = self._quality, self._quality.ids
         if not len(ids):
-            return None
+            return {"shape": None, "findings": []}
         worst = int(ids[np.argmin(quality.jacobian[ids])])
         flattest = int(ids[np.argmin(quality.shape[ids])])
         lowest, bound = float(quality.jacobian[worst]), self._shape_bound(mesh)
+        said = findings(mesh, lowest, bound, len(quality.inverted))
         return {
-            "words": shape_words(lowest, bound),
-            "worst_jacobian": round(lowest, 4),
-            "worst_jacobian_element": worst,
-            "bound": round(bound, 4),
-            "in_order": shape_in_order(lowest, bound),
-            "worst_shape": round(float(quality.shape[flattest]), 4),
-            "worst_shape_element": flattest,
-            "largest_delta": int(np.abs(mesh.irregularity()).max(initial=0)),
+            "shape": {
+                "words": shape_words(lowest, bound),
+                "flattest": decimal(float(quality.shape[flattest])),
+                "worst_scaled_jacobian": round(lowest, 4),
+                "shape_bound": round(bound, 4),
+                "worst_shape": round(float(quality.shape[flattest]), 4),
+                "elements": [worst, flattest],
+            },
+            "findings": [[one.text, one.in_order] for one in said],
         }
 
     def _shape_bound(self, mesh: HalfEdgeMesh) -> float:
