@@ -61,11 +61,10 @@ class ResultWalk:
         self._began = self._began or now
         with self._document.together():
             while not self.arrived:
-                spent = time.monotonic() - now
                 behind = self._behind()
-                if spent > (LONGEST if behind else SLICE):
-                    break
                 self._apply(smooth=not behind)
+                if time.monotonic() - now > (LONGEST if behind else SLICE):
+                    break
 
     def skip(self) -> None:
         """Apply all that is left at once. Raises MeshError if an operation is refused."""

@@ -22,6 +22,8 @@ TITLES = {
 }
 """What elements can be coloured by."""
 MEASURES = (JACOBIAN, SHAPE)
+COLOUR_BY = "view/colour"
+"""The setting of what elements are coloured by."""
 
 STOPS = (0.0, 0.3, 0.6, 1.0)
 """Values of a measure at which the colours of :func:`scale` stand; linear in between."""

@@ -17,6 +17,7 @@ from meshwright.document.quality_summary import decimal
 from meshwright.graphics.colouring import (
     BLOCK,
     CHORD,
+    COLOUR_BY,
     JACOBIAN,
     MEASURES,
     PLAIN,
@@ -28,8 +29,6 @@ from meshwright.graphics.colouring import (
 )
 from meshwright.graphics.theme import Theme
 
-COLOUR_BY = "view/colour"
-"""The setting of what elements are coloured by."""
 QUADS = (BLOCK, CHORD)
 """Only quad meshes have them."""
 
