@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 COMPLETE_SECONDS = 3.0
 """Time of a round of *Complete*; after one that has won nothing the next gets twice as much."""
+SIZE_SECONDS = 10.0
+"""Time of *Complete* where the elements keep their size."""
 PATIENCE = 2
 """Rounds without success after which *Complete* ends."""
 PREFERENCES = ("blocks", "balanced", "shape")
@@ -40,6 +42,8 @@ class Effort:
     """Whether to continue for fewer elements (quads) once the score is at its lowest."""
     prefer: str = "balanced"
     """One of :data:`PREFERENCES`."""
+    keep_size: bool = False
+    """Whether the elements keep the size that they have; otherwise quads become blocks."""
     until_done: bool = False
     """Whether to search again, for longer, until s* and the wanted shape are reached or a round has
     won nothing."""
@@ -83,7 +87,12 @@ class SearchRunner:
             return []
         self._began = time.monotonic()
         within = self._effort.elements
-        found = self._search() if within is None else self._search_within(within)
+        if within is not None:
+            found = self._search_within(within)
+        elif self._effort.keep_size:
+            found = self._search_in_size()
+        else:
+            found = self._search()
         if not found and not self.reason:
             self.reason = f"nothing better was found in {self._seconds:.0f} s"
         self.finished = True
@@ -122,6 +131,25 @@ class SearchRunner:
             seconds = (effort.seconds or 0.0) * 2.0**lost
         return operations
 
+    def _search_in_size(self) -> list[tuple[Operation, int]]:
+        """One search in which the elements keep their size, by operations alone."""
+        from meshwright_agent.search.improvement import Wishes, improve
+
+        effort = self._effort
+        found = improve(
+            self._mesh,
+            self._policy,
+            Wishes(effort.prefer, keep_size=True, in_place=True),
+            rollouts=effort.rollouts,
+            seconds=SIZE_SECONDS if effort.until_done else effort.seconds,
+            seed=self._seed,
+            workers=_workers(),
+            progress=self._progress,
+            cancelled=self._enough.is_set,
+        )
+        self.target = found.mesh
+        return list(found.operations)
+
     def _round(self, start: HalfEdgeMesh, seconds: float | None, done: int) -> Solution:
         from meshwright_agent.search.solver import solve
 
@@ -132,7 +160,7 @@ class SearchRunner:
             rollouts=self._effort.rollouts,
             seconds=seconds,
             seed=self._seed + 1009 * self._rounds,
-            workers=max(1, (os.cpu_count() or 2) - 1),
+            workers=_workers(),
             coarsen=self._effort.coarsen,
             prefer=self._effort.prefer,
             progress=lambda rollouts, best: self._progress(done + rollouts, best),
@@ -155,6 +183,11 @@ class SearchRunner:
         if found.score == found.optimum:
             self.reason = "nothing lower is possible by changing this region alone"
         return list(found.operations)
+
+
+def _workers() -> int:
+    """Threads of a search; one core is left for the window."""
+    return max(1, (os.cpu_count() or 2) - 1)
 
 
 def _is_done(best: Solution) -> bool:

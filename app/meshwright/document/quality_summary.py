@@ -104,12 +104,10 @@ def summarise(
 
 
 def decimal(value: float) -> str:
-    """A measure between -1 and 1 in two decimals, rounded down, so that a bound is never exceeded
-    by rounding: ``.72``, ``1.00``, ``\u2212.05``; a dash for nan.
-    """
+    """A measure between -1 and 1 in two decimals: ``.72``, ``1.00``, ``\u2212.05``; a dash for nan."""
     if np.isnan(value):
         return "\u2013"
-    text = f"{abs(np.floor(value * 100.0 + 1e-6)) / 100.0:.2f}".removeprefix("0")
+    text = f"{abs(value):.2f}".removeprefix("0")
     return f"\u2212{text}" if value < 0 and text != ".00" else text
 
 

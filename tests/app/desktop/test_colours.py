@@ -5,6 +5,7 @@ import pytest
 from driving import WAIT, press
 from qtpy.QtCore import Qt
 
+from meshwright.document.quality_summary import decimal
 from meshwright.graphics.colouring import (
     STOPS,
     block_colours,
@@ -72,7 +73,9 @@ def test_the_view_shows_colours_and_a_legend(qtbot, open_window, star):
         fills = window.canvas.view._scene.fills[star.element_ids()]
         assert np.array_equal(fills, measure_colours(values, window.theme))
         legend = window.colours.legend
-        assert legend.legend.scaled and f"worst {values.min():.2f}"[-3:] in legend.legend.note
+        assert legend.legend.scaled and legend.legend.note.startswith(
+            f"worst {decimal(values.min())}"
+        )
     assert legend.legend.bound == window.quality.monitor.summary.bound
     assert act["colour.jacobian"].isChecked() and not act["colour.shape"].isChecked()
     assert window.canvas.grab().toImage() != before

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -118,9 +119,14 @@ class AgentController(Controller):
         else:
             self._assistant.play()
 
+    def _wished(self, effort: Effort) -> Effort:
+        """The effort with what the panel says of blocks, shape and size."""
+        panel = self._panel
+        return replace(effort, prefer=panel.preference, keep_size=panel.keep_size.isChecked())
+
     def complete(self) -> None:
         """Search until s* is reached or nothing more is won."""
-        self._assistant.search(Effort(prefer=self._panel.preference, until_done=True))
+        self._assistant.search(self._wished(Effort(until_done=True)))
 
     def best_of(self) -> None:
         """Run the policy as often as set in the panel, and apply the best result."""
@@ -131,7 +137,7 @@ class AgentController(Controller):
 
     def search(self) -> None:
         """Search for the time set in the panel."""
-        self._assistant.search(Effort(seconds=self._panel.seconds, prefer=self._panel.preference))
+        self._assistant.search(self._wished(Effort(seconds=self._panel.seconds)))
 
     def finish_region(self) -> None:
         """Search in the selected region for the time set in the panel; the rest of the mesh is

@@ -39,6 +39,8 @@ MOST_ROLLOUTS, MOST_SECONDS = 1000, 3600
 PREFER = "agent/prefer"
 """The setting of what searches prefer at s*."""
 PREFERRED = {"blocks": "few blocks", "balanced": "balanced", "shape": "good shape"}
+KEEP_SIZE = "agent/keep-size"
+"""The setting of whether searches keep the size of the elements."""
 TICK = 100
 """Milliseconds between updates of the elapsed time during a run."""
 FILES = "agent/files"
@@ -168,6 +170,13 @@ class AgentPanel(QWidget):
         self.prefer.setAccessibleName("Blocks or shape")
         self.prefer.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.preferred = named("", "Label")
+        self.keep_size = QCheckBox("Keep the size of the elements")
+        self.keep_size.setToolTip(
+            "Searches keep the size of the elements; otherwise they look for few, large blocks"
+        )
+        self.keep_size.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.keep_size.setChecked(self._settings.flag(KEEP_SIZE, False))
+        self.keep_size.toggled.connect(partial(self._settings.put, KEEP_SIZE))
         self.prefer.setValue(PREFERENCES.index(self._settings.choice(PREFER, _PREFERRED_FIRST)))
         self.prefer.valueChanged.connect(self._on_preferred)
         self._show_preference()
@@ -225,6 +234,7 @@ class AgentPanel(QWidget):
         layout.addLayout(_line((self.complete, 1), (self.stop, 1)))
         self.preferred.setMinimumWidth(self.preferred.fontMetrics().horizontalAdvance("Good shape"))
         layout.addLayout(_line((self.prefer, 1), (self.preferred, 0)))
+        layout.addWidget(self.keep_size)
         layout.addWidget(self.bar)
         layout.addLayout(_line((self.progress, 1), (self.skip, 0)))
         layout.addLayout(_line((self.hint, 1), (self.step, 1), (self.play, 1)))

@@ -80,11 +80,13 @@ class AgentBridge:
         assistant = self.assistant
         return not (assistant.running or assistant.loading or assistant.hinting.asking)
 
-    def act(self, action: str, prefer: str = "balanced") -> None:
-        """Carry out the ``action`` of a request ``agent``; a search prefers ``prefer`` at s*."""
+    def act(self, action: str, prefer: str = "balanced", keep_size: bool = False) -> None:
+        """Carry out the ``action`` of a request ``agent``; the others are those of
+        :class:`meshwright.assistant.search_runner.Effort`.
+        """
         assistant = self.assistant
         if action == "complete":
-            assistant.search(Effort(prefer=prefer, until_done=True))
+            assistant.search(Effort(prefer=prefer, keep_size=keep_size, until_done=True))
         else:
             getattr(assistant, action)()
 

@@ -108,7 +108,8 @@ def _corner(session: Session, request: requests.Corner) -> str:
 
 
 def _agent(session: Session, request: requests.Agent) -> str:
-    session.agent.act(request.action, "balanced" if request.prefer is UNSET else request.prefer)
+    prefer = "balanced" if request.prefer is UNSET else request.prefer
+    session.agent.act(request.action, prefer, request.keep_size)
     return ""
 
 

@@ -22,6 +22,7 @@ export class AgentPanel {
       node("div", "mw-buttons", {}, this._hint, this._step, this._play),
       node("div", "mw-buttons", {}, this._complete, this._stop,
         this._preferBox),
+      this._sizeBox,
       node("div", "mw-agent-state", {}, this._words, this._skip),
       node("label", "mw-speed", {}, this._speed, this._pace),
       this._list);
@@ -52,6 +53,10 @@ export class AgentPanel {
     });
     this._preferred = node("span", "mw-pace", { "aria-hidden": "true" });
     this._preferBox = node("label", "mw-speed mw-prefer", {}, this._prefer, this._preferred);
+    this._keepSize = node("input", "", { type: "checkbox" });
+    this._sizeBox = node("label", "mw-check", {
+      title: "Searches keep the size of the elements; otherwise they look for few, large blocks",
+    }, this._keepSize, "Keep the size of the elements");
     this._prefer.addEventListener("input", () => this._updatePreference());
     this._updatePreference();
     this._stop = action("Stop", "Stop the policy; its operations are kept", "stop");
@@ -77,7 +82,7 @@ export class AgentPanel {
     }
     this._hidden = "";
     const prefer = PREFERENCES[this._prefer.valueAsNumber];
-    this._card.request("agent", action === "complete" ? { action, prefer } : { action });
+    this._card.request("agent", action === "complete" ? { action, prefer, keep_size: this._keepSize.checked } : { action });
   }
 
   /** Play or pause. */
