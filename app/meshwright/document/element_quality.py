@@ -141,5 +141,5 @@ class ElementQuality:
             angle[part] = np.degrees(corners.angle).min(axis=1)
         if cancelled():
             return False
-        shape[ids] = element_shapes(mesh, None if whole else ids, normal)
+        shape[mesh.element_ids()] = element_shapes(mesh)  # quick enough to be done for all
         return True

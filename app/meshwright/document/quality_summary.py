@@ -104,7 +104,7 @@ def summarise(
 
 
 def decimal(value: float) -> str:
-    """A measure between -1 and 1 in two decimals: ``.72``, ``1.00``, ``\u2212.05``; a dash for nan."""
+    """A measure between -1 and 1 in two decimals: ``.72``, ``\u2212.05``; a dash for nan."""
     if np.isnan(value):
         return "\u2013"
     text = f"{abs(value):.2f}".removeprefix("0")

@@ -35,25 +35,20 @@ def _shapes(points, elements, curved, reference):
     return found
 
 
-def element_shapes(
-    mesh: HalfEdgeMesh, ids: np.ndarray | None = None, normal: np.ndarray | None = None
-) -> np.ndarray:
+def element_shapes(mesh: HalfEdgeMesh) -> np.ndarray:
     """(m,) shape of each element, in the order of `mesh.elements()`; 0 or less where folded.
 
-    Args:
-        mesh: the mesh.
-        ids: (m,) the elements to measure, ascending, of a mesh in a plane; None: all.
-        normal: (3,) that of the mesh's plane, if the caller knows it.
+    Measured at the samples of :mod:`meshwright_core.geometry.quality`, so that an element is
+    folded here if and only if it counts as inverted there.
     """
-    if ids is None:
-        ids, elements, halfedges = mesh.element_ids(), mesh.elements(), None
+    ids, elements = mesh.element_ids(), mesh.elements()
+    normal = plane_normal(mesh)
+    if normal is None:
+        reference, halfedges = reference_normals(mesh.points, elements), np.zeros(0, np.int64)
     else:
-        elements, halfedges = mesh.corners(ids), mesh.halfedges_of(ids).ravel()
-    plane = plane_normal(mesh) if normal is None else normal
-    if plane is None:  # on other surfaces all sides count as straight
-        halfedges = np.zeros(0, np.int64)
-    reference = reference_normals(mesh.points, elements, plane)
-    elements = np.ascontiguousarray(elements, np.int64)
+        reference, halfedges = np.tile(normal, (len(ids), 1)), None
     curved = curved_elements(mesh, ids, elements, halfedges)
-    found: np.ndarray = _shapes(mesh.points, elements, curved, np.ascontiguousarray(reference))
+    found: np.ndarray = _shapes(
+        mesh.points, elements, curved, np.ascontiguousarray(reference, float)
+    )
     return found

@@ -314,7 +314,7 @@ def test_failed_hints_are_reported(make, desk, star):
     assistant.hint()
     assert hinted(assistant, desk) == ()
     assert assistant.heard == ["This policy is for other meshes."]
-    assistant = make(Document(star), ask=lambda *_: ())
+    assistant = make(Document(star), ask=lambda *_: (), longest=0)
     assistant.hint()
     assert hinted(assistant, desk) == ()
     assert "no allowed operation" in assistant.heard[-1]

@@ -8,7 +8,6 @@ from meshwright.assistant.search_runner import PREFERENCES, Effort, SearchRunner
 from meshwright_agent.policy.policy_files import load
 from meshwright_agent.search import layout_search
 from meshwright_agent.search.solution import Solution, judged
-from meshwright_core import Operation
 
 
 def _all_steps(runner):
@@ -45,35 +44,27 @@ def test_a_stopped_search_returns_at_once_with_a_reason(star):
     assert "nothing better was found" in runner.reason
 
 
-def rounds(monkeypatch, mesh, found):
+def rounds(monkeypatch, mesh, found, greedy):
     """Run *Complete* where the rounds of the solver find ``found`` operations each; returns the
-    runner and the seconds of each round.
+    runner and the score at the start and the seconds of each round.
     """
     asked = []
 
     def one(self, start, seconds, done):
         count = found[len(asked)] if len(asked) < len(found) else 0
         asked.append((start.score, seconds))
-        work, operations = start.copy(), []
-        for h in range(4 * int(start.element_ids().max()) + 4):
-            if len(operations) == count:
-                break
-            if work.live(h) and work.check("flip_left", h):
-                edit = work.apply("flip_left", h)
-                if edit.score_change < 0:
-                    operations.append((Operation.FLIP_LEFT, h))
-                else:
-                    work.undo()
-        return judged(Solution(operations, work.score, work.optimum, 0), start)
+        run = greedy(start)
+        operations = [operation for _ in range(count) for operation in run.step()]
+        return judged(Solution(operations, 0, start.optimum, 0), start)
 
     monkeypatch.setattr(SearchRunner, "_round", one)
     runner = SearchRunner(mesh, None, 0, Effort(until_done=True), Event(), print)
     return runner, asked
 
 
-def test_complete_goes_on_from_the_best_state_until_nothing_is_won(star, monkeypatch):
+def test_complete_goes_on_from_the_best_state_until_nothing_is_won(star, monkeypatch, greedy):
     start = star.copy()
-    runner, asked = rounds(monkeypatch, star, [1, 1])
+    runner, asked = rounds(monkeypatch, star, [1, 1], greedy)
     operations = runner.step()
     assert runner.finished and len(operations) == 2
     # two rounds that win, then two without success, the second with twice the time
