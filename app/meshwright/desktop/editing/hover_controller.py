@@ -69,6 +69,7 @@ class HoverController(Controller):
         self._rest.setSingleShot(True)
         self._rest.setInterval(REST)
         self._rest.timeout.connect(self._draw_ghost)
+        self._open = True
         self._measuring = QTimer(canvas)
         self._measuring.setSingleShot(True)
         self._measuring.setInterval(MEASURED_AFTER)
@@ -91,8 +92,9 @@ class HoverController(Controller):
         self.panel.set_theme(theme)
 
     def close(self) -> None:
-        """Disconnect, and stop the timer."""
+        """Disconnect, and stop the timers."""
         super().close()
+        self._open = False
         self._measuring.stop()
         self._rest.stop()
         self.panel.release()
@@ -173,7 +175,8 @@ class HoverController(Controller):
         if (*at, operation) != self._shown:
             self._shown = (*at, operation)
             self.panel.offer(self.choices, operation)
-            self._measuring.start()
+            if self._open:
+                self._measuring.start()
             self._show_ghost(mesh, meant, halfedge)
 
     def _show_ghost(self, mesh: HalfEdgeMesh, meant: OperationOffer | None, halfedge: int) -> None:

@@ -58,6 +58,8 @@ class ChangesController(Controller):
     def close(self) -> None:
         """Disconnect, and stop the timer."""
         super().close()
+        self._canvas.drawn.disconnect(self._on_drawn)
+        self._playback.panel.state_hovered.disconnect(self._on_state_hovered)
         self._fade.stop()
 
     def _on_replaced(self) -> None:
