@@ -310,7 +310,11 @@ def waiting() -> Iterator[None]:
 
 def to_open() -> str:
     """The filters of the Open dialog."""
-    groups = {MESHES: mesh_files.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
+    groups = {
+        MESHES: mesh_files.endings(),
+        PROJECTS: (ENDING,),
+        SHAPES: (*formats.SHAPES, formats.DAT),
+    }
     return _filters({"All supported files": sum(groups.values(), ()), **groups})
 
 
