@@ -78,6 +78,8 @@ class ResultWalk:
         """
         document = self._document
         mesh = document.need_mesh()
+        if not (document.plane or document.smooth_surfaces):
+            return True  # vertices of such a surface stay where they are
         with document.together():
             if not self._place(mesh):
                 self._smooth(mesh)

@@ -119,7 +119,7 @@ def _peer(grid: BlockGrid) -> dict[str, Any]:
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "part.geo"
-        path.write_text(_outline(geo_text(grid)), encoding="utf-8")
+        path.write_text(_outline(grid), encoding="utf-8")
         gmsh.initialize(interruptible=False)
         try:
             gmsh.option.setNumber("General.Terminal", 0)
@@ -144,18 +144,38 @@ def _measured(mesh: Any) -> dict[str, Any]:
     return {"Gmsh: cells": len(tags), "Gmsh: worst Jacobian": round(float(worst), 3)}
 
 
-def _outline(text: str) -> str:
-    """The geometry without its blocks: one surface inside all boundary curves."""
-    kept, curves = [], []
-    for line in text.splitlines():
-        if line.startswith("Physical Curve"):
-            curves.append(line.split("= {")[1].rstrip("};"))
-        elif line.startswith(("Point(", "Line(", "Circle(", "Spline(")):
-            kept.append(line)
-    # Gmsh finds the loops itself
-    kept += ['SetFactory("Built-in");', f"loops() = {{{', '.join(curves)}}};"]
-    kept += ["Curve Loop(1) = {loops()};", "Plane Surface(1) = {1};"]
+def _outline(grid: BlockGrid) -> str:
+    """The geometry without its blocks: one surface inside all boundary curves. Without grading
+    each block edge is one curve, which has its number.
+    """
+    structure = grid.structure
+    outer = np.flatnonzero(structure.neighbours.min(axis=1) < 0)
+    ahead = structure.neighbours[outer, 0] >= 0
+    ends = np.where(ahead[:, None], structure.edges[outer], structure.edges[outer, ::-1])
+    number = np.where(ahead, outer + 1, -(outer + 1)).tolist()
+    leaving = {start: row for row, start in enumerate(ends[:, 0].tolist())}
+    kept = [
+        line
+        for line in geo_text(grid).splitlines()
+        if line.startswith("Point(")
+        or (line.startswith(("Line(", "Circle(", "Spline(")) and _numbered(line) - 1 in outer)
+    ]
+    loops = 0
+    while leaving:
+        row = next(iter(leaving.values()))
+        loop = []
+        while (start := int(ends[row, 0])) in leaving:
+            del leaving[start]
+            loop.append(number[row])
+            row = leaving.get(int(ends[row, 1]), row)
+        loops += 1
+        kept.append(f"Curve Loop({loops}) = {{{', '.join(map(str, loop))}}};")
+    kept.append(f"Plane Surface(1) = {{{', '.join(map(str, range(1, loops + 1)))}}};")
     return "\n".join(kept) + "\n"
+
+
+def _numbered(line: str) -> int:
+    return int(line[line.index("(") + 1 : line.index(")")])
 
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:

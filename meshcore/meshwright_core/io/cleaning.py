@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.core.components import components
-from meshwright_core.errors import MeshError
+from meshwright_core.errors import MeshError, MixedElementsError
 from meshwright_core.io.content import Cells, Content
 
 _MOST_DEGREE = 10_000
@@ -17,9 +17,9 @@ Elements = NDArray[np.int64]
 
 
 def refuse_mixed(content: Content) -> None:
-    """MeshError if a content holds both triangles and quads."""
+    """MixedElementsError if a content holds both triangles and quads."""
     if len(content.cells) > 1:
-        raise MeshError(_mixed(content.points, content.cells))
+        raise MixedElementsError(_mixed(content.points, content.cells))
 
 
 def _mixed(points: NDArray[np.float64], cells: Cells) -> str:

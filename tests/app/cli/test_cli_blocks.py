@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from block_meshes import annulus, corner_blocks
+from block_meshes import corner_blocks
 
 import meshwright_core
 from meshwright import cli
@@ -49,16 +49,6 @@ def test_the_text_names_the_files(capsys, corner, tmp_path):
     assert "a.xyz" in output
     assert "a.nmf" in output
     assert "3, in 4 chords" in output
-
-
-def test_curved_cells_of_a_project(capsys, tmp_path):
-    from meshwright.document.document import Document
-    from meshwright.document.storage import document_file
-
-    document_file.save(Document(annulus(), "ring"), tmp_path / "ring.meshwright")
-    ring = tmp_path / "ring.meshwright"
-    values = run(capsys, ring, "-o", tmp_path / "a.vtu", "--order", "2", "--size", "0.5")
-    assert [patch["name"] for patch in values["patches"]] == ["far", "wall"]
 
 
 @pytest.mark.parametrize(

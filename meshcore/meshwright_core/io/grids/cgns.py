@@ -55,7 +55,8 @@ def _add_families(base: Any, grid: BlockGrid) -> None:
         _node(family, "FamilyBC", "FamilyBC_t", _text("BCTypeUserDefined"))
     names = grid.structure.region_names
     for name in names if len(names) > 1 else ():
-        _node(base, _region_family(grid, name), "Family_t")
+        family = _node(base, _region_family(grid, name), "Family_t")
+        _node(family, "Description", "Descriptor_t", _text(f"region {name}"))
 
 
 def _region_family(grid: BlockGrid, name: str) -> str:
