@@ -348,7 +348,6 @@ class Document:
         """
         if not self._timeline.behind or not self._timeline.catch_up():
             return False
-
         self._announce("python", self.history.cursor)
         return True
 

@@ -63,7 +63,7 @@ def test_lock_corner_and_desired_degree_have_keys(qtbot, open_window, grid):
     assert grid.locked()[16] and window.status.message == "Vertex 16 is locked."
     press(qtbot, window, Qt.Key.Key_K)
     assert not grid.locked()[16]
-    press(qtbot, window, Qt.Key.Key_5, CONTROL)
+    press(qtbot, window, Qt.Key.Key_5, Qt.KeyboardModifier.AltModifier)
     assert grid.desired()[16] == 5
     window.canvas.pin(grid.halfedge(2, 3))
     press(qtbot, window, Qt.Key.Key_O)

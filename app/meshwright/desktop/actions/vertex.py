@@ -49,7 +49,7 @@ ACTIONS: tuple[Action, ...] = (
             f"Desired degree {degree}",
             f"Set the desired degree of the vertex, or of the selected ones, to {degree}",
             run=partial(_desire, degree),
-            shortcuts=(f"Ctrl+{degree}",),
+            shortcuts=(f"Alt+{degree}",),
             enabled=has_mesh,
             menu="Mesh",
         )
