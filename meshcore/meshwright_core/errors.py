@@ -9,6 +9,10 @@ class OperationRefused(MeshError):
     """An operation was applied where :meth:`HalfEdgeMesh.check` does not allow it."""
 
 
+class FileWarning(UserWarning):
+    """What reading a file leaves out, or writing one loses; one sentence that names the file."""
+
+
 def sentence(text: str) -> str:
     """The text with a capital letter and a full stop, unless it ends in a mark already."""
     text = capitalised(text)

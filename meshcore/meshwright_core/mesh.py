@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from operator import index
 
 import numpy as np
 
-from meshwright_core.core import construction, curve_checks, notebook_display
+from meshwright_core.core import construction, curve_checks, notebook_display, side_names
 from meshwright_core.core.arrays import (
     CURVE,
     DESIRED,
@@ -19,6 +20,7 @@ from meshwright_core.core.arrays import (
     HALF,
     JOURNAL_TOP,
     LOCKED,
+    NAMING,
     STEP,
     STEP_COLUMNS,
     STEP_END,
@@ -28,10 +30,13 @@ from meshwright_core.core.arrays import (
     copied,
     enlarge,
 )
+from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.core.entry_points import entry
 from meshwright_core.core.mesh_boundary import MeshBoundary, Seats
 from meshwright_core.core.mesh_view import MeshView
+from meshwright_core.core.names import clean
 from meshwright_core.core.projected_seats import take_projected_seats
+from meshwright_core.core.side_names import Names
 from meshwright_core.errors import MeshError, OperationRefused
 from meshwright_core.history import journal
 from meshwright_core.history.packed_steps import Steps, last_done
@@ -68,6 +73,8 @@ class HalfEdgeMesh(MeshView):
         they seat the boundary vertices by projection."""
         self.degree_cap = degree_cap
         """The highest degree that an operation may produce; 0 for no limit."""
+        self.left_out: tuple[str, ...] = ()
+        """What the file that it was read from held and this mesh does not, such as fields."""
         self._codes = catalogue.CODES[self.k]
         self._archive = Archive()
 
@@ -82,6 +89,7 @@ class HalfEdgeMesh(MeshView):
         boundary: MeshBoundary | None = None,
         seats: tuple[np.ndarray, np.ndarray] | None = None,
         regions: np.ndarray | Sequence[int] | None = None,
+        names: Names | None = None,
     ) -> HalfEdgeMesh:
         """A mesh from (n, 2|3) points and (m, 3|4) counter-clockwise elements.
 
@@ -101,6 +109,7 @@ class HalfEdgeMesh(MeshView):
                 vertex, as the invariants of :mod:`meshwright_core.core.arrays` have it; these
                 vertices are moved to the points of the curves there.
             regions: (m,) region of each element, from 0; by default all are of one.
+            names: of regions and sides. Vertices where the name of a side changes are geometric.
         """
         placed = None
         if boundary is not None:
@@ -119,6 +128,8 @@ class HalfEdgeMesh(MeshView):
         )
         if placed is not None:
             curve_checks.require_seats(arrays, boundary)
+        if names is not None:
+            boundary = side_names.give_names(arrays, boundary, names)
         return cls(arrays, boundary)
 
     def check(self, operation: Operation | str, h: int) -> Verdict:
@@ -265,11 +276,68 @@ class HalfEdgeMesh(MeshView):
         """
         if not flag and vertex in self.junctions():
             raise MeshError(f"vertex {vertex} must stay geometric: an interface ends there")
+        if not flag and vertex in self.side_ends():
+            raise MeshError(f"vertex {vertex} must stay geometric: a named side ends there")
         self._set_flag(vertex, GEOMETRIC, flag)
 
     def set_locked(self, vertex: int, flag: bool = True) -> None:
         """Lock a vertex, so that it neither moves nor vanishes, or unlock it: one undoable step."""
         self._set_flag(vertex, LOCKED, flag)
+
+    def name_sides(self, halfedges: np.ndarray | Sequence[int], name: str) -> None:
+        """Name edges of the boundary or of interfaces, "" for none: one undoable step.
+
+        The ends of the named sides become geometric. Several names are separated by semicolons.
+        Raises MeshError for an edge within a region.
+        """
+        ids = np.unique(np.asarray(halfedges, dtype=np.int64))
+        for h in ids.tolist():
+            if not self.live(h):
+                raise MeshError(f"there is no half-edge {h} in this mesh")
+        curve, span = edge_places(self._arrays, ids, self.k)
+        if (curve < 0).any():
+            raise MeshError(
+                f"half-edge {int(ids[np.argmax(curve < 0)])} lies within a region: names belong to "
+                "the boundary and to interfaces"
+            )
+        names = [clean(name)] * len(ids)
+        self._name(side_names.with_side_names(self._boundary, curve, np.sort(span, axis=1), names))
+
+    def name_regions(self, regions: Sequence[int], name: str) -> None:
+        """Name regions, by their numbers, "" for none: one undoable step."""
+        names = list(self.region_names)
+        for region in regions:
+            if not 0 <= region < len(names):
+                raise MeshError(f"there is no region {region}: this mesh has {len(names)}")
+            names[region] = clean(name)
+        self._name(replace(self._boundary, region_names=tuple(names)))
+
+    def rename(self, old: str, new: str) -> None:
+        """Rename a group of sides and regions wherever it occurs: one undoable step.
+
+        Raises MeshError if nothing has the name.
+        """
+        self._name(side_names.renamed(self._boundary, old, clean(new)))
+
+    def _name(self, boundary: MeshBoundary) -> None:
+        """Put other names in force, as part of the history."""
+        with self.transaction():
+            self._make_room(16)
+            number = max(self._namings) + 1
+            self._namings[number] = boundary
+            m = self._arrays
+            top = int(m.counters[JOURNAL_TOP])
+            place = NAMING * journal.WRITE_KINDS + journal.VERTEX_WRITE  # in row 0
+            m.journal[top] = place, m.vertex[0, NAMING]
+            m.counters[JOURNAL_TOP] = top + 1
+            m.vertex[0, NAMING] = number
+            for vertex in side_names.changes(self._arrays, boundary).tolist():
+                if not self._arrays.vertex[vertex, FLAGS] & GEOMETRIC:
+                    self.set_geometric(vertex)
+
+    def add_naming(self, number: int, boundary: MeshBoundary) -> None:
+        """Names that a step of a history that is to be adopted puts in force."""
+        self._namings[number] = boundary
 
     def _set_flag(self, vertex: int, bit: int, flag: bool) -> None:
         self._require_live(vertex)
@@ -417,8 +485,10 @@ class HalfEdgeMesh(MeshView):
                 arrays.counters[counter] = 0
         recorded = self.seats_recorded or not history
         twin = HalfEdgeMesh(arrays, self._boundary, self.degree_cap, seats_recorded=recorded)
+        twin.left_out = self.left_out
         if history:
             twin._archive = self._archive.copy()
+            twin._namings = dict(self._namings)
         return twin
 
     def compact(self) -> tuple[np.ndarray, np.ndarray]:

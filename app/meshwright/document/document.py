@@ -4,7 +4,7 @@ Imports neither Qt nor torch nor the agent. One call that changes the mesh is on
 history.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, TypeVar
@@ -20,12 +20,16 @@ from meshwright.document.timeline import UndoTimeline
 from meshwright.signals import Signal
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 from meshwright_core.analysis.submesh import temporarily_locked
+from meshwright_core.core.names import clean
 from meshwright_core.core.notebook_display import Bundle, bundle
 from meshwright_core.core.score import normalised_return
 from meshwright_core.history.packed_steps import Steps
 from meshwright_core.operations.catalogue import CATALOGUE
 
 Result = TypeVar("Result")
+
+NAME = "name"
+"""The action of steps that name sides or regions."""
 
 
 def title_of(operation: Operation | str, kind: str) -> str:
@@ -436,14 +440,32 @@ class Document:
     def set_geometric(self, vertices: int | np.ndarray, flag: bool) -> None:
         """Set or clear the corner flag of one vertex or several (n,), as one step.
 
-        Junctions of interfaces keep it.
+        Junctions of interfaces, and the ends of named sides, keep it.
         """
         mesh = self._need()
         now = mesh.geometric()
-        kept = mesh.junctions()
+        kept = mesh.junctions() | mesh.side_ends()
         wanted = [v for v in _ids(vertices) if bool(now[v]) != flag and v not in kept]
         title = _counted("Make corner" if flag else "Free corner", wanted)
         self._do("geometric", title, -1, YOU, lambda: _each(wanted, mesh.set_geometric, flag))
+
+    def name_sides(self, halfedges: np.ndarray, name: str) -> None:
+        """Name edges (n,) of the boundary or of interfaces, "" for none, as one step."""
+        mesh = self._need()
+        title = f"Name sides {shown}" if (shown := clean(name)) else "Sides without name"
+        self._do(NAME, title, -1, YOU, lambda: mesh.name_sides(halfedges, name))
+
+    def name_regions(self, regions: Sequence[int], name: str) -> None:
+        """Name regions, "" for none, as one step."""
+        mesh = self._need()
+        title = f"Name regions {shown}" if (shown := clean(name)) else "Regions without name"
+        self._do(NAME, title, -1, YOU, lambda: mesh.name_regions(regions, name))
+
+    def rename(self, old: str, new: str) -> None:
+        """Rename a group of sides and regions wherever it occurs, as one step."""
+        mesh = self._need()
+        title = f"Rename {old} {shown}" if (shown := clean(new)) else f"Remove name {old}"
+        self._do(NAME, title, -1, YOU, lambda: mesh.rename(old, new))
 
     def set_locked(self, vertices: int | np.ndarray, flag: bool) -> None:
         """Lock one vertex or several (n,), or unlock them, as one step."""

@@ -6,6 +6,8 @@ are checked, and no index is used before it is known to be in range.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from meshwright_core.core.arrays import (
@@ -23,6 +25,7 @@ from meshwright_core.core.arrays import (
     HALF,
     IRREGULAR,
     LOCKED,
+    NAMING,
     ORIGIN,
     PLACE,
     RESTORED,
@@ -155,9 +158,9 @@ def _follow(at: int, ahead: np.ndarray, dead: np.ndarray) -> None:
     _require(at == -1, "its list of free places is wrong")
 
 
-def require_within(steps: Steps, m: MeshArrays) -> None:
+def require_within(steps: Steps, m: MeshArrays, namings: Sequence[int]) -> None:
     """Raise MeshError unless every write of the steps, done or undone, stays within the arrays and
-    puts there what may point no farther.
+    puts there what may point no farther. namings: the numbers of names that there are.
     """
     k, vertices, elements = int(m.counters[SIDES]), len(m.vertex), len(m.element_mark)
     entries, places = unpack(steps)[1], steps.places
@@ -200,6 +203,8 @@ def require_within(steps: Steps, m: MeshArrays) -> None:
     ):
         these = (written == form) & (index % width == column) & (index < width * length)
         good |= these & (value >= low) & (value <= high)
+    naming = (written == VERTEX_WRITE) & (index == NAMING)
+    good |= naming & np.isin(value, namings)
     _require(good.all(), "a step of the history points beyond the mesh")
     first = places[places % WRITE_KINDS == POINT_WRITE] // WRITE_KINDS
     _require((first % 3 == 0).all(), "a move of the history begins in the middle")

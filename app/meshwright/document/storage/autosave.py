@@ -16,13 +16,14 @@ from typing import Any
 import platformdirs
 from msgspec import to_builtins
 
-from meshwright.document.document import Document
+from meshwright.document.document import NAME, Document
 from meshwright.document.storage import document_state, file_lock
 from meshwright.document.storage.autosave_log import encoded
 from meshwright.signals import Signal
 from meshwright_core.io import snapshot
 from meshwright_core.io.atomic_write import reason
 from meshwright_core.io.snapshot import Arrays
+from meshwright_core.io.snapshot_curves import names_record
 
 ENDING = ".journal"
 WAITING_BYTES = 256 << 20
@@ -112,6 +113,8 @@ class Autosave:
             return header, {}
         header["row"] = to_builtins(row)
         header["room"] = [len(mesh.arrays.vertex), len(mesh.arrays.element_mark)]
+        if row.action == NAME:
+            header["names"] = [mesh.naming, names_record(mesh.boundary_info)]
         return header, snapshot.steps_arrays([mesh.last_step()], "step")
 
     def _now(self) -> dict[str, Any]:

@@ -2,8 +2,8 @@
 
 A *side* is a chain of curves that a mesh stores as one composite curve: a boundary loop, or the
 interface of two regions between two junctions. Its geometric points are *corners* (the tangent
-turns), *anchors* (smooth joints of a straight piece and a curved one) and *junctions* (more than
-two pieces meet).
+turns), *anchors* (smooth joints of a straight piece and a curved one, or of two with different
+names) and *junctions* (more than two pieces meet).
 """
 
 from __future__ import annotations
@@ -162,7 +162,8 @@ class PlanarGraph:
         straight = [curve.straight for curve in (one, other)]
         if any(straight) and (is_smooth_piece(one) or is_smooth_piece(other)):
             return ANCHOR
-        return None
+        # the edges on both sides of a change of names are to have one each
+        return ANCHOR if len({self.pieces[piece].name for piece, _ in leaving}) > 1 else None
 
     # Sides
 
