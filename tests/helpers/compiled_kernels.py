@@ -17,8 +17,9 @@ import numba
 
 import meshwright_agent
 import meshwright_core
-from meshwright_core.core.compilation import cache_folder, cache_root
+from meshwright_core.core.compilation import cache_root, entry_points_on_disk
 
+PACKAGES = ("meshwright_core", "meshwright_agent")
 AGENT, EDITOR = "agent", "editor"
 """What has been warmed up: the agent in an empty cache, then the editor in the same one."""
 
@@ -57,19 +58,18 @@ def compile_all() -> bool:
     """Fill the empty cache of this machine, and keep copies; False if it is not empty, or if a
     warm-up failed.
     """
-    folders = [cache_folder(), cache_folder("meshwright_agent")]
-    if any(folder.exists() for folder in folders):
+    if any(map(entry_points_on_disk, PACKAGES)):
         return False
     cache_root().mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=cache_root(), prefix="tests-") as scratch:
         cache, copies = Path(scratch) / "kernels", Path(scratch) / "copies"
-        for stage, package in ((AGENT, "meshwright_agent"), (EDITOR, "meshwright_core")):
+        for stage, package in zip((AGENT, EDITOR), reversed(PACKAGES), strict=True):
             if run(["-m", f"{package}.warm_up"], cache, Path(scratch)).returncode:
                 return False
             shutil.copytree(cache, copies / stage)
         if not _kept().exists():
             copies.rename(_kept())
-        for folder in folders:
-            if not folder.exists():
-                (cache / folder.name).rename(folder)
+        if any(map(entry_points_on_disk, PACKAGES)):
+            return False  # another process has begun to fill it
+        shutil.copytree(cache, cache_root(), dirs_exist_ok=True)
     return True
