@@ -76,11 +76,11 @@ def test_a_search_ends_early_at_the_lower_bound():
 
 
 def test_a_very_irregular_region_is_improved_patch_by_patch(monkeypatch):
-    mesh = meshing.mesh_domain(gallery.shape("gear"), "tri", max_edge=0.1)
-    elements = region(mesh, 6)
+    mesh = meshing.mesh_domain(gallery.shape("gear"), "tri", max_edge=0.05)
+    elements = region(mesh, 12)
     monkeypatch.setattr("meshwright_agent.search.region_search.MANY", 8)
     halfedges, ends = outside_of(mesh, elements)
-    found = solve_within(mesh, policy_files.load("tri"), elements, rollouts=1, seed=2)
+    found = solve_within(mesh, policy_files.load("tri"), elements, rollouts=2, seed=2)
     assert found.score < mesh.score
     inside = enclose(mesh, elements)
     with temporarily_locked(mesh, inside.held):
@@ -95,9 +95,9 @@ def test_it_reports_progress_and_stops_when_cancelled(case):
     policy, mesh, elements = case
     reported = []
     found = solve_within(
-        mesh, policy, elements, rollouts=4, seed=3, progress=lambda *a: reported.append(a)
+        mesh, policy, elements, rollouts=32, seed=3, progress=lambda *a: reported.append(a)
     )
-    assert reported[-1][0] == found.rollouts <= 4
+    assert reported[-1][0] == found.rollouts <= 32
     assert found.score <= reported[-1][1] <= mesh.score
     enough = threading.Event()
     enough.set()
