@@ -18,7 +18,7 @@ def test_unknown_suite_is_refused(capsys):
     assert "choose from" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", ["core", "fuzz", "large", "levels"])
+@pytest.mark.parametrize("name", ["core", "file_fuzz", "fuzz", "large", "large_files", "levels"])
 @pytest.mark.slow
 def test_suite_runs(name, capsys):
     assert cli.main(["bench", "--suite", name, "--quick", "--json"]) == 0
