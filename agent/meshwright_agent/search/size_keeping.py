@@ -16,22 +16,25 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.layout_search import Preference
-from meshwright_agent.search.solution import Solution
+from meshwright_agent.search.patchwise import improve_large, is_large
+from meshwright_agent.search.solution import Solution, relax_changed
 from meshwright_core.analysis.chord_counts import counts_for_total
 from meshwright_core.analysis.element_division import chords, divided, wanted_pieces
+from meshwright_core.analysis.submesh import temporarily_locked
 from meshwright_core.domains.coarse_remesh import coarse_mesh, on_curves_of
 from meshwright_core.domains.meshing import grid
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
-from meshwright_core.geometry.size_field import SizeField
+from meshwright_core.geometry.size_field import SizeField, element_sizes
 from meshwright_core.mesh import HalfEdgeMesh
 
 MOST_OFF = 0.25
@@ -46,9 +49,15 @@ SWEEPS = (4, 20)
 given mesh less."""
 LAYOUT_SHARE = 0.7
 """Share of the time for the search of blocks, of what dividing leaves of it."""
-DIVIDED, AFTER_SEARCH, SMOOTHED, UNITS_A_SWEEP = 15.0, 12.0, 20.0, 1.0
+DIVIDED, AFTER_SEARCH, SMOOTHED, UNITS_A_SWEEP = 15.0, 6.0, 20.0, 1.0
 """Time of some work, in units of the time to measure all elements once: dividing blocks with few
 sweeps of smoothing; measuring what a search has found; smoothing and untangling; a sweep."""
+FIRST_RUN, ATTEMPTS = 0.6, 5
+"""Share of the time that is left for each run on a large mesh in place, and the most of them."""
+BARRED = 4.0
+"""Distance from a bad element, in sizes of elements, within which nothing is changed next time."""
+FEW = 200
+"""Bad elements that are smoothed together."""
 PARTS = 12
 """The most states on the way to the end of a search that are tried as answers."""
 LOSS = 1e-6
@@ -90,6 +99,12 @@ class Fit:
         if abs(mesh.n_elements - self.elements) > max(MOST_OFF * self.elements, 1.0):
             found.append(f"there would be {mesh.n_elements:,} elements")
         return tuple(found)
+
+    def bad(self, mesh: HalfEdgeMesh) -> np.ndarray:
+        """Ids, ascending, of the elements that are inverted or worse than the floor."""
+        worse = scaled_jacobian(mesh) < self.floor - LOSS
+        found: np.ndarray = np.union1d(inverted(mesh), mesh.element_ids()[worse])
+        return found
 
     def sized(self, mesh: HalfEdgeMesh) -> float:
         """Share of the elements whose size is off by no more than the factor TWICE."""
@@ -180,9 +195,14 @@ def keep_size(
     enough = best.method == "blocks" and best.mesh.score == mesh.optimum and -rank[2] >= ENOUGH
     if not enough and not clock.over(AFTER_SEARCH):
         free = clock.left(AFTER_SEARCH)
+        if free is not None and is_large(mesh):
+            free *= FIRST_RUN
         found = search(mesh, policy, seconds=free, coarsen=False, progress=progress)
         done += found.rollouts
-        made, operations, obstacle = _in_place(mesh, found, fit, clock)
+        if is_large(mesh):
+            made, operations, obstacle = _patches_that_fit(mesh, policy, found, fit, clock, seed)
+        else:
+            made, operations, obstacle = _in_place(mesh, found, fit, clock)
         obstacles += [obstacle] if obstacle else []
         if (other := fit.rank(made)) < rank:
             best = replace(best, mesh=made, operations=operations, method="in place")
@@ -331,6 +351,59 @@ def _placed(made: HalfEdgeMesh, fit: Fit, clock: _Clock) -> HalfEdgeMesh:
         if (other := fit.rank(trial)) < rank:
             best, rank = trial, other
     return best
+
+
+def _patches_that_fit(
+    mesh: HalfEdgeMesh, policy: Policy, found: Solution, fit: Fit, clock: _Clock, seed: int
+) -> tuple[HalfEdgeMesh, Operations, str]:
+    """As :func:`_in_place` for large meshes: where the result of a search has bad elements, the
+    patches are improved again without those around them, until there are none.
+    """
+    reached, operations = mesh.copy(), found.operations
+    if found.reached is not None:
+        reached = found.reached.copy()
+    else:
+        found.carry_out(reached)
+    first, barred = "", np.zeros(0, np.int64)
+    for attempt in range(ATTEMPTS):
+        faults = fit.faults(reached)
+        bad = fit.bad(reached)
+        if faults and len(bad):
+            smoothing.relax(reached, np.unique(reached.corners(bad[:FEW])).tolist())
+            faults, bad = fit.faults(reached), fit.bad(reached)
+        if not faults:
+            return reached, operations, first
+        first = first or faults[0]
+        if not len(bad) or clock.over(AFTER_SEARCH) or attempt == ATTEMPTS - 1:
+            break
+        barred = np.union1d(barred, _near(mesh, reached, bad))
+        allowed = np.setdiff1d(mesh.element_ids(), barred)
+        if not len(allowed):
+            break
+        trial = mesh.copy()
+        rim = np.intersect1d(mesh.corners(allowed), mesh.corners(barred))
+        free = rim[~mesh.locked()[rim]]
+        left = clock.left(AFTER_SEARCH)
+        with temporarily_locked(trial, rim):
+            run = improve_large(
+                trial, policy, seconds=None if left is None else FIRST_RUN * left,
+                seed=seed + attempt, within=allowed, cancelled=lambda: clock.cancelled,
+            )  # fmt: skip
+        reached, operations = run.mesh, run.steps()
+        for vertex in free.tolist():
+            reached.set_locked(vertex, False)
+        reached = reached.copy()
+        relax_changed(mesh, reached, lambda: clock.over(AFTER_SEARCH))
+    return mesh.copy(), [], first
+
+
+def _near(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, bad: np.ndarray) -> np.ndarray:
+    """Ids of the elements of a mesh near the elements `bad` of what has become of it."""
+    centres = reached.points[reached.corners(bad)].mean(axis=1)
+    own = mesh.points[mesh.elements()].mean(axis=1)
+    away, _ = cKDTree(centres).query(own)
+    found: np.ndarray = mesh.element_ids()[away < BARRED * element_sizes(mesh)]
+    return found
 
 
 def _in_place(

@@ -134,7 +134,7 @@ def judged(
         ids = reached.vertices()
         reached.move(ids, placed.points[ids], placed.parameter[ids])
     if reached.n_elements > RELAXED:
-        _relax_changed(mesh, reached, stop)
+        relax_changed(mesh, reached, stop)
     elif solution.operations or len(inverted(reached)):
         _best_positions(reached, stop)
     live = reached.vertices()
@@ -193,7 +193,7 @@ def mesh_at(mesh: HalfEdgeMesh, points: np.ndarray, parameters: np.ndarray) -> H
     return copy
 
 
-def _relax_changed(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:
+def relax_changed(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:
     """Smooth around all vertices that are new or have another degree, as long as `stop` is false,
     those of inverted elements first.
     """
