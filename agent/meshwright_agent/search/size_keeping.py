@@ -24,7 +24,7 @@ from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.layout_search import Preference
 from meshwright_agent.search.patchwise import improve_large, is_large
-from meshwright_agent.search.solution import Solution, relax_changed
+from meshwright_agent.search.solution import Solution
 from meshwright_core.analysis.chord_counts import counts_for_total
 from meshwright_core.analysis.element_division import chords, divided, wanted_pieces
 from meshwright_core.analysis.submesh import temporarily_locked
@@ -52,12 +52,12 @@ LAYOUT_SHARE = 0.7
 DIVIDED, AFTER_SEARCH, SMOOTHED, UNITS_A_SWEEP = 15.0, 6.0, 20.0, 1.0
 """Time of some work, in units of the time to measure all elements once: dividing blocks with few
 sweeps of smoothing; measuring what a search has found; smoothing and untangling; a sweep."""
-FIRST_RUN, ATTEMPTS = 0.6, 5
+FIRST_RUN, ATTEMPTS = 0.4, 6
 """Share of the time that is left for each run on a large mesh in place, and the most of them."""
 BARRED = 4.0
 """Distance from a bad element, in sizes of elements, within which nothing is changed next time."""
-FEW = 200
-"""Bad elements that are smoothed together."""
+FEW = 4
+"""Bad elements that are untangled together."""
 PARTS = 12
 """The most states on the way to the end of a search that are tried as answers."""
 LOSS = 1e-6
@@ -206,7 +206,7 @@ def keep_size(
         obstacles += [obstacle] if obstacle else []
         if (other := fit.rank(made)) < rank:
             best = replace(best, mesh=made, operations=operations, method="in place")
-            best.reason = found.reason
+            best.reason = found.reason if seconds is None else ""
     if best.method == "none" and not clock.over(SMOOTHED):
         smoothed = _smoothed(mesh)
         if fit.rank(smoothed) < rank:
@@ -356,45 +356,72 @@ def _placed(made: HalfEdgeMesh, fit: Fit, clock: _Clock) -> HalfEdgeMesh:
 def _patches_that_fit(
     mesh: HalfEdgeMesh, policy: Policy, found: Solution, fit: Fit, clock: _Clock, seed: int
 ) -> tuple[HalfEdgeMesh, Operations, str]:
-    """As :func:`_in_place` for large meshes: where the result of a search has bad elements, the
-    patches are improved again without those around them, until there are none.
+    """As :func:`_in_place` for large meshes. Where a result fits, the search goes on from there;
+    where it has bad elements, the patches are improved again without those around them.
     """
-    reached, operations = mesh.copy(), found.operations
+    reached, more = mesh.copy(), list(found.operations)
     if found.reached is not None:
         reached = found.reached.copy()
     else:
         found.carry_out(reached)
-    first, barred = "", np.zeros(0, np.int64)
+    best, chosen, obstacle, last = mesh.copy(), list[Any](), "", ""
+    barred = np.zeros(0, np.int64)
     for attempt in range(ATTEMPTS):
-        faults = fit.faults(reached)
-        bad = fit.bad(reached)
-        if faults and len(bad):
-            smoothing.relax(reached, np.unique(reached.corners(bad[:FEW])).tolist())
-            faults, bad = fit.faults(reached), fit.bad(reached)
-        if not faults:
-            return reached, operations, first
-        first = first or faults[0]
-        if not len(bad) or clock.over(AFTER_SEARCH) or attempt == ATTEMPTS - 1:
+        _mend(reached, fit, clock)
+        faults, bad = fit.faults(reached), fit.bad(reached)
+        if faults:
+            obstacle = last = faults[0]
+            if not len(bad):
+                break
+            barred = np.union1d(barred, _near(best, reached, bad))
+        elif reached.score < best.score:
+            best, last = reached, ""
+            chosen, barred = chosen + more, np.zeros(0, np.int64)
+        else:
             break
-        barred = np.union1d(barred, _near(mesh, reached, bad))
-        allowed = np.setdiff1d(mesh.element_ids(), barred)
-        if not len(allowed):
+        allowed = np.setdiff1d(best.element_ids(), barred)
+        late = clock.over(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
+        if best.score == best.optimum or not len(allowed) or late:
             break
-        trial = mesh.copy()
-        rim = np.intersect1d(mesh.corners(allowed), mesh.corners(barred))
-        free = rim[~mesh.locked()[rim]]
-        left = clock.left(AFTER_SEARCH)
-        with temporarily_locked(trial, rim):
-            run = improve_large(
-                trial, policy, seconds=None if left is None else FIRST_RUN * left,
-                seed=seed + attempt, within=allowed, cancelled=lambda: clock.cancelled,
-            )  # fmt: skip
-        reached, operations = run.mesh, run.steps()
-        for vertex in free.tolist():
-            reached.set_locked(vertex, False)
-        reached = reached.copy()
-        relax_changed(mesh, reached, lambda: clock.over(AFTER_SEARCH))
-    return mesh.copy(), [], first
+        reached, more = _patched(best, policy, allowed, clock, seed + attempt)
+    return best, chosen, last or (obstacle if best.score == mesh.score else "")
+
+
+def _patched(
+    mesh: HalfEdgeMesh, policy: Policy, allowed: np.ndarray, clock: _Clock, seed: int
+) -> tuple[HalfEdgeMesh, Operations]:
+    """The mesh improved patch by patch in the elements `allowed` (n,), and the operations."""
+    trial = mesh.copy()
+    rim = np.zeros(0, np.int64)
+    within = None
+    if len(allowed) < mesh.n_elements:
+        barred = np.setdiff1d(mesh.element_ids(), allowed)
+        rim, within = np.intersect1d(mesh.corners(allowed), mesh.corners(barred)), allowed
+    free = rim[~mesh.locked()[rim]]
+    left = clock.left(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
+    with temporarily_locked(trial, rim):
+        run = improve_large(
+            trial, policy, seconds=None if left is None else FIRST_RUN * left, seed=seed,
+            within=within, cancelled=lambda: clock.cancelled,
+        )  # fmt: skip
+    for vertex in free.tolist():
+        run.mesh.set_locked(vertex, False)
+    return run.mesh.copy(), run.steps()
+
+
+def _mend(mesh: HalfEdgeMesh, fit: Fit, clock: _Clock) -> None:
+    """Smooth a large mesh, then untangle around what is inverted or worse than the floor."""
+    if not fit.faults(mesh) or clock.over(UNITS_A_SWEEP * SWEEPS[-1]):
+        return
+    moved = smoothing.smooth(mesh, iterations=SWEEPS[-1])
+    if len(moved[0]):
+        mesh.move(*moved)
+    bad = fit.bad(mesh)
+    for start in range(0, len(bad), FEW):
+        if clock.over(AFTER_SEARCH):
+            break
+        corners = np.unique(mesh.corners(bad[start : start + FEW]))
+        smoothing.relax(mesh, corners.tolist(), thorough=False)
 
 
 def _near(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, bad: np.ndarray) -> np.ndarray:
