@@ -25,8 +25,12 @@ from meshwright_core.domains import gallery, meshing
 from meshwright_core.domains.domain import Domain
 from meshwright_core.domains.random_parts import parts
 from meshwright_core.geometry import quality
+<<<<<<< HEAD
 from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.shape_bound import shape_bound
+=======
+from meshwright_core.geometry.edge_curves import element_areas
+>>>>>>> main
 
 SUMMARY = "gallery and random parts as quads: s, s*, blocks, shapes and q* after so many seconds"
 SECONDS = 10.0
@@ -119,8 +123,8 @@ def improve(
 
 
 def _area(mesh: HalfEdgeMesh) -> float:
-    """The area of a plane mesh: that of its domain where the boundary follows every side."""
-    return float(quality.vector_areas(mesh.points, mesh.elements())[:, 2].sum())
+    """The area of a plane mesh between its true edges: that of its domain, if it fills it."""
+    return float(element_areas(mesh).sum())
 
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:

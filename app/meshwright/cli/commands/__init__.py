@@ -9,7 +9,9 @@ import argparse
 from typing import Protocol
 
 from meshwright.cli.commands import (
+    batch,
     bench,
+    blocks,
     demo,
     evaluate,
     improve,
@@ -45,6 +47,8 @@ COMMANDS: dict[str, Command] = {
     "shapes": shapes,
     "mesh": mesh,
     "improve": improve,
+    "blocks": blocks,
+    "batch": batch,
     "evaluate": evaluate,
     "train": train,
     "lessons": lessons,
