@@ -25,12 +25,9 @@ from meshwright_core.domains import gallery, meshing
 from meshwright_core.domains.domain import Domain
 from meshwright_core.domains.random_parts import parts
 from meshwright_core.geometry import quality
-<<<<<<< HEAD
+from meshwright_core.geometry.edge_curves import element_areas
 from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.shape_bound import shape_bound
-=======
-from meshwright_core.geometry.edge_curves import element_areas
->>>>>>> main
 
 SUMMARY = "gallery and random parts as quads: s, s*, blocks, shapes and q* after so many seconds"
 SECONDS = 10.0
