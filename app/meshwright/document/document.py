@@ -4,8 +4,8 @@ Imports neither Qt nor torch nor the agent. One call that changes the mesh is on
 history.
 """
 
-from collections.abc import Callable, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -82,6 +82,8 @@ class Document:
         self._saved = (0, 0)
         self._stamp = file_stamp.of(self._path)
         self._passing = False
+        self._together = 0
+        self._unannounced = False
         self.selection = Selection(self)
 
     # What it holds
@@ -332,6 +334,22 @@ class Document:
         self._timeline.replay(step, steps)
         self._announce("step", self.history.cursor)
 
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Emit the events of all changes inside once, at the end, but ``recorded`` with each."""
+        self._together += 1
+        try:
+            yield
+        finally:
+            self._together -= 1
+            if not self._together and self._unannounced:
+                self._unannounced = False
+                self._emit_changed()
+
+    def need_mesh(self) -> HalfEdgeMesh:
+        """The mesh, for reading only; MeshError without one."""
+        return self._timeline.need_mesh()
+
     def _need(self) -> HalfEdgeMesh:
         return self._timeline.need_mesh()
 
@@ -346,6 +364,12 @@ class Document:
     def _announce(self, event: str, number: int) -> None:
         self.revision += 1
         self.recorded.emit(event, number)
+        if self._together:
+            self._unannounced = True
+        else:
+            self._emit_changed()
+
+    def _emit_changed(self) -> None:
         if self._hover >= 0 and not self._need().live(self._hover):
             self.hover = -1
         self._emit_all()
@@ -373,18 +397,20 @@ class Document:
         by: str = YOU,
         held: np.ndarray | None = None,
         thorough: bool = True,
+        smooth: bool = True,
     ) -> Edit:
         """Apply one operation and smooth around it, as one step; OperationRefused if refused.
 
         held (n,): vertices that are locked during the step, and so keep their positions. Smoothing
-        takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then.
+        takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then;
+        without ``smooth`` there is none.
         """
         mesh = self._need()
 
         def work() -> Edit:
             with temporarily_locked(mesh, held) if held is not None else nullcontext():
                 edit = mesh.apply(operation, halfedge)
-                if self.smooths:
+                if self.smooths and smooth:
                     _relax(mesh, edit.touched, thorough)
                 return edit
 
@@ -440,12 +466,13 @@ class Document:
         positions: np.ndarray,
         by: str = YOU,
         parameters: np.ndarray | None = None,
+        title: str = "Move",
     ) -> None:
         """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step; ``parameters`` (n,) as in
         :meth:`HalfEdgeMesh.move`.
         """
         mesh = self._need()
-        self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions, parameters))
+        self._do("move", title, -1, by, lambda: mesh.move(vertices, positions, parameters))
 
     def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
         """Set the desired degree of one vertex or several (n,), as one step.
