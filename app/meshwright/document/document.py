@@ -4,8 +4,8 @@ Imports neither Qt nor torch nor the agent. One call that changes the mesh is on
 history.
 """
 
-from collections.abc import Callable, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -50,7 +50,8 @@ class Document:
     ``history_changed()``; ``saved_changed()`` name, path or :attr:`modified` may differ;
     ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others. Before the others
     comes ``recorded(event, number)``, for autosave: ``"step"`` a step was appended to the history,
-    ``"go"`` the cursor moved to that number, ``"branch"`` that branch was taken, ``"saved"``.
+    ``"go"`` the cursor moved to that number, ``"branch"`` that branch was taken, ``"python"`` the
+    mesh itself was changed, ``"saved"``.
     """
 
     def __init__(
@@ -82,6 +83,8 @@ class Document:
         self._saved = (0, 0)
         self._stamp = file_stamp.of(self._path)
         self._passing = False
+        self._together = 0
+        self._unannounced = False
         self.selection = Selection(self)
 
     # What it holds
@@ -301,12 +304,14 @@ class Document:
 
     def undo(self) -> HistoryStep | None:
         """Take back the last step; returns it, None if there is none."""
+        self.catch_up()
         step = self.history.last
         self.go_to(self.history.cursor - 1)
         return step
 
     def redo(self) -> HistoryStep | None:
         """Do again what was taken back last; returns that step, None if there is none."""
+        self.catch_up()
         if not self.history.can_redo:
             return None
         self.go_to(self.history.cursor + 1)
@@ -314,6 +319,7 @@ class Document:
 
     def go_to(self, cursor: int) -> None:
         """Undo or redo until ``cursor`` steps are done; beyond either end it stops there."""
+        self.catch_up()
         cursor = min(max(cursor, 0), len(self.history))
         if cursor != self.history.cursor:
             self._timeline.go_to(cursor)
@@ -321,6 +327,7 @@ class Document:
 
     def take_branch(self, index: int) -> None:
         """Go to the end of ``history.branches[index]``; the steps left for it become a branch."""
+        self.catch_up()
         self._timeline.take_branch(index)
         self._announce("branch", index)
 
@@ -332,8 +339,38 @@ class Document:
         self._timeline.replay(step, steps)
         self._announce("step", self.history.cursor)
 
-    def _need(self) -> HalfEdgeMesh:
+    def catch_up(self) -> bool:
+        """Record what was changed on the mesh itself, as by ``document.mesh.apply(...)``; returns
+        whether it was. Every call that needs the mesh does this first.
+
+        Each such step becomes a step of the history, "Edit in Python". Steps that were undone there
+        count as undone here; undone steps that it has dropped leave the history.
+        """
+        if not self._timeline.behind or not self._timeline.catch_up():
+            return False
+        self._announce("python", self.history.cursor)
+        return True
+
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Emit the events of all changes inside once, at the end, but ``recorded`` with each."""
+        self._together += 1
+        try:
+            yield
+        finally:
+            self._together -= 1
+            if not self._together and self._unannounced:
+                self._unannounced = False
+                self._emit_changed()
+
+    def need_mesh(self) -> HalfEdgeMesh:
+        """The mesh, for reading only; MeshError without one."""
         return self._timeline.need_mesh()
+
+    def _need(self) -> HalfEdgeMesh:
+        mesh = self._timeline.need_mesh()
+        self.catch_up()
+        return mesh
 
     def _do(
         self, action: str, title: str, halfedge: int, by: str, work: Callable[[], Result]
@@ -346,6 +383,12 @@ class Document:
     def _announce(self, event: str, number: int) -> None:
         self.revision += 1
         self.recorded.emit(event, number)
+        if self._together:
+            self._unannounced = True
+        else:
+            self._emit_changed()
+
+    def _emit_changed(self) -> None:
         if self._hover >= 0 and not self._need().live(self._hover):
             self.hover = -1
         self._emit_all()
@@ -373,18 +416,20 @@ class Document:
         by: str = YOU,
         held: np.ndarray | None = None,
         thorough: bool = True,
+        smooth: bool = True,
     ) -> Edit:
         """Apply one operation and smooth around it, as one step; OperationRefused if refused.
 
         held (n,): vertices that are locked during the step, and so keep their positions. Smoothing
-        takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then.
+        takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then;
+        without ``smooth`` there is none.
         """
         mesh = self._need()
 
         def work() -> Edit:
             with temporarily_locked(mesh, held) if held is not None else nullcontext():
                 edit = mesh.apply(operation, halfedge)
-                if self.smooths:
+                if self.smooths and smooth:
                     _relax(mesh, edit.touched, thorough)
                 return edit
 
@@ -440,12 +485,20 @@ class Document:
         positions: np.ndarray,
         by: str = YOU,
         parameters: np.ndarray | None = None,
+        title: str = "Move",
+        pin: bool = False,
     ) -> None:
         """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step; ``parameters`` (n,) as in
-        :meth:`HalfEdgeMesh.move`.
+        :meth:`HalfEdgeMesh.move`. ``pin``: they are pinned there in the same step.
         """
         mesh = self._need()
-        self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions, parameters))
+        free = [v for v in _ids(vertices) if pin and not mesh.pinned()[v]]
+
+        def work() -> None:
+            mesh.move(vertices, positions, parameters)
+            _each(free, mesh.set_pinned, True)
+
+        self._do("move", title, -1, by, work)
 
     def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
         """Set the desired degree of one vertex or several (n,), as one step.
@@ -469,6 +522,16 @@ class Document:
         wanted = [v for v in _ids(vertices) if bool(now[v]) != flag and v not in kept]
         title = _counted("Make corner" if flag else "Free corner", wanted)
         self._do("geometric", title, -1, YOU, lambda: _each(wanted, mesh.set_geometric, flag))
+
+    def set_pinned(self, vertices: int | np.ndarray, flag: bool) -> None:
+        """Pin one vertex or several (n,), so that smoothing keeps them in place, or free them, as
+        one step.
+        """
+        mesh = self._need()
+        now = mesh.pinned()
+        wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
+        title = _counted("Pin" if flag else "Free pinned vertex", wanted)
+        self._do("pinned", title, -1, YOU, lambda: _each(wanted, mesh.set_pinned, flag))
 
     def name_sides(self, halfedges: np.ndarray, name: str) -> None:
         """Name edges (n,) of the boundary or of interfaces, "" for none, as one step."""
