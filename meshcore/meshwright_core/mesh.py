@@ -6,10 +6,17 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from operator import index
+from typing import Any
 
 import numpy as np
 
-from meshwright_core.core import construction, curve_checks, notebook_display, side_names
+from meshwright_core.core import (
+    construction,
+    conversions,
+    curve_checks,
+    notebook_display,
+    side_names,
+)
 from meshwright_core.core.arrays import (
     CURVE,
     DESIRED,
@@ -516,6 +523,25 @@ class HalfEdgeMesh(MeshView):
         self._take_boundary(boundary)
         self.seats_recorded = True
         return vertex_map, element_map
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.PolyData, with data by point and element and names; MeshError without PyVista.
+
+        This and the other conversions: :mod:`meshwright_core.io.objects.outgoing`.
+        """
+        return conversions.converted("pyvista", self)
+
+    def to_trimesh(self) -> Any:
+        """A trimesh.Trimesh, quads as two triangles each; MeshError without trimesh."""
+        return conversions.converted("trimesh", self)
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh, groups as its `cell_sets`; MeshError without meshio."""
+        return conversions.converted("meshio", self)
+
+    def to_shapely(self) -> Any:
+        """Arrays of shapely's geometries, and data as arrays; MeshError without shapely."""
+        return conversions.converted("shapely", self)
 
     def _repr_mimebundle_(
         self, include: object = None, exclude: object = None
