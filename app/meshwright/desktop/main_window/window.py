@@ -35,6 +35,7 @@ from meshwright.desktop.editing.edit_controller import EditController
 from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.inverted_controller import InvertedController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
+from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
@@ -124,6 +125,7 @@ class MainWindow(QMainWindow):
         self.selection_tools = SelectionController(
             document, canvas, self.levels, readiness, actions, status, self, colours
         )
+        self.names = NamesController(document, canvas, status, self, colours)
         self.navigation = KeyboardNavigation(
             document, canvas, self.quality.highlight, status, colours
         )
@@ -168,6 +170,7 @@ class MainWindow(QMainWindow):
             self.editing,
             self.lines,
             self.selection_tools,
+            self.names,
             self.navigation,
             self.hints,
             self.agent,
@@ -216,6 +219,7 @@ class MainWindow(QMainWindow):
             editing=self.editing,
             lines=self.lines,
             selection_tools=self.selection_tools,
+            names=self.names,
             navigation=self.navigation,
             hints=self.hints,
             agent=self.agent,
