@@ -48,9 +48,9 @@ class SideNamesLayer(PictureLayer):
         """Paint the strokes, then the legend."""
         colours = self.colours()
         for name, lines in self._sides.items():
-            soft = QColor(colours[name])
-            soft.setAlpha(200)
-            painter.setPen(QPen(soft, 4.5, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
+            painter.setPen(
+                QPen(QColor(colours[name]), 4.5, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap)
+            )
             for line in lines:
                 places = self.viewport.to_screen(line)
                 painter.drawPolyline(QPolygonF([QPointF(x, y) for x, y in places.tolist()]))
