@@ -28,6 +28,7 @@ _HOMES = {
     "block_view": "meshwright.experiments",
     "compare": "meshwright.experiments",
     "exercise": "meshwright.teaching",
+    "improve": "meshwright.assistant.solve",
     "learning_curves": "meshwright.experiments",
     "mesh": "meshwright.sources.resolve",
     "patch": "meshwright.teaching",

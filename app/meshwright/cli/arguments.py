@@ -189,6 +189,14 @@ def positive_float(text: str) -> float:
     return value
 
 
+def share(text: str) -> float:
+    """Read a number of 0 to 1 from the command line."""
+    value = _float(text)
+    if not 0 <= value <= 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a number of 0 to 1")
+    return value
+
+
 def angle(text: str) -> float:
     """Read an angle of 0 to 180 degrees from the command line."""
     value = _float(text)

@@ -75,16 +75,21 @@ def add_tracing_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def is_mesh(word: str) -> bool:
+    """Whether an input is a mesh file, and no drawing and no name of a shape."""
+    from meshwright.document.storage.document_file import is_drawing
+    from meshwright.sources import resolve
+
+    return resolve.names_file(word) and not is_drawing(word)
+
+
 def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
     """Return the mesh in a mesh file, on its geometry, or the mesh of a drawing or a shape.
 
     Raises UserError with the reason.
     """
-    from meshwright.document.storage.document_file import is_drawing
-    from meshwright.sources import resolve
-
     word = arguments.input
-    if not resolve.names_file(word) or is_drawing(word):
+    if not is_mesh(word):
         if arguments.geometry is not None:
             raise UserError(f"--geometry {arguments.geometry}: {word} is itself a shape, no mesh")
         domain, kind = read_domain(word, arguments), arguments.kind or "quad"

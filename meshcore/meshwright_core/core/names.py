@@ -12,24 +12,24 @@ from collections.abc import Iterable
 
 LONGEST = 200
 """Characters of the name of one group, at most."""
-_SEPARATOR = ";"
+SEPARATOR = ";"
 _NUMBERED = re.compile(r"(?P<array>[^=]+)=(?P<value>-?\d{1,18})")
 
 
 def safe(name: str) -> str:
     """The name of one group without what separates names, line breaks and other controls."""
-    text = "".join(" " if not c.isprintable() else "," if c == _SEPARATOR else c for c in name)
+    text = "".join(" " if not c.isprintable() else "," if c == SEPARATOR else c for c in name)
     return " ".join(text.split())[:LONGEST].rstrip()
 
 
 def joined(names: Iterable[str]) -> str:
     """One name from those of groups, each once, in their order."""
-    return (_SEPARATOR + " ").join(dict.fromkeys(name for name in names if name))
+    return (SEPARATOR + " ").join(dict.fromkeys(name for name in names if name))
 
 
 def groups(name: str) -> tuple[str, ...]:
     """The groups that a name consists of; none for ""."""
-    return tuple(dict.fromkeys(part for one in name.split(_SEPARATOR) if (part := safe(one))))
+    return tuple(dict.fromkeys(part for one in name.split(SEPARATOR) if (part := safe(one))))
 
 
 def clean(name: str) -> str:

@@ -65,10 +65,10 @@ def placed(mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:
         MeshError: one sentence: the loops are not as many, a corner has no vertex, or a vertex
             lies farther from the curves than a thousandth of the size and a quarter of its edges.
     """
-    return _Placement(mesh, _curved(domain)).mesh()
+    return _Placement(mesh, with_curved_sides(domain)).mesh()
 
 
-def _curved(domain: Domain) -> Domain:
+def with_curved_sides(domain: Domain) -> Domain:
     """The domain with sides of curves: itself, or a polygon as polylines between its corners."""
     if domain.sides is not None:
         return domain

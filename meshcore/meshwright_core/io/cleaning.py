@@ -7,9 +7,7 @@ from numpy.typing import NDArray
 
 from meshwright_core.errors import MeshError
 from meshwright_core.io.content import Cells, Content
-from meshwright_core.io.named_groups import renumbered
 
-_IGNORED = frozenset({"vertex", "line", "line3", "line4"})
 _MOST_DEGREE = 10_000
 _FARTHEST = 1e100
 """Coordinates beyond this would overflow in areas."""
@@ -17,32 +15,17 @@ _FARTHEST = 1e100
 Elements = NDArray[np.int64]
 
 
-def single_kind(content: Content) -> Elements:
-    """Return the (m, 3 or 4) elements of a file that holds triangles or quads only.
-
-    Points and lines among the cells are left aside.
-
-    Raises:
-        MeshError: other cells, both kinds, or none.
-    """
-    cells = {kind: block for kind, block in content.cells.items() if kind not in _IGNORED}
-    others = sorted(cells.keys() - {"triangle", "quad"})
-    if others:
-        listed = " and ".join(f"{len(cells[kind])} of type {kind}" for kind in others)
-        raise MeshError(f"only triangles or quads can be edited, but it has cells: {listed}")
-    if len(cells) == 2:
-        raise MeshError(_mixed(content.points, cells))
-    if not cells:
-        raise MeshError("it holds no triangles and no quads")
-    ((_, elements),) = cells.items()
-    return np.asarray(elements, dtype=np.int64)
+def refuse_mixed(content: Content) -> None:
+    """MeshError if a content holds both triangles and quads."""
+    if len(content.cells) > 1:
+        raise MeshError(_mixed(content.points, content.cells))
 
 
 def _mixed(points: NDArray[np.float64], cells: Cells) -> str:
     few = min(cells, key=lambda kind: len(cells[kind]))
     message = (
         f"it mixes {_count(cells, 'triangle')} and {_count(cells, 'quad')}, "
-        "but a mesh here has one kind of element"
+        "but a mesh here has one kind of element: to_quads (--to-quads) makes quads of all"
     )
     corners = cells[few][0]
     if corners.min() >= 0 and corners.max() < len(points):
@@ -71,38 +54,6 @@ def refuse_strays(points: NDArray[np.float64], elements: Elements) -> None:
         point = int(elements[row][np.argmax(far[row])])
         shown = ", ".join(f"{value:g}" for value in points[point])
         raise MeshError(f"point {point}, of element {row}, is at ({shown}), not a finite place")
-
-
-def compacted(content: Content, elements: Elements) -> tuple[Content, Elements]:
-    """Drop the points that no element uses; their order stays. The cells are not kept."""
-    used = np.zeros(len(content.points), dtype=bool)
-    used[elements] = True
-    number = np.cumsum(used) - 1
-    data = {
-        name: np.asarray(values)[used]
-        for name, values in content.data.items()
-        if len(values) == len(used)
-    }
-    number = np.where(used, number, -1)
-    kept = content._replace(
-        points=content.points[used],
-        cells={},
-        data=data,
-        names=renumbered(content.names, number),
-    )
-    return kept, number[elements]
-
-
-def merged(content: Content, elements: Elements) -> tuple[Content, Elements]:
-    """Merge points at exactly the same place; the first one stays, data are dropped."""
-    points = content.points + 0.0  # so that -0.0 is 0.0
-    _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), dtype=np.int64)
-    rank[np.argsort(first)] = np.arange(len(first))
-    number = rank[inverse.ravel()]
-    names = renumbered(content.names, number)
-    kept = content._replace(points=content.points[np.sort(first)], cells={}, data={}, names=names)
-    return kept, number[elements]
 
 
 def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:

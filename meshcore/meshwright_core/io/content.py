@@ -55,6 +55,10 @@ class Content(NamedTuple):
     """What of the file is not kept, such as fields: a phrase each, "point data 'height'"."""
     warnings: tuple[str, ...] = ()
     """What the reader warns of: a sentence each, without the path."""
+    parts: dict[str, NDArray[np.int64]] = {}  # noqa: RUF012 - never written
+    """By type of cell, the part of the file of each cell, a row in `part_names`."""
+    part_names: tuple[str, ...] = ()
+    """The names of the parts of the file, such as zones, pieces or instances; "" for none."""
 
 
 class NamesBuilder:

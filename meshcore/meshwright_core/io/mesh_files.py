@@ -6,12 +6,21 @@ import os
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.errors import FileWarning, MeshError
-from meshwright_core.io import cleaning, formats, named_groups, text_formats
+from meshwright_core.io import (
+    cleaning,
+    formats,
+    named_groups,
+    parts,
+    surface,
+    text_formats,
+    welding,
+)
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.io.content import Content
 from meshwright_core.io.file_checks import naming, size_of
@@ -25,39 +34,75 @@ def endings() -> tuple[str, ...]:
     return tuple(formats.FORMATS)
 
 
-def read(path: str | os.PathLike[str], corner_angle: float = CORNER_ANGLE) -> HalfEdgeMesh:
+class Loaded(NamedTuple):
+    """What has been read from a mesh file.
+
+    Attributes:
+        mesh: the mesh.
+        notes: what was mended, merged or read otherwise than it stands there, a sentence each.
+        dropped: what of the file is not kept, such as fields: a phrase each, "point data 'height'".
+        parts: names of the parts that can be read alone.
+    """
+
+    mesh: HalfEdgeMesh
+    notes: tuple[str, ...] = ()
+    dropped: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
+
+
+def read(
+    path: str | os.PathLike[str],
+    corner_angle: float = CORNER_ANGLE,
+    part: str | None = None,
+    to_quads: bool = False,
+) -> HalfEdgeMesh:
+    """Read a mesh file; see :func:`load`. What it notes is said by a FileWarning each."""
+    found = load(path, corner_angle, part, to_quads)
+    said = list(found.notes)
+    if found.dropped:
+        said.append(f"{', '.join(found.dropped)} {_are(found.dropped)} not kept")
+    for line in said:
+        warnings.warn(f"{path}: {line.rstrip('.')}.", FileWarning, stacklevel=2)
+    return found.mesh
+
+
+def load(
+    path: str | os.PathLike[str],
+    corner_angle: float = CORNER_ANGLE,
+    part: str | None = None,
+    to_quads: bool = False,
+) -> Loaded:
     """Read a mesh file.
 
     Points that no element uses are dropped and the rest renumbered in order; plane formats get
-    z = 0. In formats without shared points (STL, glTF, 3MF) points at the same place are merged.
-    Where neighbouring elements run against each other they are turned to agree, and meshes in
-    a plane z = const run counter-clockwise afterwards. Named groups of elements become regions,
-    those of edges and points sides: see :meth:`HalfEdgeMesh.sides` and `region_names`. What of
-    the file is not kept is said by a FileWarning each.
+    z = 0. In formats without shared points (STL, glTF, 3MF) points at the same place are merged;
+    in others where that makes one surface of two. Elements that are there more than once are read
+    once, and those of higher order with straight sides. Where neighbouring elements run against
+    each other they are turned to agree, and meshes in a plane z = const run counter-clockwise
+    afterwards. Named groups of elements become regions, those of edges and points sides: see
+    :meth:`HalfEdgeMesh.sides` and `region_names`.
 
     Args:
         path: a file whose ending `endings` lists.
         corner_angle: degrees by which the boundary must turn at a geometric vertex. A file that
             carries our own point data "geometric" and "desired_degree" (VTK, VTU, Gmsh, PLY,
             AVS-UCD, Tecplot, XDMF) keeps its corners and desired degrees instead.
+        part: the name or number of the part to read: a zone, piece or instance, or a connected
+            component where the file has one part; all of them by default.
+        to_quads: make quads of triangles, in pairs, and split what is left.
 
     Raises:
         MeshError: one sentence that begins with the path: the file is missing, a folder, empty,
-            cut off or in another format; it mixes triangles and quads or holds other cells; a
-            coordinate is not a finite number; the mesh is not manifold.
+            cut off or in another format; it mixes triangles and quads, and `to_quads` is not set,
+            or holds other cells; it has no such part; a coordinate is not a finite number; the
+            mesh is not manifold.
     """
     place = Path(path)
     with naming(place):
         head = _head(place)
         form = formats.of(place)
-        with formats.contained():
-            content = form.read(place)
-        mesh, said = _mesh(content, form, head, corner_angle)
-    if mesh.left_out:
-        said.append(f"{', '.join(mesh.left_out)} {_are(mesh.left_out)} not kept")
-    for line in said:
-        warnings.warn(f"{place}: {line.rstrip('.')}.", FileWarning, stacklevel=2)
-    return mesh
+        content = _prepared(form.read(place), form, head, part, to_quads)
+        return _loaded(content, corner_angle)
 
 
 def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
@@ -144,13 +189,12 @@ def _is_version_4(path: Path) -> bool:
 
 def _refuse_incomplete(form: formats.Format, path: Path, content: Content) -> None:
     """Read a file back; numpy's tofile does not notice when its last buffer meets a full disk."""
+    ((kind, block),) = content.cells.items()
     try:
-        with formats.contained():
-            there = form.read(path)
-        elements = cleaning.single_kind(there)
-    except MeshError as error:
+        there = form.read(path)
+        elements = surface.surface_of(there).cells[kind]
+    except (MeshError, KeyError) as error:
         raise OSError("it did not arrive whole") from error
-    (block,) = content.cells.values()
     if len(elements) != len(block) or not (form.merge or len(there.points) == len(content.points)):
         raise OSError("it did not arrive whole")
 
@@ -161,25 +205,34 @@ def _head(path: Path) -> bytes:
         return file.read(1024)
 
 
-def _mesh(
-    content: Content, form: formats.Format, head: bytes, corner_angle: float
-) -> tuple[HalfEdgeMesh, list[str]]:
-    """The mesh in a file, and what is to be said of it."""
-    elements = cleaning.single_kind(content)
+def _prepared(
+    content: Content, form: formats.Format, head: bytes, part: str | None, to_quads: bool
+) -> Content:
+    """One kind of elements, which share the points that are theirs."""
+    content = surface.surface_of(content)
     promise = text_formats.announced_counts(head)
-    if promise and promise != (len(content.points), len(elements)):
+    count = sum(len(block) for block in content.cells.values())
+    if promise and promise != (len(content.points), count):
         raise MeshError(
             f"it is cut off: {promise[0]} points and {promise[1]} elements are announced, "
-            f"but {len(content.points)} and {len(elements)} are there"
+            f"but {len(content.points)} and {count} are there"
         )
-    kind = "triangle" if elements.shape[1] == 3 else "quad"
-    cleaning.refuse_strays(content.points, elements)
-    if form.merge:
-        content, elements = cleaning.merged(content, elements)
-    content, elements = cleaning.compacted(content, elements)
+    content = surface.without_repeats(surface.compacted(content))
+    content = welding.welded(content, form.merge)
+    if part is not None:
+        content = parts.one_part(content, part)
+    if to_quads:
+        # imported late: domains need shapely
+        from meshwright_core.io import all_quads
+
+        content = all_quads.converted(content)
+    cleaning.refuse_mixed(content)
+    return surface.compacted(content)
+
+
+def _loaded(content: Content, corner_angle: float) -> Loaded:
+    ((kind, elements),) = content.cells.items()
     points = content.points
-    if points.shape[1] < 3:
-        points = np.column_stack([points, np.zeros((len(points), 3 - points.shape[1]))])
     elements = cleaning.oriented(points, elements)
     found = named_groups.named(content, kind, elements)
     mesh = HalfEdgeMesh.from_elements(
@@ -192,7 +245,11 @@ def _mesh(
         names=found.names,
     )
     mesh.left_out = content.dropped
-    return mesh, [*content.warnings, *found.warnings]
+    there = parts.part_names(content)
+    notes = (*content.warnings, *found.warnings)
+    if len(there) > 1:
+        notes = (*notes, f"there {parts.listed_parts(content)}")
+    return Loaded(mesh, notes, content.dropped, tuple(there))
 
 
 def _live(mesh: HalfEdgeMesh, kind: str, form: formats.Format) -> Content:
