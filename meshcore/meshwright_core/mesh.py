@@ -342,6 +342,29 @@ class HalfEdgeMesh(MeshView):
                 if not self._arrays.vertex[vertex, FLAGS] & GEOMETRIC:
                     self.set_geometric(vertex)
 
+    def take_names(self, other: HalfEdgeMesh) -> None:
+        """Name sides and regions that have no name as the other mesh does: no step of the history.
+
+        The other has the same ids of vertices and elements, as before its boundary was placed on
+        curves.
+        """
+        own = self._boundary
+        named = {(int(a), int(b)) for name, ends in self.sides().items() if name for a, b in ends}
+        edges, sides = [], []
+        for name, ends in other.sides().items():
+            for a, b in ends.tolist():
+                if name and not {(a, b), (b, a)} & named:
+                    edges.append((a, b))
+                    sides.append(name)
+        regions = list(own.region_names)
+        pairs = set(zip(self.regions().tolist(), other.regions().tolist(), strict=True))
+        for mine, theirs in pairs:
+            regions[mine] = regions[mine] or other.region_names[theirs]
+        tags = {**other.boundary_info.tags, **own.tags}
+        if edges or tuple(regions) != own.region_names:
+            found = Names(regions, np.array(edges, np.int64).reshape(-1, 2), sides, tags)
+            self._namings[self.naming] = side_names.give_names(self._arrays, own, found)
+
     def add_naming(self, number: int, boundary: MeshBoundary) -> None:
         """Names that a step of a history that is to be adopted puts in force."""
         self._namings[number] = boundary

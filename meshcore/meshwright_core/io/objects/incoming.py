@@ -102,7 +102,7 @@ def _dataset(source: Any) -> Content:
     grid = source.cast_to_unstructured_grid()
     build = Builder()
     build.points(np.asarray(grid.points, float))
-    sizes = np.diff(np.asarray(grid.offset, np.int64))
+    sizes = np.diff(np.asarray(grid.offset, np.int64)).astype(np.int64)
     members = np.asarray(grid.cell_connectivity, np.int64)
     placed = vtk_cells.add_cells(build, np.asarray(grid.celltypes, np.int64), sizes, members)
     for name, values in grid.point_data.items():
