@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from meshwright_core.core.irregularity import CORNER_ANGLE
+from meshwright_core.core.names import groups
 from meshwright_core.domains.domain import Domain
 from meshwright_core.errors import FileWarning, MeshError, sentence
 from meshwright_core.io import mesh_files
@@ -22,8 +23,14 @@ from meshwright_core.io.readers.fields import CellFields, keep_point_data
 from meshwright_core.mesh import HalfEdgeMesh
 
 _LIBRARIES = ("pyvista", "trimesh", "meshio", "shapely", "vtkmodules")
-_DERIVED = frozenset({"degree", "delta", "scaled_jacobian", "shape", "element"})
-"""Our own data that follow from the mesh."""
+_DERIVED = frozenset(
+    {
+        "degree", "delta", "scaled_jacobian", "shape", "element",
+        "Normals", "TextureCoordinates", "Texture Coordinates",
+        "vtkOriginalPointIds", "vtkOriginalCellIds",
+    }
+)  # fmt: skip
+"""Data that follow from the mesh: our own, and those that libraries add by themselves."""
 _SAME = {"triangle6": "triangle", "triangle7": "triangle", "quad8": "quad", "quad9": "quad",
          "line3": "line", "line4": "line", "triangle10": "triangle", "quad16": "quad"}  # fmt: skip
 
@@ -102,7 +109,9 @@ def _dataset(source: Any) -> Content:
     grid = source.cast_to_unstructured_grid()
     build = Builder()
     build.points(np.asarray(grid.points, float))
-    sizes = np.diff(np.asarray(grid.offset, np.int64)).astype(np.int64)
+    # the older name since PyVista 0.49 only warns
+    offsets = grid.cell_offsets if hasattr(grid, "cell_offsets") else grid.offset
+    sizes = np.diff(np.asarray(offsets, np.int64)).astype(np.int64)
     members = np.asarray(grid.cell_connectivity, np.int64)
     placed = vtk_cells.add_cells(build, np.asarray(grid.celltypes, np.int64), sizes, members)
     for name, values in grid.point_data.items():
@@ -188,7 +197,8 @@ def _trimesh(source: Any) -> Content:
     sides = source.metadata.get("sides")
     if isinstance(sides, Mapping):
         for name, edges in sides.items():
-            build.edges(str(name), np.asarray(edges, np.int64).reshape(-1, 2))
+            for group in groups(str(name)):
+                build.edges(group, np.asarray(edges, np.int64).reshape(-1, 2))
     names, region = source.metadata.get("region_names"), source.face_attributes.get("region")
     if isinstance(names, list) and region is not None:
         _regions(build, placed, np.asarray(region), [str(name) for name in names])
@@ -198,14 +208,15 @@ def _trimesh(source: Any) -> Content:
 def _regions(build: Builder, placed: list[Placed], region: Any, names: list[str]) -> None:
     """Name the regions of cells by their numbers."""
     for number, name in enumerate(names):
-        if name:
-            build.group(name, [_chosen(one, region[one.which] == number) for one in placed])
+        for group in groups(name):
+            build.group(group, [_chosen(one, region[one.which] == number) for one in placed])
 
 
 def _sides(build: Builder, names: list[Any], edges: Any, row: Any) -> None:
     edges, row = np.asarray(edges, np.int64).reshape(-1, 2), np.asarray(row).ravel()
     for number, name in enumerate(names):
-        build.edges(str(name), edges[row == number])
+        for group in groups(str(name)):
+            build.edges(group, edges[row == number])
 
 
 def _chosen(placed: Placed, mask: np.ndarray) -> Placed:
