@@ -5,6 +5,10 @@ class MeshError(ValueError):
     """Invalid input, or a mesh that breaks an invariant; the message names what and where."""
 
 
+class MixedElementsError(MeshError):
+    """A mesh file holds triangles and quads, and was not to be made all quads."""
+
+
 class OperationRefused(MeshError):
     """An operation was applied where :meth:`HalfEdgeMesh.check` does not allow it."""
 

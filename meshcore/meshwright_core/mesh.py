@@ -42,6 +42,7 @@ from meshwright_core.core.entry_points import entry
 from meshwright_core.core.mesh_boundary import MeshBoundary, Seats
 from meshwright_core.core.mesh_view import MeshView
 from meshwright_core.core.names import clean
+from meshwright_core.core.planes import Plane
 from meshwright_core.core.projected_seats import take_projected_seats
 from meshwright_core.core.side_names import Names
 from meshwright_core.errors import MeshError, OperationRefused
@@ -97,6 +98,7 @@ class HalfEdgeMesh(MeshView):
         seats: tuple[np.ndarray, np.ndarray] | None = None,
         regions: np.ndarray | Sequence[int] | None = None,
         names: Names | None = None,
+        plane: Plane | None = None,
     ) -> HalfEdgeMesh:
         """A mesh from (n, 2|3) points and (m, 3|4) counter-clockwise elements.
 
@@ -117,6 +119,7 @@ class HalfEdgeMesh(MeshView):
                 vertices are moved to the points of the curves there.
             regions: (m,) region of each element, from 0; by default all are of one.
             names: of regions and sides. Vertices where the name of a side changes are geometric.
+            plane: the plane in space whose coordinates the points are, if it is not z = 0.
         """
         placed = None
         if boundary is not None:
@@ -137,6 +140,8 @@ class HalfEdgeMesh(MeshView):
             curve_checks.require_seats(arrays, boundary)
         if names is not None:
             boundary = side_names.give_names(arrays, boundary, names)
+        if plane is not None:
+            boundary = replace(boundary, plane=plane)
         return cls(arrays, boundary)
 
     def check(self, operation: Operation | str, h: int) -> Verdict:

@@ -23,6 +23,7 @@ from meshwright_core.domains import gallery, meshing
 from meshwright_core.domains.domain import Domain
 from meshwright_core.domains.random_parts import parts
 from meshwright_core.geometry import quality
+from meshwright_core.geometry.edge_curves import element_areas
 
 SUMMARY = "gallery and random parts as quads: s, s*, elements, blocks, shapes after so many seconds"
 SECONDS = 10.0
@@ -89,8 +90,8 @@ def improve(
 
 
 def _area(mesh: HalfEdgeMesh) -> float:
-    """The area of a plane mesh: that of its domain where the boundary follows every side."""
-    return float(quality.vector_areas(mesh.points, mesh.elements())[:, 2].sum())
+    """The area of a plane mesh between its true edges: that of its domain, if it fills it."""
+    return float(element_areas(mesh).sum())
 
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:

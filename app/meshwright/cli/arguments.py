@@ -25,11 +25,17 @@ if TYPE_CHECKING:
     from meshwright_core.domains.domain import Domain
 
 
-def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
+def read_mesh(
+    path: str,
+    corner_angle: float | None = None,
+    part: str | None = None,
+    to_quads: bool = False,
+) -> HalfEdgeMesh:
     """Return the mesh in a mesh file or a project, or raise UserError with the reason.
 
     ``corner_angle`` in degrees: a boundary vertex where the boundary turns by more is a corner. A
-    project stores its corners.
+    project stores its corners. ``part`` names the only part of the file that is read; ``to_quads``
+    makes quads of its triangles.
     """
     _require_file(path)
     from meshwright.document.document import Document
@@ -37,7 +43,7 @@ def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
     from meshwright_core.io import file_checks, formats
 
     with bad_input(path):
-        found = resolve.resolve(Path(path), corner_angle=corner_angle)
+        found = resolve.resolve(Path(path), corner_angle=corner_angle, part=part, to_quads=to_quads)
         if not isinstance(found, Document) or found.mesh is None:
             with file_checks.naming(Path(path)):
                 formats.of(path)  # refuses a drawing

@@ -28,6 +28,18 @@ def add_geometry_arguments(parser: argparse.ArgumentParser) -> None:
         "where it is left out",
     )
     parser.add_argument(
+        "--part",
+        metavar="NAME",
+        help="take this part of a mesh file alone, by its name or number: a zone, piece or "
+        "instance, or a connected component",
+    )
+    parser.add_argument(
+        "--to-quads",
+        action="store_true",
+        help="make quads of the triangles of a mesh file: in pairs, and if some are left all "
+        "elements are split",
+    )
+    parser.add_argument(
         "--geometry",
         metavar="DRAWING",
         help="the boundary of the mesh lies on the curves of this drawing and stays on them",
@@ -92,6 +104,10 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
     if not is_mesh(word):
         if arguments.geometry is not None:
             raise UserError(f"--geometry {arguments.geometry}: {word} is itself a shape, no mesh")
+        for option in ("part", "to_quads"):
+            if getattr(arguments, option):
+                name = option.replace("_", "-")
+                raise UserError(f"--{name}: this is for mesh files, and {word} is a shape")
         domain, kind = read_domain(word, arguments), arguments.kind or "quad"
         return inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed)
     for option in ("kind", "max_edge", "region", "gap", "curve_step"):
@@ -99,7 +115,7 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
         if getattr(arguments, option) is not None and not drawn:
             name = option.replace("_", "-")
             raise UserError(f"--{name}: this is for drawings, and {word} is a mesh")
-    mesh = inputs.read_mesh(word, arguments.corner_angle)
+    mesh = inputs.read_mesh(word, arguments.corner_angle, arguments.part, arguments.to_quads)
     if arguments.geometry is not None:
         return _on_drawing(word, mesh, read_domain(arguments.geometry, arguments))
     if arguments.fit_arcs:

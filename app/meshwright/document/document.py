@@ -4,8 +4,8 @@ Imports neither Qt nor torch nor the agent. One call that changes the mesh is on
 history.
 """
 
-from collections.abc import Callable, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -20,6 +20,7 @@ from meshwright.document.timeline import UndoTimeline
 from meshwright.signals import Signal
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 from meshwright_core.analysis.submesh import temporarily_locked
+from meshwright_core.core.construction import is_flat
 from meshwright_core.core.names import clean
 from meshwright_core.core.notebook_display import Bundle, bundle
 from meshwright_core.core.score import normalised_return
@@ -65,19 +66,24 @@ class Document:
         self.revision = 0
         """Grows with every change of the mesh."""
         self.auto_smooth = True
-        """Whether the vertices around an operation are smoothed."""
+        """Whether the vertices around an operation are smoothed, on plane meshes."""
+        self.smooth_surfaces = False
+        """Whether they are so on surfaces that are not plane, which lose their shape by it."""
         self.bar: Callable[[str], str] | None = None
         """Returns why an operation is not offered now, as a sentence, or an empty text; set while
         a level is played."""
         self.settings: dict[str, Any] = {}
         """What the views store in a project: plain values that JSON can hold."""
         self._timeline = UndoTimeline(mesh)
+        self._plane: bool | None = None
         self._name = name
         self._path = Path(path) if path is not None else None
         self._hover = -1
         self._saved = (0, 0)
         self._stamp = file_stamp.of(self._path)
         self._passing = False
+        self._together = 0
+        self._unannounced = False
         self.selection = Selection(self)
 
     # What it holds
@@ -211,13 +217,16 @@ class Document:
         self._passing = passing
         self._announce_replacement()
 
-    def open(self, path: str | Path) -> None:
+    def open(self, path: str | Path, to_quads: bool = False) -> None:
         """Read a mesh file or a project, or mesh the shape in a drawing.
+
+        to_quads: make quads of the triangles of a mesh file; it is then not where the mesh is
+            saved.
 
         A shape gets elements of the present kind, quads if there is no mesh; its file is not where
         the mesh is saved. On MeshError or OSError the document stays as it was.
         """
-        self.adopt(document_file.read_meshed(path, self.kind or "quad"))
+        self.adopt(document_file.read_meshed(path, self.kind or "quad", to_quads))
 
     def adopt(self, state: DocumentState) -> None:
         """Continue from a stored state: a mesh with its history, at the cursor it had."""
@@ -266,6 +275,7 @@ class Document:
 
     def _take(self, timeline: UndoTimeline, name: str, path: str | Path | None) -> None:
         self._timeline = timeline
+        self._plane = None
         self._name = name
         self._path = Path(path) if path is not None else None
         self._hover = -1
@@ -324,6 +334,22 @@ class Document:
         self._timeline.replay(step, steps)
         self._announce("step", self.history.cursor)
 
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Emit the events of all changes inside once, at the end, but ``recorded`` with each."""
+        self._together += 1
+        try:
+            yield
+        finally:
+            self._together -= 1
+            if not self._together and self._unannounced:
+                self._unannounced = False
+                self._emit_changed()
+
+    def need_mesh(self) -> HalfEdgeMesh:
+        """The mesh, for reading only; MeshError without one."""
+        return self._timeline.need_mesh()
+
     def _need(self) -> HalfEdgeMesh:
         return self._timeline.need_mesh()
 
@@ -338,6 +364,12 @@ class Document:
     def _announce(self, event: str, number: int) -> None:
         self.revision += 1
         self.recorded.emit(event, number)
+        if self._together:
+            self._unannounced = True
+        else:
+            self._emit_changed()
+
+    def _emit_changed(self) -> None:
         if self._hover >= 0 and not self._need().live(self._hover):
             self.hover = -1
         self._emit_all()
@@ -365,18 +397,20 @@ class Document:
         by: str = YOU,
         held: np.ndarray | None = None,
         thorough: bool = True,
+        smooth: bool = True,
     ) -> Edit:
         """Apply one operation and smooth around it, as one step; OperationRefused if refused.
 
         held (n,): vertices that are locked during the step, and so keep their positions. Smoothing
-        takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then.
+        takes a few milliseconds at most unless ``thorough``, and may leave elements inverted then;
+        without ``smooth`` there is none.
         """
         mesh = self._need()
 
         def work() -> Edit:
             with temporarily_locked(mesh, held) if held is not None else nullcontext():
                 edit = mesh.apply(operation, halfedge)
-                if self.auto_smooth:
+                if self.smooths and smooth:
                     _relax(mesh, edit.touched, thorough)
                 return edit
 
@@ -389,11 +423,24 @@ class Document:
 
         def work() -> int:
             edits = mesh.clean_all()
-            if edits and self.auto_smooth:
+            if edits and self.smooths:
                 _relax(mesh, None)
             return len(edits)
 
         return self._do("clean_all", "Clean all", -1, by, work)
+
+    @property
+    def plane(self) -> bool:
+        """Whether the mesh lies in a plane; true without a mesh."""
+        if self._plane is None:
+            mesh = self.mesh
+            self._plane = mesh is None or is_flat(mesh.points[mesh.vertices()])
+        return self._plane
+
+    @property
+    def smooths(self) -> bool:
+        """Whether the vertices around an operation are smoothed on this mesh."""
+        return self.auto_smooth and (self.plane or self.smooth_surfaces)
 
     def smooth(self, by: str = YOU, vertices: np.ndarray | None = None) -> None:
         """Smooth and untangle the whole mesh, or ``vertices`` (n,) alone, as one step."""
@@ -419,12 +466,13 @@ class Document:
         positions: np.ndarray,
         by: str = YOU,
         parameters: np.ndarray | None = None,
+        title: str = "Move",
     ) -> None:
         """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step; ``parameters`` (n,) as in
         :meth:`HalfEdgeMesh.move`.
         """
         mesh = self._need()
-        self._do("move", "Move", -1, by, lambda: mesh.move(vertices, positions, parameters))
+        self._do("move", title, -1, by, lambda: mesh.move(vertices, positions, parameters))
 
     def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
         """Set the desired degree of one vertex or several (n,), as one step.

@@ -84,6 +84,7 @@ def _shortest_edges(elements: np.ndarray, points: np.ndarray, vertices: np.ndarr
     near = elements[wanted[elements].any(axis=1)]
     ends = np.roll(near, -1, axis=1)
     lengths = np.hypot(*np.moveaxis(points[near] - points[ends], -1, 0))
-    np.minimum.at(shortest, near, lengths)
-    np.minimum.at(shortest, ends, lengths)
+    at_corner = np.minimum(lengths, np.roll(lengths, 1, axis=1))
+    # with one-dimensional indices this is several times faster
+    np.minimum.at(shortest, near.ravel(), at_corner.ravel())
     return shortest[vertices]

@@ -207,6 +207,8 @@ QToolButton:disabled {{ color: {t.faint}; }}
 #Optimal {{ background: {t.accent_soft}; border-radius: 8px; }}
 #OptimalTitle {{ color: {t.accent}; font-weight: 600; }}
 #OptimalText {{ color: {t.text}; font-size: 12px; }}
+#Optimal[warns="true"] {{ background: {t.warning_soft}; }}
+#OptimalTitle[warns="true"], #OptimalText[warns="true"] {{ color: {t.warning}; }}
 #Operation {{ font-size: 12px; }}
 #Operation:disabled, #Key:disabled, #RowTitle:disabled {{ color: {t.faint}; }}
 #Reason {{ color: {t.muted}; font-size: 11px; }}

@@ -52,6 +52,8 @@ def resolve(
     region: str | None = None,
     gap: float | None = None,
     fit: str | None = None,
+    part: str | None = None,
+    to_quads: bool = False,
 ) -> Document | Domain:
     """The document or the domain that a source means.
 
@@ -70,6 +72,9 @@ def resolve(
             for all of them if they touch.
         gap: width of gaps of a drawing that are closed, in its units; None for 0.001 of its size.
         fit: ``"arcs"`` or ``"splines"`` that are to be found in polylines of a drawing.
+        part: name or number of the only part of a mesh file that is to be read: a zone, piece or
+            instance, or a connected component.
+        to_quads: make quads of the triangles of a mesh file: in pairs, and what is left by a split.
 
     Returns a domain for a gallery shape, a drawing, a polygon and a domain, else a document.
 
@@ -82,7 +87,9 @@ def resolve(
     if isinstance(source, HalfEdgeMesh):
         return Document(source, name)
     if names_file(source):
-        found = document_file.read(Path(source), corner_angle, curve_step, region, gap, fit)
+        found = document_file.read(
+            Path(source), corner_angle, curve_step, region, gap, fit, part, to_quads
+        )
         return _opened(found, name) if isinstance(found, DocumentState) else found
     from meshwright_core.domains import gallery
     from meshwright_core.domains.domain import Domain
@@ -112,6 +119,8 @@ def mesh(
     max_edge: float | None = None,
     min_angle: float | None = None,
     seed: int = 0,
+    part: str | None = None,
+    to_quads: bool = False,
 ) -> HalfEdgeMesh:
     """A new mesh of what ``source`` means.
 
@@ -125,11 +134,13 @@ def mesh(
         max_edge: upper bound on the length of edges, in the units of the source.
         min_angle: lower bound, in degrees, that Triangle aims at for the angles.
         seed: 0 for the plain mesh; other values vary it where Triangle has a choice.
+        part: the only part of a mesh file that is read, as for :func:`resolve`.
+        to_quads: make quads of the triangles of a mesh file.
 
     Raises MeshError, one sentence, if the source means nothing or cannot be meshed.
     """
     _check_kind(kind)
-    found = resolve(source)
+    found = resolve(source, part=part, to_quads=to_quads)
     if not isinstance(found, Document):
         from meshwright_core.domains import meshing
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from meshwright_core.core.arrays import TWIN
+from meshwright_core.core.components import components
 from meshwright_core.core.mesh_boundary import Seats
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.edge_parts import EdgeParts
@@ -43,9 +42,8 @@ def chords(mesh: HalfEdgeMesh) -> np.ndarray:
     inner = np.flatnonzero(twin >= 0)
     a = np.concatenate([np.arange(len(halfedges)), inner])
     b = np.concatenate([np.arange(len(halfedges)) ^ 2, row[twin[inner]]])
-    links = coo_matrix((np.ones(len(a)), (a, b)), (len(halfedges), len(halfedges)))
-    _, label = connected_components(links, directed=False)
-    found: np.ndarray = label.reshape(-1, 4)[:, :2].astype(np.int64)
+    _, label = components(a, b, len(halfedges))
+    found: np.ndarray = label.reshape(-1, 4)[:, :2].copy()
     return found
 
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwright_core.core.composite_curves import SHORTEST, Curves, no_curves, polyline_curves
+from meshwright_core.core.planes import Plane
 
 _STRAIGHT = 1e-12
 """Sine of a turn below which a point of a polyline lies on a straight line."""
@@ -69,6 +70,8 @@ class MeshBoundary:
     """The drawn primitives of each curve, in order; () where they are not known."""
     tags: Mapping[tuple[int, str], int] = field(default_factory=dict)
     """The numbers that files give to groups, by dimension (1 sides, 2 regions) and name."""
+    plane: Plane | None = None
+    """The plane in space whose coordinates those of the mesh are; None for space itself."""
 
     @property
     def count(self) -> int:

@@ -32,6 +32,7 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.composite_curves import place_all
 from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.core.mesh_boundary import Interface, MeshBoundary
+from meshwright_core.core.planes import Plane
 
 _KINDS = {3: "tri", 4: "quad"}
 
@@ -56,6 +57,18 @@ class MeshView:
     @property
     def _boundary(self) -> MeshBoundary:
         return self._namings[int(self._arrays.vertex[0, NAMING])]
+
+    @property
+    def plane(self) -> Plane | None:
+        """The plane in space whose coordinates those of the mesh are; None for space itself."""
+        return self._boundary.plane
+
+    def points_in_space(self) -> np.ndarray:
+        """(slots, 3) the coordinates of all vertices in space, where the mesh's own are those of
+        a plane.
+        """
+        plane = self._boundary.plane
+        return self.points.copy() if plane is None else plane.in_space(self.points)
 
     @property
     def boundary_info(self) -> MeshBoundary:

@@ -133,7 +133,7 @@ class _Placement:
             source.elements(),
             geometric,
             desired,
-            boundary=self._boundary,
+            boundary=replace(self._boundary, plane=source.plane),
             seats=(self._curve[:slots], self._parameter[:slots]),
             regions=regions,
         )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwright_core.errors import MeshError
+from meshwright_core.core.components import components
+from meshwright_core.errors import MeshError, MixedElementsError
 from meshwright_core.io.content import Cells, Content
 
 _MOST_DEGREE = 10_000
@@ -16,9 +17,9 @@ Elements = NDArray[np.int64]
 
 
 def refuse_mixed(content: Content) -> None:
-    """MeshError if a content holds both triangles and quads."""
+    """MixedElementsError if a content holds both triangles and quads."""
     if len(content.cells) > 1:
-        raise MeshError(_mixed(content.points, content.cells))
+        raise MixedElementsError(_mixed(content.points, content.cells))
 
 
 def _mixed(points: NDArray[np.float64], cells: Cells) -> str:
@@ -74,16 +75,12 @@ def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:
         x, y = points[elements][..., 0], points[elements][..., 1]
         weight = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1)
     if agree.all() and (weight >= 0.0).all():
-        return elements.copy()  # most files; scipy is then not imported, which takes long
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
+        return elements.copy()  # most files
     # node e stands for element e as it is, node m + e for e turned round
     cross = np.where(agree, 0, m)
     start = np.concatenate([one, one + m])
     end = np.concatenate([other + cross, other + m - cross])
-    links = coo_array((np.ones(len(start), dtype=np.int8), (start, end)), shape=(2 * m, 2 * m))
-    _, label = connected_components(links, directed=False)
+    _, label = components(start, end, 2 * m)
     same = np.flatnonzero(label[:m] == label[m:])
     if same.size:
         raise MeshError(

@@ -17,6 +17,7 @@ from meshwright_core.io import (
     formats,
     named_groups,
     parts,
+    plane_frames,
     surface,
     text_formats,
     welding,
@@ -27,6 +28,11 @@ from meshwright_core.io.file_checks import naming, size_of
 from meshwright_core.mesh import HalfEdgeMesh
 
 _SHOWN = 6
+SURFACE = (
+    "it is a surface that is not plane: smoothing, and the agent with it, does not hold it to its "
+    "shape"
+)
+"""What is said of a mesh that lies in no plane."""
 
 
 def endings() -> tuple[str, ...]:
@@ -244,6 +250,10 @@ def _loaded(content: Content, corner_angle: float) -> Loaded:
     ((kind, elements),) = content.cells.items()
     points = content.points
     elements = cleaning.oriented(points, elements)
+    points, plane, flat = plane_frames.flattened(points, elements)
+    if flat:
+        elements = cleaning.oriented(points, elements)
+    content = content._replace(points=points, cells={kind: elements})
     found = named_groups.named(content, kind, elements)
     mesh = HalfEdgeMesh.from_elements(
         points,
@@ -253,8 +263,15 @@ def _loaded(content: Content, corner_angle: float) -> Loaded:
         corner_angle,
         regions=found.regions,
         names=found.names,
+        plane=plane,
     )
     mesh.left_out = content.dropped
+    if plane is not None:
+        shown = ", ".join(f"{value + 0.0:.4g}" for value in plane.normal)
+        said = f"it lies in a plane with the normal ({shown}): it is edited in that plane"
+        found.warnings.append(f"{said}, and written back to it")
+    elif not flat:
+        found.warnings.append(SURFACE)
     there = parts.part_names(content)
     notes = (*content.warnings, *found.warnings)
     if len(there) > 1:
@@ -274,7 +291,7 @@ def _live(mesh: HalfEdgeMesh, kind: str, form: formats.Format) -> Content:
     several = form.regions and bool((regions != regions[:1]).any())
     names = named_groups.names_of(mesh, number, kind) if form.regions or form.sides else None
     return Content(
-        mesh.points[vertices].copy(),
+        mesh.points_in_space()[vertices],
         {kind: number[mesh.elements()]},
         marks if form.data else {},
         {kind: regions} if several else {},

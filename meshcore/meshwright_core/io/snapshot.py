@@ -165,3 +165,40 @@ def restored_steps(
     m = mesh.arrays
     require_within(steps, m, list(mesh.namings))
     return tuple(divided(steps, step_archive.PIECE))
+
+
+MOST_CHECKED = 1_000_000
+"""Steps times elements up to which the whole history of a file is checked at once."""
+
+
+def require_history(mesh: HalfEdgeMesh) -> None:
+    """Raise MeshError unless undo and redo lead to sound meshes only, and back to this one.
+
+    For histories from files, whose steps may lie. Of very long histories of large meshes the steps
+    next to the present state are checked.
+    """
+    work = mesh.copy(history=True)
+    left = MOST_CHECKED // max(1, int(work.arrays.counters[ELEMENT_SLOTS]))
+    for forward in (False, True):
+        taken = 0
+        while taken < left and (work.redo() if forward else work.undo()):
+            taken += 1
+            _require_state(work)
+        for _ in range(taken):
+            if not (work.undo() if forward else work.redo()):
+                raise MeshError("its history does not lead back")
+    here, there = mesh.arrays, work.arrays
+    slots, halfedges = mesh.slots, mesh.k * int(here.counters[ELEMENT_SLOTS])
+    same = np.array_equal(here.counters[:RESTORED], there.counters[:RESTORED])
+    same = same and np.array_equal(here.edge[:halfedges], there.edge[:halfedges])
+    same = same and np.array_equal(here.vertex[:slots, :_COLUMNS], there.vertex[:slots, :_COLUMNS])
+    if not (same and np.array_equal(here.points[:slots], there.points[:slots])):
+        raise MeshError("its history does not lead back to the mesh")
+
+
+def _require_state(mesh: HalfEdgeMesh) -> None:
+    try:
+        require_sound(mesh.arrays, mesh.k)
+        require_seats(mesh.arrays, mesh.boundary_info)
+    except MeshError as error:
+        raise MeshError(f"its history leads to a broken mesh: {error}") from error

@@ -12,6 +12,7 @@ import numpy as np
 from meshwright_core.core.arrays import END, LEFT, RIGHT, START
 from meshwright_core.core.composite_curves import Curves, polyline_curves
 from meshwright_core.core.mesh_boundary import CurvePiece, Interface, MeshBoundary
+from meshwright_core.core.planes import Plane
 from meshwright_core.errors import MeshError
 from meshwright_core.io.stored_arrays import Arrays, stored
 
@@ -37,6 +38,7 @@ def boundary_arrays(namings: Mapping[int, MeshBoundary], naming: int, recorded: 
     known = {
         "recorded": recorded,
         **names_record(boundary),
+        **({"plane": boundary.plane} if boundary.plane is not None else {}),
         "naming": naming,
         "others": [
             [number, names_record(other)] for number, other in namings.items() if number != naming
@@ -111,12 +113,26 @@ def stored_boundary(
         others = {int(number): record for number, record in known.get("others", ())}
     except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
         raise MeshError("its curves have wrong names") from error
-    boundary = stored_names(known, MeshBoundary(curves, loops, tuple(interfaces)))
+    plain = MeshBoundary(curves, loops, tuple(interfaces), plane=_plane(known.get("plane")))
+    boundary = stored_names(known, plain)
     namings = {naming: boundary}
     namings.update({number: stored_names(one, boundary) for number, one in others.items()})
     if not all(0 <= number < 2**31 for number in namings) or len(namings) != len(others) + 1:
         raise MeshError("its curves have wrong names")
     return namings, naming, recorded
+
+
+def _plane(record: Any) -> Plane | None:
+    if record is None:
+        return None
+    try:
+        origin, u, v = ((float(x), float(y), float(z)) for x, y, z in record)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise MeshError("its plane is not one") from error
+    plane = Plane(origin, u, v)
+    if not plane.sound:
+        raise MeshError("its plane is not one")
+    return plane
 
 
 def _piece(record: Any) -> CurvePiece:

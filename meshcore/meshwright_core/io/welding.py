@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from meshwright_core.core.components import components as parts_of_graph
 from meshwright_core.core.construction import halves_of, twins_of
 from meshwright_core.errors import MeshError
 from meshwright_core.io import cleaning
@@ -145,19 +146,8 @@ def sides_of(content: Content) -> Ints:
 
 def components(content: Content) -> Ints | None:
     """The connected component of each point (n,), numbered in order; of none an own one, behind."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    ends = sides_of(content)
-    count = len(content.points)
-    if not count:
-        return None
-    links = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), (count, count))
-    label = connected_components(links, directed=False)[1].astype(np.int64)
-    _, first = np.unique(label, return_index=True)
-    rank = np.empty(len(first), np.int64)
-    rank[np.argsort(first)] = np.arange(len(first))
-    return np.asarray(rank[label], np.int64)
+    ends, count = sides_of(content), len(content.points)
+    return parts_of_graph(ends[:, 0], ends[:, 1], count)[1] if count else None
 
 
 def _rim_points(content: Content) -> Ints:

@@ -368,3 +368,74 @@ def test_a_surface_of_triangles_becomes_quads():
     found = load(case("stl-near-duplicates/clean.stl"), to_quads=True)
     assert found.mesh.kind == "quad"
     assert area(found.mesh) == pytest.approx(16 / 9, rel=1e-5)
+
+
+# -- planes in space -------------------------------------------------------------------------------
+
+
+def turned(points, normal):
+    """Points of the plane z = 0 turned to a plane with this normal, away from the origin."""
+    n = np.asarray(normal, float) / np.linalg.norm(normal)
+    u = np.cross([0.0, 1.0, 0.0] if abs(n[1]) < 0.9 else [1.0, 0.0, 0.0], n)
+    u /= np.linalg.norm(u)
+    return points[:, :1] * u + points[:, 1:2] * np.cross(n, u) + 3.0 * n
+
+
+@pytest.mark.parametrize("name", ["star-xz.obj", "star-z-1e-17.obj"])
+def test_a_mesh_in_a_plane_is_edited_there(name):
+    flat = load(case("quads-off-the-xy-plane/star-xy.obj")).mesh
+    mesh = load(case(f"quads-off-the-xy-plane/{name}")).mesh
+    assert not mesh.points[mesh.vertices(), 2].any()
+    assert (mesh.score, mesh.optimum) == (flat.score, flat.optimum) == (12, 4)
+    assert area(mesh) == pytest.approx(area(flat))
+
+
+@pytest.mark.parametrize("normal", [(1, 0, 0), (0, -1, 0), (1, 2, 3), (0, 1, 1), (0, 0, -1)])
+@pytest.mark.parametrize("noise", [0.0, 1e-9])
+def test_any_plane_is_written_back(normal, noise, tmp_path):
+    flat = load(case("quads-off-the-xy-plane/star-xy.obj")).mesh
+    points = turned(flat.points[:, :2], normal)
+    rng = np.random.default_rng(1)
+    there = points + noise * np.ptp(points) * rng.uniform(-0.5, 0.5, points.shape)
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in there.tolist()]
+    lines += ["f " + " ".join(map(str, face)) for face in (flat.elements() + 1).tolist()]
+    found = load(put(tmp_path / "a.obj", "\n".join(lines)))
+    mesh = found.mesh
+    assert np.ptp(mesh.points[:, 2]) == 0
+    assert (mesh.score, mesh.optimum) == (12, 4)
+    assert (mesh.plane is None) == (normal == (0, 0, -1))
+    assert any("is edited in that plane" in note for note in found.notes) == (
+        mesh.plane is not None
+    )
+    meshwright_core.write(tmp_path / "b.obj", mesh)
+    text = (tmp_path / "b.obj").read_text()
+    written = np.array([line.split()[1:] for line in text.splitlines() if line[:2] == "v "], float)
+    assert np.abs(written - there).max() <= max(1e-13, 2 * noise * np.ptp(points))
+
+
+def test_coordinates_in_planes_of_the_axes_stay_to_the_bit(tmp_path):
+    path = case("quads-off-the-xy-plane/star-xz.obj")
+    meshwright_core.write(tmp_path / "b.obj", load(path).mesh)
+
+    def places(file):
+        rows = [line.split()[1:] for line in file.read_text().splitlines() if line[:2] == "v "]
+        return np.array(rows, float)
+
+    assert np.array_equal(places(tmp_path / "b.obj"), places(path))
+
+
+@pytest.mark.parametrize("name", ["cube.off", "torus.off", "star-on-cylinder.obj"])
+def test_surfaces_that_are_not_plane_say_so(name):
+    found = load(case(f"quads-off-the-xy-plane/{name}"))
+    assert mesh_files.SURFACE in found.notes
+    assert found.mesh.plane is None
+
+
+def test_a_snapshot_keeps_the_plane():
+    from meshwright_core.io import snapshot
+
+    mesh = load(case("quads-off-the-xy-plane/star-xz.obj")).mesh
+    again = snapshot.from_arrays(snapshot.to_arrays(mesh))
+    assert again.plane == mesh.plane is not None
+    assert np.array_equal(again.points_in_space(), mesh.points_in_space())
+    assert mesh.copy().plane == mesh.plane

@@ -9,7 +9,9 @@ import argparse
 from typing import Protocol
 
 from meshwright.cli.commands import (
+    batch,
     bench,
+    blocks,
     demo,
     evaluate,
     improve,
@@ -47,6 +49,8 @@ COMMANDS: dict[str, Command] = {
     "info": info,
     "mesh": mesh,
     "improve": improve,
+    "blocks": blocks,
+    "batch": batch,
     "evaluate": evaluate,
     "train": train,
     "lessons": lessons,

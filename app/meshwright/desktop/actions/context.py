@@ -22,6 +22,8 @@ from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.history.playback_controller import PlaybackController
 from meshwright.desktop.levels.level_controller import LevelController
+from meshwright.desktop.quality.colour_controller import ColourController
+from meshwright.desktop.quality.quality_controller import QualityController
 from meshwright.document.document import Document
 
 
@@ -40,6 +42,8 @@ class ActionContext:
     hover: HoverController
     editing: EditController
     lines: CleanableLinesController
+    quality: QualityController
+    colours: ColourController
     selection_tools: SelectionController
     names: NamesController
     navigation: KeyboardNavigation

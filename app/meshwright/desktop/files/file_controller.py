@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -30,7 +31,7 @@ from meshwright.document.storage.document_file import is_drawing
 from meshwright.document.storage.project_file import ENDING, is_project
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import FARTHEST, NEAREST
-from meshwright_core.errors import MeshError, sentence
+from meshwright_core.errors import FileWarning, MeshError, MixedElementsError, sentence
 from meshwright_core.io import formats, mesh_files
 
 if TYPE_CHECKING:
@@ -170,11 +171,16 @@ class FileController(Controller):
         place = Path(path).absolute()
         if not self.may_drop():
             return
+        said: list[str] = []
         try:
-            with waiting():
+            with waiting(), file_warnings(said):
                 report = self._report(place)
                 if report is None or len(report.groups()) == 1:
                     self._document.open(place)
+        except MixedElementsError as error:
+            if not self._open_as_quads(place, one_line(error), said):
+                return
+            report = None
         except (ValueError, OSError) as error:
             if not place.exists():
                 self._forget(place)
@@ -187,6 +193,27 @@ class FileController(Controller):
         self.show_all()
         if report is not None:
             self._status.show_message(_found(report))
+        if said:
+            self._notice.show_message(" ".join(said))
+
+    def _open_as_quads(self, place: Path, reason: str, said: list[str]) -> bool:
+        """Offer to make quads of a file of triangles and quads; whether that was done."""
+        answer = QuestionDialog(
+            f"Make quads of all elements of {place.name}?",
+            f"{reason} Triangles are joined in pairs; if some are left, every element is split. "
+            "The file stays as it is.",
+            (("", "Cancel"), ("quads", "Make quads")),
+            parent=self._window,
+        ).ask()
+        if answer != "quads":
+            return False
+        try:
+            with waiting(), file_warnings(said):
+                self._document.open(place, to_quads=True)
+        except (ValueError, OSError) as error:
+            self._notice.show_message(one_line(error))
+            return False
+        return True
 
     def _report(self, place: Path) -> DrawingReport | None:
         """What is in a drawing; None for other files, and for domains, which need no search."""
@@ -332,6 +359,15 @@ class FileController(Controller):
 
 
 @contextmanager
+def file_warnings(said: list[str]) -> Iterator[None]:
+    """Add what a reader of files warns of to a list, a sentence each."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", FileWarning)
+        yield
+    said += [str(one.message) for one in caught if issubclass(one.category, FileWarning)]
+
+
+@contextmanager
 def waiting() -> Iterator[None]:
     """Show the wait cursor while the block runs."""
     QApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
@@ -343,7 +379,11 @@ def waiting() -> Iterator[None]:
 
 def to_open() -> str:
     """The filters of the Open dialog."""
-    groups = {MESHES: mesh_files.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
+    groups = {
+        MESHES: mesh_files.endings(),
+        PROJECTS: (ENDING,),
+        SHAPES: (*formats.SHAPES, formats.DAT),
+    }
     return _filters({"All supported files": sum(groups.values(), ()), **groups})
 
 

@@ -40,11 +40,13 @@ from meshwright.desktop.editing.selection_controller import SelectionController
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.help.tour import TourPlaces
+from meshwright.desktop.history.changes_controller import ChangesController
 from meshwright.desktop.history.playback_controller import PlaybackController
 from meshwright.desktop.levels.level_controller import LevelController
 from meshwright.desktop.main_window.empty_page import EmptyPage
 from meshwright.desktop.main_window.left_column import LeftColumn
 from meshwright.desktop.main_window.sidebar import Section, Sidebar
+from meshwright.desktop.quality.colour_controller import ColourController
 from meshwright.desktop.quality.quality_controller import QualityController
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
@@ -108,10 +110,14 @@ class MainWindow(QMainWindow):
         self.playback = PlaybackController(
             document, settings, readiness, actions, status, notice, self, colours
         )
+        self.changes = ChangesController(document, assistant, canvas, self.playback, colours)
         self.levels = LevelController(
             document, assistant, canvas, self.files, self.playback, status, notice, self, colours
         )
         self.quality = QualityController(document, canvas, settings, status, colours)
+        self.colours = ColourController(
+            document, canvas, self.quality.monitor, settings, status, colours
+        )
         self.inverted = InvertedController(document, canvas, self.quality.monitor, colours)
         self.hover = HoverController(
             document, assistant, canvas, settings, readiness, status, colours
@@ -163,8 +169,10 @@ class MainWindow(QMainWindow):
         self.controllers += [
             self.files,
             self.playback,
+            self.changes,
             self.levels,
             self.quality,
+            self.colours,
             self.inverted,
             self.hover,
             self.editing,
@@ -218,6 +226,8 @@ class MainWindow(QMainWindow):
             hover=self.hover,
             editing=self.editing,
             lines=self.lines,
+            quality=self.quality,
+            colours=self.colours,
             selection_tools=self.selection_tools,
             names=self.names,
             navigation=self.navigation,
@@ -299,6 +309,8 @@ class MainWindow(QMainWindow):
         for title, members in self.actions_by_id.menus(self.document.kind):
             menu = bar.addMenu(title)
             for entry in members:
+                if entry.id in registry.DIVIDERS:
+                    menu.addSeparator()
                 menu.addAction(self.actions_by_id[entry.id])
 
     # Session
@@ -308,6 +320,7 @@ class MainWindow(QMainWindow):
         start: for a window that a user has started.
         """
         self.preferences.restore_place()
+        self.agent.prepare_while_idle(self.readiness)
         self.files.watch()
         self.opened.connect(self.help.welcome)
         # after everything else that starts with the window

@@ -190,8 +190,6 @@ class MeshSync:
     def __init__(self) -> None:
         self.revision = 0
         self.frame = CoordinateFrame()
-        self.moved = self.turned = np.zeros(0, np.int64)
-        """Ids of the vertices and the half-edges in the last patch."""
         self._k = 3
         self._boundary = MeshBoundary()
         self._sent = SlotArrays.none()
@@ -234,7 +232,7 @@ class MeshSync:
         turned = _differing((new.origin, new.twin), (old.origin, old.twin))
         reseated = _differing((new.curve, new.parameter), (old.curve, old.parameter), (-1, 0.0))
         renamed = _differing((new.region,), (old.region,), (0,))
-        self._sent, self.moved, self.turned = new, changed, turned
+        self._sent = new
         self.revision += 1
         buffers = [
             changed.astype("<i4").tobytes(),

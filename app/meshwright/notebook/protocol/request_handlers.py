@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import UNSET
 
 from meshwright.document.history import HistoryStep
 from meshwright.notebook.protocol import requests
@@ -107,7 +108,8 @@ def _corner(session: Session, request: requests.Corner) -> str:
 
 
 def _agent(session: Session, request: requests.Agent) -> str:
-    session.agent.act(request.action)
+    prefer = "balanced" if request.prefer is UNSET else request.prefer
+    session.agent.act(request.action, prefer, request.keep_size)
     return ""
 
 

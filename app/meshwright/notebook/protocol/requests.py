@@ -127,9 +127,14 @@ class Corner(Request, frozen=True, tag="corner"):
 
 
 class Agent(Request, frozen=True, tag="agent"):
-    """Start, pause or stop the agent, or ask it for hints."""
+    """Start, pause or stop the agent, skip the way to a result, or ask for hints.
 
-    action: Literal["step", "play", "pause", "complete", "stop", "hint"]
+    ``prefer`` is what a search prefers at s*, ``keep_size`` whether elements keep their size.
+    """
+
+    action: Literal["step", "play", "pause", "complete", "stop", "skip", "hint"]
+    prefer: Literal["blocks", "balanced", "shape"] | UnsetType = UNSET
+    keep_size: bool = False
 
 
 class Speed(Request, frozen=True, tag="speed"):

@@ -97,7 +97,7 @@ class PlanarGraph:
         for i, (start, end) in enumerate(self.ends.tolist()):
             self._leaving[start].append((i, False))
             self._leaving[end].append((i, True))
-        self._directions = [end_directions(piece.curve) for piece in self.pieces]
+        self._directions = end_directions([piece.curve for piece in self.pieces])
         self.points: dict[int, GeometricPoint] = {}
         for node in range(len(self.places)):
             point = self._point(node, corner_angle)
@@ -109,7 +109,7 @@ class PlanarGraph:
 
     def _away(self, leaving: tuple[int, bool]) -> Points:
         piece, ends_here = leaving
-        directions = self._directions[piece]
+        directions: Points = self._directions[piece]
         return -directions[1] if ends_here else directions[0]
 
     def _left(self, leaving: tuple[int, bool]) -> int:

@@ -91,7 +91,7 @@ def _blocks(text: bytes) -> Iterator[_Block]:
     stars = [i for i, line in enumerate(lines) if line.lstrip().startswith(b"*")]
     heads = [i for i in stars if not lines[i].lstrip().startswith(b"**")]
     comments = set(stars) - set(heads)
-    for i, stop in zip(heads, [*heads[1:], len(lines)], strict=True):
+    for i, stop in zip(heads, [*heads[1:], len(lines)][: len(heads)], strict=True):
         head, at = numbers.words_of(lines[i]).strip(), i + 1
         while head.endswith(",") and at < stop:
             head, at = head + numbers.words_of(lines[at]).strip(), at + 1
