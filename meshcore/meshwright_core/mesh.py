@@ -45,6 +45,7 @@ from meshwright_core.core.names import clean
 from meshwright_core.core.planes import Plane
 from meshwright_core.core.projected_seats import take_projected_seats
 from meshwright_core.core.side_names import Names
+from meshwright_core.core.vertex_flags import PINNED
 from meshwright_core.errors import MeshError, OperationRefused
 from meshwright_core.history import journal
 from meshwright_core.history.packed_steps import Steps, last_done
@@ -81,6 +82,13 @@ class HalfEdgeMesh(MeshView):
         they seat the boundary vertices by projection."""
         self.degree_cap = degree_cap
         """The highest degree that an operation may produce; 0 for no limit."""
+        self.edits = 0
+        """Grows with every change, undo and redo: tells an owner of the mesh whether others have
+        changed it."""
+        self.lowest = 0
+        """The fewest :attr:`steps` since the owner has set this; -1 after :meth:`compact`."""
+        self.redo_lost = False
+        """Whether an edit has dropped undone steps since the owner has set this."""
         self.left_out: tuple[str, ...] = ()
         """What the file that it was read from held and this mesh does not, such as fields."""
         self._codes = catalogue.CODES[self.k]
@@ -103,7 +111,9 @@ class HalfEdgeMesh(MeshView):
         """A mesh from (n, 2|3) points and (m, 3|4) counter-clockwise elements.
 
         Vertex i of the input is vertex id i, element j is element id j; points of no element are
-        dead ids. Raises MeshError, with the place, unless it is an oriented manifold mesh.
+        dead ids. Elements of a mesh in a plane z = const whose areas sum up to less than zero,
+        which is clockwise as a whole, are turned: (a, b, c, d) becomes (a, d, c, b). Raises
+        MeshError, with the place, unless it is an oriented manifold mesh.
 
         Args:
             points: (n, 2|3).
@@ -122,7 +132,9 @@ class HalfEdgeMesh(MeshView):
             plane: the plane in space whose coordinates the points are, if it is not z = 0.
         """
         placed = None
-        if boundary is not None:
+        if boundary is None:
+            elements = construction.counter_clockwise(np.asarray(points), np.asarray(elements))
+        else:
             if seats is None:
                 raise MeshError("the seats of the vertices on the boundary's curves are missing")
             placed, points = curve_checks.seated(np.asarray(points), boundary, *seats)
@@ -173,6 +185,7 @@ class HalfEdgeMesh(MeshView):
         if code < 0:
             raise OperationRefused(self.check(operation, h).reason)
         h = index(h)
+        undone = self.can_redo
         done = catalogue.apply_once(self._arrays, code, h, self.degree_cap)
         while done.code == refusals.NEED_ROOM:
             self._enlarge()
@@ -181,6 +194,7 @@ class HalfEdgeMesh(MeshView):
             raise OperationRefused(
                 f"{operation} at half-edge {h} is not allowed: {self.check(operation, h).reason}"
             )
+        self._count_edit(undone)
         self._archive.future.clear()
         touched = done.touched[: done.touched_count]
         if done.touched_count > catalogue.FEW:
@@ -296,6 +310,13 @@ class HalfEdgeMesh(MeshView):
         """Lock a vertex, so that it neither moves nor vanishes, or unlock it: one undoable step."""
         self._set_flag(vertex, LOCKED, flag)
 
+    def set_pinned(self, vertex: int, flag: bool = True) -> None:
+        """Pin a vertex, so that smoothing does not move it, or free it: one undoable step.
+
+        Unlike a locked vertex it may vanish in an operation.
+        """
+        self._set_flag(vertex, PINNED, flag)
+
     def name_sides(self, halfedges: np.ndarray | Sequence[int], name: str) -> None:
         """Name edges of the boundary or of interfaces, "" for none: one undoable step.
 
@@ -388,9 +409,15 @@ class HalfEdgeMesh(MeshView):
             raise MeshError(f"there is no vertex {vertex} in this mesh")
 
     def _make_room(self, entries: int) -> None:
+        self._count_edit(self.can_redo)
         self._archive.future.clear()
         while not entry(journal.has_room, 4)(self._arrays, self.k, 0, 0, entries):
             self._enlarge()
+
+    def _count_edit(self, undone: bool = False) -> None:
+        """Note a change that others than the owner may have made; undone: it drops undone steps."""
+        self.edits += 1
+        self.redo_lost |= undone
 
     @property
     def steps(self) -> int:
@@ -401,6 +428,17 @@ class HalfEdgeMesh(MeshView):
     def can_undo(self) -> bool:
         """Whether there is a step to undo."""
         return self.steps > 0
+
+    @property
+    def undone_steps(self) -> int:
+        """Undone steps that can be redone."""
+        counters = self._arrays.counters
+        return int(counters[STEP_END] - counters[STEP]) + sum(map(len, self._archive.future))
+
+    @property
+    def in_transaction(self) -> bool:
+        """Whether a :meth:`transaction` is open."""
+        return bool(self._arrays.counters[GROUPED])
 
     @property
     def can_redo(self) -> bool:
@@ -414,6 +452,8 @@ class HalfEdgeMesh(MeshView):
         if self._archive.past and not self._arrays.counters[STEP]:
             self._arrays = self._archive.trimmed(self._archive.fetch_past(self._arrays))
         undone = bool(entry(journal.undo, 0)(self._arrays))
+        self._count_edit()
+        self.lowest = min(self.lowest, self.steps)
         self._project_seats()
         return undone
 
@@ -424,6 +464,7 @@ class HalfEdgeMesh(MeshView):
         if self._archive.future and counters[STEP] == counters[STEP_END]:
             self._arrays = self._archive.trimmed(self._archive.fetch_future(self._arrays))
         redone = bool(entry(journal.redo, 0)(self._arrays))
+        self._count_edit()
         self._project_seats()
         return redone
 
@@ -548,6 +589,8 @@ class HalfEdgeMesh(MeshView):
         )
         arrays.vertex[: len(live), FLAGS] = rows[:, FLAGS]
         self._arrays, self._archive = arrays, Archive()
+        self._count_edit()
+        self.lowest = -1
         self._take_boundary(boundary)
         self.seats_recorded = True
         return vertex_map, element_map

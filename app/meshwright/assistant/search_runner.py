@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshwright_core import HalfEdgeMesh, Operation
+from meshwright_core.core.arrays import FLAGS, LOCKED
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
@@ -86,6 +87,9 @@ class SearchRunner:
         if self.finished:
             return []
         self._began = time.monotonic()
+        # a search also finds positions: it leaves what a person has put where it is
+        pinned = self._mesh.pinned().nonzero()[0]
+        self._mesh.arrays.vertex[pinned, FLAGS] |= LOCKED
         within = self._effort.elements
         if within is not None:
             found = self._search_within(within)

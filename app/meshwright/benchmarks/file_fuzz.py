@@ -23,9 +23,8 @@ import numpy as np
 from meshwright.console import Update, no_update
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery, meshing
-from meshwright_core.io import drawings, mesh_files, snapshot
+from meshwright_core.io import drawings, mesh_files
 from meshwright_core.io.formats import FORMATS, NOT_UNDERSTOOD, SHAPES
-from meshwright_core.mesh import HalfEdgeMesh
 
 SUMMARY = "mutated files of every format: refused in a sentence, or read as a valid mesh"
 MUTATIONS, QUICK = 2000, 12
@@ -74,8 +73,6 @@ def run(seed: int, quick: bool, update: Update = no_update) -> dict[str, Any]:
             update(len(results), ending)
             read = _read_drawing if ending in SHAPES else _read_mesh
             results[ending] = fuzzed(Path(folder) / f"mutation{ending}", sources, read, count, rng)
-        update(len(results), "history")
-        results["history"] = _history(count, rng)
     totals = {key: sum(row[key] for row in results.values()) for key in ("refused", "read")}
     return {**results, "all": {**totals, "faults": sum(len(r["faults"]) for r in results.values())}}
 
@@ -190,37 +187,3 @@ def _read_mesh(path: Path) -> None:
 
 def _read_drawing(path: Path) -> None:
     drawings.read_domain(path)
-
-
-def _history(count: int, rng: np.random.Generator) -> dict[str, Any]:
-    """Snapshots whose arrays are changed: refused, or sound in every state that undo reaches."""
-    found: dict[str, Any] = {"refused": 0, "read": 0, "faults": []}
-    arrays = snapshot.to_arrays(_edited())
-    for _ in range(count):
-        changed = {name: np.array(values) for name, values in arrays.items()}
-        names = [name for name in changed if changed[name].size]
-        values = changed[names[int(rng.integers(0, len(names)))]].view(np.uint8).reshape(-1)
-        values[int(rng.integers(0, len(values)))] ^= 1 << int(rng.integers(0, 8))
-        _judge(lambda changed=changed: _walk(snapshot.from_arrays(changed)), found)  # type: ignore[misc]
-    return found
-
-
-def _edited() -> HalfEdgeMesh:
-    mesh = meshing.mesh_domain(gallery.shape("square"), "tri")
-    for halfedge in range(3 * mesh.n_elements):
-        for operation, verdict in mesh.allowed(halfedge).items():
-            if verdict and mesh.steps < 12:
-                mesh.apply(operation, halfedge)
-                break
-    for _ in range(4):
-        mesh.undo()
-    return mesh
-
-
-def _walk(mesh: HalfEdgeMesh) -> None:
-    snapshot.require_history(mesh)
-    mesh.validate()
-    while mesh.undo():
-        mesh.validate()
-    while mesh.redo():
-        mesh.validate()

@@ -133,7 +133,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
         if not shipped:
             raise UserError(f"no policy for {KIND_NOUN[kind]} is installed; give one by --policy")
         name = shipped[0]
-    elif looks_like_path(name):
+    elif looks_like_path(name) and not Path(name).is_dir():
         _require_file(name)
     with bad_input(name, policy_files.PolicyError):
         policy = policy_files.load(name)

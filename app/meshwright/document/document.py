@@ -50,7 +50,8 @@ class Document:
     ``history_changed()``; ``saved_changed()`` name, path or :attr:`modified` may differ;
     ``hover_changed(halfedge)``. Every ``replaced`` is followed by the others. Before the others
     comes ``recorded(event, number)``, for autosave: ``"step"`` a step was appended to the history,
-    ``"go"`` the cursor moved to that number, ``"branch"`` that branch was taken, ``"saved"``.
+    ``"go"`` the cursor moved to that number, ``"branch"`` that branch was taken, ``"python"`` the
+    mesh itself was changed, ``"saved"``.
     """
 
     def __init__(
@@ -303,12 +304,14 @@ class Document:
 
     def undo(self) -> HistoryStep | None:
         """Take back the last step; returns it, None if there is none."""
+        self.catch_up()
         step = self.history.last
         self.go_to(self.history.cursor - 1)
         return step
 
     def redo(self) -> HistoryStep | None:
         """Do again what was taken back last; returns that step, None if there is none."""
+        self.catch_up()
         if not self.history.can_redo:
             return None
         self.go_to(self.history.cursor + 1)
@@ -316,6 +319,7 @@ class Document:
 
     def go_to(self, cursor: int) -> None:
         """Undo or redo until ``cursor`` steps are done; beyond either end it stops there."""
+        self.catch_up()
         cursor = min(max(cursor, 0), len(self.history))
         if cursor != self.history.cursor:
             self._timeline.go_to(cursor)
@@ -323,6 +327,7 @@ class Document:
 
     def take_branch(self, index: int) -> None:
         """Go to the end of ``history.branches[index]``; the steps left for it become a branch."""
+        self.catch_up()
         self._timeline.take_branch(index)
         self._announce("branch", index)
 
@@ -333,6 +338,18 @@ class Document:
         """
         self._timeline.replay(step, steps)
         self._announce("step", self.history.cursor)
+
+    def catch_up(self) -> bool:
+        """Record what was changed on the mesh itself, as by ``document.mesh.apply(...)``; returns
+        whether it was. Every call that needs the mesh does this first.
+
+        Each such step becomes a step of the history, "Edit in Python". Steps that were undone there
+        count as undone here; undone steps that it has dropped leave the history.
+        """
+        if not self._timeline.behind or not self._timeline.catch_up():
+            return False
+        self._announce("python", self.history.cursor)
+        return True
 
     @contextmanager
     def together(self) -> Iterator[None]:
@@ -351,7 +368,9 @@ class Document:
         return self._timeline.need_mesh()
 
     def _need(self) -> HalfEdgeMesh:
-        return self._timeline.need_mesh()
+        mesh = self._timeline.need_mesh()
+        self.catch_up()
+        return mesh
 
     def _do(
         self, action: str, title: str, halfedge: int, by: str, work: Callable[[], Result]
@@ -467,12 +486,19 @@ class Document:
         by: str = YOU,
         parameters: np.ndarray | None = None,
         title: str = "Move",
+        pin: bool = False,
     ) -> None:
         """Put ``vertices`` (n,) at ``positions`` (n, 3) as one step; ``parameters`` (n,) as in
-        :meth:`HalfEdgeMesh.move`.
+        :meth:`HalfEdgeMesh.move`. ``pin``: they are pinned there in the same step.
         """
         mesh = self._need()
-        self._do("move", title, -1, by, lambda: mesh.move(vertices, positions, parameters))
+        free = [v for v in _ids(vertices) if pin and not mesh.pinned()[v]]
+
+        def work() -> None:
+            mesh.move(vertices, positions, parameters)
+            _each(free, mesh.set_pinned, True)
+
+        self._do("move", title, -1, by, work)
 
     def set_desired(self, vertices: int | np.ndarray, degree: int) -> None:
         """Set the desired degree of one vertex or several (n,), as one step.
@@ -496,6 +522,16 @@ class Document:
         wanted = [v for v in _ids(vertices) if bool(now[v]) != flag and v not in kept]
         title = _counted("Make corner" if flag else "Free corner", wanted)
         self._do("geometric", title, -1, YOU, lambda: _each(wanted, mesh.set_geometric, flag))
+
+    def set_pinned(self, vertices: int | np.ndarray, flag: bool) -> None:
+        """Pin one vertex or several (n,), so that smoothing keeps them in place, or free them, as
+        one step.
+        """
+        mesh = self._need()
+        now = mesh.pinned()
+        wanted = [v for v in _ids(vertices) if bool(now[v]) != flag]
+        title = _counted("Pin" if flag else "Free pinned vertex", wanted)
+        self._do("pinned", title, -1, YOU, lambda: _each(wanted, mesh.set_pinned, flag))
 
     def name_sides(self, halfedges: np.ndarray, name: str) -> None:
         """Name edges (n,) of the boundary or of interfaces, "" for none, as one step."""

@@ -22,7 +22,7 @@ from meshwright.graphics.drawing import (
     hatching,
     text_width,
 )
-from meshwright.graphics.markers import READABLE, Markers, label, markers
+from meshwright.graphics.markers import PIN, READABLE, Markers, label, markers
 from meshwright.graphics.theme import Theme, region_fills, region_swatches, theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
@@ -284,6 +284,12 @@ def _add_markers(
             drawing.add(Text(label(delta), (x, y), 1.15 * radius, colours.marker_text, "middle"))
     for x, y in view.to_screen(marks.locked_places).tolist():
         drawing.add(Disc((x, y), 12.0 * unit, colours.boundary, 1.5 * unit))
+    for x, y in view.to_screen(marks.pinned_places).tolist():
+        head = (x + PIN[0] * unit, y - PIN[1] * unit)
+        drawing.add(
+            Line(np.array([(x, y), head]), colours.boundary, 1.5 * unit),
+            Disc(head, PIN[2] * unit, colours.boundary),
+        )
 
 
 def _add_head(

@@ -63,7 +63,8 @@ def block_sides(structure: BlockStructure) -> np.ndarray:
     order = np.argsort(flat, kind="stable")
     first = np.searchsorted(flat[order], np.arange(len(structure.edges)))
     found = np.full((len(structure.edges), 4), -1, np.int64)
-    found[:, 0], found[:, 1] = np.divmod(order[first], 4)
+    found[:, 0], found[:, 1] = order[first] // 4, order[first] % 4
     shared = (structure.neighbours >= 0).all(axis=1)
-    found[shared, 2], found[shared, 3] = np.divmod(order[first[shared] + 1], 4)
+    second = order[first[shared] + 1]
+    found[shared, 2], found[shared, 3] = second // 4, second % 4
     return found

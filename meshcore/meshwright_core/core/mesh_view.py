@@ -33,6 +33,7 @@ from meshwright_core.core.composite_curves import place_all
 from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.core.mesh_boundary import Interface, MeshBoundary
 from meshwright_core.core.planes import Plane
+from meshwright_core.core.vertex_flags import PINNED
 
 _KINDS = {3: "tri", 4: "quad"}
 
@@ -255,6 +256,10 @@ class MeshView:
     def geometric(self) -> np.ndarray:
         """(slots,) whether a vertex is part of the geometry: it neither moves nor vanishes."""
         return (self._arrays.vertex[: self.slots, FLAGS] & GEOMETRIC) > 0
+
+    def pinned(self) -> np.ndarray:
+        """(slots,) whether the user has put a vertex where it is: smoothing does not move it."""
+        return (self._arrays.vertex[: self.slots, FLAGS] & PINNED) > 0
 
     def locked(self) -> np.ndarray:
         """(slots,) whether the user has locked a vertex: it neither moves nor vanishes."""

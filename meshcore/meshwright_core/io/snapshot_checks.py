@@ -21,10 +21,8 @@ from meshwright_core.core.arrays import (
     FLAGS,
     FREE_ELEMENT,
     FREE_VERTEX,
-    GEOMETRIC,
     HALF,
     IRREGULAR,
-    LOCKED,
     NAMING,
     ORIGIN,
     PLACE,
@@ -38,6 +36,7 @@ from meshwright_core.core.arrays import (
     MeshArrays,
 )
 from meshwright_core.core.construction import halves_of, twins_of
+from meshwright_core.core.vertex_flags import UNMOVED
 from meshwright_core.errors import MeshError
 from meshwright_core.history.journal import (
     EDGE_WRITE,
@@ -116,7 +115,7 @@ def _check_vertices(
     _require((desired[live] >= 1).all(), "a desired degree is not positive")
     _require((desired[~live] == 0).all(), "a dead vertex has a desired degree")
     flags = m.vertex[:slots, FLAGS]
-    _require(((flags & ~(GEOMETRIC | LOCKED)) == 0).all(), "a vertex has unknown flags")
+    _require(((flags & ~UNMOVED) == 0).all(), "a vertex has unknown flags")
 
 
 def _check_scores(m: MeshArrays, elements: np.ndarray, twin: np.ndarray) -> None:
@@ -195,7 +194,7 @@ def require_within(steps: Steps, m: MeshArrays, namings: Sequence[int]) -> None:
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, HALF, -1 - vertices, halfedges - 1),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, DEGREE, 0, vertices),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, DESIRED, 0, _MOST),
-        (VERTEX_WRITE, VERTEX_COLUMNS, vertices, FLAGS, 0, GEOMETRIC | LOCKED),
+        (VERTEX_WRITE, VERTEX_COLUMNS, vertices, FLAGS, 0, UNMOVED),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, PLACE, -1, vertices - 1),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, CURVE, -1, len(m.interface) - 1),
         (LIST_WRITE, 1, vertices, 0, -1, vertices - 1),

@@ -8,6 +8,7 @@ import pytest
 from meshwright_agent.policy import policy_files
 from meshwright_agent.search.improvement import Wishes, improve
 from meshwright_agent.search.layout_search import Preference
+from meshwright_agent.search.patchwise import is_large
 from meshwright_agent.search.size_keeping import Fit
 from meshwright_core.domains.gallery import shape
 from meshwright_core.domains.meshing import grid, mesh_domain
@@ -42,6 +43,20 @@ def test_size_and_shape_are_kept(policies, kind, in_place):
         for operation, h in found.operations:
             again.apply(operation, h)
         assert again.score == made.score
+
+
+@pytest.mark.slow
+def test_large_meshes_are_improved_in_place_and_stay_valid(policies):
+    mesh = mesh_domain(shape("star"), "tri", max_edge=0.045)
+    assert is_large(mesh)
+    found = improve(mesh, policies["tri"], Wishes(keep_size=True), seconds=4.0)
+    assert not Fit.of(mesh, Preference()).faults(found.mesh)
+    again = mesh.copy()
+    for operation, h in found.operations:
+        again.apply(operation, h)
+    assert again.score == found.mesh.score
+    assert np.array_equal(again.elements(), found.mesh.elements())
+    assert not found.mesh.locked()[found.mesh.vertices()].any()
 
 
 def test_a_structured_mesh_stays_as_it_is(policies):

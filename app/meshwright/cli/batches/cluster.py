@@ -37,8 +37,8 @@ def run_on_cluster(tasks: Sequence[Task], address: str) -> Iterator[tuple[str, d
             keys[future.key] = (key, future)
         for future in as_completed([future for _, future in keys.values()]):
             key = keys[future.key][0]
-            error = future.exception()
-            if error is not None:
-                yield key, {"status": "failed", "error": f"{type(error).__name__}: {error}"}
+            failure = future.exception()
+            if failure is not None:
+                yield key, {"status": "failed", "error": f"{type(failure).__name__}: {failure}"}
             else:
                 yield key, future.result()

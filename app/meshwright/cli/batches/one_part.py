@@ -11,7 +11,7 @@ import json
 import sys
 import time
 from collections.abc import Sequence
-from typing import Any, TextIO
+from typing import Any
 
 from meshwright.console import Report, UserError
 
@@ -24,11 +24,11 @@ class _SilentReport(Report):
         self._out, self._err = io.StringIO(), io.StringIO()
 
     @property
-    def out(self) -> TextIO:
+    def out(self) -> io.StringIO:
         return self._out
 
     @property
-    def err(self) -> TextIO:
+    def err(self) -> io.StringIO:
         return self._err
 
 

@@ -18,6 +18,7 @@ from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
 from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.history.playback_controller import PlaybackController
@@ -47,6 +48,7 @@ class ActionContext:
     selection_tools: SelectionController
     names: NamesController
     navigation: KeyboardNavigation
+    vertices: VertexCommands
     hints: HintsController
     agent: AgentController
     preferences: PreferencesController

@@ -13,6 +13,7 @@ from meshwright.desktop.actions import (
     names,
     navigate,
     select,
+    vertex,
     view,
 )
 from meshwright.desktop.actions.action import Action
@@ -23,6 +24,7 @@ ACTIONS: tuple[Action, ...] = (
     *select.ACTIONS,
     *mesh.ACTIONS,
     *names.ACTIONS,
+    *vertex.ACTIONS,
     *view.ACTIONS,
     *navigate.ACTIONS,
     *history.ACTIONS,

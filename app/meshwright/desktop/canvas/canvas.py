@@ -231,6 +231,23 @@ class Canvas(QWidget):
             return self._pinned if mesh is not None and mesh.live(self._pinned) else -1
         return self._halfedge_at(self._at)
 
+    @property
+    def vertex_at_hand(self) -> int:
+        """The vertex near the mouse, or else the end nearest to it of the half-edge under it; the
+        origin of one pinned by keyboard; -1 for none.
+        """
+        mesh, halfedge = self.document.mesh, self.under_mouse
+        if mesh is None:
+            return -1
+        if self._at is None:
+            return mesh.origin(halfedge) if halfedge >= 0 else -1
+        vertex = self.vertex_at(self._at)
+        if vertex >= 0 or halfedge < 0:
+            return vertex
+        ends = [mesh.origin(halfedge), mesh.target(halfedge)]
+        away = self.viewport.to_screen(mesh.points[ends]) - (self._at.x(), self._at.y())
+        return ends[int(np.argmin((away**2).sum(axis=1)))]
+
     def pin(self, halfedge: int) -> None:
         """Hover ``halfedge`` until the mouse moves, for navigation by keyboard; -1 for none."""
         mesh = self.document.mesh

@@ -38,6 +38,10 @@ if TYPE_CHECKING:
     from meshwright_core.io.drawings import DrawingReport
 
 MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"
+FLAT = 0.005
+"""Distance of straight edges from their curves, as a fraction of the mesh's size, below which a
+mesh file is written without a word.
+"""
 USUAL = ".vtk"
 """The suffix of a mesh file whose name is typed without one."""
 
@@ -349,6 +353,9 @@ class FileController(Controller):
         self._remember(written)
         lost = left_out(written) or unsaved_history(self._document, written)
         self._status.show_message(f"Saved {written.name}.{lost}")
+        flattened = straightened(self._document, written)
+        if flattened:
+            self._notice.show_message(flattened)
         return True
 
     def _forget(self, path: Path) -> None:
@@ -403,6 +410,23 @@ def left_out(path: Path) -> str:
         return ""
     title = formats.of(path).title
     return f" {title} files store no corners, desired degrees or history; projects do."
+
+
+def straightened(document: Document, path: Path) -> str:
+    """That the straight edges of the file just written lie far from the curves, as a sentence;
+    empty if they do not, and for projects, which keep the curves.
+    """
+    if is_project(path) or document.mesh is None:
+        return ""
+    from meshwright_core.geometry.chord_distances import largest_chord_distance
+
+    away = largest_chord_distance(document.mesh)
+    if away < FLAT:
+        return ""
+    return (
+        f"{path.name} has straight edges: they lie up to {100 * away:.2g} % of the mesh's size off"
+        " the curves. A project keeps the curves; a finer mesh comes closer to them."
+    )
 
 
 def unsaved_history(document: Document, path: Path) -> str:

@@ -22,6 +22,7 @@ from meshwright.desktop.actions.dispatcher import ActionDispatcher
 from meshwright.desktop.agent.agent_controller import AgentController
 from meshwright.desktop.agent.agent_panel import AgentPanel
 from meshwright.desktop.agent.hints_controller import HintsController
+from meshwright.desktop.application.error_notice import ErrorNotice
 from meshwright.desktop.application.kernel_warmup import KernelWarmup
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.application.preferences_controller import PreferencesController, theme_name
@@ -37,6 +38,7 @@ from meshwright.desktop.editing.inverted_controller import InvertedController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
 from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.help.tour import TourPlaces
@@ -135,6 +137,8 @@ class MainWindow(QMainWindow):
         self.navigation = KeyboardNavigation(
             document, canvas, self.quality.highlight, status, colours
         )
+        self.vertices = VertexCommands(document, canvas, self.levels, readiness, status, colours)
+        self.errors = ErrorNotice(document, notice, colours)
         self.agent_panel = AgentPanel(document, assistant, settings, actions, colours)
         self.hints = HintsController(
             document, assistant, canvas, self.agent_panel, status, notice, colours
@@ -180,6 +184,8 @@ class MainWindow(QMainWindow):
             self.selection_tools,
             self.names,
             self.navigation,
+            self.vertices,
+            self.errors,
             self.hints,
             self.agent,
             self.clicks,
@@ -231,6 +237,7 @@ class MainWindow(QMainWindow):
             selection_tools=self.selection_tools,
             names=self.names,
             navigation=self.navigation,
+            vertices=self.vertices,
             hints=self.hints,
             agent=self.agent,
             preferences=self.preferences,
@@ -316,9 +323,10 @@ class MainWindow(QMainWindow):
     # Session
 
     def start_session(self) -> None:
-        """Restore the position, save every step, offer unsaved work, and show the tour at the first
-        start: for a window that a user has started.
+        """Show errors, restore the position, save every step, offer unsaved work, and show the tour
+        at the first start: for a window that a user has started.
         """
+        self.errors.watch()
         self.preferences.restore_place()
         self.agent.prepare_while_idle(self.readiness)
         self.files.watch()

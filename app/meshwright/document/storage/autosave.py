@@ -97,6 +97,8 @@ class Autosave:
     # Events
 
     def _on_recorded(self, event: str, number: int) -> None:
+        if event == "python":  # not one step: the whole document is written again
+            self._remove()
         if event == "saved" or self._document.passing:
             self._remove()
             if self._enabled and self._document.modified:

@@ -37,11 +37,12 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.composite_curves import Curves
 from meshwright_core.core.irregularity import usual_desired_degree
 from meshwright_core.core.mesh_boundary import MeshBoundary
+from meshwright_core.core.vertex_flags import PINNED
 
 VERSION = 2
-ALIVE, BOUNDARY, CORNER, FIXED, ANCHOR = 1, 2, 4, 8, 16
-"""Bits of a vertex's flags; FIXED is a vertex locked by the user, ANCHOR with CORNER a geometric
-vertex whose desired degree is that of a straight side.
+ALIVE, BOUNDARY, CORNER, FIXED, ANCHOR, PIN = 1, 2, 4, 8, 16, 32
+"""Bits of a vertex's flags; FIXED is a vertex locked by the user, PIN a pinned one, ANCHOR
+with CORNER a geometric vertex whose desired degree is that of a straight side.
 """
 
 
@@ -130,7 +131,8 @@ class SlotArrays:
             + BOUNDARY * on_boundary
             + CORNER * geometric
             + ANCHOR * (geometric & straight)
-            + FIXED * ((rows[:, FLAGS] & LOCKED) > 0),
+            + FIXED * ((rows[:, FLAGS] & LOCKED) > 0)
+            + PIN * ((rows[:, FLAGS] & PINNED) > 0),
             0,
         )
         delta = np.zeros(len(flags), np.int8)

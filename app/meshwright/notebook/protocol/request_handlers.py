@@ -102,6 +102,11 @@ def _lock(session: Session, request: requests.Lock) -> str:
     return ""
 
 
+def _pin(session: Session, request: requests.Pin) -> str:
+    session.document.set_pinned(_vertex(session, request.vertex), request.on)
+    return ""
+
+
 def _corner(session: Session, request: requests.Corner) -> str:
     session.document.set_geometric(_vertex(session, request.vertex), request.on)
     return ""
@@ -151,6 +156,7 @@ HANDLERS: dict[type[requests.Request], Handler] = {
     requests.AutoSmooth: _auto_smooth,
     requests.Desired: _desired,
     requests.Lock: _lock,
+    requests.Pin: _pin,
     requests.Corner: _corner,
     requests.Agent: _agent,
     requests.Speed: _speed,

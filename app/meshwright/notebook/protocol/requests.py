@@ -119,6 +119,13 @@ class Lock(Request, frozen=True, tag="lock"):
     on: bool
 
 
+class Pin(Request, frozen=True, tag="pin"):
+    """Pin a vertex, so that smoothing keeps it in place, or free it."""
+
+    vertex: Id
+    on: bool
+
+
 class Corner(Request, frozen=True, tag="corner"):
     """Make a vertex a corner, or not."""
 
@@ -175,6 +182,7 @@ AnyRequest: TypeAlias = (
     | AutoSmooth
     | Desired
     | Lock
+    | Pin
     | Corner
     | Agent
     | Speed

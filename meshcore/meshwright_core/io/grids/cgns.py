@@ -111,8 +111,8 @@ def _joints(grid: BlockGrid) -> list[list[tuple[Any, ...]]]:
             continue
         same = structure.forward[block, side] == structure.forward[other, across]
         for b, s, o, t in ((block, side, other, across), (other, across, block, side)):
-            own = _range(*grid.shapes[b].tolist(), s, True)
-            theirs = _range(*grid.shapes[o].tolist(), t, bool(same))
+            (n, m), (p, q) = grid.shapes[[b, o]].tolist()
+            own, theirs = _range(n, m, s, True), _range(p, q, t, bool(same))
             found[b].append((o, own, theirs, _transform(s, t, bool(same))))
     return found
 
