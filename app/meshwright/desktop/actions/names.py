@@ -27,7 +27,7 @@ ACTIONS: tuple[Action, ...] = (
         "Sides by name",
         "Show named sides in colours, with a legend",
         run=lambda context: context.names.toggle(),
-        shortcuts=("Shift+N",),
+        shortcuts=("Ctrl+Shift+N",),
         enabled=has_mesh,
         menu="View",
         checked=lambda context: context.names.shown,
