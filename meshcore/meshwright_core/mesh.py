@@ -6,10 +6,17 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from operator import index
+from typing import Any
 
 import numpy as np
 
-from meshwright_core.core import construction, curve_checks, notebook_display, side_names
+from meshwright_core.core import (
+    construction,
+    conversions,
+    curve_checks,
+    notebook_display,
+    side_names,
+)
 from meshwright_core.core.arrays import (
     CURVE,
     DESIRED,
@@ -361,6 +368,29 @@ class HalfEdgeMesh(MeshView):
                 if not self._arrays.vertex[vertex, FLAGS] & GEOMETRIC:
                     self.set_geometric(vertex)
 
+    def take_names(self, other: HalfEdgeMesh) -> None:
+        """Name sides and regions that have no name as the other mesh does: no step of the history.
+
+        The other has the same ids of vertices and elements, as before its boundary was placed on
+        curves.
+        """
+        own = self._boundary
+        named = {(int(a), int(b)) for name, ends in self.sides().items() if name for a, b in ends}
+        edges, sides = [], []
+        for name, ends in other.sides().items():
+            for a, b in ends.tolist():
+                if name and not {(a, b), (b, a)} & named:
+                    edges.append((a, b))
+                    sides.append(name)
+        regions = list(own.region_names)
+        pairs = set(zip(self.regions().tolist(), other.regions().tolist(), strict=True))
+        for mine, theirs in pairs:
+            regions[mine] = regions[mine] or other.region_names[theirs]
+        tags = {**other.boundary_info.tags, **own.tags}
+        if edges or tuple(regions) != own.region_names:
+            found = Names(regions, np.array(edges, np.int64).reshape(-1, 2), sides, tags)
+            self._namings[self.naming] = side_names.give_names(self._arrays, own, found)
+
     def add_naming(self, number: int, boundary: MeshBoundary) -> None:
         """Names that a step of a history that is to be adopted puts in force."""
         self._namings[number] = boundary
@@ -564,6 +594,25 @@ class HalfEdgeMesh(MeshView):
         self._take_boundary(boundary)
         self.seats_recorded = True
         return vertex_map, element_map
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.PolyData, with data by point and element and names; MeshError without PyVista.
+
+        This and the other conversions: :mod:`meshwright_core.io.objects.outgoing`.
+        """
+        return conversions.converted("pyvista", self)
+
+    def to_trimesh(self) -> Any:
+        """A trimesh.Trimesh, quads as two triangles each; MeshError without trimesh."""
+        return conversions.converted("trimesh", self)
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh, groups as its `cell_sets`; MeshError without meshio."""
+        return conversions.converted("meshio", self)
+
+    def to_shapely(self) -> Any:
+        """Arrays of shapely's geometries, and data as arrays; MeshError without shapely."""
+        return conversions.converted("shapely", self)
 
     def _repr_mimebundle_(
         self, include: object = None, exclude: object = None

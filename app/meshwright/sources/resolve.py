@@ -18,6 +18,7 @@ from meshwright.document.storage import document_file
 from meshwright.document.storage.document_state import DocumentState
 from meshwright.sources.naming import looks_like_path
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.io.formats import SHAPES
 
@@ -58,8 +59,10 @@ def resolve(
 
     Args:
         source: a document, which is returned as it is; a mesh, which is not copied; an object with
-            a ``mesh``, such as a widget or a film; a domain; the corners of a polygon (n, 2); the
-            name of a gallery shape; or the path of a mesh file, a project or a drawing.
+            a ``mesh``, such as a widget or a film; a domain; the corners of a polygon (n, 2); an
+            object of PyVista, trimesh, meshio or shapely, or a pair of points and elements
+            (:func:`meshwright_core.io.objects.incoming.taken`); the name of a gallery shape; or
+            the path of a mesh file, a project or a drawing.
         name: name of a new document; by default that of the file.
         corner_angle: degrees by which the boundary of a mesh file or drawing must turn at a
             corner; None for the default, 0.01.
@@ -95,6 +98,11 @@ def resolve(
         return gallery.shape(source)
     if isinstance(source, Domain):
         return source
+    from meshwright_core.io.objects import incoming
+
+    angle = CORNER_ANGLE if corner_angle is None else corner_angle
+    if (foreign := incoming.taken(source, angle)) is not None:
+        return foreign if isinstance(foreign, Domain) else Document(foreign, name)
     if isinstance(source, np.ndarray | list | tuple):
         return Domain(source)
     if not hasattr(source, "mesh"):
@@ -118,7 +126,9 @@ def mesh(
 
     Args:
         source: the name of a gallery shape (``"star"``); a mesh file, a project, or a drawing; a
-            domain; the corners of a polygon (n, 2); or a mesh or document, whose mesh is copied.
+            domain; the corners of a polygon (n, 2); a dataset of PyVista, a Trimesh or Path2D of
+            trimesh, a meshio.Mesh, polygons of shapely, a pair of points and elements; or a mesh
+            or document, whose mesh is copied.
         kind: ``"tri"`` or ``"quad"`` (the default) for what has to be meshed; a mesh that is
             there already must be of this kind.
         max_edge: upper bound on the length of edges, in the units of the source.

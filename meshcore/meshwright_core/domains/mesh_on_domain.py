@@ -55,7 +55,8 @@ def placed(mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:
 
     Elements and interior vertices keep their ids and places. Boundary vertices move to the nearest
     points of the curves, those nearest to corners to the corners; corners and the desired degrees
-    at the boundary become those of the domain.
+    at the boundary become those of the domain. Names of regions and sides that only the mesh has
+    stay.
 
     Args:
         mesh: in the plane; it is not changed.
@@ -65,7 +66,9 @@ def placed(mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:
         MeshError: one sentence: the loops are not as many, a corner has no vertex, or a vertex
             lies farther from the curves than a thousandth of the size and a quarter of its edges.
     """
-    return _Placement(mesh, with_curved_sides(domain)).mesh()
+    made = _Placement(mesh, with_curved_sides(domain)).mesh()
+    made.take_names(mesh)
+    return made
 
 
 def with_curved_sides(domain: Domain) -> Domain:

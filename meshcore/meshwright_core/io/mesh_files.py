@@ -55,6 +55,13 @@ class Loaded(NamedTuple):
     dropped: tuple[str, ...] = ()
     parts: tuple[str, ...] = ()
 
+    def said(self) -> list[str]:
+        """The notes, and one on what is not kept."""
+        if not self.dropped:
+            return list(self.notes)
+        are = "is" if len(self.dropped) == 1 else "are"
+        return [*self.notes, f"{', '.join(self.dropped)} {are} not kept"]
+
 
 def read(
     path: str | os.PathLike[str],
@@ -64,10 +71,7 @@ def read(
 ) -> HalfEdgeMesh:
     """Read a mesh file; see :func:`load`. What it notes is said by a FileWarning each."""
     found = load(path, corner_angle, part, to_quads)
-    said = list(found.notes)
-    if found.dropped:
-        said.append(f"{', '.join(found.dropped)} {_are(found.dropped)} not kept")
-    for line in said:
+    for line in found.said():
         warnings.warn(f"{path}: {line.rstrip('.')}.", FileWarning, stacklevel=2)
     return found.mesh
 
@@ -107,8 +111,15 @@ def load(
     with naming(place):
         head = _head(place)
         form = formats.of(place)
-        content = _prepared(form.read(place), form, head, part, to_quads)
+        content = _prepared(form.read(place), form.merge, head, part, to_quads)
         return _loaded(content, corner_angle)
+
+
+def from_content(
+    content: Content, corner_angle: float = CORNER_ANGLE, to_quads: bool = False
+) -> Loaded:
+    """The mesh in content that does not come from a file; arguments and errors as for `load`."""
+    return _loaded(_prepared(content, False, b"", None, to_quads), corner_angle)
 
 
 def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
@@ -167,6 +178,9 @@ def losses(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> tuple[str, ...]:
         lost.append(f"of the regions {_listed(regions)}")
     if lost:
         return (f"{form.title} files hold no such names: those {' and '.join(lost)} are lost.",)
+    count = len(np.unique(mesh.regions()))
+    if count > 1 and not form.regions:
+        return (f"{form.title} files hold no regions: what parts the {count} of them is lost.",)
     if form.numbers and (sides or regions):
         return (
             f"{form.title} files hold numbers in place of names: {_listed([*sides, *regions])} "
@@ -179,10 +193,6 @@ def _listed(names: Sequence[str]) -> str:
     shown = [repr(name) for name in names[:_SHOWN]]
     more = len(names) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more else "")
-
-
-def _are(things: Sequence[str]) -> str:
-    return "is" if len(things) == 1 else "are"
 
 
 def _is_version_4(path: Path) -> bool:
@@ -212,7 +222,7 @@ def _head(path: Path) -> bytes:
 
 
 def _prepared(
-    content: Content, form: formats.Format, head: bytes, part: str | None, to_quads: bool
+    content: Content, merge: bool, head: bytes, part: str | None, to_quads: bool
 ) -> Content:
     """One kind of elements, which share the points that are theirs."""
     content = surface.surface_of(content)
@@ -224,7 +234,7 @@ def _prepared(
             f"but {len(content.points)} and {count} are there"
         )
     content = surface.without_repeats(surface.compacted(content))
-    content = welding.welded(content, form.merge)
+    content = welding.welded(content, merge)
     if part is not None:
         content = parts.one_part(content, part)
     if to_quads:

@@ -16,6 +16,7 @@ from meshwright.desktop.editing.cleanable_lines_controller import CleanableLines
 from meshwright.desktop.editing.edit_controller import EditController
 from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
+from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
 from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
@@ -45,6 +46,7 @@ class ActionContext:
     quality: QualityController
     colours: ColourController
     selection_tools: SelectionController
+    names: NamesController
     navigation: KeyboardNavigation
     vertices: VertexCommands
     hints: HintsController

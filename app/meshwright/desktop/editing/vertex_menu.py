@@ -65,6 +65,7 @@ class VertexMenus:
         self._fill(menu, mesh, selection.vertices)
         menu.addSeparator()
         menu.addAction(self._actions["agent.region"])
+        menu.addAction(self._actions["names"])
         menu.addSeparator()
         for action_id in ("select.grow", "select.shrink", "select.invert", "select.none"):
             menu.addAction(self._actions[action_id])

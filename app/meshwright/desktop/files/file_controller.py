@@ -31,7 +31,7 @@ from meshwright.document.storage.document_file import is_drawing
 from meshwright.document.storage.project_file import ENDING, is_project
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import FARTHEST, NEAREST
-from meshwright_core.errors import FileWarning, MixedElementsError, sentence
+from meshwright_core.errors import FileWarning, MeshError, MixedElementsError, sentence
 from meshwright_core.io import formats, mesh_files
 
 if TYPE_CHECKING:
@@ -69,6 +69,7 @@ class FileController(Controller):
         self._settings, self._status, self._notice = settings, status, notice
         self._window = window
         self.guard: Guard = NoGuard(window)
+        self._agreed: set[tuple[Path | str, ...]] = set()
         self.dropping = DropTarget(window, self.open, theme)
         self.recent = RecentMenu(settings, self.open, window)
         actions["recent"].setMenu(self.recent)
@@ -305,7 +306,39 @@ class FileController(Controller):
             path += USUAL if kind.startswith(MESHES) else ENDING
         return bool(path) and self._save(path)
 
+    def _may_lose(self, path: str | None) -> str:
+        """Ask whether to save to a file that holds less than the mesh, or than it held itself.
+
+        Returns "save", "save_as" or "", for not at all; asked once for a file and what is lost.
+        """
+        document = self._document
+        target = Path(path) if path is not None else document.path
+        if target is None or document.mesh is None or is_project(target):
+            return "save"
+        try:
+            lost = [*mesh_files.losses(target, document.mesh)]
+        except MeshError:
+            return "save"  # saving says why it cannot
+        if path is None and document.mesh.left_out:
+            held = ", ".join(document.mesh.left_out)
+            lost.append(f"The file on the disk holds more: {held} would be gone.")
+        if not lost or (target, *lost) in self._agreed:
+            return "save"
+        answer = QuestionDialog(
+            f"Save to {target.name} all the same?",
+            " ".join(lost),
+            (("save", "Save all the same"), ("save_as", "Save as\u2026")),
+            ("", "Cancel"),
+            self._window,
+        ).ask()
+        if answer == "save":
+            self._agreed.add((target, *lost))
+        return answer
+
     def _save(self, path: str | None) -> bool:
+        answer = self._may_lose(path)
+        if answer != "save":
+            return self.save_as() if answer == "save_as" else False
         viewport = self._canvas.viewport
         self._document.settings.update(
             policy=self._assistant.policy,

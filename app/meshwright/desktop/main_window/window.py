@@ -36,6 +36,7 @@ from meshwright.desktop.editing.edit_controller import EditController
 from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.inverted_controller import InvertedController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
+from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
 from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
@@ -132,6 +133,7 @@ class MainWindow(QMainWindow):
         self.selection_tools = SelectionController(
             document, canvas, self.levels, readiness, actions, status, self, colours
         )
+        self.names = NamesController(document, canvas, status, self, colours)
         self.navigation = KeyboardNavigation(
             document, canvas, self.quality.highlight, status, colours
         )
@@ -180,6 +182,7 @@ class MainWindow(QMainWindow):
             self.editing,
             self.lines,
             self.selection_tools,
+            self.names,
             self.navigation,
             self.vertices,
             self.errors,
@@ -232,6 +235,7 @@ class MainWindow(QMainWindow):
             quality=self.quality,
             colours=self.colours,
             selection_tools=self.selection_tools,
+            names=self.names,
             navigation=self.navigation,
             vertices=self.vertices,
             hints=self.hints,

@@ -34,6 +34,7 @@ __all__ = [
     "MAX_BYTES",
     "DrawingReport",
     "FoundRegion",
+    "domain_in",
     "endings",
     "is_geometry",
     "read_domain",
@@ -157,6 +158,15 @@ def read_domain(
         domain = domain_of(chosen, name, corner_angle, fit)
         domain.curve_step = curve_step
         return domain
+
+
+def domain_in(drawing: Drawing, corner_angle: float = CORNER_ANGLE) -> Domain:
+    """The domain of all regions in a drawing that comes from elsewhere than a file.
+
+    Raises:
+        MeshError: as `read_domain`, without a path.
+    """
+    return domain_of(traced(drawing, corner_angle, None, None).chosen(None), "", corner_angle, None)
 
 
 _last: list[tuple[Any, DrawingReport]] = []
