@@ -5,7 +5,8 @@
     python docs/make_lesson_pictures.py --out FOLDER write PNG files, leave the notebooks alone
 
 A notebook refers to a picture as ``attachment:NAME.png``; no others are made.
-Pictures are drawn twice as large as they are shown.
+Pictures are drawn larger than they are shown, and made smaller: Markdown's image syntax, the only
+one that survives nbconvert, has no width.
 """
 
 import argparse
@@ -46,6 +47,20 @@ ARROW, NUMBER, UNIT = 5.0, 24.0, 1.6
 
 ROUND = 24
 """Radius of the corners of a picture in pixels."""
+SHOWN = {
+    "two-quads": 560,
+    "turn": 300,
+    "corners-of-star": 440,
+    "triangle-operations": 520,
+    "trap": 440,
+    "hexagon": 600,
+    "quad-operations": 520,
+    "global-operations": 520,
+    "blocks-of-an-l": 420,
+    "what-it-sees": 760,
+    "two-policies": 640,
+}
+"""Width of each picture in the notebook, in pixels."""
 COLOURS = 63
 """Colours of a picture; the next index of its palette is transparent."""
 
@@ -282,6 +297,18 @@ def png(image: Any) -> bytes:
     return stream.getvalue()
 
 
+def shrunk(data: bytes, width: int) -> bytes:
+    """A PNG at a smaller width."""
+    large = Image.open(io.BytesIO(data)).convert("RGBA")
+    size = width, round(large.height * width / large.width)
+    small = large.resize(size, Image.Resampling.LANCZOS)
+    stream = io.BytesIO()
+    small.quantize(128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(
+        stream, format="PNG", optimize=True
+    )
+    return stream.getvalue()
+
+
 def put_into(path: Path) -> list[str]:
     """Make the pictures that a notebook refers to and attach them; returns their names."""
     import nbformat
@@ -291,7 +318,7 @@ def put_into(path: Path) -> list[str]:
     for cell in notebook.cells:
         for name in re.findall(r"attachment:([\w-]+)\.png", cell.source):
             if name in PICTURES:
-                data = base64.b64encode(png(PICTURES[name]())).decode()
+                data = base64.b64encode(shrunk(png(PICTURES[name]()), SHOWN[name])).decode()
                 cell.setdefault("attachments", {})[f"{name}.png"] = {"image/png": data}
                 made.append(name)
     if made:

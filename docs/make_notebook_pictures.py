@@ -28,7 +28,7 @@ SETTLE = 800
 def notebook(page: Page, server: Server) -> None:
     """A run on the star at an earlier state of its history, with the preview of an operation."""
     book = LabNotebook(page, server)
-    _plain(page)
+    plain(page)
     book.show(
         "import meshwright as mw\n\n"
         'widget = mw.MeshWidget("star")\n'
@@ -47,7 +47,7 @@ def notebook(page: Page, server: Server) -> None:
 def levels(page: Page, server: Server) -> None:
     """A solved level, beside the solution of the agent."""
     book = LabNotebook(page, server)
-    _plain(page)
+    plain(page)
     book.show('import meshwright as mw\n\nwidget = mw.MeshWidget(level="two-turns")\nwidget')
     card = Card(page)
     card.button("Ask the agent").click()
@@ -63,7 +63,7 @@ def levels(page: Page, server: Server) -> None:
 PICTURES: dict[str, Callable[[Page, Server], None]] = {"notebook": notebook, "levels": levels}
 
 
-def _plain(page: Page) -> None:
+def plain(page: Page) -> None:
     """Hide the list of files."""
     page.evaluate("() => jupyterapp.commands.execute('application:toggle-left-area')")
     page.wait_for_timeout(SETTLE)

@@ -41,10 +41,13 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     from meshwright_agent import warm_up
 
     if not warm_up.is_warm_on_disk():
+        from compiled_kernels import compile_all
+
         reporter = session.config.pluginmanager.get_plugin("terminalreporter")
         reporter.write_line("compiling kernels; this takes some minutes, once")
-        for package in ("meshwright_core", "meshwright_agent"):
-            subprocess.run([sys.executable, "-m", f"{package}.warm_up"], check=False)
+        if not compile_all():
+            for package in ("meshwright_core", "meshwright_agent"):
+                subprocess.run([sys.executable, "-m", f"{package}.warm_up"], check=False)
 
 
 def needs(item: pytest.Item) -> list[str]:

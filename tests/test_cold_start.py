@@ -1,11 +1,10 @@
 """After one warm-up in an empty cache, fresh processes compile no kernel."""
 
 import json
-import os
-import subprocess
-import sys
+import shutil
 from pathlib import Path
 
+import compiled_kernels
 import pytest
 
 from meshwright_agent import warm_up
@@ -37,20 +36,20 @@ from meshwright_agent.search.solver import solve
 from meshwright_core import write
 from meshwright_core.domains.meshing import benchmark_mesh
 
-kind = sys.argv[1]
-policy = load(shipped(kind)[0])
-mesh = benchmark_mesh(kind, 10, np.random.default_rng(1))
-large = benchmark_mesh(kind, 40, np.random.default_rng(1))
-write("start.vtk", mesh)
-assert main(["improve", "start.vtk", "-o", "end.vtk", "--rollouts", "1", "--json"]) == 0
-solve(mesh, policy, seconds=0.5)
-hints(mesh, policy)
-runner = Runner(mesh, policy, seed=0)
-runner.look()
-runner.step()
-solve_within(large, policy, large.element_ids()[:20], seconds=0.5)
-improve_large(large, policy, max_steps=60)
-meshwright.solve(mesh, seconds=0.5)
+for kind in ("quad", "tri"):
+    policy = load(shipped(kind)[0])
+    mesh = benchmark_mesh(kind, 10, np.random.default_rng(1))
+    large = benchmark_mesh(kind, 40, np.random.default_rng(1))
+    write("start.vtk", mesh)
+    assert main(["improve", "start.vtk", "-o", "end.vtk", "--rollouts", "1", "--json"]) == 0
+    solve(mesh, policy, seconds=0.5)
+    hints(mesh, policy)
+    runner = Runner(mesh, policy, seed=0)
+    runner.look()
+    runner.step()
+    solve_within(large, policy, large.element_ids()[:20], seconds=0.5)
+    improve_large(large, policy, max_steps=60)
+    meshwright.solve(mesh, seconds=0.5)
 print_compiled()
 """
 
@@ -62,11 +61,9 @@ print_compiled()
 """
 
 
-def run(code: list[str], cache: Path, folder: Path) -> str:
-    environment = {**os.environ, "MESHWRIGHT_CACHE_DIR": str(cache)}
-    done = subprocess.run(
-        [sys.executable, *code], env=environment, cwd=folder, capture_output=True, text=True
-    )
+def output(code: list[str], cache: Path, folder: Path) -> str:
+    """What Python prints that runs with the kernels in `cache`."""
+    done = compiled_kernels.run(code, cache, folder)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -75,24 +72,28 @@ def run(code: list[str], cache: Path, folder: Path) -> str:
 def cache(tmp_path_factory):
     """A cache that the warm-up of the agent has filled."""
     folder = tmp_path_factory.mktemp("kernels")
-    run(["-m", "meshwright_agent.warm_up"], folder, folder)
+    kept = compiled_kernels.kept(compiled_kernels.AGENT)
+    if kept:
+        shutil.copytree(kept, folder, dirs_exist_ok=True)
+    else:
+        output(["-m", "meshwright_agent.warm_up"], folder, folder)
     return folder
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("kind", ["quad", "tri"])
-def test_the_agent_compiles_nothing_after_its_warm_up(kind, cache, tmp_path):
+def test_the_agent_compiles_nothing_after_its_warm_up(cache, tmp_path):
     entry_points = len(list(cache.rglob("*.nbi")))
-    output = run(["-c", COUNT + USES, kind], cache, tmp_path)
-    assert json.loads(output.splitlines()[-1]) == []
+    compiled = output(["-c", COUNT + USES], cache, tmp_path)
+    assert json.loads(compiled.splitlines()[-1]) == []
     assert len(list(cache.rglob("*.nbi"))) == entry_points == warm_up.ENTRY_POINTS
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)
-def test_the_editor_compiles_nothing_after_its_warm_up(tmp_path):
-    cache = tmp_path / "kernels"
-    run(["-m", "meshwright_core.warm_up"], cache, tmp_path)
-    output = run(["-c", COUNT + CORE], cache, tmp_path)
-    assert json.loads(output.splitlines()[-1]) == []
+def test_the_editor_compiles_nothing_after_its_warm_up(cache, tmp_path):
+    kept = compiled_kernels.kept(compiled_kernels.EDITOR)
+    folder = shutil.copytree(kept or cache, tmp_path / "kernels")
+    output(["-m", "meshwright_core.warm_up"], folder, tmp_path)
+    compiled = output(["-c", COUNT + CORE], folder, tmp_path)
+    assert json.loads(compiled.splitlines()[-1]) == []

@@ -5,8 +5,16 @@ class MeshError(ValueError):
     """Invalid input, or a mesh that breaks an invariant; the message names what and where."""
 
 
+class MixedElementsError(MeshError):
+    """A mesh file holds triangles and quads, and was not to be made all quads."""
+
+
 class OperationRefused(MeshError):
     """An operation was applied where :meth:`HalfEdgeMesh.check` does not allow it."""
+
+
+class FileWarning(UserWarning):
+    """What reading a file leaves out, or writing one loses; one sentence that names the file."""
 
 
 def sentence(text: str) -> str:

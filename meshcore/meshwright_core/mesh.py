@@ -4,11 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from operator import index
+from typing import Any
 
 import numpy as np
 
-from meshwright_core.core import construction, curve_checks, notebook_display
+from meshwright_core.core import (
+    construction,
+    conversions,
+    curve_checks,
+    notebook_display,
+    side_names,
+)
 from meshwright_core.core.arrays import (
     CURVE,
     DESIRED,
@@ -19,6 +27,7 @@ from meshwright_core.core.arrays import (
     HALF,
     JOURNAL_TOP,
     LOCKED,
+    NAMING,
     STEP,
     STEP_COLUMNS,
     STEP_END,
@@ -28,10 +37,15 @@ from meshwright_core.core.arrays import (
     copied,
     enlarge,
 )
+from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.core.entry_points import entry
 from meshwright_core.core.mesh_boundary import MeshBoundary, Seats
 from meshwright_core.core.mesh_view import MeshView
+from meshwright_core.core.names import clean
+from meshwright_core.core.planes import Plane
 from meshwright_core.core.projected_seats import take_projected_seats
+from meshwright_core.core.side_names import Names
+from meshwright_core.core.vertex_flags import PINNED
 from meshwright_core.errors import MeshError, OperationRefused
 from meshwright_core.history import journal
 from meshwright_core.history.packed_steps import Steps, last_done
@@ -68,6 +82,15 @@ class HalfEdgeMesh(MeshView):
         they seat the boundary vertices by projection."""
         self.degree_cap = degree_cap
         """The highest degree that an operation may produce; 0 for no limit."""
+        self.edits = 0
+        """Grows with every change, undo and redo: tells an owner of the mesh whether others have
+        changed it."""
+        self.lowest = 0
+        """The fewest :attr:`steps` since the owner has set this; -1 after :meth:`compact`."""
+        self.redo_lost = False
+        """Whether an edit has dropped undone steps since the owner has set this."""
+        self.left_out: tuple[str, ...] = ()
+        """What the file that it was read from held and this mesh does not, such as fields."""
         self._codes = catalogue.CODES[self.k]
         self._archive = Archive()
 
@@ -82,11 +105,15 @@ class HalfEdgeMesh(MeshView):
         boundary: MeshBoundary | None = None,
         seats: tuple[np.ndarray, np.ndarray] | None = None,
         regions: np.ndarray | Sequence[int] | None = None,
+        names: Names | None = None,
+        plane: Plane | None = None,
     ) -> HalfEdgeMesh:
         """A mesh from (n, 2|3) points and (m, 3|4) counter-clockwise elements.
 
         Vertex i of the input is vertex id i, element j is element id j; points of no element are
-        dead ids. Raises MeshError, with the place, unless it is an oriented manifold mesh.
+        dead ids. Elements of a mesh in a plane z = const whose areas sum up to less than zero,
+        which is clockwise as a whole, are turned: (a, b, c, d) becomes (a, d, c, b). Raises
+        MeshError, with the place, unless it is an oriented manifold mesh.
 
         Args:
             points: (n, 2|3).
@@ -101,9 +128,13 @@ class HalfEdgeMesh(MeshView):
                 vertex, as the invariants of :mod:`meshwright_core.core.arrays` have it; these
                 vertices are moved to the points of the curves there.
             regions: (m,) region of each element, from 0; by default all are of one.
+            names: of regions and sides. Vertices where the name of a side changes are geometric.
+            plane: the plane in space whose coordinates the points are, if it is not z = 0.
         """
         placed = None
-        if boundary is not None:
+        if boundary is None:
+            elements = construction.counter_clockwise(np.asarray(points), np.asarray(elements))
+        else:
             if seats is None:
                 raise MeshError("the seats of the vertices on the boundary's curves are missing")
             placed, points = curve_checks.seated(np.asarray(points), boundary, *seats)
@@ -119,6 +150,10 @@ class HalfEdgeMesh(MeshView):
         )
         if placed is not None:
             curve_checks.require_seats(arrays, boundary)
+        if names is not None:
+            boundary = side_names.give_names(arrays, boundary, names)
+        if plane is not None:
+            boundary = replace(boundary, plane=plane)
         return cls(arrays, boundary)
 
     def check(self, operation: Operation | str, h: int) -> Verdict:
@@ -150,6 +185,7 @@ class HalfEdgeMesh(MeshView):
         if code < 0:
             raise OperationRefused(self.check(operation, h).reason)
         h = index(h)
+        undone = self.can_redo
         done = catalogue.apply_once(self._arrays, code, h, self.degree_cap)
         while done.code == refusals.NEED_ROOM:
             self._enlarge()
@@ -158,6 +194,7 @@ class HalfEdgeMesh(MeshView):
             raise OperationRefused(
                 f"{operation} at half-edge {h} is not allowed: {self.check(operation, h).reason}"
             )
+        self._count_edit(undone)
         self._archive.future.clear()
         touched = done.touched[: done.touched_count]
         if done.touched_count > catalogue.FEW:
@@ -265,11 +302,98 @@ class HalfEdgeMesh(MeshView):
         """
         if not flag and vertex in self.junctions():
             raise MeshError(f"vertex {vertex} must stay geometric: an interface ends there")
+        if not flag and vertex in self.side_ends():
+            raise MeshError(f"vertex {vertex} must stay geometric: a named side ends there")
         self._set_flag(vertex, GEOMETRIC, flag)
 
     def set_locked(self, vertex: int, flag: bool = True) -> None:
         """Lock a vertex, so that it neither moves nor vanishes, or unlock it: one undoable step."""
         self._set_flag(vertex, LOCKED, flag)
+
+    def set_pinned(self, vertex: int, flag: bool = True) -> None:
+        """Pin a vertex, so that smoothing does not move it, or free it: one undoable step.
+
+        Unlike a locked vertex it may vanish in an operation.
+        """
+        self._set_flag(vertex, PINNED, flag)
+
+    def name_sides(self, halfedges: np.ndarray | Sequence[int], name: str) -> None:
+        """Name edges of the boundary or of interfaces, "" for none: one undoable step.
+
+        The ends of the named sides become geometric. Several names are separated by semicolons.
+        Raises MeshError for an edge within a region.
+        """
+        ids = np.unique(np.asarray(halfedges, dtype=np.int64))
+        for h in ids.tolist():
+            if not self.live(h):
+                raise MeshError(f"there is no half-edge {h} in this mesh")
+        curve, span = edge_places(self._arrays, ids, self.k)
+        if (curve < 0).any():
+            raise MeshError(
+                f"half-edge {int(ids[np.argmax(curve < 0)])} lies within a region: names belong to "
+                "the boundary and to interfaces"
+            )
+        names = [clean(name)] * len(ids)
+        self._name(side_names.with_side_names(self._boundary, curve, np.sort(span, axis=1), names))
+
+    def name_regions(self, regions: Sequence[int], name: str) -> None:
+        """Name regions, by their numbers, "" for none: one undoable step."""
+        names = list(self.region_names)
+        for region in regions:
+            if not 0 <= region < len(names):
+                raise MeshError(f"there is no region {region}: this mesh has {len(names)}")
+            names[region] = clean(name)
+        self._name(replace(self._boundary, region_names=tuple(names)))
+
+    def rename(self, old: str, new: str) -> None:
+        """Rename a group of sides and regions wherever it occurs: one undoable step.
+
+        Raises MeshError if nothing has the name.
+        """
+        self._name(side_names.renamed(self._boundary, old, clean(new)))
+
+    def _name(self, boundary: MeshBoundary) -> None:
+        """Put other names in force, as part of the history."""
+        with self.transaction():
+            self._make_room(16)
+            number = max(self._namings) + 1
+            self._namings[number] = boundary
+            m = self._arrays
+            top = int(m.counters[JOURNAL_TOP])
+            place = NAMING * journal.WRITE_KINDS + journal.VERTEX_WRITE  # in row 0
+            m.journal[top] = place, m.vertex[0, NAMING]
+            m.counters[JOURNAL_TOP] = top + 1
+            m.vertex[0, NAMING] = number
+            for vertex in side_names.changes(self._arrays, boundary).tolist():
+                if not self._arrays.vertex[vertex, FLAGS] & GEOMETRIC:
+                    self.set_geometric(vertex)
+
+    def take_names(self, other: HalfEdgeMesh) -> None:
+        """Name sides and regions that have no name as the other mesh does: no step of the history.
+
+        The other has the same ids of vertices and elements, as before its boundary was placed on
+        curves.
+        """
+        own = self._boundary
+        named = {(int(a), int(b)) for name, ends in self.sides().items() if name for a, b in ends}
+        edges, sides = [], []
+        for name, ends in other.sides().items():
+            for a, b in ends.tolist():
+                if name and not {(a, b), (b, a)} & named:
+                    edges.append((a, b))
+                    sides.append(name)
+        regions = list(own.region_names)
+        pairs = set(zip(self.regions().tolist(), other.regions().tolist(), strict=True))
+        for mine, theirs in pairs:
+            regions[mine] = regions[mine] or other.region_names[theirs]
+        tags = {**other.boundary_info.tags, **own.tags}
+        if edges or tuple(regions) != own.region_names:
+            found = Names(regions, np.array(edges, np.int64).reshape(-1, 2), sides, tags)
+            self._namings[self.naming] = side_names.give_names(self._arrays, own, found)
+
+    def add_naming(self, number: int, boundary: MeshBoundary) -> None:
+        """Names that a step of a history that is to be adopted puts in force."""
+        self._namings[number] = boundary
 
     def _set_flag(self, vertex: int, bit: int, flag: bool) -> None:
         self._require_live(vertex)
@@ -285,9 +409,15 @@ class HalfEdgeMesh(MeshView):
             raise MeshError(f"there is no vertex {vertex} in this mesh")
 
     def _make_room(self, entries: int) -> None:
+        self._count_edit(self.can_redo)
         self._archive.future.clear()
         while not entry(journal.has_room, 4)(self._arrays, self.k, 0, 0, entries):
             self._enlarge()
+
+    def _count_edit(self, undone: bool = False) -> None:
+        """Note a change that others than the owner may have made; undone: it drops undone steps."""
+        self.edits += 1
+        self.redo_lost |= undone
 
     @property
     def steps(self) -> int:
@@ -298,6 +428,17 @@ class HalfEdgeMesh(MeshView):
     def can_undo(self) -> bool:
         """Whether there is a step to undo."""
         return self.steps > 0
+
+    @property
+    def undone_steps(self) -> int:
+        """Undone steps that can be redone."""
+        counters = self._arrays.counters
+        return int(counters[STEP_END] - counters[STEP]) + sum(map(len, self._archive.future))
+
+    @property
+    def in_transaction(self) -> bool:
+        """Whether a :meth:`transaction` is open."""
+        return bool(self._arrays.counters[GROUPED])
 
     @property
     def can_redo(self) -> bool:
@@ -311,6 +452,8 @@ class HalfEdgeMesh(MeshView):
         if self._archive.past and not self._arrays.counters[STEP]:
             self._arrays = self._archive.trimmed(self._archive.fetch_past(self._arrays))
         undone = bool(entry(journal.undo, 0)(self._arrays))
+        self._count_edit()
+        self.lowest = min(self.lowest, self.steps)
         self._project_seats()
         return undone
 
@@ -321,6 +464,7 @@ class HalfEdgeMesh(MeshView):
         if self._archive.future and counters[STEP] == counters[STEP_END]:
             self._arrays = self._archive.trimmed(self._archive.fetch_future(self._arrays))
         redone = bool(entry(journal.redo, 0)(self._arrays))
+        self._count_edit()
         self._project_seats()
         return redone
 
@@ -368,7 +512,7 @@ class HalfEdgeMesh(MeshView):
         self._archive = Archive(done, undone)
 
     def trim(self) -> None:
-        """Pack the steps far from the present, which halves their memory; no step is lost."""
+        """Pack the steps far from the present into a third of the memory; no step is lost."""
         self._refuse_in_transaction()
         self._arrays = self._archive.trimmed(self._arrays)
 
@@ -417,8 +561,10 @@ class HalfEdgeMesh(MeshView):
                 arrays.counters[counter] = 0
         recorded = self.seats_recorded or not history
         twin = HalfEdgeMesh(arrays, self._boundary, self.degree_cap, seats_recorded=recorded)
+        twin.left_out = self.left_out
         if history:
             twin._archive = self._archive.copy()
+            twin._namings = dict(self._namings)
         return twin
 
     def compact(self) -> tuple[np.ndarray, np.ndarray]:
@@ -443,9 +589,30 @@ class HalfEdgeMesh(MeshView):
         )
         arrays.vertex[: len(live), FLAGS] = rows[:, FLAGS]
         self._arrays, self._archive = arrays, Archive()
+        self._count_edit()
+        self.lowest = -1
         self._take_boundary(boundary)
         self.seats_recorded = True
         return vertex_map, element_map
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.PolyData, with data by point and element and names; MeshError without PyVista.
+
+        This and the other conversions: :mod:`meshwright_core.io.objects.outgoing`.
+        """
+        return conversions.converted("pyvista", self)
+
+    def to_trimesh(self) -> Any:
+        """A trimesh.Trimesh, quads as two triangles each; MeshError without trimesh."""
+        return conversions.converted("trimesh", self)
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh, groups as its `cell_sets`; MeshError without meshio."""
+        return conversions.converted("meshio", self)
+
+    def to_shapely(self) -> Any:
+        """Arrays of shapely's geometries, and data as arrays; MeshError without shapely."""
+        return conversions.converted("shapely", self)
 
     def _repr_mimebundle_(
         self, include: object = None, exclude: object = None

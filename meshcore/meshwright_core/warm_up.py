@@ -14,6 +14,7 @@ import numpy as np
 from meshwright_core.analysis.cleanable_lines import cleanable_lines
 from meshwright_core.core.compilation import cache_folder, cache_root
 from meshwright_core.geometry.edge_curves import curved_edge_polylines, edge_points
+from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
@@ -38,6 +39,7 @@ def exercise() -> None:
     quads.move([4], np.array([[3.0, 3.0, 0.0]]))
     relax(quads, [4])
     inverted(quads)
+    element_shapes(quads)
     edge_points(quads, 0, [0.5])
     curved_edge_polylines(quads, 0.1)
     quads.set_locked(4)

@@ -25,6 +25,8 @@ from meshwright_core.io.atomic_write import replacing
 
 FORMAT = 1
 _ENDING = ".safetensors"
+TRAINED = f"policy{_ENDING}"
+"""The file in the folder of a training that holds its policy."""
 
 
 class PolicyError(ValueError):
@@ -86,7 +88,11 @@ def decide_on_one_thread() -> None:
 
 
 def load(name_or_path: str | os.PathLike[str]) -> Policy:
-    """Load a shipped policy by name, or any policy file by path. Raises PolicyError."""
+    """Load a shipped policy by name, any policy file by path, or the policy of a training by its
+    folder. Raises PolicyError.
+
+    A policy is named after its file, that of a training after the folder.
+    """
     text = os.fspath(name_or_path)
     path = Path(text)
     if text in shipped():
@@ -97,7 +103,11 @@ def load(name_or_path: str | os.PathLike[str]) -> Policy:
             f"{text}: there is no such policy file and no installed policy of that name ({known})"
         )
     elif path.is_dir():
-        raise PolicyError(f"{text}: this is a folder, not a policy file")
+        path /= TRAINED
+        if not path.exists():
+            raise PolicyError(
+                f"{text}: this folder has no {TRAINED}; a training writes it when it ends"
+            )
     try:
         with safe_open(path, framework="pt") as file:
             metadata = file.metadata() or {}
@@ -106,7 +116,8 @@ def load(name_or_path: str | os.PathLike[str]) -> Policy:
         raise PolicyError(
             f"{text}: this is not a policy file, or it is incomplete ({error})"
         ) from None
-    return _rebuild(text, path.name.removesuffix(_ENDING), metadata, weights)
+    folder = path.absolute().parent.name if path.name == TRAINED else ""
+    return _rebuild(text, folder or path.name.removesuffix(_ENDING), metadata, weights)
 
 
 def _rebuild(

@@ -67,6 +67,8 @@ class Solution:
     """(n, 3) where to."""
     parameters: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
     """(n,) their places on curves."""
+    reached: HalfEdgeMesh | None = field(default=None, repr=False, compare=False)
+    """The mesh after operations and positions, where it is at hand; for reading only."""
 
     @property
     def rank(self) -> tuple[bool, int, int, int, int, float, int]:
@@ -116,20 +118,23 @@ def judged(
     mesh: HalfEdgeMesh,
     stop: Callable[[], bool] = lambda: False,
     placed: MeshArrays | None = None,
+    reached: HalfEdgeMesh | None = None,
 ) -> Solution:
     """The solution with positions, its measures and counts; `mesh` is the start.
 
     Positions: max-min ones for quads in a plane of moderate number, else smoothed and untangled
     ones. On large meshes only vertices that the operations have touched are smoothed, until `stop`.
-    placed: the state that the operations lead to, with positions to begin with.
+    placed: the state that the operations lead to, with positions to begin with. reached: that
+    state itself, which is changed; by default the operations are replayed.
     """
-    reached = replayed(mesh, solution.operations)
+    if reached is None:
+        reached = replayed(mesh, solution.operations)
     unplaced = reached.points.copy()
     if placed is not None:
         ids = reached.vertices()
         reached.move(ids, placed.points[ids], placed.parameter[ids])
     if reached.n_elements > RELAXED:
-        _relax_touched(mesh, reached, solution.operations, stop)
+        relax_changed(mesh, reached, stop)
     elif solution.operations or len(inverted(reached)):
         _best_positions(reached, stop)
     live = reached.vertices()
@@ -148,6 +153,7 @@ def judged(
         vertices=vertices,
         positions=reached.points[vertices].copy(),
         parameters=reached.arrays.parameter[vertices].copy(),
+        reached=reached,
     )
 
 
@@ -187,17 +193,18 @@ def mesh_at(mesh: HalfEdgeMesh, points: np.ndarray, parameters: np.ndarray) -> H
     return copy
 
 
-def _relax_touched(
-    mesh: HalfEdgeMesh, reached: HalfEdgeMesh, operations: Operations, stop: Callable[[], bool]
-) -> None:
-    """Smooth around what the operations have touched, as long as `stop` is false."""
-    work = mesh.copy()
-    touched: dict[int, None] = {}
-    for operation, h in operations:
-        touched.update(dict.fromkeys(work.apply(operation, h).touched))
-    alive = set(reached.vertices().tolist())
-    pending = [v for v in touched if v in alive]
+def relax_changed(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:
+    """Smooth around all vertices that are new or have another degree, as long as `stop` is false,
+    those of inverted elements first.
+    """
+    live = reached.vertices()
+    known = live[live < mesh.slots]
+    before = mesh.degree()
+    same = (before[known] == reached.degree()[known]) & (before[known] > 0)
+    same &= (mesh.points[known] == reached.points[known]).all(axis=1)
+    folded = np.unique(reached.corners(inverted(reached)))
+    pending = np.concatenate([folded, np.setdiff1d(live, np.union1d(known[same], folded))])
     for at in range(0, len(pending), NEAR):
         if stop():
             break
-        smoothing.relax(reached, pending[at : at + NEAR], thorough=False)
+        smoothing.relax(reached, pending[at : at + NEAR].tolist(), thorough=False)

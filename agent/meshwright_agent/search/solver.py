@@ -66,6 +66,9 @@ COARSEST = 0.5
 that rollouts found at s* can be drawn."""
 DESCENT = 0.7
 """Share of the time after which no more rollouts are followed from one valid state to the next."""
+PATCHING, SMOOTHING = 0.75, 0.9
+"""Shares of the time after which no more patches are improved, and none smoothed, on a large
+mesh: what follows takes the longer the more was done."""
 PER_IRREGULAR = 50
 """Steps of a rollout per irregular vertex that is left on a large mesh after the patches."""
 
@@ -295,21 +298,24 @@ def _patch_by_patch(
     """Improve a large mesh patch by patch; with few irregular vertices left continue by `go_on`."""
     began = time.perf_counter()
     run = improve_large(
-        mesh, policy, seconds=seconds, max_steps=max_steps, seed=seed, cancelled=cancelled,
+        mesh, policy, seconds=None if seconds is None else PATCHING * seconds,
+        max_steps=max_steps, seed=seed, cancelled=cancelled,
         progress=None if progress is None else lambda _, score: progress(0, score),
     )  # fmt: skip
     reached, operations = run.mesh, run.steps()
 
     def late() -> bool:
-        over = seconds is not None and time.perf_counter() - began > seconds
+        over = seconds is not None and time.perf_counter() - began > SMOOTHING * seconds
         return over or (cancelled is not None and cancelled())
 
+    timed_out = seconds is not None and time.perf_counter() - began > PATCHING * seconds
     best = judged(
         Solution(
             operations, run.score, run.optimum, 0, rollouts=1,
             method="patches" if operations else "none",
+            reason=f"all {seconds:g} seconds are used" if timed_out else run.reason,
         ),
-        mesh, late,
+        mesh, late, reached=reached.copy(),
     )  # fmt: skip
     left = None if seconds is None else max(0.0, seconds - (time.perf_counter() - began))
     if not is_large(reached) and left != 0.0 and not (cancelled is not None and cancelled()):

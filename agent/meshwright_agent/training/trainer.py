@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import signal
+import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +19,7 @@ from meshwright_agent.env.vector_env import Batch, start_meshes
 from meshwright_agent.evaluation.figures import learning_curve
 from meshwright_agent.evaluation.rollouts import evaluate, paper_table, roll_out
 from meshwright_agent.policy.network import PolicyNetwork
-from meshwright_agent.policy.policy_files import Policy, save_policy
+from meshwright_agent.policy.policy_files import TRAINED, Policy, save_policy
 from meshwright_agent.training import checkpoint
 from meshwright_agent.training.configuration import (
     ConfigurationError,
@@ -197,6 +200,12 @@ class Trainer:
         with replacing(self.folder / CHECKPOINT) as temporary:
             temporary.write_bytes(content)
 
+    def save_policy(self) -> None:
+        """Write the policy of the best evaluation so far, with the curve but without results."""
+        if self.processes.first:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            save_policy(self.best_policy(), self.folder / TRAINED)
+
     def _resume(self) -> None:
         path = self.folder / CHECKPOINT
         found = path.read_bytes() if self.processes.first and path.exists() else None
@@ -227,12 +236,15 @@ def train(
     seed: int | None = None,
     report: Callable[[int, int, dict[str, float]], None] | None = None,
     finishing: Callable[[], None] | None = None,
+    table: bool = True,
 ) -> dict[str, Any]:
     """Train a policy (section 4.2.2) and evaluate it; returns the results as plain values.
 
     Writes into `folder`: policy.safetensors (the policy of the best evaluation, with its results),
     configuration.json, curve.json, curve.png, events for TensorBoard, and checkpoint.safetensors,
-    from which a later call with the same folder continues, also after Ctrl-C.
+    from which a later call with the same folder continues. After Ctrl-C the present update is
+    ended first, then the checkpoint and the best policy so far are written, and KeyboardInterrupt
+    is raised; a second Ctrl-C does not wait.
 
     With ``torchrun`` each process calls this; the first reports, writes and returns the results,
     the others return {}.
@@ -244,6 +256,7 @@ def train(
         seed: in place of that of the configuration.
         report: called after each update with (updates done, total, numbers of the update).
         finishing: called before the final evaluation.
+        table: whether that includes the rows of the paper's table, if the configuration has them.
 
     Raises ConfigurationError for a configuration that cannot be used.
     """
@@ -254,28 +267,52 @@ def train(
     try:
         with joined(training.device) as processes:
             trainer = Trainer(training, folder, processes)
-            _run_updates(trainer, minutes, report)
+            with deferred_interrupt() as interrupted:
+                _run_updates(trainer, minutes, report, interrupted)
     except DeviceError as error:
         raise ConfigurationError(str(error)) from None
     if not trainer.processes.first:
         return {}
     if finishing is not None:
         finishing()
-    return finish(trainer)
+    return finish(trainer, table)
+
+
+@contextmanager
+def deferred_interrupt() -> Iterator[Callable[[], bool]]:
+    """Inside the block the first Ctrl-C is only noted: the yielded function returns whether there
+    was one. The second one raises KeyboardInterrupt. Outside the main thread nothing changes.
+    """
+    came: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: False
+        return
+
+    def note(number: int, frame: object) -> None:
+        came.append(number)
+        if len(came) > 1:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield lambda: bool(came)
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _run_updates(
     trainer: Trainer,
     minutes: float | None,
     report: Callable[[int, int, dict[str, float]], None] | None,
+    interrupted: Callable[[], bool] = lambda: False,
 ) -> None:
     training, progress, processes = trainer.training, trainer.progress, trainer.processes
     events = Events(trainer.folder / EVENTS, progress.iteration) if processes.first else None
     began = time.perf_counter()
-    late = False
+    late = stopped = False
     if not progress.curve:
         trainer.measure()
-    while not (trainer.ended or late):
+    while not (trainer.ended or late or stopped):
         numbers = trainer.improve()
         if progress.iteration % training.evaluate_every == 0:
             numbers |= trainer.measure()
@@ -286,22 +323,29 @@ def _run_updates(
             report(progress.iteration, training.iterations, numbers)
         spent = time.perf_counter() - began
         late = processes.from_first(minutes is not None and spent > 60.0 * minutes)
+        stopped = processes.from_first(interrupted())
     if events is not None:
         events.close()
     trainer.save()
+    if stopped:
+        trainer.save_policy()
+        raise KeyboardInterrupt
 
 
-def finish(trainer: Trainer) -> dict[str, Any]:
-    """Evaluate the best policy and write it, its configuration and its learning curve."""
+def finish(trainer: Trainer, table: bool = True) -> dict[str, Any]:
+    """Evaluate the best policy and write it, its configuration and its learning curve.
+
+    table: whether to measure the rows of the paper's table, if the configuration asks for them.
+    """
     training, folder = trainer.training, trainer.folder
     policy = trainer.best_policy()
     kind, sides = training.task.kind, training.sides
     seed = training.evaluation_seed + 1
     row = evaluate(kind, sides, 100, 10, seed, policy)
     policy.header["evaluation"] = {"sides": list(sides), "meshes": 100, "rollouts": 10, **row}
-    if training.table_meshes:
+    if table and training.table_meshes:
         policy.header["table"] = paper_table(kind, training.table_meshes, 10, seed, policy)
-    save_policy(policy, folder / "policy.safetensors")
+    save_policy(policy, folder / TRAINED)
     for name, content in (
         ("configuration.json", training.to_dict()),
         ("curve.json", trainer.progress.curve),
@@ -312,4 +356,4 @@ def finish(trainer: Trainer) -> dict[str, Any]:
     title = f"{KIND_NOUN[kind].capitalize()}, polygons of {sides_text}"
     learning_curve(trainer.progress.curve, kind, title, folder / "curve.png")
     row["evaluation_seconds"] = row.pop("seconds")
-    return {"policy": str(folder / "policy.safetensors"), **asdict(trainer.progress), **row}
+    return {"policy": str(folder / TRAINED), **asdict(trainer.progress), **row}

@@ -8,7 +8,7 @@ the thread that owns the document.
 from __future__ import annotations
 
 import time
-from functools import partial
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +17,7 @@ from meshwright.assistant.hints import Hinting
 from meshwright.assistant.insight import InsightStore
 from meshwright.assistant.policy_catalogue import label
 from meshwright.assistant.progress import RunProgress
+from meshwright.assistant.result_walk import ResultWalk
 from meshwright.assistant.run import AgentRun, Decision, HintRequest, RunnerProtocol, State
 from meshwright.assistant.search_runner import Effort, SearchRunner
 from meshwright.assistant.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, PolicyWorker
@@ -28,8 +29,6 @@ from meshwright_core.analysis.submesh import enclose
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight, PolicyAction
 
-APPLY_BUDGET = 0.02
-"""Seconds of applying operations after which the event loop runs."""
 SLOWEST, FASTEST = 0.5, 60.0
 """Bounds of :attr:`Assistant.speed` in decisions per second."""
 
@@ -73,17 +72,23 @@ class Assistant:
         self._runner: RunnerProtocol | None = None
         self._runner_at = -1
         self._applying = False
+        self._walk: ResultWalk | None = None
+        self.outcome = ""
+        """What the last run came to, in a sentence, as long as nothing has changed since."""
+        self.unfinished = False
+        """Whether that was a search that ended above s*."""
         self._sight = InsightStore(document)
         self.insight_changed = self._sight.changed
         self.progress = RunProgress()
         self.hinting = Hinting(document, self._worker)
+        document.replaced.connect(self._on_document_replaced)
         document.changed.connect(self._on_document_changed)
 
     # State
 
     @property
     def state(self) -> State:
-        """Idle, looking, stepping, playing, paused or searching."""
+        """Idle, looking, stepping, playing, paused, searching, or going to a search's result."""
         return self._state
 
     @property
@@ -170,7 +175,7 @@ class Assistant:
 
         Pauses a run that plays; during a search the request is ignored.
         """
-        if self._state is State.SEARCHING:
+        if self._state in (State.SEARCHING, State.GOING):
             return
         if self._run is not None:
             self._end(State.PAUSED if self._state is State.PLAYING else self._run.after)
@@ -178,7 +183,11 @@ class Assistant:
         if not self._can_work() or mesh is None:
             return
         self._loading = not self._worker.has(self._policy)
-        self.hinting.ask(self._policy, near)
+        runner = self._runner
+        if runner is None or self._runner_at != self._document.revision or runner.finished:
+            self._seed += 1
+            runner = None
+        self.hinting.ask(self._policy, near, self._seed, runner)
         self.changed.emit()
 
     def step(self) -> None:
@@ -200,12 +209,40 @@ class Assistant:
             self._tidy(run)
 
     def search(self, effort: Effort | None = None) -> None:
-        """Search for the best state within `effort` and apply the operations that lead there."""
-        self._begin(State.SEARCHING, effort or Effort())
+        """Search for the best state within `effort` and apply the operations that lead there; by
+        default until s* is reached or nothing more is won.
+        """
+        self._begin(State.SEARCHING, effort or Effort(until_done=True))
+
+    def skip(self) -> None:
+        """On the way to a search's result: go there at once."""
+        run, walk = self._run, self._walk
+        if run is not None and walk is not None:
+            self._walked(run, walk.skip)
+            self._arrive(run, walk)
 
     def stop(self) -> None:
-        """End the run now; a search still applies its result, unless this is called again."""
-        run = self._run
+        """End the run now. A search still applies its result, unless this is called again; on the
+        way there it ends where it is, and the rest can be redone.
+        """
+        run, walk = self._run, self._walk
+        if run is not None and walk is not None:
+            way = walk.done, walk.total
+            self._applying = True
+            try:
+                walk.stop_here()
+            except MeshError as error:
+                self.broke(run, f"The policy's operation was refused: {error}")
+                return
+            finally:
+                self._applying = False
+            self._end(State.IDLE)
+            self._set_outcome(
+                f"Stopped after {way[0]:,} of {way[1]:,} operations: the rest is in the history."
+            )
+            self.message.emit(self.outcome)
+            self.changed.emit()
+            return
         if run is not None and run.state is State.SEARCHING and not run.enough.is_set():
             run.enough.set()
             self.changed.emit()
@@ -226,6 +263,7 @@ class Assistant:
 
     def close(self) -> None:
         """Cancel, and end the worker thread. The assistant cannot run again."""
+        self._document.replaced.disconnect(self._on_document_replaced)
         self._document.changed.disconnect(self._on_document_changed)
         self._watch = False
         self.hinting.forget()
@@ -281,7 +319,9 @@ class Assistant:
             after=self._state,
         )
         if state is not State.LOOKING:
-            self.progress.begin(run, self._state is State.IDLE or effort is not None)
+            afresh = self._state is State.IDLE or effort is not None
+            self.progress.begin(run, afresh, self._document.score, self._document.optimum)
+            self._set_outcome("")
         self._run, self._state = run, state
         self._loading = not self._worker.has(self._policy)
         self._worker.begin(run)
@@ -296,6 +336,7 @@ class Assistant:
 
     def _end(self, state: State) -> None:
         run, self._run = self._run, None
+        self._walk = None
         if run is not None:
             exact = run.end()
             self._runner = run.runner if exact and run.effort is None else None
@@ -320,10 +361,16 @@ class Assistant:
         if self._watch and ready and self._run is None and self._sight.last is None:
             self._begin(State.LOOKING)
 
+    def _on_document_replaced(self) -> None:
+        """Counts of runs on another mesh are out of date."""
+        self.progress.forget()
+        self._set_outcome("")
+
     def _on_document_changed(self) -> None:
         self.hinting.forget()
         self._sight.see(None)
         if not self._applying:
+            self._set_outcome("")
             self.cancel()  # the user has edited: the next run starts from the new state
             self._runner_at = -1  # the runner has not seen this edit and cannot be reused
             self._look_soon()
@@ -373,35 +420,37 @@ class Assistant:
         """A request for hints has been answered."""
         if not self.hinting.close(question):
             return
-        self.hinting.show(choices)
+        if self._run is None and question.runner is not None:
+            self._runner, self._runner_at = question.runner, question.revision
+        self.hinting.show(choices, question.next_step)
         self.changed.emit()
         if not choices:
             self.message.emit("The policy finds no allowed operation here.")
 
     def decided(self, run: AgentRun, decided: Decision) -> None:
-        """Apply the worker's decision; lets the event loop run in between."""
+        """Apply the worker's decision; that of a search in slices."""
         if run is not self._run:
             return
-        deadline = time.monotonic() + APPLY_BUDGET
+        if run.effort is not None:
+            self._go(run, decided)
+            return
         try:
             self._applying = True
-            while decided.operations:
-                operation, halfedge = decided.operations.pop(0)
-                self._document.submit(
-                    operation,
-                    halfedge,
-                    by=label(run.policy),
-                    held=run.held,
-                    thorough=run.state is State.STEPPING,  # other runs are smoothed at the end
-                )
-                if decided.operations and time.monotonic() > deadline:
-                    self._dispatch(partial(self.decided, run, decided))
-                    return
+            with self._document.together():
+                for operation, halfedge in decided.operations:
+                    self._document.submit(
+                        operation,
+                        halfedge,
+                        by=label(run.policy),
+                        held=run.held,
+                        thorough=run.state is State.STEPPING,  # a played run is smoothed at its end
+                    )
         except MeshError as error:
             self.broke(run, f"The policy's operation was refused: {error}")
             return
         finally:
             self._applying = False
+        decided.operations.clear()
         run.decisions += decided.decisions
         self.progress.done(decided.decisions, self._document.score)
         with run.lock:
@@ -416,21 +465,96 @@ class Assistant:
             run.applied.set()
             self.changed.emit()
 
+    def _go(self, run: AgentRun, decided: Decision) -> None:
+        """Apply a slice of a search's result."""
+        walk = self._walk
+        if walk is None:
+            target = getattr(run.runner, "target", None)  # of a SearchRunner
+            operations = list(decided.operations)
+            walk = ResultWalk(self._document, label(run.policy), operations, run.held, target)
+            self._walk, self._state = walk, State.GOING
+            with run.lock:
+                run.in_step = False
+        self._walked(run, walk.advance)
+        if run is not self._run:
+            return
+        if walk.arrived:
+            decided.operations.clear()
+            self._arrive(run, walk)
+        run.applied.set()
+        self.changed.emit()
+
+    def _walked(self, run: AgentRun, go: Callable[[], None]) -> None:
+        """Call ``go``, which applies operations of a search's result."""
+        walk = self._walk
+        assert walk is not None
+        self._applying = True
+        try:
+            go()
+        except MeshError as error:
+            self.broke(run, f"The policy's operation was refused: {error}")
+        finally:
+            self._applying = False
+        run.decisions = self.progress.decisions = walk.done
+        self.progress.way = walk.done, walk.total
+
+    def _arrive(self, run: AgentRun, walk: ResultWalk) -> None:
+        """All operations of a search's result have been applied: place the vertices."""
+        if run is not self._run:
+            return
+        self._applying = True
+        try:
+            fine = not walk.total or walk.settle()
+        finally:
+            self._applying = False
+        stopped = run.enough.is_set()
+        self._end(State.IDLE)
+        self._runner_at = -1
+        self._set_outcome(*self._result_of(run, fine, stopped))
+        self.message.emit(self.outcome)
+        self.changed.emit()
+
+    def _set_outcome(self, sentence: str, unfinished: bool = False) -> None:
+        self.outcome, self.unfinished = sentence, unfinished
+
+    def _result_of(self, run: AgentRun, fine: bool, stopped: bool) -> tuple[str, bool]:
+        """What a search has come to, in a sentence, and whether it may go on."""
+        document, effort = self._document, run.effort
+        reason = run.runner.reason if run.runner is not None else ""
+        if not fine:
+            return (
+                "The result has inverted elements that were not so before: it was taken back, and"
+                " is in the history.",
+                True,
+            )
+        if document.at_optimum:
+            return f"At the optimum after {self.progress.counted}.", False
+        if run.held is not None:
+            more = f"; {reason}" if reason else ""
+            return f"The region is finished: s {document.score}{more}.", False
+        gap = f"{document.score - document.optimum:,} above the optimum: go on?"
+        if stopped:
+            return f"Stopped, {gap}", True
+        if effort is not None and effort.rollouts:
+            return f"{effort.rollouts} runs are done, {gap}", True
+        if reason:
+            return f"{reason[:1].upper()}{reason[1:]}, {gap}", True
+        return f"Time is up, {gap}", True
+
     def _finish(self, run: AgentRun) -> None:
+        """The end of a run that is no search."""
         document = self._document
         reason = run.runner.reason if run.runner is not None else ""
         self._end(State.IDLE)
         self._tidy(run)
-        where = "" if run.held is None else "The region is finished: "
         if document.at_optimum:
-            self.message.emit(f"At the optimum after {self.progress.counted}.")
-        elif where:
-            self.message.emit(f"{where}s {document.score}{'; ' + reason if reason else ''}.")
+            self._set_outcome(f"At the optimum after {self.progress.counted}.")
         else:
-            self.message.emit(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
+            self._set_outcome(f"Finished at s {document.score}{': ' + reason if reason else ''}.")
+        self.message.emit(self.outcome)
 
     def _tidy(self, run: AgentRun) -> None:
-        """Smooth or untangle what the operations of the run have left inverted."""
+        """Untangle what the operations of the run have left inverted."""
         from meshwright.assistant.run_cleanup import clean_up
 
         if not run.decisions:
@@ -438,7 +562,7 @@ class Assistant:
         seen = self._sight.last
         self._applying = True
         try:
-            clean_up(self._document, label(run.policy), run.held, run.effort is not None)
+            clean_up(self._document, label(run.policy))
         finally:
             self._applying = False
         self._runner_at = self._document.revision  # only positions have changed

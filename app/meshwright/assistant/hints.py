@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshwright.assistant.run import HintRequest
+from meshwright.assistant.run import HintRequest, RunnerProtocol
 from meshwright.assistant.worker import PolicyWorker
 from meshwright.document.document import Document
 from meshwright.signals import Signal
@@ -26,6 +26,8 @@ class Hinting:
         self._document, self._worker = document, worker
         self._question: HintRequest | None = None
         self._hints: tuple[PolicyAction, ...] = ()
+        self.next_step: PolicyAction | None = None
+        """The hint that *Step* will apply; None if it is not known."""
 
     @property
     def hints(self) -> tuple[PolicyAction, ...]:
@@ -37,17 +39,23 @@ class Hinting:
         """True while a request is pending."""
         return self._question is not None
 
-    def ask(self, policy: str, near: np.ndarray | None) -> None:
-        """Request hints, near vertices (n,) if given; nothing happens without a mesh."""
+    def ask(
+        self, policy: str, near: np.ndarray | None, seed: int, runner: RunnerProtocol | None
+    ) -> None:
+        """Request hints, near vertices (n,) if given; nothing happens without a mesh.
+
+        The first one is the next step of ``runner``, or of a new one with ``seed``.
+        """
         self.forget()
         mesh = self._document.mesh
         if mesh is not None:
-            self._question = HintRequest(policy, mesh.copy(), near, self._document.revision)
+            revision = self._document.revision
+            self._question = HintRequest(policy, mesh.copy(), near, revision, seed, runner)
             self._worker.answer(self._question)
 
     def forget(self) -> None:
         """Remove the hints and ignore the answer to a pending request."""
-        self._question = None
+        self._question = self.next_step = None
         if self._hints:
             self._hints = ()
             self.changed.emit()
@@ -59,7 +67,9 @@ class Hinting:
         self._question = None
         return True
 
-    def show(self, choices: tuple[PolicyAction, ...]) -> None:
-        """Set the hints."""
-        self._hints = choices
+    def show(
+        self, choices: tuple[PolicyAction, ...], next_step: PolicyAction | None = None
+    ) -> None:
+        """Set the hints, and which of them *Step* will apply."""
+        self._hints, self.next_step = choices, next_step
         self.changed.emit()

@@ -18,11 +18,20 @@ class RunProgress:
         """Rollouts that a search has done."""
         self.best: int | None = None
         """The lowest s found; None before anything is."""
+        self.way: tuple[int, int] | None = None
+        """Operations applied, and all, on the way to the result of a search; None elsewhere."""
+        self._start = self._optimum = 0
         self._spent = 0.0
         self._run: AgentRun | None = None
 
-    def begin(self, run: AgentRun, afresh: bool) -> None:
-        """Start counting; `afresh` unless the run continues a paused one."""
+    def forget(self) -> None:
+        """Another mesh: nothing has been done on it."""
+        self.decisions = self.rollouts = 0
+        self.best, self._spent = None, 0.0
+
+    def begin(self, run: AgentRun, afresh: bool, score: int = 0, optimum: int = 0) -> None:
+        """Start counting; `afresh` unless the run continues a paused one. s and s* of the mesh."""
+        self._start, self._optimum, self.way = score, optimum, None
         if afresh:
             self.decisions = self.rollouts = 0
             self.best, self._spent = None, 0.0
@@ -31,7 +40,7 @@ class RunProgress:
     def end(self) -> None:
         """Stop the clock: the run has ended or is paused."""
         self._spent = self.elapsed
-        self._run = None
+        self._run = self.way = None
 
     def done(self, decisions: int, score: int) -> None:
         """Add applied decisions; `score` is the present s."""
@@ -44,6 +53,11 @@ class RunProgress:
         news = (rollouts, best) != (self.rollouts, self.best)
         self.rollouts, self.best = rollouts, best
         return news
+
+    @property
+    def gap(self) -> int | None:
+        """How far the best found is above s*; None before anything is found."""
+        return None if self.best is None else self.best - self._optimum
 
     @property
     def counted(self) -> str:
@@ -62,10 +76,17 @@ class RunProgress:
 
     @property
     def share(self) -> float | None:
-        """Fraction of its limit that the current search has used, 0 to 1; None without one."""
+        """Of the current search, the fraction of its limit that is used, or of the way to s* or to
+        its result, 0 to 1; None without a search.
+        """
         effort = self.effort
         if effort is None:
             return None
+        if self.way is not None:
+            return self.way[0] / max(1, self.way[1])
+        if effort.until_done:
+            gap, best = self._start - self._optimum, self.best
+            return 0.0 if best is None else min(1.0, (self._start - best) / max(1, gap))
         if effort.rollouts:
             return min(1.0, self.rollouts / effort.rollouts)
         return min(1.0, self.elapsed / effort.seconds) if effort.seconds else None

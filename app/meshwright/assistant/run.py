@@ -14,7 +14,7 @@ from meshwright.assistant.search_runner import Effort
 from meshwright_core import HalfEdgeMesh, Operation
 
 if TYPE_CHECKING:
-    from meshwright_agent.policy.explanation_types import Insight
+    from meshwright_agent.policy.explanation_types import Insight, PolicyAction
 
 DecisionStep = list[tuple[Operation, int]]
 
@@ -28,6 +28,7 @@ class State(StrEnum):
     PLAYING = "playing"
     PAUSED = "paused"
     SEARCHING = "searching"
+    GOING = "going"
 
 
 class RunnerProtocol(Protocol):
@@ -104,7 +105,7 @@ class Decision:
     """The policy's view after these operations, if it is shown."""
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class HintRequest:
     """A request for the policy's best operations in one state of the document."""
 
@@ -113,3 +114,8 @@ class HintRequest:
     near: np.ndarray | None
     """Vertices near which to look, the most important first."""
     revision: int
+    seed: int = 0
+    runner: RunnerProtocol | None = None
+    """What will take the next step; the worker makes one if there is none."""
+    next_step: PolicyAction | None = None
+    """What that step will be; the first of the hints. Set by the worker."""

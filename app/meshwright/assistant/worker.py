@@ -36,8 +36,8 @@ LEAVE_SECONDS = 10.0
 """Time limit, in seconds, for which the exiting program waits for the thread."""
 CATCH_UP = 0.2
 """Seconds by which a played decision may be late without delaying later ones."""
-BATCH_SECONDS = 0.03
-"""Seconds for which operations of a search are collected before they are passed on."""
+BREATH = 0.004
+"""Seconds between two slices of operations, for the document's thread to draw and take input."""
 
 Dispatch = Callable[[Callable[[], None]], None]
 Load = Callable[[str], Any]
@@ -66,7 +66,9 @@ class Listener(Protocol):
         ...
 
     def decided(self, run: AgentRun, decided: Decision) -> None:
-        """Operations to apply; the worker waits until ``run.applied`` is set."""
+        """Operations to apply; the worker waits until ``run.applied`` is set, and calls again as
+        long as some are left.
+        """
         ...
 
     def progressed(self, run: AgentRun, done: int, best: int) -> None:
@@ -169,6 +171,13 @@ class PolicyWorker:
     def _answer(self, question: HintRequest) -> None:
         policy = self._policy_of(question.policy)
         choices = self._ask(question.mesh, policy, question.near)
+        if question.runner is None:
+            question.runner = self._make_runner(question.mesh.copy(), policy, question.seed)
+        insight = question.runner.look()
+        if insight is not None:
+            first = question.next_step = insight.wanted
+            others = (one for one in choices if not _alike(question.mesh, one, first))
+            choices = (first, *others)[: max(len(choices), 1)]
         self._dispatch(partial(self._listener.answered, question, choices))
 
     def _work(self, run: AgentRun) -> None:
@@ -197,8 +206,7 @@ class PolicyWorker:
         return self._make_search(mesh, policy, run.seed, run.effort, run.enough, progress)
 
     def _decide(self, run: AgentRun, runner: RunnerProtocol) -> bool:
-        """Take one decision, or a batch of them, and wait until applied; False when over."""
-        begun = time.monotonic()
+        """Take one decision, or all of a search, and wait until applied; False when over."""
         with run.lock:
             if run.stop.is_set():
                 return False
@@ -210,13 +218,20 @@ class PolicyWorker:
             step = runner.step()
             operations += step
             decisions += bool(step)
-            if run.state is not State.SEARCHING or time.monotonic() - begun > BATCH_SECONDS:
+            if run.effort is None:
                 break
         finished = runner.finished
         insight = runner.look() if run.watch and not finished else None
         decided = Decision(operations, decisions, finished, insight)
-        self._dispatch(partial(self._listener.decided, run, decided))
-        run.applied.wait()
+        while True:
+            run.applied.clear()
+            if run.stop.is_set():
+                return False
+            self._dispatch(partial(self._listener.decided, run, decided))
+            run.applied.wait()
+            if not decided.operations or run.stop.is_set():
+                break
+            time.sleep(BREATH)  # a queue that is never empty would keep input and frames waiting
         self._wait(run)
         return not run.stop.is_set() and not finished
 
@@ -235,6 +250,19 @@ class PolicyWorker:
             left = run.due - time.monotonic()
             if left <= 0 or not run.wake.wait(left):
                 break
+
+
+def _alike(mesh: HalfEdgeMesh, one: PolicyAction, other: PolicyAction) -> bool:
+    """Whether two actions do the same, perhaps named by two half-edges."""
+    if one.operation != other.operation:
+        return False
+    h = one.halfedge
+    same = {h}
+    if mesh.k == 3 or one.operation.value in ("flip_left", "flip_right"):
+        same.add(mesh.twin(h))
+    elif one.operation.value == "collapse":
+        same.add(h - h % 4 + (h + 2) % 4)  # the diagonal from its other end
+    return other.halfedge in same
 
 
 def _sentence(error: Exception) -> str:

@@ -1,4 +1,5 @@
-"""The suites of ``meshwright bench``, one module each; a new module here is a new suite.
+"""The suites of ``meshwright bench``, one module each; a new module here is a new suite,
+unless it is one of HELPERS.
 
 A suite has a ``SUMMARY`` and ``run(seed, quick, update)``, which returns the numbers by name.
 ``quick`` does a small part of the work, as a check that the suite runs; ``update`` is called as
@@ -16,6 +17,9 @@ from typing import Any, Protocol
 
 from meshwright.console import Update
 
+HELPERS = {"gmsh_peer"}
+"""Modules that are no suites."""
+
 
 class Suite(Protocol):
     """Interface of a suite's module."""
@@ -28,7 +32,8 @@ class Suite(Protocol):
 
 def names() -> list[str]:
     """Return the names of the suites without importing them."""
-    return sorted(module.name for module in pkgutil.iter_modules(__path__))
+    found = {module.name for module in pkgutil.iter_modules(__path__)}
+    return sorted(found - HELPERS)
 
 
 def load(name: str) -> Suite:

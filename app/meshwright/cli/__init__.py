@@ -16,6 +16,7 @@ import signal
 import sys
 import threading
 import traceback
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
@@ -94,7 +95,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     words = list(sys.argv[1:] if argv is None else argv)
     report = Report(as_json="--json" in words)
-    with _rare_garbage_collection(), _noted_interrupts() as interrupted:
+    with _rare_garbage_collection(), _noted_warnings(report), _noted_interrupts() as interrupted:
         return _run(words, report, interrupted)
 
 
@@ -109,6 +110,23 @@ def _rare_garbage_collection() -> Iterator[None]:
         yield
     finally:
         gc.set_threshold(*usual)
+
+
+@contextmanager
+def _noted_warnings(report: Report) -> Iterator[None]:
+    """Write what readers and writers of files warn of as remarks, a line each."""
+    usual = warnings.showwarning
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if category.__name__ == "FileWarning":  # by its name: numpy is not imported for this
+            report.note(str(message))
+        else:
+            usual(message, category, *place, **more)
+
+    with warnings.catch_warnings():
+        warnings.filterwarnings("always", module="meshwright")
+        warnings.showwarning = show
+        yield
 
 
 @contextmanager

@@ -25,11 +25,17 @@ if TYPE_CHECKING:
     from meshwright_core.domains.domain import Domain
 
 
-def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
+def read_mesh(
+    path: str,
+    corner_angle: float | None = None,
+    part: str | None = None,
+    to_quads: bool = False,
+) -> HalfEdgeMesh:
     """Return the mesh in a mesh file or a project, or raise UserError with the reason.
 
     ``corner_angle`` in degrees: a boundary vertex where the boundary turns by more is a corner. A
-    project stores its corners.
+    project stores its corners. ``part`` names the only part of the file that is read; ``to_quads``
+    makes quads of its triangles.
     """
     _require_file(path)
     from meshwright.document.document import Document
@@ -37,7 +43,7 @@ def read_mesh(path: str, corner_angle: float | None = None) -> HalfEdgeMesh:
     from meshwright_core.io import file_checks, formats
 
     with bad_input(path):
-        found = resolve.resolve(Path(path), corner_angle=corner_angle)
+        found = resolve.resolve(Path(path), corner_angle=corner_angle, part=part, to_quads=to_quads)
         if not isinstance(found, Document) or found.mesh is None:
             with file_checks.naming(Path(path)):
                 formats.of(path)  # refuses a drawing
@@ -127,7 +133,7 @@ def read_policy(name: str | None, kind: str) -> Policy:
         if not shipped:
             raise UserError(f"no policy for {KIND_NOUN[kind]} is installed; give one by --policy")
         name = shipped[0]
-    elif looks_like_path(name):
+    elif looks_like_path(name) and not Path(name).is_dir():
         _require_file(name)
     with bad_input(name, policy_files.PolicyError):
         policy = policy_files.load(name)
@@ -186,6 +192,14 @@ def positive_float(text: str) -> float:
     value = _float(text)
     if not (value > 0 and math.isfinite(value)):
         raise argparse.ArgumentTypeError(f"{text} is not a number above 0")
+    return value
+
+
+def share(text: str) -> float:
+    """Read a number of 0 to 1 from the command line."""
+    value = _float(text)
+    if not 0 <= value <= 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a number of 0 to 1")
     return value
 
 

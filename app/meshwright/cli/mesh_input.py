@@ -28,6 +28,18 @@ def add_geometry_arguments(parser: argparse.ArgumentParser) -> None:
         "where it is left out",
     )
     parser.add_argument(
+        "--part",
+        metavar="NAME",
+        help="take this part of a mesh file alone, by its name or number: a zone, piece or "
+        "instance, or a connected component",
+    )
+    parser.add_argument(
+        "--to-quads",
+        action="store_true",
+        help="make quads of the triangles of a mesh file: in pairs, and if some are left all "
+        "elements are split",
+    )
+    parser.add_argument(
         "--geometry",
         metavar="DRAWING",
         help="the boundary of the mesh lies on the curves of this drawing and stays on them",
@@ -75,18 +87,27 @@ def add_tracing_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def is_mesh(word: str) -> bool:
+    """Whether an input is a mesh file, and no drawing and no name of a shape."""
+    from meshwright.document.storage.document_file import is_drawing
+    from meshwright.sources import resolve
+
+    return resolve.names_file(word) and not is_drawing(word)
+
+
 def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
     """Return the mesh in a mesh file, on its geometry, or the mesh of a drawing or a shape.
 
     Raises UserError with the reason.
     """
-    from meshwright.document.storage.document_file import is_drawing
-    from meshwright.sources import resolve
-
     word = arguments.input
-    if not resolve.names_file(word) or is_drawing(word):
+    if not is_mesh(word):
         if arguments.geometry is not None:
             raise UserError(f"--geometry {arguments.geometry}: {word} is itself a shape, no mesh")
+        for option in ("part", "to_quads"):
+            if getattr(arguments, option):
+                name = option.replace("_", "-")
+                raise UserError(f"--{name}: this is for mesh files, and {word} is a shape")
         domain, kind = read_domain(word, arguments), arguments.kind or "quad"
         return inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed)
     for option in ("kind", "max_edge", "region", "gap", "curve_step"):
@@ -94,7 +115,7 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
         if getattr(arguments, option) is not None and not drawn:
             name = option.replace("_", "-")
             raise UserError(f"--{name}: this is for drawings, and {word} is a mesh")
-    mesh = inputs.read_mesh(word, arguments.corner_angle)
+    mesh = inputs.read_mesh(word, arguments.corner_angle, arguments.part, arguments.to_quads)
     if arguments.geometry is not None:
         return _on_drawing(word, mesh, read_domain(arguments.geometry, arguments))
     if arguments.fit_arcs:

@@ -32,9 +32,18 @@ def checked_output(path: str, endings: tuple[str, ...] = (), option: str = "-o")
     return target
 
 
-def checked_folder(path: str, option: str = "-o") -> Path:
-    """Return the folder, made if its parent exists, or raise UserError with the reason."""
+def checked_folder(path: str, option: str = "-o", parents: bool = False) -> Path:
+    """Return the folder if it can be made where it does not exist, or raise UserError with the
+    reason. ``parents``: its parent need not exist either.
+    """
     folder = Path(path)
+    if parents:
+        there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+        if not there.is_dir():
+            raise UserError(f"{option} {path}: {there} is a file; give the name of a folder")
+        if not os.access(there, os.W_OK):
+            raise UserError(f"{option} {path}: no permission to write there")
+        return folder
     if folder.exists() and not folder.is_dir():
         raise UserError(f"{option} {path}: that is a file; give the name of a folder")
     if not folder.exists() and not folder.absolute().parent.is_dir():

@@ -195,6 +195,14 @@ class History:
         on_it = tuple(branch for branch in self._branches if branch.at > self._cursor)
         return Branch(self._cursor, tuple(self._rows[self._cursor :]), undone, on_it, self._made)
 
+    def rewind(self, cursor: int) -> None:
+        """Drop the steps after ``cursor``, and the branches that start on them: the mesh has
+        forgotten them.
+        """
+        del self._rows[cursor:]
+        self._cursor = min(self._cursor, cursor)
+        self._branches = tuple(branch for branch in self._branches if branch.at <= cursor)
+
     def step_back(self) -> None:
         """Move the cursor back by one step; the caller has undone it on the mesh."""
         self._cursor -= 1

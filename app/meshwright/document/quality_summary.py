@@ -1,19 +1,24 @@
-"""Element quality of a mesh: histograms of two measures, inverted elements, number of blocks.
+"""Quality of a mesh in numbers: histograms of three measures, inverted elements, bound on shape,
+number of blocks.
 
 Imports no Qt; the window computes it on a separate thread.
 """
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from meshwright.document.element_quality import ElementQuality
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.geometry.quality import TOLERANCE, Measure
+from meshwright_core.geometry.quality import TOLERANCE
+from meshwright_core.geometry.shape_bound import shape_bound
 
-CHUNK = 1 << 12
-"""Elements measured at a time; the work can be cancelled in between."""
 BINS = 20
+GOOD, NEARLY = 0.5, 0.9
+"""The shape of a mesh is in order from min(GOOD, NEARLY q*) on: the default target of searches."""
 
 
 @dataclass(frozen=True)
@@ -38,35 +43,48 @@ class Spread:
 
 @dataclass(frozen=True)
 class QualitySummary:
-    """Histograms of the scaled Jacobian and of the smallest angle in degrees; ids of the inverted
-    elements, ascending; blocks of a quad mesh, None for triangles.
+    """Histograms of the scaled Jacobian, of the shape and of the smallest angle in degrees; ids of
+    the inverted elements, ascending; q*, the largest worst scaled Jacobian that the corners permit
+    (:func:`meshwright_core.geometry.shape_bound.shape_bound`); blocks of a quad mesh, None for
+    triangles or where they were not counted.
+
+    ``values`` are the measures by element id: a copy that nobody changes.
     """
 
     jacobian: Spread
+    shape: Spread
     angle: Spread
     inverted: np.ndarray
+    bound: float
     blocks: int | None
+    values: ElementValues
+
+
+@dataclass(frozen=True)
+class ElementValues:
+    """Scaled Jacobian and shape (slots,) by element id, nan where there is no element."""
+
+    jacobian: np.ndarray
+    shape: np.ndarray
 
 
 def summarise(
-    mesh: HalfEdgeMesh, cancelled: Callable[[], bool] = lambda: False
+    mesh: HalfEdgeMesh,
+    cancelled: Callable[[], bool] = lambda: False,
+    quality: ElementQuality | None = None,
 ) -> QualitySummary | None:
     """Measure ``mesh``; None once ``cancelled()``.
 
-    The mesh must not change during the call: pass a copy to another thread.
+    The mesh must not change during the call: pass a copy to another thread. ``quality`` holds the
+    values of the last call, so that only what has changed is measured.
     """
-    measure = Measure(mesh)
-    ids = measure.ids
-    jacobian, angle = np.empty(len(ids)), np.empty(len(ids))
-    ideal = 1.0 if mesh.k == 4 else np.sqrt(0.75)
-    for first in range(0, len(ids), CHUNK):
-        if cancelled():
-            return None
-        part = slice(first, first + CHUNK)
-        corners = measure.of(part)
-        jacobian[part] = corners.sine.min(axis=1)
-        angle[part] = np.degrees(corners.angle).min(axis=1)
+    quality = ElementQuality() if quality is None else quality
+    if not quality.follow(mesh, cancelled):
+        return None
+    ids = quality.ids
+    jacobian = quality.jacobian[ids]
     sound = jacobian > TOLERANCE
+    bound = shape_bound(mesh)
     blocks = None
     if mesh.k == 4 and not cancelled():
         from meshwright_core.analysis.blocks import block_count  # brings in parts of scipy
@@ -75,11 +93,39 @@ def summarise(
     if cancelled():
         return None
     return QualitySummary(
-        jacobian=_spread(jacobian / ideal, sound, ids, 1.0, everywhere=True),
-        angle=_spread(angle, sound, ids, 180.0 - 360.0 / mesh.k, everywhere=False),
+        jacobian=_spread(jacobian, sound, ids, 1.0, everywhere=True),
+        shape=_spread(quality.shape[ids], sound, ids, 1.0, everywhere=True),
+        angle=_spread(quality.angle[ids], sound, ids, 180.0 - 360.0 / mesh.k, everywhere=False),
         inverted=ids[~sound],
+        bound=bound,
         blocks=blocks,
+        values=ElementValues(quality.jacobian, quality.shape),
     )
+
+
+def decimal(value: float) -> str:
+    """A measure between -1 and 1 in two decimals: ``.72``, ``\u2212.05``; a dash for nan."""
+    if np.isnan(value):
+        return "\u2013"
+    text = f"{abs(value):.2f}".removeprefix("0")
+    return f"\u2212{text}" if value < 0 and text != ".00" else text
+
+
+def shape_words(worst: float, bound: float) -> str:
+    """``.72 of at most .72``: the worst scaled Jacobian, and what regular corners permit.
+
+    With irregular corners it may be better than that.
+    """
+    if worst > bound + 0.005:
+        return f"{decimal(worst)}; regular corners permit {decimal(bound)}"
+    return f"{decimal(worst)} of at most {decimal(bound)}"
+
+
+def shape_in_order(worst: float, bound: float) -> bool:
+    """Whether the worst scaled Jacobian reaches what counts as good: the solver's target of half,
+    or .9 of what the corners permit.
+    """
+    return worst >= min(GOOD, NEARLY * bound)
 
 
 def _spread(

@@ -52,8 +52,9 @@ def compare(
     Args:
         mesh: a mesh, a document, a widget, or what :func:`meshwright.mesh` makes a mesh of; it is
             not changed.
-        policies: names of shipped policies, policy files or loaded policies, or a single one of
-            these; None: the best shipped policy for this kind of mesh, and the paper's method.
+        policies: names of shipped policies, policy files, folders of trainings, or loaded
+            policies, or a single one of these; None: the best shipped policy for this kind of
+            mesh, and the paper's method.
         rollouts: the number of rollouts of each policy, computed as one batch.
         steps: the most decisions in a rollout; None: as many as in the policy's training.
         seed: of the random numbers; equal seeds give equal rollouts.

@@ -92,7 +92,8 @@ def table_row(
     """Measure a policy on random polygons, with several rollouts on each.
 
     Args:
-        policy: the name of a shipped policy, a policy file, or a loaded policy.
+        policy: the name of a shipped policy, a policy file, the folder of a training, or a loaded
+            policy.
         sides: fewest and most sides of a polygon; the paper's rows are (10, 20), (20, 30), ...
         meshes: the number of polygons; those that start at their optimum are left out.
         rollouts: the number of rollouts on each polygon.

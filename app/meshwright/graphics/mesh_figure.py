@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from meshwright.document import score_series
+from meshwright.graphics.colouring import JACOBIAN, TITLES, measure_colours
 from meshwright.graphics.drawing import (
     Area,
     Disc,
@@ -21,7 +22,7 @@ from meshwright.graphics.drawing import (
     hatching,
     text_width,
 )
-from meshwright.graphics.markers import READABLE, Markers, label, markers
+from meshwright.graphics.markers import PIN, READABLE, Markers, label, markers
 from meshwright.graphics.theme import Theme, region_fills, region_swatches, theme
 from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
@@ -29,6 +30,7 @@ from meshwright_core.core.arrays import ORIGIN, TWIN
 from meshwright_core.geometry import quality
 from meshwright_core.geometry.edge_curves import curved_edge_polylines
 from meshwright_core.geometry.edge_lines import EdgeLines
+from meshwright_core.geometry.element_shapes import element_shapes
 
 REFERENCE = 800.0
 """Lines and letters have their nominal size in a figure whose shorter side has these pixels."""
@@ -48,7 +50,8 @@ class FigureOptions:
     ``size`` is in pixels. ``numbers`` are those inside the discs of irregular vertices; ``score``
     stands above the mesh, ``curve`` below it; ``changes`` are edges that the last step added and
     removed. ``theme`` and ``colours`` are as for :func:`meshwright.graphics.theme.theme`. ``unit``
-    scales lines and letters; 0: in proportion to the size.
+    scales lines and letters; 0: in proportion to the size. ``measure`` colours the elements by
+    ``"jacobian"`` or ``"shape"``, with a legend; empty: not.
     """
 
     size: tuple[int, int] = (960, 720)
@@ -59,6 +62,7 @@ class FigureOptions:
     changes: bool = True
     colours: str = "vermilion"
     unit: float = 0.0
+    measure: str = ""
 
     @property
     def palette(self) -> Theme:
@@ -128,6 +132,8 @@ def figure(
     rims = lines.rims()
     width = _edge_width(mesh, lines, view, unit)
     drawing.add(*_fills(lines, rims, view, colours))
+    if options.measure:
+        drawing.add(*_measured_fills(mesh, lines, view, colours, options.measure))
     if options.changes and moment is not None and len(moment.removed):
         gone = view.to_screen(moment.removed)
         drawing.add(Segments(gone, colours.faint, 1.3 * unit, dash=5.0 * unit))
@@ -144,7 +150,11 @@ def figure(
     if options.score:
         _add_head(drawing, mesh, moment, colours, unit)
         _add_legend(drawing, mesh, moment, colours, unit)
-    if moment is not None and _has_curve(options, moment):
+    has_curve = _has_curve(options, moment)
+    if options.measure:
+        foot = FOOT * unit if has_curve else 0.0
+        _add_scale(drawing, options.measure, colours, unit, options.size[1] - foot)
+    if moment is not None and has_curve:
         _add_curve(drawing, moment, colours, unit)
     return drawing
 
@@ -186,6 +196,34 @@ def _fills(lines: EdgeLines, rims: list[np.ndarray], view: Viewport, colours: Th
         Area([view.to_screen(lines.chained(rim)) for rim in around], fill)
         for around, fill in zip(loops, region_fills(colours, count), strict=True)
     ]
+
+
+def _measured_fills(
+    mesh: HalfEdgeMesh, lines: EdgeLines, view: Viewport, colours: Theme, measure: str
+) -> list[Area]:
+    """The elements in the colours of a measure."""
+    values = quality.scaled_jacobian(mesh) if measure == JACOBIAN else element_shapes(mesh)
+    fills = ["#" + bytes(one).hex() for one in measure_colours(values, colours)]
+    outlines = lines.outlines(mesh.element_ids())
+    return [Area([view.to_screen(one)], fill) for one, fill in zip(outlines, fills, strict=True)]
+
+
+def _add_scale(drawing: Drawing, measure: str, colours: Theme, unit: float, bottom: float) -> None:
+    """The scale of a measure in the lower right corner, above ``bottom``."""
+    width, height, steps = 150.0 * unit, 8.0 * unit, 30
+    left, top = drawing.size[0] - MARGIN * unit - width, bottom - 26.0 * unit
+    shades = measure_colours((np.arange(steps) + 0.5) / steps, colours)
+    for number, shade in enumerate(shades):
+        x, right = (left + (number + add) * width / steps for add in (0, 1))
+        corners = [(x, top), (right, top), (right, top + height), (x, top + height)]
+        drawing.add(Area([np.array(corners)], "#" + bytes(shade).hex()))
+    size, y = 11.0 * unit, top + height + 9.0 * unit
+    drawing.add(
+        Text(TITLES[measure], (left, top - 9.0 * unit), size, colours.muted),
+        Text("0", (left, y), size, colours.muted),
+        Text(".5", (left + 0.5 * width, y), size, colours.muted, "middle"),
+        Text("1", (left + width, y), size, colours.muted, "right"),
+    )
 
 
 def _ring(points: np.ndarray) -> np.ndarray:
@@ -246,6 +284,12 @@ def _add_markers(
             drawing.add(Text(label(delta), (x, y), 1.15 * radius, colours.marker_text, "middle"))
     for x, y in view.to_screen(marks.locked_places).tolist():
         drawing.add(Disc((x, y), 12.0 * unit, colours.boundary, 1.5 * unit))
+    for x, y in view.to_screen(marks.pinned_places).tolist():
+        head = (x + PIN[0] * unit, y - PIN[1] * unit)
+        drawing.add(
+            Line(np.array([(x, y), head]), colours.boundary, 1.5 * unit),
+            Disc(head, PIN[2] * unit, colours.boundary),
+        )
 
 
 def _add_head(

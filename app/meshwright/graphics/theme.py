@@ -126,6 +126,10 @@ REGION_SHARE = 0.14
 """Share of the hue in a region's fill: enough to tell neighbours apart, light enough for marks."""
 
 
+NAME_HUES = ("#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6bb1", "#7a7f2a", "#b5651d", "#3a8f98")
+"""Colours of named sides, in turn; those of irregular vertices are not among them."""
+
+
 SWATCH_SHARE = 0.55
 """The same in the small squares beside names of regions."""
 
@@ -133,6 +137,15 @@ SWATCH_SHARE = 0.55
 def region_fills(theme: Theme, count: int) -> list[str]:
     """The fill of each region of a mesh; the plain fill if there is only one."""
     return _region_colours(theme, count, REGION_SHARE)
+
+
+def name_colours(theme: Theme, count: int) -> list[str]:
+    """The colours of so many named sides: a hue each, in turns that grow paler."""
+    colours = []
+    for i in range(count):
+        turn, hue = divmod(i, len(NAME_HUES))
+        colours.append(_mixed(NAME_HUES[hue], theme.background, min(0.6, 0.3 * turn)))
+    return colours
 
 
 def region_swatches(theme: Theme, count: int) -> list[str]:
@@ -194,6 +207,8 @@ QToolButton:disabled {{ color: {t.faint}; }}
 #Optimal {{ background: {t.accent_soft}; border-radius: 8px; }}
 #OptimalTitle {{ color: {t.accent}; font-weight: 600; }}
 #OptimalText {{ color: {t.text}; font-size: 12px; }}
+#Optimal[warns="true"] {{ background: {t.warning_soft}; }}
+#OptimalTitle[warns="true"], #OptimalText[warns="true"] {{ color: {t.warning}; }}
 #Operation {{ font-size: 12px; }}
 #Operation:disabled, #Key:disabled, #RowTitle:disabled {{ color: {t.faint}; }}
 #Reason {{ color: {t.muted}; font-size: 11px; }}

@@ -46,8 +46,13 @@ class Scene:
         self._curved: tuple[Any, Any] | None = None  # fill and edges of elements with curved sides
         self._discs: dict[int, Any] = {}
         self._depth = 1.0
+        self._tinted = False
         self.markers: Markers | None = None
         self.crowd = False
+        self.fills: np.ndarray | None = None
+        """(n, 3) uint8 colours of elements by id, None for the plain fill or those of regions; seen
+        at the next :meth:`update`.
+        """
         plotter.set_background(theme.background)
         plotter.enable_parallel_projection()
 
@@ -78,6 +83,7 @@ class Scene:
         if mesh is None or edges is None:
             return
         self.markers = markers(mesh)
+        self._tinted = self._is_tinted(mesh)
         self._surface = self._add(
             self._straight(mesh, edges),
             show_edges=True,
@@ -98,8 +104,9 @@ class Scene:
     def update(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
         """Update the actors to the present state of the mesh that is shown."""
         self.markers = markers(mesh)
-        drawn = self.outlined, self._curved is not None
-        if self._surface is None or drawn != (self._draws_outline(self.markers), bool(edges)):
+        drawn = self.outlined, self._curved is not None, self._tinted
+        wanted = self._draws_outline(self.markers), bool(edges), self._is_tinted(mesh)
+        if self._surface is None or drawn != wanted:
             self.show(mesh, edges)
             return
         self._surface.mapper.dataset = self._straight(mesh, edges)
@@ -209,13 +216,36 @@ class Scene:
         lines = pyvista.PolyData(_flat(points), lines=_cells(np.diff(first)))
         return faces.triangulate(), lines
 
+    def refill(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
+        """Show other :attr:`fills` of the same state of the mesh."""
+        if self._surface is None or self._tinted != self._is_tinted(mesh):
+            self.show(mesh, edges)
+            return
+        self._surface.mapper.dataset = self._straight(mesh, edges)
+        if self._curved is not None:
+            self._curved[0].mapper.dataset = self._bent(mesh, edges)[0]
+
+    def _is_tinted(self, mesh: HalfEdgeMesh) -> bool:
+        return self.fills is not None or len(mesh.region_names) > 1
+
     def _tint(self, surface: Any, mesh: HalfEdgeMesh, rows: np.ndarray) -> None:
-        """Colour cells, the elements ``rows`` of the mesh, by their region if there are several."""
-        if len(mesh.region_names) > 1:
+        """Colour cells, the elements ``rows`` of the mesh, by :attr:`fills`, or by their region if
+        there are several.
+        """
+        if not self._is_tinted(mesh):
+            return
+        if self.fills is not None:
+            ids = mesh.element_ids()[rows]
+            known = ids < len(self.fills)
+            tints = np.empty((len(rows), 3), np.uint8)
+            tints[:] = tuple(bytes.fromhex(self._theme.fill[1:]))
+            tints[known] = self.fills[ids[known]]
+        else:
             fills = region_fills(self._theme, len(mesh.region_names))
             colours = np.array([tuple(bytes.fromhex(fill[1:])) for fill in fills], np.uint8)
-            surface.cell_data[_TINT] = colours[mesh.regions()[rows]]
-            surface.set_active_scalars(_TINT, "cell")
+            tints = colours[mesh.regions()[rows]]
+        surface.cell_data[_TINT] = tints
+        surface.set_active_scalars(_TINT, "cell")
 
 
 _TINT = "tint"

@@ -16,6 +16,7 @@ from dataclasses import fields
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from meshwright.graphics.colouring import SCALES, STOPS
 from meshwright.graphics.icon_paths import STROKES
 from meshwright.graphics.theme import REGION_HUES, REGION_SHARE, Theme
 from meshwright.notebook.bundle import BUNDLE, FOLDER, GLOBAL
@@ -44,6 +45,9 @@ def constants() -> str:
         "/** Hues of regions, and their share in a fill, of the same module. */\n"
         f"export const REGION_HUES = {json.dumps(REGION_HUES, indent=2)};\n"
         f"export const REGION_SHARE = {REGION_SHARE};\n"
+        "/** The scale of measures of meshwright.graphics.colouring; empty: the plain fill. */\n"
+        f"export const QUALITY_STOPS = {json.dumps(STOPS)};\n"
+        f"export const QUALITY_SCALES = {json.dumps(SCALES, indent=2)};\n"
         "/** Paths of meshwright.graphics.icon_paths, on a square of 20. */\n"
         f"export const ICON_STROKES = {json.dumps(STROKES, indent=2)};\n"
     )

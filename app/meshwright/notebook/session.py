@@ -13,6 +13,7 @@ from meshwright.assistant.assistant import Assistant
 from meshwright.assistant.kernel_preparation import Stage
 from meshwright.document.document import NO_MESH, Document
 from meshwright.notebook import kernel_warmup
+from meshwright.notebook.cell_events import on_cell_end
 from meshwright.notebook.kernel_warmup import DONE, WAITS
 from meshwright.notebook.protocol.agent_bridge import AgentBridge
 from meshwright.notebook.protocol.broadcaster import Broadcaster, Port
@@ -72,6 +73,7 @@ class Session:
         """The level being played, or None."""
         self._hovers: dict[str, tuple[Port, Hover]] = {}
         self._calling = self._ended = False
+        self._cells = on_cell_end(self.catch_up)
         self.agent.settle()
         document.replaced.connect(self._on_replaced)
         document.changed.connect(self.broadcaster.follow)
@@ -120,6 +122,7 @@ class Session:
         if self._all.get(id(self.document)) is self:
             del self._all[id(self.document)]
         self._ended = True
+        self._cells()
         for end in self.on_end:
             end()
         self.assistant.close()
@@ -128,6 +131,13 @@ class Session:
         self.document.score_changed.disconnect(self._on_score_changed)
 
     # Calls from Python
+
+    def catch_up(self) -> None:
+        """Record and show what a cell has changed on the mesh itself; never raises."""
+        try:
+            self.document.catch_up()
+        except Exception as error:  # must not reach the notebook's cell
+            _log.error("changes of the mesh could not be recorded", exc_info=error)
 
     def do(self, call: Callable[[], Result]) -> Result:
         """The result of ``call()``, called in the thread that owns the document."""
@@ -201,6 +211,7 @@ class Session:
     def _handle(self, port: Port, request: Request) -> None:
         self.broadcaster.hold(request)
         try:
+            self.document.catch_up()
             self._dispatch(port, request)
         except MeshError as error:
             self.broadcaster.answer(port, request, "refused", sentence(str(error)))

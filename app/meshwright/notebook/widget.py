@@ -25,6 +25,7 @@ from meshwright.notebook.arguments import (
     whole,
 )
 from meshwright.notebook.export import html_page, images
+from meshwright.notebook.export.film_progress import shown_progress
 from meshwright.notebook.export.images import SECONDS, SIZE, File
 from meshwright.notebook.protocol.level_bridge import LevelBridge
 from meshwright.notebook.protocol.mesh_sync import Packet
@@ -49,8 +50,8 @@ class MeshWidget(anywidget.AnyWidget):
     """An editor for a mesh in a notebook cell, with the agent.
 
     Browser and Python edit the same document; several widgets on one document stay synchronised.
-    Change the mesh through the widget or its document: ``widget.mesh.apply`` records no history
-    and updates no view.
+    ``widget.mesh`` is live: what a cell changes on it directly, without smoothing, is recorded as
+    steps "Edit in Python" when the cell has ended, or at the next use of the widget.
     """
 
     # anywidget sends only traits of the class; their texts are defaults of the instance
@@ -138,7 +139,7 @@ class MeshWidget(anywidget.AnyWidget):
 
     @property
     def mesh(self) -> HalfEdgeMesh:
-        """The live mesh; change it by the widget's methods only. MeshError while there is none."""
+        """The live mesh; MeshError while there is none."""
         return self.session.mesh
 
     @property
@@ -329,14 +330,18 @@ class MeshWidget(anywidget.AnyWidget):
     def to_gif(
         self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
     ) -> bytes:
-        """The history as an animated GIF; each frame lasts ``seconds``."""
-        return self._do(lambda: images.gif(self.document, seconds, size, path, self._export_theme))
+        """The history as an animated GIF; each frame lasts ``seconds``. It can be interrupted."""
+        theme = self._export_theme
+        with shown_progress() as report:
+            return self._do(lambda: images.gif(self.document, seconds, size, path, theme, report))
 
     def to_mp4(
         self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE
     ) -> bytes:
-        """The history as MP4 (H.264); each frame lasts ``seconds``."""
-        return self._do(lambda: images.mp4(self.document, path, seconds, size, self._export_theme))
+        """The history as MP4 (H.264); each frame lasts ``seconds``. It can be interrupted."""
+        theme = self._export_theme
+        with shown_progress() as report:
+            return self._do(lambda: images.mp4(self.document, path, seconds, size, theme, report))
 
     @property
     def _export_theme(self) -> str:

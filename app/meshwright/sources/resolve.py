@@ -18,6 +18,7 @@ from meshwright.document.storage import document_file
 from meshwright.document.storage.document_state import DocumentState
 from meshwright.sources.naming import looks_like_path
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.core.kinds import KIND_NOUN
 from meshwright_core.io.formats import SHAPES
 
@@ -51,13 +52,17 @@ def resolve(
     region: str | None = None,
     gap: float | None = None,
     fit: str | None = None,
+    part: str | None = None,
+    to_quads: bool = False,
 ) -> Document | Domain:
     """The document or the domain that a source means.
 
     Args:
         source: a document, which is returned as it is; a mesh, which is not copied; an object with
-            a ``mesh``, such as a widget or a film; a domain; the corners of a polygon (n, 2); the
-            name of a gallery shape; or the path of a mesh file, a project or a drawing.
+            a ``mesh``, such as a widget or a film; a domain; the corners of a polygon (n, 2); an
+            object of PyVista, trimesh, meshio or shapely, or a pair of points and elements
+            (:func:`meshwright_core.io.objects.incoming.taken`); the name of a gallery shape; or
+            the path of a mesh file, a project or a drawing.
         name: name of a new document; by default that of the file.
         corner_angle: degrees by which the boundary of a mesh file or drawing must turn at a
             corner; None for the default, 0.01.
@@ -67,6 +72,9 @@ def resolve(
             for all of them if they touch.
         gap: width of gaps of a drawing that are closed, in its units; None for 0.001 of its size.
         fit: ``"arcs"`` or ``"splines"`` that are to be found in polylines of a drawing.
+        part: name or number of the only part of a mesh file that is to be read: a zone, piece or
+            instance, or a connected component.
+        to_quads: make quads of the triangles of a mesh file: in pairs, and what is left by a split.
 
     Returns a domain for a gallery shape, a drawing, a polygon and a domain, else a document.
 
@@ -79,7 +87,9 @@ def resolve(
     if isinstance(source, HalfEdgeMesh):
         return Document(source, name)
     if names_file(source):
-        found = document_file.read(Path(source), corner_angle, curve_step, region, gap, fit)
+        found = document_file.read(
+            Path(source), corner_angle, curve_step, region, gap, fit, part, to_quads
+        )
         return _opened(found, name) if isinstance(found, DocumentState) else found
     from meshwright_core.domains import gallery
     from meshwright_core.domains.domain import Domain
@@ -88,6 +98,11 @@ def resolve(
         return gallery.shape(source)
     if isinstance(source, Domain):
         return source
+    from meshwright_core.io.objects import incoming
+
+    angle = CORNER_ANGLE if corner_angle is None else corner_angle
+    if (foreign := incoming.taken(source, angle)) is not None:
+        return foreign if isinstance(foreign, Domain) else Document(foreign, name)
     if isinstance(source, np.ndarray | list | tuple):
         return Domain(source)
     if not hasattr(source, "mesh"):
@@ -104,22 +119,28 @@ def mesh(
     max_edge: float | None = None,
     min_angle: float | None = None,
     seed: int = 0,
+    part: str | None = None,
+    to_quads: bool = False,
 ) -> HalfEdgeMesh:
     """A new mesh of what ``source`` means.
 
     Args:
         source: the name of a gallery shape (``"star"``); a mesh file, a project, or a drawing; a
-            domain; the corners of a polygon (n, 2); or a mesh or document, whose mesh is copied.
+            domain; the corners of a polygon (n, 2); a dataset of PyVista, a Trimesh or Path2D of
+            trimesh, a meshio.Mesh, polygons of shapely, a pair of points and elements; or a mesh
+            or document, whose mesh is copied.
         kind: ``"tri"`` or ``"quad"`` (the default) for what has to be meshed; a mesh that is
             there already must be of this kind.
         max_edge: upper bound on the length of edges, in the units of the source.
         min_angle: lower bound, in degrees, that Triangle aims at for the angles.
         seed: 0 for the plain mesh; other values vary it where Triangle has a choice.
+        part: the only part of a mesh file that is read, as for :func:`resolve`.
+        to_quads: make quads of the triangles of a mesh file.
 
     Raises MeshError, one sentence, if the source means nothing or cannot be meshed.
     """
     _check_kind(kind)
-    found = resolve(source)
+    found = resolve(source, part=part, to_quads=to_quads)
     if not isinstance(found, Document):
         from meshwright_core.domains import meshing
 

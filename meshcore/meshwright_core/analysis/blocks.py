@@ -12,10 +12,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN, TWIN
+from meshwright_core.core.components import components
 from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
@@ -65,10 +64,7 @@ def block_of(mesh: HalfEdgeMesh, corners: bool = False) -> np.ndarray:
     edge = mesh.arrays.edge[: len(cut)]
     joined = np.flatnonzero((edge[:, ORIGIN] >= 0) & (edge[:, TWIN] >= 0) & ~cut)
     slots = len(cut) // 4
-    links = coo_matrix(
-        (np.ones(len(joined), bool), (joined // 4, edge[joined, TWIN] // 4)), (slots, slots)
-    )
-    label = connected_components(links, directed=False)[1][mesh.element_ids()]
+    label = components(joined // 4, edge[joined, TWIN] // 4, slots)[1][mesh.element_ids()]
     return np.unique(label, return_inverse=True)[1].ravel()
 
 

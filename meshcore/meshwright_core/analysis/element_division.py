@@ -10,10 +10,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from meshwright_core.core.arrays import TWIN
+from meshwright_core.core.components import components
 from meshwright_core.core.mesh_boundary import Seats
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.edge_parts import EdgeParts
@@ -23,8 +22,12 @@ from meshwright_core.mesh import HalfEdgeMesh
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from meshwright_core.geometry.size_field import SizeField
+
 MOST = 200_000
 """Elements that a division may lead to."""
+_SAMPLES = 33
+"""Places at which the size along an edge is looked up."""
 
 
 def chords(mesh: HalfEdgeMesh) -> np.ndarray:
@@ -39,9 +42,8 @@ def chords(mesh: HalfEdgeMesh) -> np.ndarray:
     inner = np.flatnonzero(twin >= 0)
     a = np.concatenate([np.arange(len(halfedges)), inner])
     b = np.concatenate([np.arange(len(halfedges)) ^ 2, row[twin[inner]]])
-    links = coo_matrix((np.ones(len(a)), (a, b)), (len(halfedges), len(halfedges)))
-    _, label = connected_components(links, directed=False)
-    found: np.ndarray = label.reshape(-1, 4)[:, :2].astype(np.int64)
+    _, label = components(a, b, len(halfedges))
+    found: np.ndarray = label.reshape(-1, 4)[:, :2].copy()
     return found
 
 
@@ -78,81 +80,165 @@ def divisions(mesh: HalfEdgeMesh, least: float) -> np.ndarray:
             raise MeshError(f"A shape of {least:g} takes more than {MOST:,} elements.")
 
 
-def divided(mesh: HalfEdgeMesh, pieces: NDArray[np.int64]) -> HalfEdgeMesh:
+def divided(
+    mesh: HalfEdgeMesh, pieces: NDArray[np.int64], field: SizeField | None = None
+) -> HalfEdgeMesh:
     """The mesh with chord c divided into pieces[c], in the order of :func:`chords`.
 
     New vertices lie on the true edges and inside by transfinite interpolation. s, s*, corners,
-    desired degrees, curves and regions stay.
+    desired degrees, curves and regions stay. field: edges are divided in proportion to the sizes
+    that it has along them; by default evenly.
     """
     crossing, ids, elements = chords(mesh), mesh.element_ids(), mesh.elements()
     live = mesh.vertices()
     row = np.full(mesh.slots, -1, np.int64)
     row[live] = np.arange(len(live))
-    points = [*mesh.points[live]]
-    curve, t = mesh.curve_ids()[live].tolist(), mesh.parameters()[live].tolist()
-    lengths = mesh.boundary_info.lengths()
-    edges: dict[tuple[int, int], list[int]] = {}
-    twin = mesh.arrays.edge[:, TWIN]
-
-    def edge(h: int, a: int, b: int, count: int) -> list[int]:
-        """Vertices of a divided edge from a to b, along half-edge h."""
-        if (a, b) not in edges:
-            shares = np.arange(1, count) / count
-            part = EdgeParts.of(mesh.arrays, np.array([h]), mesh.k)
-            on = int(part.curve[0])
-            places = part.points(np.zeros(count - 1, np.int64), shares)
-            made = []
-            for w, place in zip(shares, places, strict=True):
-                made.append(len(points))
-                points.append(place)
-                low, high = part.span[0]
-                along = low + w * (high - low)
-                curve.append(on)
-                t.append(float(along % lengths[on]) if on >= 0 else 0.0)
-            edges[a, b] = [int(row[a]), *made, int(row[b])]
-            edges[b, a] = edges[a, b][::-1]
-        return edges[a, b]
-
-    quads, regions = [], []
-    region = mesh.arrays.region[ids]
-    for e, corner in enumerate(elements.tolist()):
+    edges = _DividedEdges(mesh, pieces[crossing], len(live), field)
+    inner = (pieces[crossing] - 1).prod(axis=1)
+    points = np.zeros((edges.stop + int(inner.sum()), 3))
+    points[: len(live)], points[len(live) : edges.stop] = mesh.points[live], edges.points
+    quads, first = [], edges.stop
+    for e, corner in enumerate(row[elements].tolist()):
         n, m = (int(pieces[c]) for c in crossing[e])
-        h = 4 * int(ids[e])
-        sides = [edge(h + i, corner[i], corner[(i + 1) % 4], (n, m)[i % 2]) for i in range(4)]
         grid = np.full((m + 1, n + 1), -1, np.int64)
-        grid[0], grid[:, n], grid[m], grid[:, 0] = (
-            sides[0], sides[1], sides[2][::-1], sides[3][::-1],
-        )  # fmt: skip
-        for j in range(1, m):
-            for i in range(1, n):
-                u, v = i / n, j / m
-                at = [points[k] for k in (grid[0, i], grid[m, i], grid[j, 0], grid[j, n])]
-                c = [points[k] for k in (grid[0, 0], grid[0, n], grid[m, 0], grid[m, n])]
-                place = (1 - v) * at[0] + v * at[1] + (1 - u) * at[2] + u * at[3]
-                place = place - (1 - v) * ((1 - u) * c[0] + u * c[1])
-                place = place - v * ((1 - u) * c[2] + u * c[3])
-                grid[j, i] = len(points)
-                points.append(place)
-                curve.append(-1)
-                t.append(0.0)
+        share = []
+        for i in range(4):
+            made, shares = edges.along(4 * e + i)
+            side = np.concatenate([[corner[i]], made, [corner[(i + 1) % 4]]])
+            backwards = i >= 2
+            share.append(1.0 - shares[::-1] if backwards else shares)
+            _rim(grid, i)[:] = side[::-1] if backwards else side
+        grid[1:-1, 1:-1] = first + np.arange((m - 1) * (n - 1)).reshape(m - 1, n - 1)
+        first += (m - 1) * (n - 1)
+        _interpolate(points, grid, share)
         cells = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=-1)
         quads.append(cells.reshape(-1, 4))
-        regions += [int(region[e])] * (n * m)
-    made = np.vstack(quads)
-    geometric = np.zeros(len(points), bool)
-    geometric[: len(live)] = mesh.geometric()[live]
-    outer = np.zeros(len(points), bool)
-    for (a, b), chain in edges.items():
-        h = mesh.halfedge(a, b)
-        if h >= 0 and twin[h] < 0:
-            outer[chain] = True
-    desired = np.where(outer, 3, 4)
-    desired[: len(live)] = mesh.desired()[live]
+    count = len(points)
+    curve, t = np.full(count, -1, np.int64), np.zeros(count)
+    curve[: len(live)], t[: len(live)] = mesh.curve_ids()[live], mesh.parameters()[live]
+    curve[len(live) : edges.stop], t[len(live) : edges.stop] = edges.curve, edges.parameter
+    geometric, desired = np.zeros(count, bool), np.full(count, 4)
+    geometric[: len(live)], desired[: len(live)] = mesh.geometric()[live], mesh.desired()[live]
+    desired[len(live) : edges.stop][edges.outer] = 3
     return HalfEdgeMesh.from_elements(
-        np.array(points), made, geometric, desired,
-        boundary=mesh.boundary_info.renumbered(row),
-        seats=Seats(np.array(curve), np.array(t)), regions=np.array(regions),
+        points, np.vstack(quads), geometric, desired,
+        boundary=mesh.boundary_info.renumbered(row), seats=Seats(curve, t),
+        regions=np.repeat(mesh.arrays.region[ids], pieces[crossing].prod(axis=1)),
     )  # fmt: skip
+
+
+class _DividedEdges:
+    """The new vertices on all edges of a mesh, each edge once.
+
+    Args:
+        mesh: of quads.
+        pieces: (m, 2) of sides 0 and 2, and of sides 1 and 3, of each element.
+        first: number of the first new vertex.
+        field: see :func:`divided`.
+    """
+
+    def __init__(
+        self, mesh: HalfEdgeMesh, pieces: np.ndarray, first: int, field: SizeField | None
+    ) -> None:
+        halfedges = (4 * mesh.element_ids()[:, None] + np.arange(4)).ravel()
+        twin = mesh.arrays.edge[halfedges, TWIN]
+        low = np.where(twin >= 0, np.minimum(twin, halfedges), halfedges)
+        own, self._edge = np.unique(low, return_inverse=True)
+        self._forward = low == halfedges
+        number = np.zeros(len(own), np.int64)
+        number[self._edge] = np.tile(pieces, (1, 2)).ravel()
+        parts = EdgeParts.of(mesh.arrays, own, 4)
+        self._start = np.concatenate([[0], np.cumsum(number - 1)])
+        rows = np.repeat(np.arange(len(own)), number - 1)
+        step = np.arange(len(rows)) - self._start[rows] + 1
+        wanted = step / number[rows]
+        self._shares = wanted if field is None else _graded(parts, rows, wanted, field)
+        self._first, self.stop = first, first + len(rows)
+        self.points = parts.points(rows, self._shares)
+        self.curve = parts.curve[rows].astype(np.int64)
+        self.outer = (twin[np.searchsorted(halfedges, own)] < 0)[rows]
+        span = parts.span[rows]
+        t = span[:, 0] + self._shares * (span[:, 1] - span[:, 0])
+        lengths = np.append(mesh.boundary_info.lengths(), 1.0)
+        closed = np.append(mesh.boundary_info.curves.closed.astype(bool), False)
+        self.parameter = np.where(closed[self.curve], np.mod(t, lengths[self.curve]), t)
+        self.parameter[self.curve < 0] = 0.0
+
+    def along(self, place: int) -> tuple[np.ndarray, np.ndarray]:
+        """New vertices along side `place` (4 e + i for the e-th element), and the shares of the
+        side at which all its vertices lie, from 0 to 1.
+        """
+        edge = self._edge[place]
+        part = slice(self._start[edge], self._start[edge + 1])
+        made, shares = self._first + np.arange(part.start, part.stop), self._shares[part]
+        if not self._forward[place]:
+            made, shares = made[::-1], 1.0 - shares[::-1]
+        return made, np.concatenate([[0.0], shares, [1.0]])
+
+
+def _graded(parts: EdgeParts, rows: np.ndarray, wanted: np.ndarray, field: SizeField) -> np.ndarray:
+    """(p,) where edges `rows` (p,) are to be cut so that `wanted` (p,) of their length, measured
+    in sizes of the field, lies before.
+    """
+    used = np.unique(rows)
+    shares = wanted.copy()
+    if not len(used):
+        return shares
+    stops = np.linspace(0.0, 1.0, _SAMPLES)
+    grown = np.concatenate(
+        [np.zeros((len(used), 1)), np.cumsum(_pieces_wanted(parts, used, field), axis=1)], axis=1
+    )
+    grown /= grown[:, -1:]
+    for place, edge in enumerate(used.tolist()):
+        mine = slice(*np.searchsorted(rows, [edge, edge + 1]))
+        shares[mine] = np.interp(wanted[mine], grown[place], stops)
+    return shares
+
+
+def _pieces_wanted(parts: EdgeParts, edges: np.ndarray, field: SizeField) -> np.ndarray:
+    """(n, _SAMPLES - 1) how many pieces of the field's size each short part of an edge takes."""
+    w = np.linspace(0.0, 1.0, _SAMPLES)
+    at = parts.points(np.repeat(edges, _SAMPLES), np.tile(w, len(edges)))
+    at = at.reshape(len(edges), _SAMPLES, 3)
+    middle = 0.5 * (at[:, 1:] + at[:, :-1])
+    sizes = field.at(middle.reshape(-1, 3)).reshape(len(edges), -1)
+    found: np.ndarray = np.linalg.norm(np.diff(at, axis=1), axis=2) / sizes
+    return found
+
+
+def wanted_pieces(mesh: HalfEdgeMesh, field: SizeField) -> np.ndarray:
+    """(m, 4) how many pieces of the field's size each side of each element takes, real numbers."""
+    halfedges = (4 * mesh.element_ids()[:, None] + np.arange(4)).ravel()
+    parts = EdgeParts.of(mesh.arrays, halfedges, 4)
+    found = _pieces_wanted(parts, np.arange(len(halfedges)), field).sum(axis=1)
+    return np.maximum(found, 1e-9).reshape(-1, 4)
+
+
+def _rim(grid: np.ndarray, side: int) -> np.ndarray:
+    """A side of a grid, from left to right or from below."""
+    rim: np.ndarray = (grid[0], grid[:, -1], grid[-1], grid[:, 0])[side]
+    return rim
+
+
+def _interpolate(points: np.ndarray, grid: np.ndarray, share: list[np.ndarray]) -> None:
+    """Write the points inside a grid (m + 1, n + 1) by transfinite interpolation of its rim.
+
+    share: where the vertices of the four sides lie on them; between opposite sides the parameters
+    are interpolated linearly.
+    """
+    low, right, high, left = (one[1:-1] for one in share)
+    if not len(low) or not len(right):
+        return
+    across, up = (high - low)[None, :], (right - left)[:, None]
+    u = (low[None, :] + left[:, None] * across) / (1.0 - across * up)
+    v = (left[:, None] + u * up)[..., None]
+    u = u[..., None]
+    below, above = points[grid[0, 1:-1]][None], points[grid[-1, 1:-1]][None]
+    before, behind = points[grid[1:-1, 0]][:, None], points[grid[1:-1, -1]][:, None]
+    c = points[grid[[0, 0, -1, -1], [0, -1, 0, -1]]]
+    place = (1 - v) * below + v * above + (1 - u) * before + u * behind
+    place -= (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[2] + u * c[3])
+    points[grid[1:-1, 1:-1]] = place
 
 
 def divided_for_shape(mesh: HalfEdgeMesh, least: float) -> HalfEdgeMesh:

@@ -53,7 +53,7 @@ from meshwright_core.core.references import by_reference
 # columns of MeshArrays.edge
 ORIGIN, TWIN = 0, 1
 # columns of MeshArrays.vertex
-HALF, DEGREE, DESIRED, FLAGS, PLACE, MARK, CURVE = 0, 1, 2, 3, 4, 5, 6
+HALF, DEGREE, DESIRED, FLAGS, PLACE, MARK, CURVE, NAMING = 0, 1, 2, 3, 4, 5, 6, 7
 VERTEX_COLUMNS = 8  # 32 bytes: half a cache line
 # bits of vertex[:, FLAGS]
 GEOMETRIC, LOCKED = 1, 2
@@ -81,7 +81,7 @@ class MeshArrays(NamedTuple):
     """(H, 2) int32: origin, twin."""
     vertex: np.ndarray
     """(V, 8) int32: a half-edge, degree, desired degree, flags, place among the irregular, mark,
-    curve."""
+    curve; the last column is 0 but in row 0, where it is the number of the names in force."""
     points: np.ndarray
     """(V, 3) float64: coordinates."""
     irregular: np.ndarray

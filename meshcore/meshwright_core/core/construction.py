@@ -152,6 +152,21 @@ def boundary_chain(elements: np.ndarray, twin: np.ndarray) -> tuple[np.ndarray, 
     return flat[open_edges], flat[open_edges + 1 - k * ((open_edges + 1) % k == 0)]
 
 
+def counter_clockwise(points: np.ndarray, elements: np.ndarray) -> np.ndarray:
+    """The elements (m, k), each turned if the mesh lies in a plane z = const and is clockwise.
+
+    It is if the signed areas sum up to less than zero: with the boundary counter-clockwise they are
+    the area inside, whatever is inverted.
+    """
+    checked, corners = checked_input(points, elements)
+    places = checked[corners.ravel()]
+    if not is_flat(places):
+        return elements
+    x, y = (places[:, axis].reshape(corners.shape) - places[0, axis] for axis in (0, 1))
+    twice = (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()
+    return np.roll(elements[:, ::-1], 1, axis=1) if twice < 0.0 else elements
+
+
 def is_flat(points: np.ndarray) -> bool:
     """Whether points (n, 3) lie in a plane z = const."""
     z = points[:, 2]

@@ -93,7 +93,7 @@ def corners(found: Sectors, m: MeshArrays, boundary: MeshBoundary, angle: float)
     """(slots of capacity,) the vertices that belong to the geometry.
 
     Those where a curve turns by more than `angle` degrees, where curves meet, and the anchors:
-    joints of a drawn line with another kind of piece.
+    joints of a drawn line with another kind of piece, and of two pieces with different names.
     """
     count = np.bincount(found.vertex, minlength=len(m.vertex))
     corner = count > np.where(_on_boundary(found, len(m.vertex)), 1, 2)
@@ -106,7 +106,7 @@ def corners(found: Sectors, m: MeshArrays, boundary: MeshBoundary, angle: float)
         joints = [
             one.start
             for one, other in zip(pieces, before, strict=True)
-            if (one.kind == "line") != (other.kind == "line")
+            if (one.kind == "line") != (other.kind == "line") or one.name != other.name
         ]
         on_it = np.flatnonzero(m.vertex[:, CURVE] == number)
         for t in joints:

@@ -8,13 +8,14 @@ polylines.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from meshwright_core.core.composite_curves import SHORTEST, Curves, no_curves, polyline_curves
+from meshwright_core.core.planes import Plane
 
 _STRAIGHT = 1e-12
 """Sine of a turn below which a point of a polyline lies on a straight line."""
@@ -33,7 +34,7 @@ class CurvePiece:
     kind: str
     """Of a curve: "line", "arc", "ellipse", "spline" or "polyline"."""
     name: str = ""
-    """"" where it has none."""
+    """"" where it has none; see :mod:`meshwright_core.core.names`."""
     data: dict[str, object] = field(default_factory=dict)
     """The numbers that define it, as JSON can hold them."""
 
@@ -67,6 +68,10 @@ class MeshBoundary:
     """The name of each region, "" where it has none."""
     pieces: tuple[tuple[CurvePiece, ...], ...] = ()
     """The drawn primitives of each curve, in order; () where they are not known."""
+    tags: Mapping[tuple[int, str], int] = field(default_factory=dict)
+    """The numbers that files give to groups, by dimension (1 sides, 2 regions) and name."""
+    plane: Plane | None = None
+    """The plane in space whose coordinates those of the mesh are; None for space itself."""
 
     @property
     def count(self) -> int:

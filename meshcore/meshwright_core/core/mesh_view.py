@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshwright_core.core import circulators, construction, validation
+from meshwright_core.core import circulators, construction, side_names, validation
 from meshwright_core.core.arrays import (
     BOUNDARY_EDGES,
     CURVE,
@@ -18,6 +18,7 @@ from meshwright_core.core.arrays import (
     HALF,
     IRREGULAR,
     LOCKED,
+    NAMING,
     ORIGIN,
     SCORE,
     SIDES,
@@ -29,7 +30,10 @@ from meshwright_core.core.arrays import (
     halfedges_of,
 )
 from meshwright_core.core.composite_curves import place_all
+from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.core.mesh_boundary import Interface, MeshBoundary
+from meshwright_core.core.planes import Plane
+from meshwright_core.core.vertex_flags import PINNED
 
 _KINDS = {3: "tri", 4: "quad"}
 
@@ -49,7 +53,23 @@ class MeshView:
         """Sides of an element, 3 or 4."""
 
     def _take_boundary(self, boundary: MeshBoundary) -> None:
-        self._boundary = boundary
+        self._namings = {int(self._arrays.vertex[0, NAMING]): boundary}
+
+    @property
+    def _boundary(self) -> MeshBoundary:
+        return self._namings[int(self._arrays.vertex[0, NAMING])]
+
+    @property
+    def plane(self) -> Plane | None:
+        """The plane in space whose coordinates those of the mesh are; None for space itself."""
+        return self._boundary.plane
+
+    def points_in_space(self) -> np.ndarray:
+        """(slots, 3) the coordinates of all vertices in space, where the mesh's own are those of
+        a plane.
+        """
+        plane = self._boundary.plane
+        return self.points.copy() if plane is None else plane.in_space(self.points)
 
     @property
     def boundary_info(self) -> MeshBoundary:
@@ -73,6 +93,40 @@ class MeshView:
     def regions(self) -> np.ndarray:
         """(m,) the region of each live element, in the order of :meth:`element_ids`."""
         return self._arrays.region[self.element_ids()]
+
+    @property
+    def namings(self) -> dict[int, MeshBoundary]:
+        """All names that this mesh has had, with its curves, by their number in the history."""
+        return dict(self._namings)
+
+    @property
+    def naming(self) -> int:
+        """The number of the names in force, a key of :attr:`namings`."""
+        return int(self._arrays.vertex[0, NAMING])
+
+    def sides(self) -> dict[str, np.ndarray]:
+        """The edges (n, 2) of each side by its name, as vertex ids; those without name under "".
+
+        Sides are on the boundary, where the mesh is on the left of an edge, and on interfaces.
+        """
+        edges = side_names.side_edges(self._arrays)
+        origin = self._arrays.edge[:, ORIGIN].astype(np.int64)
+        ahead = edges.halfedges - edges.halfedges % self.k + (edges.halfedges + 1) % self.k
+        ends = np.stack([origin[edges.halfedges], origin[ahead]], axis=1)
+        names = side_names.names_of(self._boundary, edges.curve, edges.span)
+        rows: dict[str, list[int]] = {}
+        for row, name in enumerate(names):
+            rows.setdefault(name, []).append(row)
+        return {name: ends[some] for name, some in rows.items()}
+
+    def side_ends(self) -> set[int]:
+        """The vertices where the name of a side changes; they are geometric."""
+        return set(side_names.changes(self._arrays, self._boundary).tolist())
+
+    def side_of(self, h: int) -> str:
+        """The name of the side that half-edge h lies on, "" for none."""
+        curve, span = edge_places(self._arrays, np.array([h]), self.k)
+        return side_names.names_of(self._boundary, curve, span)[0]
 
     def curve_ids(self) -> np.ndarray:
         """(slots,) the curve that each vertex lies on, -1 for none."""
@@ -202,6 +256,10 @@ class MeshView:
     def geometric(self) -> np.ndarray:
         """(slots,) whether a vertex is part of the geometry: it neither moves nor vanishes."""
         return (self._arrays.vertex[: self.slots, FLAGS] & GEOMETRIC) > 0
+
+    def pinned(self) -> np.ndarray:
+        """(slots,) whether the user has put a vertex where it is: smoothing does not move it."""
+        return (self._arrays.vertex[: self.slots, FLAGS] & PINNED) > 0
 
     def locked(self) -> np.ndarray:
         """(slots,) whether the user has locked a vertex: it neither moves nor vanishes."""

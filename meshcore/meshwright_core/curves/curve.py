@@ -56,13 +56,16 @@ class Curve:
         spans: (d + 1, 4) homogeneous control points of each rational Bezier span.
     """
 
-    def __init__(self, kind: str, data: dict[str, Any], spans: list[Array]) -> None:
-        """For the class methods below."""
+    def __init__(
+        self, kind: str, data: dict[str, Any], spans: list[Array], lengths: Array | None = None
+    ) -> None:
+        """For the class methods below. `lengths` (s,) of the spans, where they are known."""
         if not spans or not np.isfinite(np.concatenate(spans)).all():
             raise MeshError(f"a curve ({kind}) has a number that is not finite, or no length")
         for span in spans:
             span.flags.writeable = False
         self.kind, self.data, self.spans = kind, data, spans
+        self._lengths = span_lengths(spans) if lengths is None else lengths
         if not self.length > 0.0:
             raise MeshError(f"a curve ({kind}) has no length")
 
@@ -72,7 +75,7 @@ class Curve:
     def line(cls, a: ArrayLike, b: ArrayLike) -> Curve:
         """The segment from a (2,) to b (2,)."""
         ends = np.array([a, b], np.float64)
-        return cls("line", {"points": ends}, [segment(*ends)])
+        return cls("line", {"points": ends}, [segment(*ends)], _distances(ends))
 
     @classmethod
     def polyline(cls, points: ArrayLike) -> Curve:
@@ -83,7 +86,7 @@ class Curve:
         if len(corners) == 2:
             return cls.line(*corners)
         spans = [segment(a, b) for a, b in pairwise(corners)]
-        return cls("polyline", {"points": corners}, spans)
+        return cls("polyline", {"points": corners}, spans, _distances(corners))
 
     @classmethod
     def arc(cls, centre: ArrayLike, radius: float, start: float, sweep: float) -> Curve:
@@ -97,7 +100,8 @@ class Curve:
         sweep = whole_turn(sweep)
         spans = bezier_spans.circle_spans(middle, float(radius), float(start), sweep)
         data = {"centre": middle, "radius": float(radius), "start": float(start), "sweep": sweep}
-        return cls("arc", data, spans)
+        lengths = np.full(len(spans), float(radius) * abs(sweep) / len(spans))
+        return cls("arc", data, spans, lengths)
 
     @classmethod
     def arc_by_bulge(cls, a: ArrayLike, b: ArrayLike, bulge: float) -> Curve:
@@ -225,12 +229,11 @@ class Curve:
     @cached_property
     def flat(self) -> Curves:
         """The curve as arrays for compiled kernels; curve 0."""
-        stop = np.cumsum(span_lengths(self.spans))
         return Curves(
             control=np.concatenate(self.spans),
-            first_control=np.cumsum([0, *map(len, self.spans)]).astype(np.int64),
-            start=np.concatenate([[0.0], stop[:-1]]),
-            stop=stop,
+            first_control=np.cumsum([0, *map(len, self.spans)]),
+            start=self.stops[:-1].copy(),
+            stop=self.stops[1:].copy(),
             first_span=np.array([0, len(self.spans)]),
             closed=np.array([self.closed]),
         )
@@ -240,30 +243,34 @@ class Curve:
         """Whether it ends exactly where it begins."""
         return bool((self.start == self.end).all())
 
-    @property
+    @cached_property
     def start(self) -> Array:
-        """(2,) its first point."""
-        return self.spans[0][0, :2] / self.spans[0][0, 3]
+        """(2,) its first point, read-only."""
+        return _point_of(self.spans[0][0])
 
-    @property
+    @cached_property
     def end(self) -> Array:
-        """(2,) its last point."""
-        return self.spans[-1][-1, :2] / self.spans[-1][-1, 3]
+        """(2,) its last point, read-only."""
+        return _point_of(self.spans[-1][-1])
 
     @cached_property
     def stops(self) -> Array:
-        """(s + 1,) parameters where the spans begin and end."""
-        return np.append(self.flat.start, self.flat.stop[-1])
+        """(s + 1,) parameters where the spans begin and end, read-only."""
+        found = np.zeros(len(self.spans) + 1)
+        np.cumsum(self._lengths, out=found[1:])
+        found.flags.writeable = False
+        return found
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Its arc length, the largest parameter."""
-        return float(self.flat.stop[-1])
+        return float(self.stops[-1])
 
     @cached_property
     def box(self) -> Array:
         """(2, 2) lower and upper corner of a box around the control points: not always tight."""
-        points = np.concatenate([span[:, :2] / span[:, 3:] for span in self.spans])
+        control = np.concatenate(self.spans)
+        points = control[:, :2] / control[:, 3:]
         return np.array([points.min(axis=0), points.max(axis=0)])
 
     @cached_property
@@ -343,7 +350,12 @@ class Curve:
 
     @cached_property
     def _own_area(self) -> float:
-        """:meth:`area_about` its start."""
+        """:meth:`area_about` its start; of arcs, unless all but straight, in closed form."""
+        if self.kind == "line":
+            return 0.0
+        if self.kind == "arc" and abs(self.data["sweep"]) > _FLAT:
+            (x, y), (dx, dy) = self.data["centre"] - self.start, self.end - self.start
+            return 0.5 * float(self.data["radius"] ** 2 * self.data["sweep"] + x * dy - y * dx)
         total = 0.0
         for degree in {len(span) - 1 for span in self.spans}:
             spans = np.stack([span for span in self.spans if len(span) == degree + 1])
@@ -397,8 +409,11 @@ class Curve:
             data["control"] = data["control"][::-1].copy()
             data["knots"] = (knots[0] + knots[-1]) - knots[::-1]
             data["weights"] = None if weights is None else weights[::-1].copy()
-        found = Curve(self.kind, data, [span[::-1].copy() for span in reversed(self.spans)])
-        if "_own_area" in self.__dict__:
+        spans = [span[::-1].copy() for span in reversed(self.spans)]
+        found = Curve(self.kind, data, spans, self._lengths[::-1])
+        known = self.__dict__
+        found.__dict__.update({name: known[name] for name in ("box", "straight") if name in known})
+        if "_own_area" in known:
             found.__dict__["_own_area"] = -self._own_area
         return found
 
@@ -540,6 +555,19 @@ def _at_nodes(spans: Array) -> tuple[Array, Array]:
         level = [(1.0 - u) * a + u * b for a, b in pairwise(level)]
     slope = (spans.shape[1] - 1) * (level[1] - level[0])
     return (1.0 - u) * level[0] + u * level[1], np.broadcast_to(slope, (len(spans), len(u), 3))
+
+
+def _point_of(control: Array) -> Array:
+    """The place (2,) of a homogeneous control point, read-only."""
+    place: Array = control[:2] / control[3]
+    place.flags.writeable = False
+    return place
+
+
+def _distances(points: Array) -> Array:
+    """(n - 1,) distances between each two points of (n, 2) that follow each other."""
+    found: Array = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return found
 
 
 def _extent(span: Array) -> float:

@@ -168,14 +168,14 @@ class _Outline:
     def _fine(self) -> bool:
         """Whether no two sides come too near to each other, and no corner is too sharp."""
         curves = self.curves()
-        ends = [end_directions(curve) for curve in curves]
+        ends = list(end_directions(curves))
         for i, (come, go) in enumerate(zip(ends, [*ends[1:], ends[0]], strict=True)):
             turn = abs(turn_between(come[1], go[0]))
             if turn > 180.0 - SHARPEST:
                 return False
             if curves[i].length < 0.1 * self._unit:
                 return False
-        rows = [samples(curve, _TURN) for curve in curves]
+        rows = samples(curves, _TURN)
         ring = shapely.Polygon(np.concatenate([row[:-1] for row in rows]))
         if not ring.is_valid:
             return False
@@ -196,7 +196,7 @@ def _holes(
     outline: Sequence[Curve], unit: float, count: int, rng: np.random.Generator
 ) -> list[list[Curve]]:
     """Round holes, up to `count`, clear of the outline and of each other."""
-    ring = np.concatenate([samples(curve, _TURN)[:-1] for curve in outline])
+    ring = np.concatenate([row[:-1] for row in samples(outline, _TURN)])
     part = shapely.Polygon(ring)
     low, high = ring.min(axis=0), ring.max(axis=0)
     holes: list[list[Curve]] = []

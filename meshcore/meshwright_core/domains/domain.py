@@ -239,7 +239,7 @@ class Domain:
             return self
         if self.outlines > 1 or self.interfaces:
             raise MeshError("A domain of several parts or regions is no polygon.")
-        loops = [self.sides.polyline(side, turn_degrees) for side in self.sides.loop_sides]
+        loops = self.sides.side_polylines(turn_degrees)
         points, corners = [row for row, _ in loops], [flags for _, flags in loops]
         return Domain(points[0], points[1:], corners[0], corners[1:], self.name)
 

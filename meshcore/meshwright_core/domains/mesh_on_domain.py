@@ -55,7 +55,8 @@ def placed(mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:
 
     Elements and interior vertices keep their ids and places. Boundary vertices move to the nearest
     points of the curves, those nearest to corners to the corners; corners and the desired degrees
-    at the boundary become those of the domain.
+    at the boundary become those of the domain. Names of regions and sides that only the mesh has
+    stay.
 
     Args:
         mesh: in the plane; it is not changed.
@@ -65,10 +66,12 @@ def placed(mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:
         MeshError: one sentence: the loops are not as many, a corner has no vertex, or a vertex
             lies farther from the curves than a thousandth of the size and a quarter of its edges.
     """
-    return _Placement(mesh, _curved(domain)).mesh()
+    made = _Placement(mesh, with_curved_sides(domain)).mesh()
+    made.take_names(mesh)
+    return made
 
 
-def _curved(domain: Domain) -> Domain:
+def with_curved_sides(domain: Domain) -> Domain:
     """The domain with sides of curves: itself, or a polygon as polylines between its corners."""
     if domain.sides is not None:
         return domain
@@ -130,7 +133,7 @@ class _Placement:
             source.elements(),
             geometric,
             desired,
-            boundary=self._boundary,
+            boundary=replace(self._boundary, plane=source.plane),
             seats=(self._curve[:slots], self._parameter[:slots]),
             regions=regions,
         )

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry import movable_part
 from meshwright_core.geometry.coons import curved_shape
+from meshwright_core.geometry.curved_elements import curved_elements
+from meshwright_core.geometry.planes import plane_normal
+from meshwright_core.geometry.quality import reference_normals
 from meshwright_core.geometry.smoothing import element_shape
 
 if TYPE_CHECKING:
@@ -34,9 +36,19 @@ def _shapes(points, elements, curved, reference):
 
 
 def element_shapes(mesh: HalfEdgeMesh) -> np.ndarray:
-    """(m,) shape of each element, in the order of `mesh.elements()`; 0 or less where folded."""
-    part = movable_part.whole(mesh)
+    """(m,) shape of each element, in the order of `mesh.elements()`; 0 or less where folded.
+
+    Measured at the samples of :mod:`meshwright_core.geometry.quality`, so that an element is
+    folded here if and only if it counts as inverted there.
+    """
+    ids, elements = mesh.element_ids(), mesh.elements()
+    normal = plane_normal(mesh)
+    if normal is None:
+        reference, halfedges = reference_normals(mesh.points, elements), np.zeros(0, np.int64)
+    else:
+        reference, halfedges = np.tile(normal, (len(ids), 1)), None
+    curved = curved_elements(mesh, ids, elements, halfedges)
     found: np.ndarray = _shapes(
-        part.points, part.elements, part.curved, np.ascontiguousarray(part.references())
+        mesh.points, elements, curved, np.ascontiguousarray(reference, float)
     )
     return found

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from meshwright_core.core.arrays import CURVE, FLAGS, GEOMETRIC, HALF, LOCKED, TWIN
+from meshwright_core.core.arrays import CURVE, FLAGS, HALF, TWIN
 from meshwright_core.core.composite_curves import Curves, place_all
+from meshwright_core.core.vertex_flags import UNMOVED
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.coons import CurvedElements, curved_corners
 from meshwright_core.geometry.curved_elements import table
@@ -276,7 +277,7 @@ def _part(
     vertices, local = np.unique(corners, return_inverse=True)
     elements = local.reshape(corners.shape).astype(np.int64)
     rows = mesh.arrays.vertex[vertices]
-    movable = (rows[:, FLAGS] & (GEOMETRIC | LOCKED)) == 0
+    movable = (rows[:, FLAGS] & UNMOVED) == 0
     if wanted is not None:
         movable &= np.isin(vertices, wanted)
     seats = no_seats(len(vertices))

@@ -1,14 +1,15 @@
-"""Steps taken out of a journal and packed into half the memory, exact to the bit.
+"""Steps taken out of a journal and packed into a third of the memory, exact to the bit.
 
 A journal holds 16 bytes for each write. A packed step needs less: the place of a write and an
-integer take 4 bytes each, and a moved vertex is one place with its two coordinates (three off the
-plane z = 0); parameters on curves keep their 8 bytes. Done steps hold the values before them,
-undone steps the values after them, as in :mod:`meshwright_core.history.journal`; the order of
-writes is kept.
+integer take 4 bytes each before they are compressed, and a moved vertex is one place with its two
+coordinates (three off the plane z = 0). Coordinates, and parameters on curves, keep their 8 bytes:
+their last digits do not compress. Done steps hold the values before them, undone steps the values
+after them, as in :mod:`meshwright_core.history.journal`; the order of writes is kept.
 """
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -45,30 +46,64 @@ COLUMNS = COUNTERS + RESTORED
 class Steps:
     """Consecutive steps of one journal, first one first; made by :func:`pack`."""
 
-    rows: np.ndarray
-    """(n, 13) int32: number of journal entries, operation, half-edge, the restored counters."""
-    places: np.ndarray
-    """(w,) int32: what each write was to; a moved vertex is one write, to its x."""
-    whole: np.ndarray
-    """(i,) int32: values of the writes of integers, in order."""
+    count: int
+    """n, their number."""
+    packed_rows: bytes
+    packed_places: bytes
+    packed_whole: bytes
     coordinates: np.ndarray
     """(p, 2|3) float64: values of the moves, in order; without z where all z are 0."""
     parameters: np.ndarray
     """(t,) float64: values of the writes of parameters on curves, in order."""
 
+    @classmethod
+    def of(
+        cls,
+        rows: np.ndarray,
+        places: np.ndarray,
+        whole: np.ndarray,
+        coordinates: np.ndarray,
+        parameters: np.ndarray,
+    ) -> Steps:
+        """Steps of these arrays, as the attributes of the same names describe them."""
+        whole_numbers = (_compressed(rows), _compressed(places), _compressed(whole))
+        return cls(len(rows), *whole_numbers, coordinates, parameters)
+
+    @property
+    def rows(self) -> np.ndarray:
+        """(n, 13) int32: number of journal entries, operation, half-edge, restored counters."""
+        return _decompressed(self.packed_rows).reshape(-1, COLUMNS)
+
+    @property
+    def places(self) -> np.ndarray:
+        """(w,) int32: what each write was to; a moved vertex is one write, to its x."""
+        return _decompressed(self.packed_places)
+
+    @property
+    def whole(self) -> np.ndarray:
+        """(i,) int32: values of the writes of integers, in order."""
+        return _decompressed(self.packed_whole)
+
     def __len__(self) -> int:
-        return len(self.rows)
+        return self.count
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the arrays."""
-        return int(
-            self.rows.nbytes
-            + self.places.nbytes
-            + self.whole.nbytes
-            + self.coordinates.nbytes
-            + self.parameters.nbytes
-        )
+        """Bytes that they take."""
+        whole_numbers = len(self.packed_rows) + len(self.packed_places) + len(self.packed_whole)
+        return whole_numbers + int(self.coordinates.nbytes + self.parameters.nbytes)
+
+
+def _compressed(numbers: np.ndarray) -> bytes:
+    """The bytes of int32 numbers, lowest ones first and highest ones last, which repeat most."""
+    numbers = np.ascontiguousarray(numbers, dtype=np.int32)
+    return zlib.compress(numbers.view(np.uint8).reshape(-1, 4).T.tobytes(), level=1)
+
+
+def _decompressed(packed: bytes) -> np.ndarray:
+    """The numbers (n,) int32 that :func:`_compressed` was given."""
+    by_place = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(4, -1)
+    return np.ascontiguousarray(by_place.T).view(np.int32).ravel()
 
 
 def pack(rows: np.ndarray, entries: np.ndarray) -> Steps:
@@ -97,7 +132,7 @@ def pack(rows: np.ndarray, entries: np.ndarray) -> Steps:
     packed[:, OPERATION] = rows[:, STEP_OPERATION]
     packed[:, HALFEDGE] = rows[:, STEP_HALFEDGE]
     packed[:, COUNTERS:] = rows[:, STEP_COUNTERS:]
-    return Steps(
+    return Steps.of(
         packed,
         entries[first, 0].astype(np.int32),
         entries[single & ~slid, 1].astype(np.int32),
@@ -111,22 +146,22 @@ def unpack(steps: Steps, start: int = 0) -> tuple[np.ndarray, np.ndarray]:
 
     Raises MeshError if the arrays do not fit together.
     """
-    places = steps.places.astype(np.int64)
+    rows, places, whole = steps.rows, steps.places.astype(np.int64), steps.whole
     moved = places % WRITE_KINDS == POINT_WRITE
     slid = places % WRITE_KINDS == PARAMETER_WRITE
     width = np.where(moved, 3, 1)
     at = np.cumsum(width) - width
     total = int(width.sum())
-    lengths = steps.rows[:, LENGTH].astype(np.int64)
+    lengths = rows[:, LENGTH].astype(np.int64)
     moves, slides = int(moved.sum()), int(slid.sum())
     if (lengths < 0).any() or lengths.sum() != total:
         raise MeshError("a step of the history has another length than it states")
-    held = len(steps.coordinates), len(steps.parameters), len(steps.whole)
+    held = len(steps.coordinates), len(steps.parameters), len(whole)
     if held != (moves, slides, len(places) - moves - slides):
         raise MeshError("the history lacks some of its values")
     entries = np.zeros((total, 2), np.int64)
     entries[at[~moved], 0] = places[~moved]
-    entries[at[~(moved | slid)], 1] = steps.whole
+    entries[at[~(moved | slid)], 1] = whole
     entries[at[slid], 1] = np.ascontiguousarray(steps.parameters).view(np.int64)
     bits = np.ascontiguousarray(steps.coordinates).view(np.int64)
     for axis in range(3):
@@ -134,13 +169,13 @@ def unpack(steps: Steps, start: int = 0) -> tuple[np.ndarray, np.ndarray]:
         if axis < bits.shape[1]:
             entries[at[moved] + axis, 1] = bits[:, axis]
     stops = start + np.cumsum(lengths)
-    rows = np.empty((len(steps), STEP_COLUMNS), np.int64)
-    rows[:, STEP_START] = stops - lengths
-    rows[:, STEP_STOP] = stops
-    rows[:, STEP_OPERATION] = steps.rows[:, OPERATION]
-    rows[:, STEP_HALFEDGE] = steps.rows[:, HALFEDGE]
-    rows[:, STEP_COUNTERS:] = steps.rows[:, COUNTERS:]
-    return rows, entries
+    unpacked = np.empty((len(rows), STEP_COLUMNS), np.int64)
+    unpacked[:, STEP_START] = stops - lengths
+    unpacked[:, STEP_STOP] = stops
+    unpacked[:, STEP_OPERATION] = rows[:, OPERATION]
+    unpacked[:, STEP_HALFEDGE] = rows[:, HALFEDGE]
+    unpacked[:, STEP_COUNTERS:] = rows[:, COUNTERS:]
+    return unpacked, entries
 
 
 def last_done(m: MeshArrays) -> Steps:
@@ -172,7 +207,7 @@ def last_done(m: MeshArrays) -> Steps:
 def joined(parts: Sequence[Steps]) -> Steps:
     """All steps of `parts` as one."""
     deep = max((piece.coordinates.shape[1] for piece in parts), default=2)
-    return Steps(
+    return Steps.of(
         np.concatenate([np.zeros((0, COLUMNS), np.int32), *(piece.rows for piece in parts)]),
         np.concatenate([np.zeros(0, np.int32), *(piece.places for piece in parts)]),
         np.concatenate([np.zeros(0, np.int32), *(piece.whole for piece in parts)]),

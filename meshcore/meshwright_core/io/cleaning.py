@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwright_core.errors import MeshError
-from meshwright_core.io.text_formats import Cells, Content
+from meshwright_core.core.components import components
+from meshwright_core.errors import MeshError, MixedElementsError
+from meshwright_core.io.content import Cells, Content
 
-_IGNORED = frozenset({"vertex", "line", "line3", "line4"})
 _MOST_DEGREE = 10_000
 _FARTHEST = 1e100
 """Coordinates beyond this would overflow in areas."""
@@ -16,32 +16,17 @@ _FARTHEST = 1e100
 Elements = NDArray[np.int64]
 
 
-def single_kind(content: Content) -> Elements:
-    """Return the (m, 3 or 4) elements of a file that holds triangles or quads only.
-
-    Points and lines among the cells are left aside.
-
-    Raises:
-        MeshError: other cells, both kinds, or none.
-    """
-    cells = {kind: block for kind, block in content.cells.items() if kind not in _IGNORED}
-    others = sorted(cells.keys() - {"triangle", "quad"})
-    if others:
-        listed = " and ".join(f"{len(cells[kind])} of type {kind}" for kind in others)
-        raise MeshError(f"only triangles or quads can be edited, but it has cells: {listed}")
-    if len(cells) == 2:
-        raise MeshError(_mixed(content.points, cells))
-    if not cells:
-        raise MeshError("it holds no triangles and no quads")
-    ((_, elements),) = cells.items()
-    return np.asarray(elements, dtype=np.int64)
+def refuse_mixed(content: Content) -> None:
+    """MixedElementsError if a content holds both triangles and quads."""
+    if len(content.cells) > 1:
+        raise MixedElementsError(_mixed(content.points, content.cells))
 
 
 def _mixed(points: NDArray[np.float64], cells: Cells) -> str:
     few = min(cells, key=lambda kind: len(cells[kind]))
     message = (
         f"it mixes {_count(cells, 'triangle')} and {_count(cells, 'quad')}, "
-        "but a mesh here has one kind of element"
+        "but a mesh here has one kind of element: to_quads (--to-quads) makes quads of all"
     )
     corners = cells[few][0]
     if corners.min() >= 0 and corners.max() < len(points):
@@ -72,28 +57,6 @@ def refuse_strays(points: NDArray[np.float64], elements: Elements) -> None:
         raise MeshError(f"point {point}, of element {row}, is at ({shown}), not a finite place")
 
 
-def compacted(content: Content, elements: Elements) -> tuple[Content, Elements]:
-    """Drop the points that no element uses; their order stays. The cells are not kept."""
-    used = np.zeros(len(content.points), dtype=bool)
-    used[elements] = True
-    number = np.cumsum(used) - 1
-    data = {
-        name: np.asarray(values)[used]
-        for name, values in content.data.items()
-        if len(values) == len(used)
-    }
-    return Content(content.points[used], {}, data), number[elements]
-
-
-def merged(content: Content, elements: Elements) -> tuple[Content, Elements]:
-    """Merge points at exactly the same place; the first one stays, cells and data are dropped."""
-    points = content.points + 0.0  # so that -0.0 is 0.0
-    _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), dtype=np.int64)
-    rank[np.argsort(first)] = np.arange(len(first))
-    return Content(content.points[np.sort(first)], {}, {}), rank[inverse.ravel()][elements]
-
-
 def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:
     """Reverse elements so that neighbours agree, and plane meshes run counter-clockwise.
 
@@ -112,16 +75,12 @@ def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:
         x, y = points[elements][..., 0], points[elements][..., 1]
         weight = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1)
     if agree.all() and (weight >= 0.0).all():
-        return elements.copy()  # most files; scipy is then not imported, which takes long
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
+        return elements.copy()  # most files
     # node e stands for element e as it is, node m + e for e turned round
     cross = np.where(agree, 0, m)
     start = np.concatenate([one, one + m])
     end = np.concatenate([other + cross, other + m - cross])
-    links = coo_array((np.ones(len(start), dtype=np.int8), (start, end)), shape=(2 * m, 2 * m))
-    _, label = connected_components(links, directed=False)
+    _, label = components(start, end, 2 * m)
     same = np.flatnonzero(label[:m] == label[m:])
     if same.size:
         raise MeshError(
@@ -167,21 +126,6 @@ def desired(data: dict[str, NDArray[np.generic]], count: int) -> NDArray[np.int6
         return None
     whole = np.rint(values)
     return whole.astype(np.int64) if (whole == values).all() else None
-
-
-def regions(content: Content, count: int) -> NDArray[np.int64] | None:
-    """Return the region (count,) of each element of a file, numbered from 0 in ascending order.
-
-    None if they are not said, are no whole numbers, or are all the same.
-    """
-    kind = next((kind for kind in ("triangle", "quad") if kind in content.cells), "")
-    values = np.asarray((content.regions or {}).get(kind, ()))
-    if values.shape != (count,) or values.dtype.kind not in "biuf":
-        return None
-    if not (np.isfinite(values).all() and (values == np.rint(values)).all()):
-        return None
-    named, number = np.unique(values, return_inverse=True)
-    return number.ravel().astype(np.int64) if len(named) > 1 else None
 
 
 def _numbers(

@@ -17,7 +17,7 @@ def naming(path: Path) -> Iterator[None]:
     try:
         yield
     except MeshError as error:
-        raise MeshError(f"{path}: {str(error).rstrip('.')}.") from error
+        raise type(error)(f"{path}: {str(error).rstrip('.')}.") from error
     except FileNotFoundError as error:
         raise MeshError(f"{path}: there is no such file.") from error
     except OSError as error:

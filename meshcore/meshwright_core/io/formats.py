@@ -1,8 +1,8 @@
 """Mesh file formats by ending: reader, writer, and which elements and data they hold.
 
-meshio and trimesh are imported on first use. Their readers print, call ``sys.exit``, raise
-anything, and some never end on a file that is cut off; all that is contained here and comes out
-as a MeshError.
+The readers are our own (:mod:`meshwright_core.io.readers`) but for glTF and 3MF, which trimesh
+reads; docs/formats.md says why. meshio and trimesh are imported on first use. They print, call
+``sys.exit`` and raise anything; that is contained here and comes out as a MeshError.
 """
 
 from __future__ import annotations
@@ -21,16 +21,36 @@ from typing import Any
 import numpy as np
 
 from meshwright_core.errors import MeshError
-from meshwright_core.io import legacy_vtk, text_formats
-from meshwright_core.io.text_formats import Content
+from meshwright_core.io import text_formats
+from meshwright_core.io.content import Content
+from meshwright_core.io.readers import (
+    abaqus,
+    avs,
+    dolfin,
+    gmsh,
+    legacy_vtk,
+    medit,
+    nastran,
+    netgen,
+    ply,
+    su2,
+    surfaces,
+    tecplot,
+    vtk_xml,
+    xdmf,
+)
+from meshwright_core.io.readers.binary_scenes import require_bounded
+from meshwright_core.io.writers import abaqus as abaqus_writer
+from meshwright_core.io.writers import cell_arrays
+from meshwright_core.io.writers import gmsh as gmsh_writer
+from meshwright_core.io.writers import nastran as nastran_writer
+from meshwright_core.io.writers import su2 as su2_writer
+from meshwright_core.io.writers import xdmf as xdmf_writer
 
 SHAPES = (".dxf", ".svg", ".geojson", ".wkt", ".json", ".poly")
 """Endings of files that hold a shape; see :mod:`meshwright_core.io.drawings`."""
 DAT = ".dat"
 """The ending of meshes of Tecplot and of coordinates of airfoils, which hold a shape."""
-
-_ENDS = 1000
-"""Empty reads at the end of a file after which its reader is taken to be stuck."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +64,8 @@ class Format:
         kinds: the element types that it holds.
         data: whether it holds data by point.
         regions: whether it holds the region of each element.
+        sides: whether it holds sides.
+        numbers: whether sides and regions have numbers there, in place of names.
         merge: whether points at the same place are to be merged on reading.
         needs: packages that reading and writing take beyond our own dependencies.
     """
@@ -54,6 +76,8 @@ class Format:
     kinds: tuple[str, ...] = ("triangle", "quad")
     data: bool = False
     regions: bool = False
+    sides: bool = False
+    numbers: bool = False
     merge: bool = False
     needs: tuple[str, ...] = ()
 
@@ -79,32 +103,6 @@ def of(path: str | os.PathLike[str]) -> Format:
     return form
 
 
-class _Bounded(io.BufferedReader):
-    """A binary file that raises EOFError when it is read at its end repeatedly."""
-
-    _ends = 0
-
-    def readline(self, size: int | None = -1, /) -> bytes:
-        line = super().readline(-1 if size is None else size)
-        self._ends = 0 if line else self._ends + 1
-        if self._ends > _ENDS:
-            raise EOFError
-        return line
-
-
-class _BoundedText(io.TextIOWrapper):
-    """The same for text."""
-
-    _ends = 0
-
-    def readline(self, size: int = -1, /) -> str:  # type: ignore[override]
-        line = super().readline(size)
-        self._ends = 0 if line else self._ends + 1
-        if self._ends > _ENDS:
-            raise EOFError
-        return line
-
-
 @contextlib.contextmanager
 def contained() -> Any:
     """Capture the output of foreign code; turn its ``sys.exit`` and exceptions into MeshError.
@@ -125,6 +123,8 @@ def contained() -> Any:
             yield
     except (MeshError, OSError):
         raise
+    except MemoryError as error:
+        raise MeshError("it does not fit into memory") from error
     except (Exception, SystemExit) as error:
         raise MeshError(_why(error, printed.getvalue())) from error
 
@@ -139,76 +139,47 @@ def _why(error: BaseException, printed: str) -> str:
     return f"{damaged}: {text if len(text) <= 120 else text[:117] + '...'}"
 
 
-_REGIONS = ("region", "gmsh:physical")
-"""Data by cell in which files keep regions."""
-
-
-def _content(mesh: Any) -> Content:
-    cells: dict[str, Any] = {}
-    for block in mesh.cells:
-        cells.setdefault(block.type, []).append(np.asarray(block.data))
-    joined = {
-        kind: np.concatenate([np.atleast_2d(block) for block in blocks if len(block)])
-        for kind, blocks in cells.items()
-        if any(len(block) for block in blocks)
-    }
-    points = np.asarray(mesh.points, dtype=float)
-    return Content(points, joined, dict(mesh.point_data), _regions(mesh))
-
-
-def _regions(mesh: Any) -> dict[str, Any]:
-    """The region of each cell by type, from the first data that is one number for each cell."""
-    for name in _REGIONS:
-        found: dict[str, Any] = {}
-        for block, values in zip(mesh.cells, mesh.cell_data.get(name, ()), strict=False):
-            found.setdefault(block.type, []).append(np.asarray(values).ravel())
-        if found:
-            return {kind: np.concatenate(parts) for kind, parts in found.items()}
-    return {}
-
-
-def _meshio_path(module: str, **options: Any) -> tuple[Any, Any]:
-    """Return reader and writer of a meshio module that opens the path itself."""
-
-    def read(path: Path) -> Content:
-        return _content(importlib.import_module(f"meshio.{module}").read(str(path)))
+def _meshio_write(module: str, **options: Any) -> Callable[[Path, Content], None]:
+    """Return the writer of a meshio module."""
 
     def write(path: Path, content: Content) -> None:
         import meshio
 
-        cells = [(kind, block.astype(np.int32)) for kind, block in content.cells.items()]
-        regions = [region.astype(np.int32) for region in (content.regions or {}).values()]
-        cell_data = {"region": regions} if regions else None
+        named: dict[str, Any] = content.cells
+        cell_data: dict[str, Any] = {}
+        if module in _ARRAYS:
+            named, cell_data = cell_arrays.named_cells(content, quoted=module == "vtk")
+        elif module in _REFERENCES:
+            named, cell_data = cell_arrays.referenced_cells(content, *_REFERENCES[module])
+        cells = [(kind, block.astype(np.int32)) for kind, block in named.items()]
         mesh = meshio.Mesh(content.points, cells, point_data=content.data, cell_data=cell_data)
         importlib.import_module(f"meshio.{module}").write(str(path), mesh, **options)
 
-    return read, write
+    return write
 
 
-def _meshio_text(module: str, **options: Any) -> tuple[Any, Any]:
-    """Return reader and writer of a meshio module that reads from a text file."""
-
-    def read(path: Path) -> Content:
-        foreign = importlib.import_module(f"meshio.{module}")
-        with _BoundedText(io.FileIO(path), encoding="utf-8", errors="replace") as file:
-            return _content(foreign.read(file))
-
-    return read, _meshio_path(module, **options)[1]
-
-
-def _meshio_binary(module: str, reader: str = "read", **options: Any) -> tuple[Any, Any]:
-    """Return reader and writer of a meshio module that reads from a binary file."""
-
-    def read(path: Path) -> Content:
-        foreign = importlib.import_module(f"meshio.{module}")
-        with _Bounded(io.FileIO(path)) as file:
-            return _content(getattr(foreign, reader)(file))
-
-    return read, _meshio_path(module, **options)[1]
+NOT_UNDERSTOOD = "it is not understood"
+"""How the message on an error begins that a reader of our own has not foreseen."""
 
 
 def _own_read(read: Callable[[bytes], Content]) -> Callable[[Path], Content]:
-    return lambda path: read(path.read_bytes())
+    return _own_path(lambda path: read(path.read_bytes()))
+
+
+def _own_path(read: Callable[[Path], Content]) -> Callable[[Path], Content]:
+    def take(path: Path) -> Content:
+        try:
+            with np.errstate(all="ignore"):
+                return read(path)
+        except (MeshError, OSError):
+            raise
+        except MemoryError as error:
+            raise MeshError("it does not fit into memory") from error
+        except Exception as error:
+            text = " ".join(f"{type(error).__name__}: {error}".split())[:120]
+            raise MeshError(f"{NOT_UNDERSTOOD} ({text})") from error
+
+    return take
 
 
 def _own_write(write: Callable[[Content], str]) -> Callable[[Path, Content], None]:
@@ -218,11 +189,17 @@ def _own_write(write: Callable[[Content], str]) -> Callable[[Path, Content], Non
     return put
 
 
+write_msh_4 = _own_write(lambda content: gmsh_writer.write(content, "4.1"))
+"""Writes a Gmsh file of version 4.1."""
+
+
 def _trimesh(kind: str) -> tuple[Any, Any]:
     def read(path: Path) -> Content:
+        require_bounded(path, kind)
         import trimesh
 
-        mesh: Any = trimesh.load(path, file_type=kind, force="mesh", process=False)
+        with contained():
+            mesh: Any = trimesh.load(path, file_type=kind, force="mesh", process=False)
         cells = {"triangle": np.asarray(mesh.faces, dtype=np.int64)} if len(mesh.faces) else {}
         return Content(np.asarray(mesh.vertices, dtype=np.float64), cells, {})
 
@@ -237,55 +214,74 @@ def _trimesh(kind: str) -> tuple[Any, Any]:
     return read, write
 
 
-def _read_vtk(path: Path) -> Content:
-    """Read by meshio, with its data, or by our own reader where meshio supports less."""
-    import meshio
-
-    try:
-        return _content(meshio.vtk.read(str(path)))
-    except meshio.ReadError as error:
-        if not any(part in str(error) for part in ("POLYDATA", "Unknown section")):
-            raise
-        return legacy_vtk.read(path.read_bytes())
-
+_ARRAYS = ("vtk", "vtu")
+"""Modules that write data by cell under any name."""
+_REFERENCES = {"medit": ("medit:ref", True), "avsucd": ("avsucd:material", False)}
+"""Modules that write one number for each cell: the array that holds it, and whether edges have one
+too."""
 
 _TRIANGLES = ("triangle",)
-_OBJ = Format("OBJ", _own_read(text_formats.read_obj), _own_write(text_formats.write_obj))
-_OFF = Format("OFF", _own_read(text_formats.read_off), _own_write(text_formats.write_off))
+_OBJ = Format("OBJ", _own_read(surfaces.read_obj), _own_write(text_formats.write_obj))
+_OFF = Format("OFF", _own_read(surfaces.read_off), _own_write(text_formats.write_off))
 _STL = Format(
     "STL",
-    _own_read(text_formats.read_stl),
+    _own_read(surfaces.read_stl),
     _own_write(text_formats.write_stl),
     _TRIANGLES,
     merge=True,
 )
 _MSH = Format(
     "Gmsh",
-    _meshio_binary("gmsh.main", "read_buffer")[0],
-    _own_write(text_formats.write_msh),
+    _own_read(gmsh.read),
+    _own_write(gmsh_writer.write),
     data=True,
     regions=True,
+    sides=True,
 )
-_INP = Format("Abaqus", _meshio_text("abaqus")[0], _own_write(text_formats.write_inp))
-_SU2 = Format("SU2", _meshio_text("su2")[0], _own_write(text_formats.write_su2))
-_BDF = Format("Nastran", _meshio_text("nastran")[0], _own_write(text_formats.write_bdf))
-_DAT = Format("Tecplot", *_meshio_text("tecplot"), data=True)
-_XDMF = Format("XDMF", *_meshio_path("xdmf", data_format="XML"), data=True, needs=("h5py",))
+_VTK = Format(
+    "VTK", _own_read(legacy_vtk.read), _meshio_write("vtk"), data=True, regions=True, sides=True
+)
+_VTU = Format(
+    "VTU", _own_read(vtk_xml.read), _meshio_write("vtu"), data=True, regions=True, sides=True
+)
+_INP = Format(
+    "Abaqus", _own_read(abaqus.read), _own_write(abaqus_writer.write), regions=True, sides=True
+)
+_SU2 = Format("SU2", _own_read(su2.read), _own_write(su2_writer.write), sides=True)
+_BDF = Format("Nastran", _own_read(nastran.read), _own_write(nastran_writer.write), regions=True)
+_DAT = Format("Tecplot", _own_read(tecplot.read), _meshio_write("tecplot"), data=True)
+_PLY = Format("PLY", _own_read(ply.read), _meshio_write("ply"), data=True)
+_MESH = Format(
+    "Medit", _own_read(medit.read), _meshio_write("medit"), regions=True, sides=True, numbers=True
+)
+_AVS = Format(
+    "AVS-UCD", _own_read(avs.read), _meshio_write("avsucd"), data=True, regions=True, numbers=True
+)
+_XML = Format("DOLFIN XML", _own_read(dolfin.read), _meshio_write("dolfin"), kinds=_TRIANGLES)
+_VOL = Format("Netgen", _own_read(netgen.read), _meshio_write("netgen"))
+_XDMF = Format(
+    "XDMF",
+    _own_path(xdmf.read_path),
+    _own_write(xdmf_writer.write),
+    data=True,
+    regions=True,
+    sides=True,
+)
 
 FORMATS: dict[str, Format] = {
     ".msh": _MSH,
-    ".vtk": Format("VTK", _read_vtk, _meshio_path("vtk")[1], data=True, regions=True),
-    ".vtu": Format("VTU", *_meshio_path("vtu"), data=True, regions=True),
+    ".vtk": _VTK,
+    ".vtu": _VTU,
     ".inp": _INP,
     ".su2": _SU2,
     ".obj": _OBJ,
-    ".ply": Format("PLY", *_meshio_binary("ply"), data=True),
+    ".ply": _PLY,
     ".stl": _STL,
     ".off": _OFF,
-    ".mesh": Format("Medit", *_meshio_text("medit")),
-    ".avs": Format("AVS-UCD", *_meshio_text("avsucd"), data=True),
-    ".xml": Format("DOLFIN XML", *_meshio_path("dolfin"), kinds=_TRIANGLES),
-    ".vol": Format("Netgen", *_meshio_text("netgen")),
+    ".mesh": _MESH,
+    ".avs": _AVS,
+    ".xml": _XML,
+    ".vol": _VOL,
     ".bdf": _BDF,
     ".nas": _BDF,
     ".fem": _BDF,

@@ -10,7 +10,8 @@
 ``region``         (e,) the region of each element
 ``curves.*``       the composite curves: see :class:`meshwright_core.core.composite_curves.Curves`
 ``interface``      (n, 4) for each curve left and right region, start and end vertex; -1 for none
-``boundary``       JSON as UTF-8 bytes: names of regions, drawn pieces of the curves
+``boundary``       JSON as UTF-8 bytes: names of regions, drawn pieces of the curves, and the
+                   other names that steps of the history put in force
 ``points``         (v, 3) coordinates
 ``irregular``      (room,) the irregular vertices, with what is left behind them
 ``done.*``         steps that can be undone: see :class:`meshwright_core.history.packed_steps.Steps`
@@ -33,6 +34,7 @@ from meshwright_core.core.arrays import (
     CURVE,
     ELEMENT_SLOTS,
     MARK,
+    NAMING,
     RESTORED,
     VERTEX_SLOTS,
     allocate,
@@ -71,7 +73,7 @@ def to_arrays(mesh: HalfEdgeMesh) -> Arrays:
         "curve": mesh.curve_ids(),
         "parameter": mesh.parameters(),
         "region": m.region[: int(m.counters[ELEMENT_SLOTS])],
-        **boundary_arrays(mesh.boundary_info, mesh.seats_recorded),
+        **boundary_arrays(mesh.namings, mesh.naming, mesh.seats_recorded),
         **steps_arrays(done, "done"),
         **steps_arrays(undone, "undone"),
     }
@@ -110,11 +112,15 @@ def from_arrays(arrays: Mapping[str, np.ndarray]) -> HalfEdgeMesh:
     require_sound(m, k)
     old = _is_old(arrays)
     if old:
-        boundary, recorded = outline_boundary(arrays, vertices), False
+        namings, naming, recorded = {0: outline_boundary(arrays, vertices)}, 0, False
     else:
-        boundary, recorded = stored_boundary(arrays)
+        namings, naming, recorded = stored_boundary(arrays)
+    boundary = namings[naming]
+    m.vertex[0, NAMING] = naming
     m = m._replace(curves=boundary.curves, interface=boundary.table())
     mesh = HalfEdgeMesh(m, boundary, cap, seats_recorded=recorded)
+    for number, other in namings.items():
+        mesh.add_naming(number, other)
     if old:
         take_projected_seats(m, mesh.boundary_loops(), boundary)
     else:
@@ -155,7 +161,7 @@ def restored_steps(
         if (index > MOST).any():
             raise MeshError("a step of the history points beyond the mesh")
         places = index * np.int32(WRITE_KINDS) + kind
-    steps = Steps(rows, places, whole, coordinates, parameters)
+    steps = Steps.of(rows, places, whole, coordinates, parameters)
     m = mesh.arrays
-    require_within(steps, m)
+    require_within(steps, m, list(mesh.namings))
     return tuple(divided(steps, step_archive.PIECE))

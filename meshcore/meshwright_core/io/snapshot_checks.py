@@ -6,6 +6,8 @@ are checked, and no index is used before it is known to be in range.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from meshwright_core.core.arrays import (
@@ -19,10 +21,9 @@ from meshwright_core.core.arrays import (
     FLAGS,
     FREE_ELEMENT,
     FREE_VERTEX,
-    GEOMETRIC,
     HALF,
     IRREGULAR,
-    LOCKED,
+    NAMING,
     ORIGIN,
     PLACE,
     RESTORED,
@@ -35,6 +36,7 @@ from meshwright_core.core.arrays import (
     MeshArrays,
 )
 from meshwright_core.core.construction import halves_of, twins_of
+from meshwright_core.core.vertex_flags import UNMOVED
 from meshwright_core.errors import MeshError
 from meshwright_core.history.journal import (
     EDGE_WRITE,
@@ -113,7 +115,7 @@ def _check_vertices(
     _require((desired[live] >= 1).all(), "a desired degree is not positive")
     _require((desired[~live] == 0).all(), "a dead vertex has a desired degree")
     flags = m.vertex[:slots, FLAGS]
-    _require(((flags & ~(GEOMETRIC | LOCKED)) == 0).all(), "a vertex has unknown flags")
+    _require(((flags & ~UNMOVED) == 0).all(), "a vertex has unknown flags")
 
 
 def _check_scores(m: MeshArrays, elements: np.ndarray, twin: np.ndarray) -> None:
@@ -155,13 +157,13 @@ def _follow(at: int, ahead: np.ndarray, dead: np.ndarray) -> None:
     _require(at == -1, "its list of free places is wrong")
 
 
-def require_within(steps: Steps, m: MeshArrays) -> None:
+def require_within(steps: Steps, m: MeshArrays, namings: Sequence[int]) -> None:
     """Raise MeshError unless every write of the steps, done or undone, stays within the arrays and
-    puts there what may point no farther.
+    puts there what may point no farther. namings: the numbers of names that there are.
     """
     k, vertices, elements = int(m.counters[SIDES]), len(m.vertex), len(m.element_mark)
-    entries = unpack(steps)[1]
-    _require((steps.places >= 0).all(), "a step of the history writes nowhere")
+    entries, places = unpack(steps)[1], steps.places
+    _require((places >= 0).all(), "a step of the history writes nowhere")
     _require(np.isfinite(steps.coordinates).all(), "a coordinate of the history is not finite")
     _require(np.isfinite(steps.parameters).all(), "a parameter of the history is not finite")
     halfedges = k * elements
@@ -192,7 +194,7 @@ def require_within(steps: Steps, m: MeshArrays) -> None:
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, HALF, -1 - vertices, halfedges - 1),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, DEGREE, 0, vertices),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, DESIRED, 0, _MOST),
-        (VERTEX_WRITE, VERTEX_COLUMNS, vertices, FLAGS, 0, GEOMETRIC | LOCKED),
+        (VERTEX_WRITE, VERTEX_COLUMNS, vertices, FLAGS, 0, UNMOVED),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, PLACE, -1, vertices - 1),
         (VERTEX_WRITE, VERTEX_COLUMNS, vertices, CURVE, -1, len(m.interface) - 1),
         (LIST_WRITE, 1, vertices, 0, -1, vertices - 1),
@@ -200,6 +202,8 @@ def require_within(steps: Steps, m: MeshArrays) -> None:
     ):
         these = (written == form) & (index % width == column) & (index < width * length)
         good |= these & (value >= low) & (value <= high)
+    naming = (written == VERTEX_WRITE) & (index == NAMING)
+    good |= naming & np.isin(value, namings)
     _require(good.all(), "a step of the history points beyond the mesh")
-    first = steps.places[steps.places % WRITE_KINDS == POINT_WRITE] // WRITE_KINDS
+    first = places[places % WRITE_KINDS == POINT_WRITE] // WRITE_KINDS
     _require((first % 3 == 0).all(), "a move of the history begins in the middle")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from meshwright_core.core.arrays import END, LEFT, RIGHT, START
 from meshwright_core.core.composite_curves import Curves, polyline_curves
 from meshwright_core.core.mesh_boundary import CurvePiece, Interface, MeshBoundary
+from meshwright_core.core.planes import Plane
 from meshwright_core.errors import MeshError
 from meshwright_core.io.stored_arrays import Arrays, stored
 
@@ -24,14 +26,22 @@ _FIELDS: tuple[tuple[str, type, tuple[int, ...]], ...] = (
 )
 
 
-def boundary_arrays(boundary: MeshBoundary, recorded: bool) -> Arrays:
-    """The curves and what is known of them, and whether the history holds seats on them."""
+def boundary_arrays(namings: Mapping[int, MeshBoundary], naming: int, recorded: bool) -> Arrays:
+    """The curves and what is known of them, and whether the history holds seats on them.
+
+    Args:
+        namings: the names that the mesh has had, by number.
+        naming: the number of those in force.
+        recorded: whether the history holds seats.
+    """
+    boundary = namings[naming]
     known = {
         "recorded": recorded,
-        "regions": list(boundary.region_names),
-        "pieces": [
-            [[one.start, one.stop, one.kind, one.name, one.data] for one in pieces]
-            for pieces in boundary.pieces
+        **names_record(boundary),
+        **({"plane": boundary.plane} if boundary.plane is not None else {}),
+        "naming": naming,
+        "others": [
+            [number, names_record(other)] for number, other in namings.items() if number != naming
         ],
     }
     text = json.dumps(known, separators=(",", ":")).encode()
@@ -42,7 +52,39 @@ def boundary_arrays(boundary: MeshBoundary, recorded: bool) -> Arrays:
     }
 
 
-def stored_boundary(arrays: Mapping[str, np.ndarray]) -> tuple[MeshBoundary, bool]:
+def names_record(boundary: MeshBoundary) -> dict[str, Any]:
+    """The names of regions and sides, as JSON can hold them."""
+    return {
+        "regions": list(boundary.region_names),
+        "pieces": [
+            [[one.start, one.stop, one.kind, one.name, one.data] for one in pieces]
+            for pieces in boundary.pieces
+        ],
+        "tags": [[dimension, name, tag] for (dimension, name), tag in boundary.tags.items()],
+    }
+
+
+def stored_names(record: Any, boundary: MeshBoundary) -> MeshBoundary:
+    """The boundary with the names of a record, which may come from a damaged file.
+
+    Raises MeshError unless there is a name for each of its regions, and pieces of its curves.
+    """
+    try:
+        names = tuple(record["regions"])
+        pieces = tuple(tuple(map(_piece, some)) for some in record["pieces"])
+        tags = {(int(d), str(name)): int(tag) for d, name, tag in record.get("tags", ())}
+    except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
+        raise MeshError("its curves have wrong names") from error
+    regions = len(boundary.region_names) if boundary.region_names != ("",) else len(names)
+    sound = len(pieces) == boundary.count and len(names) == regions > 0
+    if not sound or not all(isinstance(name, str) for name in names):
+        raise MeshError("its curves have wrong names")
+    return replace(boundary, region_names=names, pieces=pieces, tags=tags)
+
+
+def stored_boundary(
+    arrays: Mapping[str, np.ndarray],
+) -> tuple[dict[int, MeshBoundary], int, bool]:
     """What :func:`boundary_arrays` stored; MeshError if it is not sound.
 
     That the vertices fit the curves, and the ends of interfaces are junctions, is not checked.
@@ -67,13 +109,30 @@ def stored_boundary(arrays: Mapping[str, np.ndarray]) -> tuple[MeshBoundary, boo
     text = stored(arrays, "boundary", np.uint8, (-1,)).tobytes()
     try:
         known = json.loads(text)
-        names, recorded = known["regions"], bool(known["recorded"])
-        pieces = tuple(tuple(map(_piece, some)) for some in known["pieces"])
-        if len(pieces) != count or not names or not all(isinstance(name, str) for name in names):
-            raise MeshError("its curves have wrong names")
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        recorded, naming = bool(known["recorded"]), int(known.get("naming", 0))
+        others = {int(number): record for number, record in known.get("others", ())}
+    except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
         raise MeshError("its curves have wrong names") from error
-    return MeshBoundary(curves, loops, tuple(interfaces), tuple(names), pieces), recorded
+    plain = MeshBoundary(curves, loops, tuple(interfaces), plane=_plane(known.get("plane")))
+    boundary = stored_names(known, plain)
+    namings = {naming: boundary}
+    namings.update({number: stored_names(one, boundary) for number, one in others.items()})
+    if not all(0 <= number < 2**31 for number in namings) or len(namings) != len(others) + 1:
+        raise MeshError("its curves have wrong names")
+    return namings, naming, recorded
+
+
+def _plane(record: Any) -> Plane | None:
+    if record is None:
+        return None
+    try:
+        origin, u, v = ((float(x), float(y), float(z)) for x, y, z in record)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise MeshError("its plane is not one") from error
+    plane = Plane(origin, u, v)
+    if not plane.sound:
+        raise MeshError("its plane is not one")
+    return plane
 
 
 def _piece(record: Any) -> CurvePiece:

@@ -1,4 +1,4 @@
-"""Text formats of meshes with readers and writers of our own: exact coordinates, and quads.
+"""Writers of surfaces: Wavefront OBJ, Object File Format, STL; exact coordinates, and quads.
 
 Each writer returns the text of the whole file. Where the format has comments the first lines
 count points and elements, so that a file that was cut off is noticed on reading.
@@ -7,31 +7,14 @@ count points and elements, so that a file that was cut off is noticed on reading
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshwright_core.errors import MeshError
-
-Cells = dict[str, NDArray[np.int64]]
-
-
-class Content(NamedTuple):
-    """What a mesh file holds: points (n, 2 or 3), cells by type, data by point, and the region of
-    each cell by type, where it is known.
-    """
-
-    points: NDArray[np.float64]
-    cells: Cells
-    data: dict[str, NDArray[np.generic]]
-    regions: dict[str, NDArray[np.generic]] | None = None
-
+from meshwright_core.io.content import Content
+from meshwright_core.io.writers import lines as form
 
 _COUNTS = re.compile(rb"Meshwright: (\d+) points, (\d+) elements")
 _COUNTED = 512
-_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
-_NAMES = {3: "triangle", 4: "quad"}
 
 
 def announced_counts(head: bytes) -> tuple[int, int] | None:
@@ -40,99 +23,28 @@ def announced_counts(head: bytes) -> tuple[int, int] | None:
     return (int(found[1]), int(found[2])) if found else None
 
 
-def read_obj(text: bytes) -> Content:
-    """Read the vertices and faces of a Wavefront OBJ file; textures, normals, lines are left."""
-    points: list[list[float]] = []
-    faces: dict[int, list[list[int]]] = {}
-    for number, line in enumerate(text.replace(b"\\\n", b" ").splitlines(), start=1):
-        words = line.split()
-        if not words or words[0] not in (b"v", b"f"):
-            continue
-        try:
-            if words[0] == b"v":
-                x, y, z = words[1:4]
-                points.append([float(x), float(y), float(z)])
-            else:
-                face = [int(word.partition(b"/")[0]) for word in words[1:]]
-                face = [i - 1 if i > 0 else len(points) + i for i in face]
-                faces.setdefault(len(face), []).append(face)
-        except ValueError as error:
-            raise MeshError(f"line {number} cannot be understood: {_shown(line)}") from error
-    return _content(points, faces)
-
-
-def read_off(text: bytes) -> Content:
-    """Read an Object File Format file, one point or face a line; colours are left."""
-    lines = [line.partition(b"#")[0].split() for line in text.splitlines()]
-    lines = [words for words in lines if words]
-    if not lines or lines[0][0] != b"OFF":
-        raise MeshError('it does not begin with "OFF"')
-    lines[0] = lines[0][1:]
-    if not lines[0]:
-        lines.pop(0)
-    faces: dict[int, list[list[int]]] = {}
-    try:
-        n, m = int(lines[0][0]), int(lines[0][1])
-        if len(lines) < 1 + n + m:
-            raise MeshError(f"it is cut off: {n} points and {m} faces are announced")
-        points = [[float(word) for word in words[:3]] for words in lines[1 : 1 + n]]
-        for words in lines[1 + n : 1 + n + m]:
-            k = int(words[0])
-            face = [int(word) for word in words[1 : 1 + k]]
-            if len(face) < k:
-                raise MeshError("it is cut off within a face")
-            faces.setdefault(k, []).append(face)
-    except (ValueError, IndexError) as error:
-        raise MeshError("a line holds something else than the numbers that belong there") from error
-    return _content(points, faces)
-
-
-def read_stl(data: bytes) -> Content:
-    """Read an STL file, binary or text: triangles without common points."""
-    count = int.from_bytes(data[80:84], "little")
-    if len(data) >= 84 and (len(data) == 84 + 50 * count or not data.startswith(b"solid")):
-        if len(data) < 84 + 50 * count:
-            raise MeshError(f"it is cut off: {count} triangles are announced")
-        facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
-        corners = np.frombuffer(data, facet, count, 84)["corners"].astype(float)
-    else:
-        if not data.lstrip().startswith(b"solid"):
-            raise MeshError("it is no STL file, neither text nor binary")
-        if data.rstrip().rpartition(b"\n")[2].split()[:1] != [b"endsolid"]:
-            raise MeshError('it is cut off: it does not end with "endsolid"')
-        try:
-            found = np.array(_VERTEX.findall(data)).astype(float)
-        except ValueError as error:
-            raise MeshError("a coordinate is not a number") from error
-        if len(found) != 3 * data.count(b"endfacet"):
-            raise MeshError("its facets do not have three corners each")
-        corners = found.reshape(-1, 3, 3)
-    index = np.arange(3 * len(corners)).reshape(-1, 3)
-    return Content(corners.reshape(-1, 3), {"triangle": index}, {})
-
-
 def write_obj(content: Content) -> str:
     """Return the content as a Wavefront OBJ file."""
-    _, elements = _block(content)
+    _, elements = form.block(content)
     lines = [f"# Meshwright: {len(content.points)} points, {len(elements)} elements"]
     lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in content.points.tolist()]
     lines += ["f " + " ".join(map(str, element)) for element in (elements + 1).tolist()]
-    return _text(lines)
+    return form.text(lines)
 
 
 def write_off(content: Content) -> str:
     """Return the content as an Object File Format file."""
-    _, elements = _block(content)
+    _, elements = form.block(content)
     lines = ["OFF", f"{len(content.points)} {len(elements)} 0"]
     lines += [f"{x!r} {y!r} {z!r}" for x, y, z in content.points.tolist()]
     head = f"{elements.shape[1]} "
     lines += [head + " ".join(map(str, element)) for element in elements.tolist()]
-    return _text(lines)
+    return form.text(lines)
 
 
 def write_stl(content: Content) -> str:
     """Return triangles as an STL text file, the normals by the right-hand rule."""
-    corners = content.points[_block(content)[1]]
+    corners = content.points[form.block(content)[1]]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
@@ -141,111 +53,4 @@ def write_stl(content: Content) -> str:
         lines += [f"facet normal {nx!r} {ny!r} {nz!r}", "outer loop"]
         lines += [f"vertex {x!r} {y!r} {z!r}" for x, y, z in triangle]
         lines += ["endloop", "endfacet"]
-    return _text([*lines, "endsolid meshwright"])
-
-
-def write_su2(content: Content) -> str:
-    """Return a mesh in the plane z = 0 as an SU2 file, its boundary as one marker."""
-    if content.points[:, 2].any():
-        raise MeshError("an SU2 file holds no surface out of the plane z = 0")
-    kind, elements = _block(content)
-    code = {"triangle": 5, "quad": 9}[kind]
-    rim = _rim(elements)
-    lines = [f"% Meshwright: {len(content.points)} points, {len(elements)} elements"]
-    lines += ["NDIME= 2", f"NELEM= {len(elements)}"]
-    lines += [
-        f"{code} {' '.join(map(str, nodes))} {i}" for i, nodes in enumerate(elements.tolist())
-    ]
-    lines += [f"NPOIN= {len(content.points)}"]
-    lines += [f"{x!r} {y!r} {i}" for i, (x, y, _) in enumerate(content.points.tolist())]
-    lines += ["NMARK= 1", "MARKER_TAG= 1", f"MARKER_ELEMS= {len(rim)}"]
-    lines += [f"3 {a} {b}" for a, b in rim.tolist()]
-    return _text(lines)
-
-
-def write_inp(content: Content) -> str:
-    """Return the content as an Abaqus input file of shell elements, S3 or S4."""
-    _, elements = _block(content)
-    lines = [f"** Meshwright: {len(content.points)} points, {len(elements)} elements", "*NODE"]
-    lines += [f"{i}, {x!r}, {y!r}, {z!r}" for i, (x, y, z) in _numbered(content.points)]
-    lines += [f"*ELEMENT, TYPE=S{elements.shape[1]}, ELSET=ELEMENTS"]
-    lines += [f"{i}, {', '.join(map(str, nodes))}" for i, nodes in _numbered(elements + 1)]
-    return _text(lines)
-
-
-def write_msh(content: Content) -> str:
-    """Return the content as a Gmsh 2.2 text file, with its data by node.
-
-    Regions are physical groups, numbered from 1.
-    """
-    kind, elements = _block(content)
-    groups = (content.regions or {}).get(kind, np.zeros(len(elements), np.int64)) + 1
-    code = {"triangle": 2, "quad": 3}[kind]
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", f"{len(content.points)}"]
-    lines += [f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in _numbered(content.points)]
-    lines += ["$EndNodes", "$Elements", f"{len(elements)}"]
-    tagged = np.column_stack([groups, groups, elements + 1])
-    lines += [f"{i} {code} 2 {' '.join(map(str, row))}" for i, row in _numbered(tagged)]
-    lines += ["$EndElements"]
-    for name, values in content.data.items():
-        lines += ["$NodeData", "1", f'"{name}"', "1", "0.0", "3", "0", "1", f"{len(values)}"]
-        lines += [f"{i} {value}" for i, value in _numbered(values)]
-        lines += ["$EndNodeData"]
-    return _text(lines)
-
-
-def write_bdf(content: Content) -> str:
-    """Return the content as a Nastran bulk data file, coordinates in fields of 16 characters."""
-    kind, elements = _block(content)
-    card = {"triangle": "CTRIA3", "quad": "CQUAD4"}[kind]
-    if max(len(content.points), len(elements)) > 99_999_999:
-        raise MeshError("a Nastran file numbers at most 99999999 points and elements")
-    lines = [f"$ Meshwright: {len(content.points)} points, {len(elements)} elements"]
-    lines += ["BEGIN BULK"]
-    for i, point in _numbered(content.points):
-        x, y, z = (_in_16(value) for value in point)
-        lines += [f"GRID*   {i:<16}{'':16}{x:>16}{y:>16}", f"*       {z:>16}"]
-    for i, nodes in _numbered(elements + 1):
-        lines.append(f"{card:<8}{i:<8}{1:<8}" + "".join(f"{node:<8}" for node in nodes))
-    return _text([*lines, "ENDDATA"])
-
-
-def _in_16(value: float) -> str:
-    """Return the number with as many digits as fit in 16 characters."""
-    for digits in range(17, 0, -1):
-        text = f"{value:#.{digits}g}".upper()
-        if len(text) <= 16:
-            return text
-    raise MeshError(f"the coordinate {value!r} does not fit in 16 characters")
-
-
-def _block(content: Content) -> tuple[str, NDArray[np.int64]]:
-    ((kind, elements),) = content.cells.items()
-    return kind, elements
-
-
-def _numbered(array: NDArray[np.generic]) -> enumerate[list[float]]:
-    return enumerate(array.tolist(), start=1)
-
-
-def _rim(elements: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the boundary edges, the elements on their left."""
-    ends = np.stack([elements, np.roll(elements, -1, axis=1)], axis=2).reshape(-1, 2)
-    _, where, times = np.unique(
-        np.sort(ends, axis=1), axis=0, return_index=True, return_counts=True
-    )
-    return ends[np.sort(where[times == 1])]
-
-
-def _content(points: list[list[float]], faces: dict[int, list[list[int]]]) -> Content:
-    cells = {_NAMES.get(k, "polygon"): np.array(f, dtype=np.int64) for k, f in faces.items()}
-    return Content(np.array(points, dtype=float).reshape(-1, 3), cells, {})
-
-
-def _text(lines: list[str]) -> str:
-    return "\n".join(lines) + "\n"
-
-
-def _shown(text: bytes) -> str:
-    shown = text[:60].decode("utf-8", "replace")
-    return repr(shown if len(text) <= 60 else shown[:57] + "...")
+    return form.text([*lines, "endsolid meshwright"])

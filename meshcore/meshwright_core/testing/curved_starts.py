@@ -119,27 +119,34 @@ def region_areas(mesh: HalfEdgeMesh) -> np.ndarray:
     """(r,) area of each region of a plane mesh, its sides along the curves between vertices."""
     halfedges = mesh.halfedges_of(mesh.element_ids()).ravel()
     curve, span = edge_places(mesh.arrays, halfedges, mesh.k)
+    curves, lengths = mesh.boundary_info.curves, mesh.boundary_info.lengths()
+    pieces: list[tuple[int, int, float, float]] = []  # region, curve, and a range within a span
+    regions = mesh.arrays.region[halfedges // mesh.k].tolist()
+    for region, number, (start, stop) in zip(regions, curve.tolist(), span.tolist(), strict=True):
+        if number < 0:
+            continue
+        first, last = curves.first_span[number], curves.first_span[number + 1]
+        ends, length = curves.start[first:last].tolist(), float(lengths[number])
+        low, high = min(start, stop), max(start, stop)
+        knots = (t for turn in (0.0, length) for t in (end + turn for end in ends))
+        cuts = [low, *sorted({t for t in knots if low < t < high}), high]
+        steps = pairwise(cuts if start < stop else cuts[::-1])
+        pieces += [(region, number, a, b) for a, b in steps]
     areas = np.zeros(len(mesh.region_names))
-    curves = mesh.boundary_info.curves
-    for h, number, (start, stop) in zip(halfedges, curve, span, strict=True):
-        if number >= 0:
-            first = curves.first_span[number]
-            ends = curves.start[first : curves.first_span[number + 1]]
-            areas[mesh.arrays.region[h // mesh.k]] += _swept(mesh, number, ends, start, stop)
+    if pieces:
+        of, which, begin, end = map(np.array, zip(*pieces, strict=True))
+        np.add.at(areas, of, _swept(mesh, which, begin, end))
     return areas
 
 
-def _swept(mesh: HalfEdgeMesh, number: int, ends: np.ndarray, start: float, stop: float) -> float:
-    """Half the integral of x dy - y dx along a curve from parameter `start` to `stop`."""
-    curves = mesh.boundary_info.curves
-    length = float(mesh.boundary_info.lengths()[number])
-    low, high = min(start, stop), max(start, stop)
-    knots = np.concatenate([ends, ends + length])
-    cuts = np.unique([low, high, *knots[(knots > low) & (knots < high)]])
-    total = 0.0
-    for a, b in pairwise(cuts):
-        t = 0.5 * (a + b) + 0.5 * (b - a) * _GAUSS_NODES
-        which = np.full(len(t), number)
-        p, d = place_all(curves, which, t), tangents(curves, which, t)
-        total += 0.25 * (b - a) * float(_GAUSS_WEIGHTS @ (p[:, 0] * d[:, 1] - p[:, 1] * d[:, 0]))
-    return total if stop > start else -total
+def _swept(mesh: HalfEdgeMesh, which: np.ndarray, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Half the integrals (n,) of x dy - y dx along the curves `which` (n,) from parameters `begin`
+    to `end` (n,), which lie in the same span.
+    """
+    half = 0.5 * (end - begin)
+    t = 0.5 * (begin + end)[:, None] + half[:, None] * _GAUSS_NODES
+    numbers = np.repeat(which, len(_GAUSS_NODES))
+    p = place_all(mesh.boundary_info.curves, numbers, t.ravel())
+    d = tangents(mesh.boundary_info.curves, numbers, t.ravel())
+    turning: np.ndarray = (p[:, 0] * d[:, 1] - p[:, 1] * d[:, 0]).reshape(t.shape)
+    return 0.5 * half * (turning @ _GAUSS_WEIGHTS)

@@ -1,14 +1,15 @@
-"""A naive reference implementation: a mesh as a list of faces, for tests and the fuzz benchmark.
+"""A naive reference implementation: a mesh as a set of faces, for tests and the fuzz benchmark.
 
-Every operation rewrites tuples of vertex ids directly, and the whole result is checked afterwards.
-It shares no code with the half-edge mesh; a half-edge is a pair of vertices (a, b).
+Faces are tuples of vertex ids, a half-edge is a pair of vertices (a, b), and all that is known of a
+mesh is kept in dictionaries of these. Nothing is shared with the half-edge mesh.
+:func:`meshwright_core.testing.face_list_rewrites.apply` changes a mesh by an operation.
 """
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from collections.abc import Sequence
-from itertools import pairwise
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
 
 Face = tuple[int, ...]
 Edge = tuple[int, int]
@@ -20,12 +21,36 @@ class Refused(Exception):
     """The operation would not leave a simple oriented manifold mesh, or deletes what must stay."""
 
 
+class Change(NamedTuple):
+    """What an operation has changed."""
+
+    removed: dict[Face, int]
+    """Faces with the regions that they had."""
+    added: dict[Face, int]
+    vertices: set[int]
+    """All vertices of these faces."""
+    edges: set[Edge]
+    """All edges of these faces, the smaller id first, and those whose range has changed."""
+
+
 class FaceList:
-    """A mesh of faces with the data of its vertices."""
+    """A mesh of faces with the data of its vertices, changed in place.
+
+    Attributes:
+        k: number of sides of each face.
+        regions: the region of each face; a face begins with its smallest vertex id.
+        left: the face on the left of each pair of vertices that it holds in this order.
+        desired: the desired degree of each vertex.
+        geometric, locked: vertices that must stay.
+        ranges: the range of each edge along a curve, which leads from the vertex with the smaller
+            parameter to the other.
+        degree: number of edges of each vertex.
+        edges, vertices: their numbers.
+    """
 
     def __init__(
         self,
-        faces: list[Face],
+        faces: Sequence[Face],
         desired: dict[int, int],
         geometric: set[int],
         locked: set[int] | None = None,
@@ -36,417 +61,287 @@ class FaceList:
 
         faces: counter-clockwise vertex ids, all of 3 or all of 4. regions: of each face. ranges:
         for each edge along a curve, from the vertex with the smaller parameter to the other.
+        Raises Refused where two faces are on the same side of an edge.
         """
-        self.regions = dict(zip(map(_turned, faces), regions or [0] * len(faces), strict=True))
         self.k = len(faces[0])
-        self._directed: dict[Edge, Face] | None = None
         self.desired = dict(desired)
         self.geometric = set(geometric)
         self.locked = set(locked or ())
+        self.regions: dict[Face, int] = {}
+        self.left: dict[Edge, Face] = {}
+        self.ranges: dict[Edge, Range] = {}
+        self.degree: dict[int, int] = defaultdict(int)
+        self.edges = self.vertices = 0
+        self._around: dict[int, set[Face]] = defaultdict(set)
+        self._open: dict[int, int] = defaultdict(int)  # boundary edges at each vertex
+        self._ranged: dict[int, set[Edge]] = defaultdict(set)  # edges along curves at each vertex
+        self._sizes: dict[int, int] = defaultdict(int)  # faces by region
+        self._several = len(set(regions or ())) > 1
+        self._log: list[tuple[Callable[..., None], tuple[object, ...]]] = []
+        self._faces_changed: list[tuple[Face, bool, int]] = []
+        self._ranges_changed: list[Edge] = []
+        for face, region in zip(faces, regions or [0] * len(faces), strict=True):
+            self._add(turned(face), region)
         if ranges is None:
-            ranges = {edge: (0, 0.0, 1.0) for edge in self.curve_edges()}
-        self.ranges = dict(ranges)
-
-    def replace(self, old: Sequence[Face], new: Sequence[Face], regions: Sequence[int]) -> None:
-        """Replace faces by others of the given regions; Refused if two would be equal."""
-        self._directed = None
-        for face in map(_turned, old):
-            self.regions.pop(face, None)
-        for face, region in zip(map(_turned, new), regions, strict=True):
-            if face in self.regions:
-                raise Refused("two equal faces")
-            self.regions[face] = region
+            ranges = {(a, b): (0, 0.0, 1.0) for a, b in self.left if (b, a) not in self.left}
+        for edge, place in ranges.items():
+            self._put_range(edge, place)
+        self.begin()
 
     @property
     def faces(self) -> set[Face]:
         """All faces, each begun with its smallest vertex id."""
         return set(self.regions)
 
-    def directed(self) -> dict[tuple[int, int], Face]:
-        """The face on the left of each pair of vertices."""
-        if self._directed is None:
-            self._directed = {(f[i - 1], f[i]): f for f in self.regions for i in range(self.k)}
-        return self._directed
+    def on_boundary(self, v: int) -> bool:
+        """Whether an edge of v has a face on one side only."""
+        return self._open[v] > 0
 
-    def degrees(self) -> dict[int, int]:
-        """Number of neighbours of each vertex."""
-        around: dict[int, set[int]] = defaultdict(set)
-        for a, b in self.directed():
-            around[a].add(b)
-            around[b].add(a)
-        return {v: len(others) for v, others in around.items()}
+    def on_curve(self, v: int) -> bool:
+        """Whether v lies on the boundary or on the interface of two regions."""
+        return bool(self._ranged[v])
 
-    def boundary(self) -> set[int]:
-        """Vertices on the boundary."""
-        directed = self.directed()
-        return {v for a, b in directed if (b, a) not in directed for v in (a, b)}
+    def faces_at(self, v: int) -> list[Face]:
+        """The faces with the vertex v."""
+        return list(self._around[v])
 
-    def curve_edges(self) -> set[Edge]:
-        """The edges on the boundary, one way, and those between two regions, both ways."""
-        directed = self.directed()
-        return {
-            (a, b)
-            for (a, b), f in directed.items()
-            if (b, a) not in directed or self.regions[directed[b, a]] != self.regions[f]
-        }
-
-    def on_curve(self) -> set[int]:
-        """Vertices on the boundary or on the interface of two regions."""
-        return {v for edge in self.ranges for v in edge}
-
-    def euler_of_regions(self) -> dict[int, int]:
-        """V - E + F of each region."""
-        vertices: dict[int, set[int]] = defaultdict(set)
-        edges: dict[int, set[frozenset[int]]] = defaultdict(set)
-        for f, region in self.regions.items():
-            vertices[region] |= set(f)
-            edges[region] |= {frozenset((f[i - 1], f[i])) for i in range(self.k)}
-        count = Counter(self.regions.values())
-        return {r: len(vertices[r]) - len(edges[r]) + count[r] for r in count}
+    def ranges_at(self, v: int) -> list[Edge]:
+        """The edges along curves with the vertex v."""
+        return list(self._ranged[v])
 
     def euler(self) -> int:
         """V - E + F."""
-        directed = self.directed()
-        edges = sum(a < b or (b, a) not in directed for a, b in directed)
-        return len({a for a, _ in directed}) - edges + len(self.regions)
+        return self.vertices - self.edges + len(self.regions)
 
     def delta_sum(self) -> int:
         """Sum of degree - desired degree."""
-        return sum(d - self.desired[v] for v, d in self.degrees().items())
+        return 2 * self.edges - sum(self.desired.values())
 
-    def after(self, operation: str, a: int, b: int, fresh: list[int]) -> FaceList:
-        """The mesh after `operation` on the half-edge a-b; Refused where it is not allowed.
+    # Changes, each noted so that it can be taken back
 
-        fresh: ids for new vertices in the order of their creation; further ones are generated.
+    def replace(self, old: Iterable[Face], new: Sequence[Face], regions: Sequence[int]) -> None:
+        """Replace faces by others of the given regions; Refused if two are on the same side of an
+        edge.
         """
-        result = FaceList(
-            list(self.regions),
-            self.desired,
-            self.geometric,
-            self.locked,
-            list(self.regions.values()),
-            self.ranges,
-        )
-        getattr(_Rewrite(result, fresh), operation)(a, b)
-        result._judge(self)
-        return result
+        for face in map(turned, old):
+            region = self.regions[face]
+            self._log.append((self._add, (face, region)))
+            self._faces_changed.append((face, False, region))
+            self._remove(face)
+        for face, region in zip(map(turned, new), regions, strict=True):
+            self._add(face, region)
+            self._log.append((self._remove, (face,)))
+            self._faces_changed.append((face, True, region))
 
-    def _judge(self, before: FaceList) -> None:
-        """Refuse unless this is a simple oriented manifold mesh of the same topology as
-        `before`.
+    def put_range(self, edge: Edge, place: Range) -> None:
+        """Give an edge a place on a curve, in place of the one that it has."""
+        if edge in self.ranges:
+            self.drop_range(edge)
+        self._put_range(edge, place)
+        self._note(self._drop_range, edge)
+        self._ranges_changed.append(edge)
+
+    def drop_range(self, edge: Edge) -> Range:
+        """Take its place on a curve from an edge; returns the place."""
+        place = self.ranges[edge]
+        self._note(self._put_range, edge, place)
+        self._ranges_changed.append(edge)
+        self._drop_range(edge)
+        return place
+
+    def add_vertex(self, v: int, desired: int) -> None:
+        """A new vertex, not yet in any face."""
+        self._note(self.desired.__delitem__, v)
+        self.desired[v] = desired
+
+    def drop_vertex(self, v: int) -> None:
+        """Forget a vertex, which is in no face any more."""
+        self._note(self.desired.__setitem__, v, self.desired.pop(v))
+
+    def _note(self, inverse: Callable[..., None], *arguments: object) -> None:
+        self._log.append((inverse, arguments))
+
+    def begin(self) -> None:
+        """From here on changes can be taken back."""
+        self._log.clear()
+        self._faces_changed.clear()
+        self._ranges_changed.clear()
+        self._before = (self.euler(), self._sizes.copy())
+
+    def take_back(self) -> None:
+        """Take back all changes since :meth:`begin`."""
+        for inverse, arguments in reversed(self._log):
+            inverse(*arguments)
+        self._log.clear()
+
+    def change(self) -> Change:
+        """What has changed since :meth:`begin`."""
+        removed: dict[Face, int] = {}
+        added: dict[Face, int] = {}
+        for face, there, region in self._faces_changed:
+            one, other = (added, removed) if there else (removed, added)
+            if other.get(face) == region:
+                del other[face]
+            else:
+                one[face] = region
+        edges = {(min(e), max(e)) for e in self._ranges_changed}
+        vertices: set[int] = set()
+        for face in (*removed, *added):
+            vertices.update(face)
+            v = face[-1]
+            for ahead in face:
+                edges.add((v, ahead) if v < ahead else (ahead, v))
+                v = ahead
+        return Change(removed, added, vertices, edges)
+
+    def _add(self, face: Face, region: int) -> None:
+        left = self.left
+        if len(set(face)) < self.k:
+            raise Refused("a face repeats a vertex")
+        a = face[-1]
+        for b in face:
+            if (a, b) in left:
+                raise Refused("two edges join the same vertices")
+            a = b
+        self.regions[face] = region
+        self._sizes[region] += 1
+        for b in face:
+            left[a, b] = face
+            if (b, a) in left:
+                self._open[a] -= 1
+                self._open[b] -= 1
+            else:
+                self._open[a] += 1
+                self._open[b] += 1
+                self.degree[a] += 1
+                self.degree[b] += 1
+                self.edges += 1
+            around = self._around[b]
+            self.vertices += not around
+            around.add(face)
+            a = b
+
+    def _remove(self, face: Face) -> None:
+        left = self.left
+        self._sizes[self.regions.pop(face)] -= 1
+        a = face[-1]
+        for b in face:
+            del left[a, b]
+            if (b, a) in left:
+                self._open[a] += 1
+                self._open[b] += 1
+            else:
+                self._open[a] -= 1
+                self._open[b] -= 1
+                self.degree[a] -= 1
+                self.degree[b] -= 1
+                self.edges -= 1
+            around = self._around[b]
+            around.remove(face)
+            self.vertices -= not around
+            a = b
+
+    def _put_range(self, edge: Edge, place: Range) -> None:
+        self.ranges[edge] = place
+        for v in edge:
+            self._ranged[v].add(edge)
+
+    def _drop_range(self, edge: Edge) -> None:
+        del self.ranges[edge]
+        for v in edge:
+            self._ranged[v].discard(edge)
+
+    # Whether the mesh is still one
+
+    def judge(self) -> Change:
+        """Refuse unless this is a simple oriented manifold mesh of the same topology as at
+        :meth:`begin`; returns what has changed since. What has not is not looked at again.
         """
-        seen: set[tuple[int, int]] = set()
-        links: dict[int, dict[int, int]] = defaultdict(dict)
-        for f in self.regions:
-            if len(set(f)) < self.k:
-                raise Refused("a face repeats a vertex")
-            last, v = f[-2], f[-1]
-            for ahead in f:
-                if (v, ahead) in seen:
-                    raise Refused("two edges join the same vertices")
-                seen.add((v, ahead))
-                links[v][ahead] = last
-                last, v = v, ahead
-        neighbours: dict[int, set[int]] = defaultdict(set)
-        for a, b in seen:
-            neighbours[a].add(b)
-            neighbours[b].add(a)
-        if set(self.desired) != set(links):
-            raise Refused("a vertex has no element")
-        for v, link in links.items():
-            ends = set(link) - set(link.values())
-            inside = not ends
-            if len(ends) > 1:
-                raise Refused("a pinched vertex")
-            at = next(iter(ends)) if ends else next(iter(link))
-            for _ in link:
-                at = link.get(at, -1)
-            if at == -1 or (inside and len(_orbit(link)) < len(link)):
-                raise Refused("a pinched vertex")
-            if inside and len(neighbours[v]) < (3 if self.k == 3 else 2):
-                raise Refused("an interior vertex of too low degree")
-        if self.euler() != before.euler():
+        change = self.change()
+        for v in change.vertices:
+            self._judge_vertex(v)
+        euler, sizes = self._before
+        if self.euler() != euler:
             raise Refused("edges were glued together")
-        several = len(set(before.regions.values())) > 1
-        if several and self.euler_of_regions() != before.euler_of_regions():
-            raise Refused("a region was deleted or torn")
-        along = self.curve_edges()
-        both_ways = sum((b, a) in along for a, b in along)
-        kept = all(edge in along and edge[::-1] not in self.ranges for edge in self.ranges)
-        if not kept or len(self.ranges) != len(along) - both_ways // 2:
+        if self._several:
+            if any((size > 0) != (sizes[r] > 0) for r, size in self._sizes.items()):
+                raise Refused("a region was deleted")
+            self._judge_regions(change)
+        for a, b in change.edges:
+            self._judge_edge(a, b)
+        return change
+
+    def _judge_vertex(self, v: int) -> None:
+        around = self._around[v]
+        if (v in self.desired) != bool(around):
+            raise Refused("a vertex has no element")
+        if not around:
+            return
+        link = {}
+        for face in around:
+            i = face.index(v)
+            link[face[i + 1 - self.k]] = face[i - 1]
+        starts = link.keys() - link.values()
+        if len(starts) > 1:
+            raise Refused("a pinched vertex")
+        inside = not starts
+        start = next(iter(link)) if inside else starts.pop()
+        at, count = link[start], 1
+        while at != start and at in link and count < len(link):
+            at, count = link[at], count + 1
+        if count < len(link):
+            raise Refused("a pinched vertex")
+        if inside and self.degree[v] < (3 if self.k == 3 else 2):
+            raise Refused("an interior vertex of too low degree")
+
+    def _judge_regions(self, change: Change) -> None:
+        """Refuse unless V - E + F of each region is what it was."""
+        regions, left = self.regions, self.left
+        were: dict[int | Edge, set[int]] = defaultdict(set)  # at vertices and edges
+        euler: dict[int, int] = defaultdict(int)
+        for face, region in change.removed.items():
+            euler[region] -= 1
+            a = face[-1]
+            for b in face:
+                were[b].add(region)
+                were[(a, b) if a < b else (b, a)].add(region)
+                a = b
+        for region in change.added.values():
+            euler[region] += 1
+        at: list[tuple[int | Edge, Iterable[Face], int]]
+        at = [(v, self._around[v], 1) for v in change.vertices]
+        for a, b in change.edges:
+            sides = [left[side] for side in ((a, b), (b, a)) if side in left]
+            at.append(((a, b), sides, -1))
+        for place, faces, sign in at:
+            was, now = were[place], set()
+            for face in faces:
+                region = regions[face]
+                now.add(region)
+                if face not in change.added:
+                    was.add(region)
+            if now != was:
+                for region in now - was:
+                    euler[region] += sign
+                for region in was - now:
+                    euler[region] -= sign
+        if any(euler.values()):
+            raise Refused("a region was torn")
+
+    def _judge_edge(self, a: int, b: int) -> None:
+        """Refuse unless the edge has one range if it lies along a curve, and else none."""
+        left, right = self.left.get((a, b)), self.left.get((b, a))
+        one, other = (a, b) in self.ranges, (b, a) in self.ranges
+        if left is None or right is None:
+            # the boundary's curve has the domain on its left
+            fits = one == (left is not None) and other == (right is not None)
+        else:
+            fits = one + other == (self.regions[left] != self.regions[right])
+        if not fits:
             raise Refused("an edge between two regions came or went")
 
 
-def _orbit(link: dict[int, int]) -> set[int]:
-    at = next(iter(link))
-    met = set()
-    while at not in met:
-        met.add(at)
-        at = link[at]
-    return met
-
-
-def _turned(face: Face) -> Face:
+def turned(face: Face) -> Face:
     """The face rotated to begin with its smallest vertex id."""
     i = face.index(min(face))
     return face[i:] + face[:i]
-
-
-class _Rewrite:
-    """The operations as the paper defines them, on a FaceList that may become invalid."""
-
-    def __init__(self, mesh: FaceList, fresh: list[int]) -> None:
-        self.mesh = mesh
-        self.fresh = list(fresh)
-        self.used = max(mesh.desired) + 1 + len(fresh)
-
-    def _new(self, boundary: bool) -> int:
-        v = self.fresh.pop(0) if self.fresh else self.used
-        self.used += 1
-        inside, straight = (6, 4) if self.mesh.k == 3 else (4, 3)
-        self.mesh.desired[v] = straight if boundary else inside
-        return v
-
-    def _left(self, a: int, b: int) -> Face:
-        """The face left of a-b, rotated to begin with a, b."""
-        face = self.mesh.directed()[a, b]
-        i = face.index(a)
-        return face[i:] + face[:i]
-
-    def _right(self, a: int, b: int) -> Face:
-        if (b, a) not in self.mesh.directed():
-            raise Refused("the edge lies on the boundary")
-        return self._left(b, a)
-
-    def _keep_interface(self, a: int, b: int) -> None:
-        if (a, b) in self.mesh.ranges or (b, a) in self.mesh.ranges:
-            raise Refused("the edge lies between two regions")
-
-    def _swap(
-        self, old: Sequence[Face], new: Sequence[Face], regions: Sequence[int] | None = None
-    ) -> None:
-        """Replace faces; the new ones get the region of the first old one unless it is given."""
-        if regions is None:
-            regions = [self.mesh.regions[_turned(old[0])]] * len(new)
-        self.mesh.replace(old, new, regions)
-
-    def _halve(self, a: int, b: int, v: int) -> None:
-        """Put v in the middle of the range of the edge a-b, if it has one."""
-        for x, y in ((a, b), (b, a)):
-            if (x, y) in self.mesh.ranges:
-                curve, start, stop = self.mesh.ranges.pop((x, y))
-                middle = 0.5 * (start + stop)
-                self.mesh.ranges[x, v] = (curve, start, middle)
-                self.mesh.ranges[v, y] = (curve, middle, stop)
-
-    def _close(self, loser: int, winner: int) -> None:
-        """Shrink the edge between them, if it has a range; the next one along the curve grows."""
-        ranges = self.mesh.ranges
-        for x, y in ((loser, winner), (winner, loser)):
-            if (x, y) not in ranges:
-                continue
-            curve, start, stop = ranges.pop((x, y))
-            for (u, v), (other, low, high) in list(ranges.items()):
-                if loser not in (u, v):
-                    continue
-                if other != curve:
-                    raise Refused("a junction would be deleted")
-                del ranges[u, v]
-                if loser == v:
-                    ranges[u, winner] = (curve, low, high + stop - start)
-                else:
-                    ranges[winner, v] = (curve, low - stop + start, high)
-
-    def _join(self, p: int, v: int, q: int) -> None:
-        """Join the ranges of p-v and v-q, or q-v and v-p, if they have some."""
-        for x, y in ((p, q), (q, p)):
-            if (x, v) in self.mesh.ranges:
-                curve, start, stop = self.mesh.ranges.pop((x, v))
-                if (v, y) not in self.mesh.ranges:
-                    raise Refused("the line leaves an interface")
-                _, low, high = self.mesh.ranges.pop((v, y))
-                self.mesh.ranges[x, y] = (curve, start, stop + high - low)
-
-    def _merge(self, a: int, b: int, gone: list[Face], *, along_boundary: bool = False) -> None:
-        """Merge vertices a and b, after removing the faces `gone`."""
-        mesh, boundary, curved = self.mesh, self.mesh.boundary(), self.mesh.on_curve()
-        along_curve = (a, b) in mesh.ranges or (b, a) in mesh.ranges
-        inside, straight = (6, 4) if mesh.k == 3 else (4, 3)
-
-        def rank(v: int) -> tuple[bool, bool, bool, bool]:
-            own = mesh.desired[v] != (straight if v in boundary else inside)
-            return v in mesh.geometric, v in curved, v in mesh.locked, own
-
-        winner, loser = (b, a) if rank(b) > rank(a) else (a, b)
-        if loser in mesh.geometric or loser in mesh.locked:
-            raise Refused("the loser must stay")
-        if mesh.desired[loser] != (straight if along_boundary else inside):
-            raise Refused("the loser has a desired degree of its own")
-        if not along_curve and loser in curved:
-            raise Refused("a vertex cannot leave its curve")
-        if not along_curve and winner in curved and loser in curved:
-            raise Refused("two curves cannot merge")
-        self._swap(gone, [], [])
-        touched = [f for f in mesh.regions if loser in f]
-        renamed = [tuple(winner if v == loser else v for v in f) for f in touched]
-        self._swap(touched, renamed, [mesh.regions[f] for f in touched])
-        self._close(loser, winner)
-        del mesh.desired[loser]
-
-    def flip(self, a: int, b: int) -> None:
-        left, right = self._left(a, b), self._right(a, b)
-        self._keep_interface(a, b)
-        c, d = left[2], right[2]
-        self._swap([left, right], [(d, c, a), (c, d, b)])
-
-    def split(self, a: int, b: int) -> None:
-        (self._split_edge if self.mesh.k == 3 else self._split_vertex)(a, b)
-
-    def _split_edge(self, a: int, b: int) -> None:
-        left = self._left(a, b)
-        c = left[2]
-        inside = (b, a) in self.mesh.directed()
-        v = self._new(boundary=not inside)
-        if inside:
-            right = self._right(a, b)
-            d = right[2]
-            self._swap([right], [(v, a, d), (b, v, d)])
-        self._swap([left], [(a, v, c), (v, b, c)])
-        self._halve(a, b, v)
-
-    def _split_vertex(self, a: int, b: int) -> None:
-        left, right = self._left(a, b), self._right(a, b)
-        self._keep_interface(a, b)
-        _, _, c, d = left
-        _, _, f, g = right
-        v = self._new(boundary=False)
-        self._swap([left, right], [(v, b, c, d), (b, v, f, g), (v, d, a, f)])
-
-    def collapse(self, a: int, b: int) -> None:
-        left = self._left(a, b)
-        if self.mesh.k == 4:
-            self._merge(a, left[2], [left])
-            return
-        inside = (b, a) in self.mesh.directed()
-        gone = [left, self._right(a, b)] if inside else [left]
-        self._merge(a, b, gone, along_boundary=not inside)
-
-    def flip_left(self, a: int, b: int) -> None:
-        left, right = self._left(a, b), self._right(a, b)
-        self._keep_interface(a, b)
-        _, _, c, d = left
-        _, _, f, g = right
-        self._swap([left, right], [(f, c, d, a), (c, f, g, b)])
-
-    def flip_right(self, a: int, b: int) -> None:
-        left, right = self._left(a, b), self._right(a, b)
-        self._keep_interface(a, b)
-        _, _, c, d = left
-        _, _, f, g = right
-        self._swap([left, right], [(d, g, b, c), (g, d, a, f)])
-
-    def global_split(self, a: int, b: int) -> None:
-        left, right = self._left(a, b), self._right(a, b)
-        self._keep_interface(a, b)
-        _, _, c, d = left
-        _, _, f, g = right
-        directed = self.mesh.directed()
-        n1 = self._new(boundary=(c, b) not in directed)
-        n2 = self._new(boundary=(b, g) not in directed)
-        self._swap([left, right], [(a, n1, c, d), (a, f, g, n2), (a, n2, b, n1)])
-        self._halve(b, c, n1)
-        self._halve(g, b, n2)
-        made = [{b, n1}, {n1, c}, {g, n2}, {n2, b}]
-        for x, v, y in ((c, n1, b), (b, n2, g)):
-            while (x, y) in self.mesh.directed():
-                face = self._left(x, y)
-                _, _, z, w = face
-                if {z, w} in made or {x, y} in made:
-                    raise Refused("it meets an edge that it has split")
-                far = self._new(boundary=(w, z) not in self.mesh.directed())
-                self._swap([face], [(x, v, far, w), (v, y, z, far)])
-                self._halve(w, z, far)
-                made += [{w, far}, {far, z}]
-                x, v, y = w, far, z
-                if len(made) > 8 * len(directed):
-                    raise Refused("it does not end")
-
-    def cleanup(self, a: int, b: int) -> None:
-        self._right(a, b)
-        mesh, degrees, boundary = self.mesh, self.mesh.degrees(), self.mesh.boundary()
-
-        def onward(u: int, v: int) -> int | None:
-            """The vertex straight on from u over v, None where the line ends at the boundary."""
-            if v in mesh.geometric or v in mesh.locked:
-                raise Refused("the line meets a vertex that must stay")
-            if mesh.desired[v] != (3 if v in boundary else 4):
-                raise Refused("the line meets a vertex with a desired degree of its own")
-            if v in boundary:
-                if degrees[v] != 3:
-                    raise Refused("the line ends in the wrong place")
-                return None
-            if degrees[v] != 4:
-                raise Refused("the line meets an irregular vertex")
-            turn = self._left(v, u)[3]
-            return self._left(v, turn)[3]
-
-        line = [a, b]
-        while (w := onward(line[-2], line[-1])) is not None:
-            if w == line[1] and line[-1] == line[0]:
-                break
-            line.append(w)
-            if len(line) > 2 * len(degrees):
-                raise Refused("the line crosses itself")
-        ring = line[0] == line[-1]
-        while not ring and (w := onward(line[1], line[0])) is not None:
-            line.insert(0, w)
-            if len(line) > 2 * len(degrees):
-                raise Refused("the line crosses itself")
-        old, new, regions, across = [], [], [], {}
-        for u, v in pairwise(line):
-            self._keep_interface(u, v)
-            left, right = self._left(u, v), self._right(u, v)
-            old += [left, right]
-            new.append((right[2], right[3], left[2], left[3]))
-            regions.append(mesh.regions[_turned(left)])
-            across[u], across[v] = (left[3], right[2]), (left[2], right[3])
-        if len(set(map(_turned, old))) < len(old):
-            raise Refused("the line touches an element twice")
-        self._swap(old, new, regions)
-        for v in set(line):
-            del mesh.desired[v]
-            self._join(across[v][0], v, across[v][1])
-
-    def chord_collapse(self, a: int, b: int) -> None:
-        directed = self.mesh.directed()
-        rungs, faces = [(a, b)], []
-        while rungs[-1] in directed:
-            face = self._left(*rungs[-1])
-            faces.append(face)
-            rungs.append((face[3], face[2]))
-            if rungs[-1] == (a, b):
-                break
-            if len(faces) > 2 * len(directed):
-                raise Refused("the strip does not end")
-        ring = len(rungs) > 1 and rungs[-1] == rungs[0]
-        if ring:
-            rungs.pop()
-        while not ring and rungs[0][::-1] in directed:
-            face = self._left(*rungs[0][::-1])
-            faces.append(face)
-            rungs.insert(0, (face[2], face[3]))
-        rails = [v for rung in rungs for v in rung]
-        if len(set(rails)) < len(rails) or len(set(map(_turned, faces))) < len(faces):
-            raise Refused("the strip crosses itself")
-        curved = self.mesh.on_curve()
-        boundary, ends = self.mesh.boundary(), {rungs[0], rungs[-1]} if not ring else set()
-        for rung in rungs:
-            if rung not in ends and set(rung) <= boundary:
-                raise Refused("the strip pinches the mesh")
-        # what the vertices were before any of them merged
-        self.mesh.boundary = lambda: boundary  # type: ignore[method-assign]
-        self.mesh.on_curve = lambda: curved  # type: ignore[method-assign]
-        for rung in rungs:
-            self._merge(*rung, faces, along_boundary=rung in ends)
-            faces = []
-        del self.mesh.boundary, self.mesh.on_curve

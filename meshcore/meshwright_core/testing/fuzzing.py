@@ -6,57 +6,26 @@ The hypothesis tests run it for a while; `meshwright bench --suite fuzz` for a m
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from meshwright_core.core.arrays import JOURNAL_TOP, ORIGIN, RESTORED
-from meshwright_core.core.curve_edges import edge_places
+from meshwright_core.core.arrays import ELEMENT_SLOTS, JOURNAL_TOP, ORIGIN, RESTORED
+from meshwright_core.core.entry_points import entry
 from meshwright_core.errors import MeshError
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations import catalogue
-from meshwright_core.operations.catalogue import Operation
+from meshwright_core.testing import face_list_rewrites
+from meshwright_core.testing.comparison import Comparison, face_list
 from meshwright_core.testing.curved_starts import bent, grid_regions, region_areas
-from meshwright_core.testing.face_list_oracle import Edge, Face, FaceList, Range, Refused
+from meshwright_core.testing.face_list_oracle import Refused
 
-_LARGEST = 60  # elements; beyond it a run starts afresh, since the face list is slow
-_RUN = 150  # operations before a run is undone to its beginning and a new one starts
+_SMALLEST, _LARGEST = 8, 60
+"""Elements beyond which a run makes no more new ones lie between these: most rules concern small
+meshes."""
+_GROWING = ("split", "global_split")
+_RUN = 300  # operations before a run is undone to its beginning and a new one starts
 _STUCK = 100  # refusals in a row after which a mesh counts as used up, a single quad for instance
-
-
-def face_list(mesh: HalfEdgeMesh) -> FaceList:
-    """The mesh as a :class:`FaceList`."""
-    live = mesh.vertices().tolist()
-    desired, geometric, locked = mesh.desired(), mesh.geometric(), mesh.locked()
-    return FaceList(
-        [tuple(row) for row in mesh.elements().tolist()],
-        {v: int(desired[v]) for v in live},
-        {v for v in live if geometric[v]},
-        {v for v in live if locked[v]},
-        mesh.regions().tolist(),
-        edge_ranges(mesh),
-    )
-
-
-def face_regions(mesh: HalfEdgeMesh) -> dict[Face, int]:
-    """The region of each element, an element written as in :class:`FaceList`."""
-    rows = mesh.elements()
-    turned = (rows.argmin(axis=1)[:, None] + np.arange(mesh.k)) % mesh.k
-    faces = map(tuple, np.take_along_axis(rows, turned, axis=1).tolist())
-    return dict(zip(faces, mesh.regions().tolist(), strict=True))
-
-
-def edge_ranges(mesh: HalfEdgeMesh) -> dict[Edge, Range]:
-    """The curve and the range of each edge along a curve, in the direction of the curve."""
-    halfedges = mesh.halfedges_of(mesh.element_ids()).ravel()
-    curve, span = edge_places(mesh.arrays, halfedges, mesh.k)
-    along = np.flatnonzero((curve >= 0) & (span[:, 0] < span[:, 1]))
-    halfedges = halfedges[along]
-    ahead = halfedges - halfedges % mesh.k + (halfedges + 1) % mesh.k
-    ends = mesh.arrays.edge[:, ORIGIN]
-    edges = zip(ends[halfedges].tolist(), ends[ahead].tolist(), strict=True)
-    ranges = zip(curve[along].tolist(), *span[along].T.tolist(), strict=True)
-    return dict(zip(edges, ranges, strict=True))
 
 
 def snapshot(mesh: HalfEdgeMesh) -> tuple[np.ndarray, ...]:
@@ -134,56 +103,63 @@ def fuzz(
     operations: int,
     seed: int = 0,
     progress: Callable[[int], None] | None = None,
-    validate_every: int = 10,
+    compare_every: int = 100,
     curved: bool = False,
     interfaces: bool = False,
 ) -> dict[str, float | int | str]:
     """Apply so many random operations of `kind`; MeshError at the first disagreement.
 
-    Each attempt compares the verdicts of the mesh and the face list, which must be the same; each
-    applied operation must give the same faces, the same ranges of edges along curves, the same sum
-    of Delta and Euler characteristic. curved, interfaces: see :func:`start_mesh`. The validator
-    runs on every `validate_every`-th; at the end of each run of some 150
-    operations all of them are undone to the first bit, redone to the last, and the run's end state
-    is compared.
+    Each attempt compares the verdicts of the mesh and the face list, which must be the same. After
+    each applied operation everything that it has written is compared: faces, regions, twins,
+    degrees, desired degrees, s and the ranges of edges along curves; and Euler characteristic and
+    sum of Delta are as at the start. After every `compare_every`-th the validator runs and all of
+    the mesh is compared. At the end of each run of some 300 operations all of them are undone to
+    the first bit, redone to the last, and the run's end state is compared. curved, interfaces: see
+    :func:`start_mesh`.
     """
     rng = np.random.default_rng(seed)
+    draw = _draws(rng)
     applied = attempts = undone = 0
     began = time.perf_counter()
     while applied < operations:
         mesh = start_mesh(kind, 7, rng, curved, interfaces)
         areas = region_areas(mesh) if curved else np.zeros(0)
-        names = [str(name) for name in mesh.allowed(-1)]
-        oracle = face_list(mesh)
+        size = float(np.ptp(mesh.points[mesh.vertices()], axis=0).max())
+        names = list(catalogue.CODES[mesh.k])
+        both = Comparison(mesh, face_list(mesh))
         first = snapshot(mesh)
-        delta_sum, euler = oracle.delta_sum(), oracle.euler()
+        delta_sum, euler = both.oracle.delta_sum(), both.oracle.euler()
         done = refused = 0
-        while done < _RUN and applied < operations and mesh.n_elements <= _LARGEST:
-            if refused > _STUCK:
-                break
-            attempts += 1
-            operation = names[int(rng.integers(len(names)))]
-            ids = mesh.element_ids()
-            h = int(ids[rng.integers(len(ids))]) * mesh.k + int(rng.integers(mesh.k))
-            oracle, changed = _attempt(mesh, oracle, operation, h, seed, attempts)
-            if not changed:
-                refused += 1
-                continue
-            refused = 0
-            applied += 1
-            done += 1
-            if oracle.delta_sum() != delta_sum or mesh.optimum != abs(delta_sum):
-                raise MeshError(f"seed {seed}, attempt {attempts}: {operation} changed sum Delta")
-            if mesh.euler != euler:
-                raise MeshError(f"seed {seed}, attempt {attempts}: {operation} changed V - E + F")
-            if applied % validate_every == 0:
-                mesh.validate()
-            if progress is not None and applied % 1000 == 0:
-                progress(applied)
-        mesh.validate()
-        if curved:
-            _check_shape(mesh, areas, f"seed {seed}, attempt {attempts}")
-        undone += _undo_and_redo_all(mesh, first, seed, attempts)
+        largest = int(rng.integers(_SMALLEST, _LARGEST))
+        try:
+            while done < _RUN and applied < operations and refused <= _STUCK:
+                h = next(draw) % (mesh.k * int(mesh.arrays.counters[ELEMENT_SLOTS]))
+                if mesh.arrays.edge[h, ORIGIN] < 0:
+                    continue
+                operation = names[next(draw) % len(names)]
+                if mesh.n_elements > largest and operation in _GROWING:
+                    continue
+                attempts += 1
+                if not _attempt(both, operation, h):
+                    refused += 1
+                    continue
+                refused = 0
+                applied += 1
+                done += 1
+                if mesh.optimum != abs(delta_sum) or both.oracle.delta_sum() != delta_sum:
+                    raise MeshError(f"{operation} changed the sum of Delta")
+                if mesh.euler != euler:
+                    raise MeshError(f"{operation} changed V - E + F")
+                if applied % compare_every == 0:
+                    both.whole()
+                if progress is not None and applied % 1000 == 0:
+                    progress(applied)
+            both.whole()
+            if curved:
+                _check_shape(mesh, areas, size)
+            undone += _undo_and_redo_all(mesh, first)
+        except MeshError as error:
+            raise MeshError(f"seed {seed}, attempt {attempts}: {error}") from None
     return {
         "kind": kind,
         "operations": applied,
@@ -194,85 +170,64 @@ def fuzz(
     }
 
 
-def _attempt(
-    mesh: HalfEdgeMesh, oracle: FaceList, operation: str, h: int, seed: int, attempt: int
-) -> tuple[FaceList, bool]:
-    """One operation on both; the face list after it and whether it was allowed."""
+def _draws(rng: np.random.Generator) -> Iterator[int]:
+    """Random integers from 0 to 2**62 without end, many at a time."""
+    while True:
+        yield from rng.integers(1 << 62, size=4096).tolist()
+
+
+def _attempt(both: Comparison, operation: str, h: int) -> bool:
+    """One operation on both, if it is allowed; whether it was."""
+    mesh, oracle = both.mesh, both.oracle
     a, b = mesh.origin(h), mesh.target(h)
-    where = f"seed {seed}, attempt {attempt}: {operation} on {a}-{b}"
     verdict = mesh.check(operation, h)
-    new: list[int] = []
-    if verdict:
-        score, code = mesh.score, catalogue.CODES[mesh.k][operation]
-        known = catalogue.CATALOGUE[code].score_formula
-        predicted = catalogue.score_change(mesh.arrays, code, h) if known else None
-        edit = mesh.apply(Operation(operation), h)
-        new = list(edit.new_vertices)
-        if mesh.score != score + edit.score_change or predicted not in (None, edit.score_change):
-            raise MeshError(f"{where} reported a wrong change of s")
+    new: tuple[int, ...] = ()
     try:
-        after = oracle.after(operation, a, b, new)
-    except Refused as refusal:
         if verdict:
-            raise MeshError(f"{where} was allowed, though: {refusal}") from None
-        return oracle, False
-    if not verdict:
-        raise MeshError(f"{where} was refused ({verdict.reason}), without need")
-    if after.regions != face_regions(mesh):
-        raise MeshError(f"{where} gave other faces or regions than it should")
-    if not same_ranges(mesh, after.ranges, edge_ranges(mesh)):
-        raise MeshError(f"{where} put an edge in a wrong place of its curve")
-    degrees, found, desired = after.degrees(), mesh.degree().tolist(), mesh.desired().tolist()
-    if any(found[v] != d for v, d in degrees.items()):
-        raise MeshError(f"{where} left a wrong degree")
-    if any(desired[v] != after.desired[v] for v in degrees):
-        raise MeshError(f"{where} left a wrong desired degree")
-    return after, True
-
-
-def same_ranges(mesh: HalfEdgeMesh, expected: dict[Edge, Range], found: dict[Edge, Range]) -> bool:
-    """Whether edges lie on the same curves at the same places, those on closed ones modulo the
-    length.
-    """
-    if expected.keys() != found.keys():
-        return False
-    lengths = mesh.boundary_info.lengths().tolist()
-    closed = mesh.boundary_info.curves.closed.tolist()
-    for edge, (curve, start, stop) in expected.items():
-        other, first, last = found[edge]
-        turn = (start - first) / lengths[curve]
-        near = 1e-9 * lengths[curve]
-        if other != curve or abs(stop - start - (last - first)) > near:
+            score, code = mesh.score, catalogue.CODES[mesh.k][operation]
+            known = catalogue.CATALOGUE[code].score_formula
+            predicted = entry(catalogue.score_change, 2)(mesh.arrays, code, h) if known else None
+            edit = mesh.apply(operation, h)
+            new = edit.new_vertices
+            change = edit.score_change
+            if mesh.score != score + change or predicted not in (None, change):
+                raise MeshError("reported a wrong change of s")
+        try:
+            done = face_list_rewrites.apply(oracle, operation, a, b, new)
+        except Refused as refusal:
+            if verdict:
+                raise MeshError(f"was allowed, though: {refusal}") from None
             return False
-        whole = round(turn) if closed[curve] else 0
-        if abs(turn - whole) * lengths[curve] > near:
-            return False
+        if not verdict:
+            raise MeshError(f"was refused ({verdict.reason}), without need")
+        both.step(done)
+    except MeshError as error:
+        raise MeshError(f"{operation} on {a}-{b}: {error}") from None
     return True
 
 
-def _check_shape(mesh: HalfEdgeMesh, areas: np.ndarray, where: str) -> None:
-    """All vertices lie on their curves, and the regions have the same areas as at the start."""
-    size = float(np.ptp(mesh.points[mesh.vertices()], axis=0).max())
+def _check_shape(mesh: HalfEdgeMesh, areas: np.ndarray, size: float) -> None:
+    """All vertices lie on their curves, and the regions have the same areas as at the start, within
+    rounding in a domain of that size.
+    """
     off = float(mesh.off_curve().max())
     if off > 1e-12 * size:
-        raise MeshError(f"{where}: a vertex lies {off} off its curve")
+        raise MeshError(f"a vertex lies {off} off its curve")
     change = float(np.abs(region_areas(mesh) - areas).max())
     if change > 1e-12 * size * size:
-        raise MeshError(f"{where}: the area of a region changed by {change}")
+        raise MeshError(f"the area of a region changed by {change}")
 
 
-def _undo_and_redo_all(
-    mesh: HalfEdgeMesh, first: tuple[np.ndarray, ...], seed: int, attempt: int
-) -> int:
+def _undo_and_redo_all(mesh: HalfEdgeMesh, first: tuple[np.ndarray, ...]) -> int:
     """Undo everything, compare with the first state, redo everything, compare with the last."""
     last, top = snapshot(mesh), int(mesh.arrays.counters[JOURNAL_TOP])
     count = mesh.steps
     while mesh.undo():
         continue
     if not agree(first, snapshot(mesh)):
-        raise MeshError(f"seed {seed}, attempt {attempt}: undo did not restore the first bit")
+        raise MeshError("undo did not restore the first bit")
     while mesh.redo():
         continue
     if not agree(last, snapshot(mesh)) or int(mesh.arrays.counters[JOURNAL_TOP]) != top:
-        raise MeshError(f"seed {seed}, attempt {attempt}: redo did not restore the last bit")
+        raise MeshError("redo did not restore the last bit")
     return count

@@ -64,7 +64,7 @@ def test_template_sizes(k, levels, size):
 def test_episodes_in_a_batch_leave_valid_meshes(kind, selection):
     rng = np.random.default_rng(2)
     policy = _policy(kind, selection=selection, extended=True)
-    meshes = [m for m in start_meshes(kind, (8, 14), 6, rng) if m.score > m.optimum]
+    meshes = [m for m in start_meshes(kind, (8, 11), 4, rng) if m.score > m.optimum]
     batch = Batch(policy.task, meshes, len(meshes), rng, endless=False)
     generator = torch.Generator().manual_seed(0)
     while batch.active.any():
@@ -100,7 +100,7 @@ def test_an_endless_batch_starts_new_episodes():
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_an_episode_replays_on_its_mesh(kind):
-    mesh = benchmark_mesh(kind, 14, np.random.default_rng(3))
+    mesh = benchmark_mesh(kind, 9, np.random.default_rng(3))
     replayed = mesh.copy()
     runner = Runner(mesh, _policy(kind, extended=True), seed=4)
     scores = []

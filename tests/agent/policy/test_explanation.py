@@ -26,7 +26,7 @@ def star(kind):
 def test_looking_does_not_change_an_episode(policy):
     mesh = star(policy.kind)
     seen, blind = Runner(mesh, policy, 5), Runner(mesh, policy, 5)
-    for _ in range(40):
+    for _ in range(16):
         insight = seen.look()
         again = seen.look()
         assert (insight is None) == (again is None)

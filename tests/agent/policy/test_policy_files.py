@@ -28,6 +28,18 @@ def test_a_policy_survives_the_round_trip(tmp_path):
         assert torch.equal(value, back.network.state_dict()[name])
 
 
+def test_the_folder_of_a_training_names_its_policy(tmp_path):
+    runs = [tmp_path / "wide", tmp_path / "narrow"]
+    for folder in runs:
+        folder.mkdir()
+        _saved(folder)
+    assert [load(folder).name for folder in runs] == ["wide", "narrow"]
+    assert load(runs[0] / "policy.safetensors").name == "wide"
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(PolicyError, match=r"empty: this folder has no policy.safetensors"):
+        load(tmp_path / "empty")
+
+
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_policies_of_both_kinds_are_installed(kind):
     assert shipped(kind)[0] == kind

@@ -27,7 +27,7 @@ from meshwright_core.operations.catalogue import CODES, NAMES, score_change
 pytestmark = pytest.mark.slow
 
 
-def scrambled(kind, levels=3, seed=0):
+def scrambled(kind, levels, seed=0):
     rng = np.random.default_rng(seed)
     if kind == "tri":
         mesh = meshing.grid("tri", 6 * 4**levels)
@@ -51,7 +51,7 @@ def scrambled(kind, levels=3, seed=0):
 
 @pytest.fixture(scope="module")
 def quads():
-    return scrambled("quad")
+    return scrambled("quad", 2)
 
 
 @pytest.fixture(scope="module")
@@ -171,12 +171,12 @@ def test_the_queue_keeps_its_order_when_the_mesh_grows():
 
 @pytest.mark.parametrize("kind", ["tri", "quad"])
 def test_a_scrambled_mesh_is_improved_by_operations_that_replay(kind):
-    mesh = scrambled(kind)
+    mesh = scrambled(kind, 2)
     reported = []
     run = improve_large(
         mesh,
         policy_files.load(kind),
-        max_steps=1500,
+        max_steps=130,
         progress=lambda *values: reported.append(values),
     )
     run.mesh.validate()
@@ -191,7 +191,7 @@ def test_a_scrambled_mesh_is_improved_by_operations_that_replay(kind):
 
 
 def test_the_seed_determines_the_result(quads, policy):
-    runs = [improve_large(quads, policy, max_steps=200, seed=seed) for seed in (1, 1, 2)]
+    runs = [improve_large(quads, policy, max_steps=40, seed=seed) for seed in (1, 1, 2)]
     assert (runs[0].halfedges == runs[1].halfedges).all()
     assert runs[0].halfedges.tolist() != runs[2].halfedges.tolist()
 
@@ -221,11 +221,12 @@ def test_a_regular_mesh_is_left_as_it_is(policy):
     assert (len(run.operations), run.removed, run.reason) == (0, 0.0, "at the optimum")
 
 
-def test_the_solver_improves_very_irregular_meshes_patch_by_patch(quads, policy):
+def test_the_solver_improves_very_irregular_meshes_patch_by_patch(quads, policy, monkeypatch):
+    monkeypatch.setattr("meshwright_agent.search.patchwise.MANY", 100)
     few = meshing.benchmark_mesh("quad", 50, np.random.default_rng(0))
     assert is_large(quads) and not is_large(few)
     reported = []
-    found = solve(quads, policy, max_steps=400, progress=lambda *values: reported.append(values[1]))
+    found = solve(quads, policy, max_steps=130, progress=lambda *values: reported.append(values[1]))
     copy = quads.copy()
     for operation, h in found.operations:
         copy.apply(operation, h)

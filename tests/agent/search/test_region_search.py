@@ -44,7 +44,7 @@ def outside_of(mesh, elements):
 def test_operations_replay_lower_s_and_leave_the_rest_unchanged(case):
     policy, mesh, elements = case
     before, copy = mesh.elements(), mesh.copy()
-    found = solve_within(mesh, policy, elements, rollouts=8, seed=1)
+    found = solve_within(mesh, policy, elements, rollouts=3, seed=1)
     assert np.array_equal(before, mesh.elements()) and not mesh.locked().any()
     assert found.optimum <= found.score < mesh.score
     halfedges, ends = outside_of(copy, elements)

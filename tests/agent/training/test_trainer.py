@@ -1,6 +1,7 @@
 """A tiny training: results, checkpoints, early stopping, and wrong configurations."""
 
 import json
+import signal
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,6 +16,7 @@ from meshwright_agent.training.configuration import configuration_of
 from meshwright_agent.training.tensorboard import Events
 from meshwright_agent.training.trainer import (
     ConfigurationError,
+    deferred_interrupt,
     read_configuration,
     shipped_configuration,
     train,
@@ -32,6 +34,32 @@ _TINY = {
     "architecture": {"width": 8, "embedding": 4},
     "ppo": {"environments": 8, "horizon": 6, "minibatch": 16, "lambda": 0.9},
 }
+
+
+def test_the_first_interrupt_is_noted_and_the_second_raises():
+    before = signal.getsignal(signal.SIGINT)
+    with deferred_interrupt() as interrupted:
+        assert not interrupted()
+        signal.raise_signal(signal.SIGINT)
+        assert interrupted()
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.slow
+def test_an_interrupt_ends_the_update_and_leaves_checkpoint_and_policy(tmp_path, monkeypatch):
+    monkeypatch.setattr(
+        "meshwright_agent.training.trainer.evaluate",
+        lambda *_: {"single_mean": 0.0, "seconds": 1.0},
+    )
+    folder = tmp_path / "runs" / "quad"
+    with pytest.raises(KeyboardInterrupt):
+        train(_TINY, folder, report=lambda done, *_: signal.raise_signal(signal.SIGINT))
+    assert load(folder).name == "quad"
+    done = []
+    train(_TINY, folder, report=lambda i, *_: done.append(i))
+    assert done == [2, 3]
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import threading
 
 import pytest
 
+from meshwright.assistant import result_walk
 from meshwright.assistant.assistant import Assistant, State
 from meshwright.assistant.search_runner import Effort
 from meshwright.document.document import Document
@@ -313,7 +314,7 @@ def test_failed_hints_are_reported(make, desk, star):
     assistant.hint()
     assert hinted(assistant, desk) == ()
     assert assistant.heard == ["This policy is for other meshes."]
-    assistant = make(Document(star), ask=lambda *_: ())
+    assistant = make(Document(star), ask=lambda *_: (), longest=0)
     assistant.hint()
     assert hinted(assistant, desk) == ()
     assert "no allowed operation" in assistant.heard[-1]
@@ -441,3 +442,69 @@ def test_an_exiting_program_does_not_wait_for_a_run():
     """
     done = subprocess.run([sys.executable, "-c", code], timeout=60, check=False)
     assert done.returncode == 3
+
+
+def test_the_first_hint_is_the_next_step(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    for _ in range(2):
+        assistant.hint()
+        desk.until(lambda: bool(assistant.hinting.hints))
+        first = assistant.hinting.hints[0]
+        assert first is assistant.hinting.next_step
+        pairs = [(hint.operation, hint.halfedge) for hint in assistant.hinting.hints]
+        assert len(set(pairs)) == len(pairs)
+        assistant.step()
+        desk.until(lambda: not assistant.running)
+        assert document.history.last.halfedge == first.halfedge
+        assert document.history.last.action == first.operation.value
+
+
+def test_a_search_that_ends_above_the_optimum_asks_to_go_on(make, desk, star):
+    document = Document(star)
+    assistant = make(document, longest=1)
+    assistant.search(Effort(seconds=1.0))
+    desk.until(lambda: not assistant.running)
+    above = document.score - document.optimum
+    assert above and assistant.unfinished
+    assert assistant.outcome == f"Out of steps, {above} above the optimum: go on?"
+    assert assistant.outcome == assistant.heard[-1]
+    document.set_locked(0, True)
+    assert not assistant.unfinished and not assistant.outcome
+
+
+def test_stop_on_the_way_to_a_result_stops_at_once(make, desk, star, monkeypatch):
+    monkeypatch.setattr(result_walk, "SLICE", -1.0)
+    monkeypatch.setattr(result_walk, "LONGEST", -1.0)
+    document = Document(star)
+    assistant = make(document)
+    assistant.search()
+    desk.until(lambda: assistant.state is State.GOING and document.history.cursor == 1)
+    assert assistant.progress.way[0] == 1 < assistant.progress.way[1]
+    assistant.stop()
+    assert assistant.state is State.IDLE and document.history.cursor == 1
+    assert "Stopped after 1 of" in assistant.heard[-1]
+    document.go_to(len(document.history))
+    assert document.at_optimum
+
+
+def test_skip_goes_to_the_result_at_once(make, desk, star, monkeypatch):
+    monkeypatch.setattr(result_walk, "SLICE", -1.0)
+    monkeypatch.setattr(result_walk, "LONGEST", -1.0)
+    document = Document(star)
+    assistant = make(document)
+    assistant.search()
+    desk.until(lambda: assistant.state is State.GOING and document.history.cursor == 1)
+    assistant.skip()
+    assert assistant.state is State.IDLE and document.at_optimum
+    desk.work()
+    assert document.at_optimum
+
+
+def test_counts_of_a_run_are_forgotten_with_its_mesh(make, desk, star, triangles):
+    document = Document(star)
+    assistant = make(document)
+    assistant.step()
+    desk.until(lambda: not assistant.running)
+    document.replace(triangles)
+    assert assistant.progress.decisions == 0 and assistant.progress.best is None

@@ -2,8 +2,12 @@
 
 from threading import Event
 
-from meshwright.assistant.search_runner import Effort, SearchRunner
+import numpy as np
+
+from meshwright.assistant.search_runner import PREFERENCES, Effort, SearchRunner
 from meshwright_agent.policy.policy_files import load
+from meshwright_agent.search import layout_search
+from meshwright_agent.search.solution import Solution, judged
 
 
 def _all_steps(runner):
@@ -38,3 +42,39 @@ def test_a_stopped_search_returns_at_once_with_a_reason(star):
     runner = SearchRunner(star.copy(), load("quad"), 3, Effort(seconds=60.0), enough, print)
     assert _all_steps(runner) == []
     assert "nothing better was found" in runner.reason
+
+
+def rounds(monkeypatch, mesh, found, greedy):
+    """Run *Complete* where the rounds of the solver find ``found`` operations each; returns the
+    runner and the score at the start and the seconds of each round.
+    """
+    asked = []
+
+    def one(self, start, seconds, done):
+        count = found[len(asked)] if len(asked) < len(found) else 0
+        asked.append((start.score, seconds))
+        run = greedy(start)
+        operations = [operation for _ in range(count) for operation in run.step()]
+        return judged(Solution(operations, 0, start.optimum, 0), start)
+
+    monkeypatch.setattr(SearchRunner, "_round", one)
+    runner = SearchRunner(mesh, None, 0, Effort(until_done=True), Event(), print)
+    return runner, asked
+
+
+def test_complete_goes_on_from_the_best_state_until_nothing_is_won(star, monkeypatch, greedy):
+    start = star.copy()
+    runner, asked = rounds(monkeypatch, star, [1, 1], greedy)
+    operations = runner.step()
+    assert runner.finished and len(operations) == 2
+    # two rounds that win, then two without success, the second with twice the time
+    assert [seconds for _, seconds in asked] == [3.0, 3.0, 3.0, 6.0]
+    scores = [score for score, _ in asked]
+    assert scores[0] > scores[1] > scores[2] == scores[3]
+    for operation, halfedge in operations:
+        start.apply(operation, halfedge)
+    assert np.array_equal(start.elements(), runner.target.elements())
+
+
+def test_the_words_of_preferences_are_those_of_the_solver():
+    assert set(PREFERENCES) == set(layout_search.PREFERENCES)

@@ -5,6 +5,8 @@ import json
 import pytest
 
 from meshwright import benchmarks, cli
+from meshwright.benchmarks import ablation, gmsh_peer
+from meshwright_core.domains.random_parts import parts
 
 
 def test_suites_are_listed(capsys):
@@ -18,7 +20,7 @@ def test_unknown_suite_is_refused(capsys):
     assert "choose from" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", ["core", "fuzz", "large", "levels"])
+@pytest.mark.parametrize("name", ["core", "file_fuzz", "fuzz", "large", "large_files", "levels"])
 @pytest.mark.slow
 def test_suite_runs(name, capsys):
     assert cli.main(["bench", "--suite", name, "--quick", "--json"]) == 0
@@ -49,7 +51,30 @@ def test_parts_suite_prints_a_table(capsys):
         for row in group["shapes"].values():
             assert row["s*"] <= row["s"] <= row["s start"]
             assert 1 <= row["blocks"] <= row["elements"]
-            assert (row["worst Jacobian"] > 0) == (row["inverted"] == 0)
+            assert (row["worst SJ"] > 0) == (row["worst shape"] > 0) == (row["inverted"] == 0)
+            assert 0 < row["q*"] <= 1
+
+
+def test_ablation_compares_the_search_with_parts_of_it_left_out(capsys):
+    command = ["bench", "--suite", "ablation", "--quick", "--seconds", "1", "--meshes", "1"]
+    assert cli.main([*command, "--json"]) == 0
+    results = json.loads(capsys.readouterr().out)["results"]
+    for group in results.values():
+        assert list(group) == list(ablation.VARIANTS)
+        assert all(row["parts"] == 1 and row["not inverted"] == 1 for row in group.values())
+
+
+def test_options_of_the_search_are_refused_by_suites_without():
+    assert cli.main(["bench", "--suite", "fuzz", "--quick", "--prefer", "shape"]) == 2
+    assert cli.main(["bench", "--suite", "parts", "--elements-shape", "2"]) == 2
+
+
+@pytest.mark.skipif(not gmsh_peer.available(), reason="needs the module gmsh (pip install gmsh)")
+def test_gmsh_meshes_a_part_with_about_as_many_quads():
+    domain = parts(2, (8, 24), 1)[1]
+    columns = gmsh_peer.measured(domain, 200)
+    for way in gmsh_peer.WAYS:
+        assert columns[f"{way}: elements"] == 0 or 50 < columns[f"{way}: elements"] < 800
 
 
 def test_seconds_option_is_refused_by_suites_without_search(capsys):

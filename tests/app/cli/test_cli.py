@@ -188,6 +188,10 @@ def test_folder_is_checked_before_the_work(tmp_path):
         output_files.checked_folder(str(tmp_path / "file"))
     with pytest.raises(UserError, match="does not exist"):
         output_files.checked_folder(str(tmp_path / "no" / "new"))
+    deep = tmp_path / "no" / "new"
+    assert output_files.checked_folder(str(deep), parents=True) == deep
+    with pytest.raises(UserError, match="is a file"):
+        output_files.checked_folder(str(tmp_path / "file" / "new"), parents=True)
 
 
 def test_replacing_puts_the_new_file_in_place(tmp_path):

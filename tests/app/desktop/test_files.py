@@ -5,7 +5,7 @@ import pytest
 from driving import WAIT, point_at, press
 from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
-from qtpy.QtWidgets import QApplication, QFileDialog
+from qtpy.QtWidgets import QApplication, QFileDialog, QLabel
 
 from meshwright.desktop.files.recovery_dialog import RecoveryDialog
 from meshwright.desktop.files.save_question import QuestionDialog
@@ -90,12 +90,93 @@ def test_closing_asks_about_unsaved_work(qtbot, watched, star, tmp_path, answer)
     assert (fresh.score == window.document.score) == (answer == "save")
 
 
-def test_closing_asks_nothing_without_unsaved_work(qtbot, watched, star):
+def test_closing_asks_nothing_without_unsaved_work(qtbot, watched, star, tmp_path):
     window = watched(star)
     edit(qtbot, window)
-    press(qtbot, window, Qt.Key.Key_Z, CONTROL)
+    window.files._save(str(tmp_path / "star.meshwright"))
     assert window.close()
     assert not window.isVisible()
+
+
+def test_closing_asks_about_steps_that_were_undone(qtbot, watched, star, tmp_path):
+    window = watched(star)
+    edit(qtbot, window)
+    edit(qtbot, window)
+    press(qtbot, window, Qt.Key.Key_Z, CONTROL)
+    edit(qtbot, window)
+    press(qtbot, window, Qt.Key.Key_Home, Qt.KeyboardModifier.AltModifier)
+    assert window.document.history.cursor == 0
+    assert window.isWindowModified()
+    met = []
+
+    def act(dialog: QuestionDialog) -> None:
+        met.extend(label.text() for label in dialog.findChildren(QLabel))
+        qtbot.keyClick(dialog, Qt.Key.Key_Escape)
+
+    when_shown(qtbot, QuestionDialog, act)
+    assert not window.close()
+    assert "2 steps, 2 of them undone, and 1 branch" in " ".join(met)
+    window.files.leave()  # as after a crash
+    (lost,) = recovery.lost(tmp_path / "state")
+    assert len(lost.read().history.branches) == 1
+    lost.discard()
+
+
+def test_saving_a_mesh_file_does_not_save_the_history(qtbot, watched, star, tmp_path, monkeypatch):
+    window = watched(star)
+    edit(qtbot, window)
+    window.files._save(str(tmp_path / "star.vtk"))
+    assert window.windowTitle().startswith("star[*], history not saved")
+    assert "1 step" in window.status.message
+    journal = window.files.guard.autosave.path
+    assert journal.exists()
+    asked = []
+
+    def name(parent, title, start, filters, chosen):
+        asked.append((start, chosen))
+        return str(tmp_path / "kept"), chosen
+
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", name)
+    met = answering(qtbot, "save_as")
+    assert window.close()
+    assert len(met) == 1
+    assert asked[0][0] == str(tmp_path / "star.meshwright")
+    assert asked[0][1].startswith("Meshwright projects")
+    fresh = Document()
+    fresh.open(tmp_path / "kept.meshwright")
+    assert len(fresh.history) == 1
+    assert not journal.exists()
+
+
+@pytest.mark.parametrize("answer", ["cancel", "reload", "overwrite", "save_as"])
+def test_two_windows_on_one_project_do_not_overwrite_each_other(
+    qtbot, watched, star, tmp_path, monkeypatch, answer
+):
+    path = tmp_path / "star.meshwright"
+    window = watched(star)
+    window.files._save(str(path))
+    other = Document()
+    other.open(path)
+    other.smooth()
+    other.save()
+    edit(qtbot, window)
+    edit(qtbot, window)
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "b"), "Mesh"))
+    met = answering(qtbot, answer)
+    press(qtbot, window, Qt.Key.Key_S, CONTROL)
+    assert len(met) == 1
+    assert len(window.document.history) == (1 if answer == "reload" else 2)
+    on_disk = Document()
+    on_disk.open(path)
+    assert len(on_disk.history) == (2 if answer == "overwrite" else 1)
+    assert (tmp_path / "b.meshwright").exists() == (answer == "save_as")
+    assert window.document.modified == (answer == "cancel")
+    if answer in ("reload", "overwrite"):
+        window.activateWindow()  # there is no window manager to do it
+        qtbot.waitUntil(window.isActiveWindow, timeout=WAIT)
+        edit(qtbot, window)
+        press(qtbot, window, Qt.Key.Key_S, CONTROL)  # without a question
+        assert not window.document.modified
 
 
 def test_project_stores_history_view_and_policy(qtbot, watched, star, tmp_path, monkeypatch):
@@ -108,11 +189,11 @@ def test_project_stores_history_view_and_policy(qtbot, watched, star, tmp_path, 
 
     def name(parent, title, start, filters, chosen):
         asked.append((start, chosen))
-        return str(tmp_path / "work"), filters.split(";;")[1]
+        return str(tmp_path / "work"), chosen
 
     monkeypatch.setattr(QFileDialog, "getSaveFileName", name)
     press(qtbot, window, Qt.Key.Key_S, CONTROL)
-    assert asked[0][0] == "star.vtk"
+    assert asked[0][0] == "star.meshwright"
     assert (tmp_path / "work.meshwright").exists()
     assert window.status.message == "Saved work.meshwright."
     assert not window.isWindowModified()

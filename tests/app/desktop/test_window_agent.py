@@ -116,12 +116,12 @@ def test_region_button_needs_a_selection_and_searches_in_it(qtbot, open_window, 
 
 
 def test_a_finished_region_is_still_selected(qtbot, open_window, star):
-    window = open_window(star, longest=4, bad_steps=4)
+    window = open_window(star, longest=2)
     window.document.selection.everything()
     press(qtbot, window, Qt.Key.Key_R, Qt.KeyboardModifier.ControlModifier)
     assert window.assistant.state is State.SEARCHING
     qtbot.waitUntil(lambda: not window.assistant.running, timeout=WAIT)
-    assert window.document.history.cursor >= 4
+    assert window.document.history.cursor >= 2
     assert np.array_equal(window.document.selection.vertices, star.vertices())
     assert "The region is finished" in window.status.message
 

@@ -92,6 +92,9 @@ def test_the_file_exists_only_while_changes_are_unsaved(document, tmp_path):
     assert first.exists()  # what was undone could still be done again
     document.save(tmp_path / "a.vtk")
     assert not first.exists()
+    assert keeper.path.exists()  # a mesh file has no history
+    document.save(tmp_path / "a.meshwright")
+    assert keeper.path is None
     wander(document, 1, 1)
     second = keeper.path
     assert second.exists() and second != first

@@ -59,14 +59,29 @@ def test_modified_compares_states_and_not_paths(star, tmp_path):
     document = Document(star)
     wander(document, 3, 1)
     document.save(tmp_path / "three.vtk")
+    assert document.modified  # the history is in no file
+    assert not document.mesh_modified
     document.go_to(1)
-    assert document.modified
+    assert document.mesh_modified
     wander(document, 2, 2)
-    assert document.modified
+    assert document.mesh_modified
     document.take_branch(0)
+    assert not document.mesh_modified
+    document.take_branch(0)
+    assert document.mesh_modified
+    document.save(tmp_path / "all.meshwright")
     assert not document.modified
-    document.take_branch(0)
+    document.save(tmp_path / "again.vtk")
+    assert not document.modified  # all.meshwright has the history
+
+
+def test_steps_that_were_undone_count_as_modified(star):
+    document = Document(star)
+    assert not document.modified
+    wander(document, 3, 1)
+    document.go_to(0)
     assert document.modified
+    assert not document.mesh_modified
 
 
 def test_a_refused_or_idle_action_after_an_undo_leaves_what_can_be_redone(star):

@@ -45,7 +45,7 @@ def test_one_submit_is_one_step_one_row_and_one_round_of_events(star):
     document.undo()
     assert star.steps == 0
     assert np.array_equal(star.points, before)
-    assert not document.modified
+    assert not document.mesh_modified
 
 
 @pytest.mark.parametrize("kind", ["quad", "tri"])
@@ -171,7 +171,7 @@ def test_files(star, tmp_path):
     document.submit("flip_left", first_allowed(star, "flip_left"))
     assert document.modified
     assert document.save(tmp_path / "five.vtk") == tmp_path / "five.vtk"
-    assert not document.modified
+    assert not document.mesh_modified
     assert document.name == "five"
     other = Document()
     ears = Ears(other)

@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 
-from meshwright.document.quality_summary import CHUNK, summarise
+from meshwright.document.element_quality import CHUNK, ElementQuality
+from meshwright.document.quality_summary import shape_words, summarise
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.analysis.blocks import block_count
+from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality
+from meshwright_core.geometry.element_shapes import element_shapes
+from meshwright_core.geometry.shape_bound import shape_bound
+from meshwright_core.geometry.smoothing import relax
+from meshwright_core.operations.catalogue import of_kind
 
 
 def grid(n: int) -> HalfEdgeMesh:
@@ -61,3 +67,64 @@ def test_measuring_a_large_mesh_can_be_cancelled():
     answers = iter([False, True])
     assert mesh.n_elements > CHUNK
     assert summarise(mesh, lambda: next(answers)) is None
+
+
+def test_shapes_and_bound_are_those_of_meshwright_core(star):
+    found = summarise(star)
+    assert found.shape.worst == pytest.approx(element_shapes(star).min())
+    assert found.bound == shape_bound(star)
+    ids = star.element_ids()
+    assert np.array_equal(found.values.shape[ids], element_shapes(star))
+
+
+@pytest.mark.parametrize("name", ["star", "plate-with-holes"])
+@pytest.mark.parametrize("kind", ["quad", "tri"])
+def test_only_what_has_changed_is_measured_again(name, kind):
+    mesh = meshing.mesh_domain(gallery.shape(name), kind)
+    followed, rng = ElementQuality(), np.random.default_rng(3)
+    followed.follow(mesh)
+    least = mesh.n_elements
+    names = [info.operation for info in of_kind(kind)]
+    for number in range(30):
+        halfedge = int(rng.integers(mesh.k * int(mesh.element_ids()[-1])))
+        operation = names[number % len(names)]
+        if mesh.check(operation, halfedge):
+            edit = mesh.apply(operation, halfedge)
+            relax(mesh, edit.touched, thorough=False)
+        if number % 10 == 9:
+            mesh.undo()
+        followed.follow(mesh)
+        least = min(least, followed.measured) or least
+        fresh = ElementQuality()
+        fresh.follow(mesh)
+        assert np.array_equal(followed.ids, mesh.element_ids())
+        for one, other in zip(
+            (followed.jacobian, followed.angle, followed.shape),
+            (fresh.jacobian, fresh.angle, fresh.shape),
+            strict=True,
+        ):
+            assert np.allclose(one, other, equal_nan=True, atol=1e-12)
+        assert followed.inverted.tolist() == quality.inverted(mesh).tolist()
+    assert least < mesh.n_elements
+
+
+def test_a_mesh_that_leaves_its_plane_is_measured_anew(star):
+    followed = ElementQuality()
+    followed.follow(star)
+    star.move(star.vertices(), star.points[star.vertices()] + (0.0, 0.0, 1.0))
+    followed.follow(star)
+    assert followed.measured == star.n_elements
+    assert np.allclose(followed.jacobian[star.element_ids()], quality.scaled_jacobian(star))
+
+
+@pytest.mark.parametrize(
+    ("worst", "bound", "words"),
+    [
+        (0.7229, 0.7229, ".72 of at most .72"),
+        (1.0, 1.0, "1.00 of at most 1.00"),
+        (-0.051, 0.5, "\u2212.05 of at most .50"),
+        (0.9, 0.7, ".90; regular corners permit .70"),
+    ],
+)
+def test_shape_in_words(worst, bound, words):
+    assert shape_words(worst, bound) == words

@@ -1,5 +1,7 @@
 """Dragging vertices: where they may go."""
 
+from threading import Event
+
 import curved_meshes
 import numpy as np
 import pytest
@@ -95,3 +97,39 @@ def test_a_selection_moves_as_one_without_those_that_stay(board):
     assert moved[6] == pytest.approx([1.2, 1.1, 0.0])
     assert moved[12] == pytest.approx([2.2, 2.1, 0.0])
     assert moved[1] == pytest.approx([1.2, 0.0, 0.0]) and moved[2] == pytest.approx([2.2, 0.0, 0.0])
+
+
+def test_a_vertex_put_by_hand_stays_when_the_mesh_is_smoothed(board):
+    document = Document(board)
+    drag = Drag(board, [12, 2], 12)
+    drag.to(2.4, 2.3)
+    document.move(drag.vertices, drag.places, parameters=drag.parameters, pin=True)
+    there = board.points[[2, 12]].copy()
+    assert board.pinned().nonzero()[0].tolist() == [2, 12]
+    document.smooth()
+    document.smooth(vertices=np.array([2, 12]))
+    document.submit("flip_left", board.halfedge(12, 13))
+    document.untangle()
+    assert np.array_equal(board.points[[2, 12]], there)
+    document.go_to(1)
+    document.undo()  # one step: position and pin
+    assert not board.pinned().any()
+    assert board.points[12].tolist() == [2.0, 2.0, 0.0]
+    document.redo()
+    document.set_pinned(12, False)
+    document.smooth()
+    assert not np.array_equal(board.points[12], there[1])
+    assert np.array_equal(board.points[2], there[0])
+
+
+def test_no_search_moves_or_removes_a_pinned_vertex(board, monkeypatch):
+    from meshwright.assistant.search_runner import Effort, SearchRunner
+
+    board.set_pinned(12)
+    seen = []
+    for name in ("_search", "_search_in_size"):
+        monkeypatch.setattr(SearchRunner, name, lambda self: seen.append(self._mesh) or [])
+    runner = SearchRunner(board.copy(), None, 0, Effort(), Event(), lambda *_: None)
+    assert runner.step() == []
+    assert np.flatnonzero(seen[0].locked()).tolist() == [12]
+    assert not board.locked().any()

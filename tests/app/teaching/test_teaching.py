@@ -204,7 +204,7 @@ def test_lessons_are_listed(capsys):
     code, out, _ = run("--json", capsys=capsys)
     rows = json.loads(out)["lessons"]
     assert [row["name"] for row in rows] == [lesson.name for lesson in lessons.shipped()]
-    assert all(10 <= row["minutes"] <= 20 and row["exercises"] >= 3 for row in rows)
+    assert all(20 <= row["minutes"] <= 30 and row["exercises"] >= 3 for row in rows)
 
 
 def test_lessons_are_copied_and_not_overwritten(tmp_path, capsys):

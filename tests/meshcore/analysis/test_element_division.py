@@ -7,6 +7,7 @@ from tests.helpers.round_meshes import round_ring
 from meshwright_core.analysis.element_division import chords, divided, divided_for_shape, divisions
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.element_shapes import element_shapes
+from meshwright_core.geometry.size_field import SizeField
 from meshwright_core.mesh import HalfEdgeMesh
 
 
@@ -40,3 +41,19 @@ def test_triangles_have_no_chords():
     mesh = HalfEdgeMesh.from_elements([(0, 0), (1, 0), (0, 1)], [[0, 1, 2]])
     with pytest.raises(MeshError, match="quads"):
         divisions(mesh, 0.3)
+
+
+def test_a_field_of_sizes_is_followed_along_edges():
+    x = np.array([0.0, 1.0, 2.0, 3.0, 7.0, 11.0])
+    points = np.vstack([np.column_stack([x, 0 * x]), np.column_stack([x, 0 * x + 2.0])])
+    graded = HalfEdgeMesh.from_elements(points, [[i, i + 1, i + 7, i + 6] for i in range(5)])
+    block = HalfEdgeMesh.from_elements([(0, 0), (11, 0), (11, 2), (0, 2)], [[0, 1, 2, 3]])
+    counts = np.ones(2, np.int64)
+    counts[chords(block)[0, 0]] = 5
+    fine = divided(block, counts, SizeField(graded))
+    fine.validate()
+    below = np.sort(fine.points[fine.points[:, 1] == 0.0, 0])
+    steps = np.diff(below)
+    assert steps[0] < 1.7 and steps[-1] > 2.5
+    even = divided(block, counts)
+    assert np.diff(np.sort(even.points[even.points[:, 1] == 0.0, 0])) == pytest.approx(2.2)

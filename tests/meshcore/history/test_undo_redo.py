@@ -1,7 +1,5 @@
 """Undo and redo far back, steps cut out and grafted on again; all exact to the bit."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from mesh_edits import state, wander
@@ -10,7 +8,7 @@ from meshwright_core import MeshError, OperationRefused
 from meshwright_core.core.arrays import STEP
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.history import step_archive
-from meshwright_core.history.packed_steps import pack, unpack
+from meshwright_core.history.packed_steps import Steps, pack, unpack
 
 
 @pytest.fixture
@@ -137,11 +135,13 @@ def test_packing_keeps_z_coordinates_and_refuses_inconsistent_arrays():
     assert steps.coordinates.shape == (2, 3)
     rows, entries = unpack(steps)
     assert rows[0, :2].tolist() == [0, 6]
+    none = steps.parameters
+    assert len(none) == 0
     with pytest.raises(MeshError, match="cut off"):
         pack(rows, entries[:5])
     with pytest.raises(MeshError, match="not of one vertex"):
         pack(rows, entries[[0, 2, 1, 3, 4, 5]])
     with pytest.raises(MeshError, match="another length"):
-        unpack(replace(steps, rows=steps.rows[:0]))
+        unpack(Steps.of(steps.rows[:0], steps.places, steps.whole, steps.coordinates, none))
     with pytest.raises(MeshError, match="no step"):
         mesh.copy().last_step()

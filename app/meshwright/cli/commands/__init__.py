@@ -9,10 +9,13 @@ import argparse
 from typing import Protocol
 
 from meshwright.cli.commands import (
+    batch,
     bench,
+    blocks,
     demo,
     evaluate,
     improve,
+    info,
     lessons,
     levels,
     mesh,
@@ -43,8 +46,11 @@ COMMANDS: dict[str, Command] = {
     "view": view,
     "demo": demo,
     "shapes": shapes,
+    "info": info,
     "mesh": mesh,
     "improve": improve,
+    "blocks": blocks,
+    "batch": batch,
     "evaluate": evaluate,
     "train": train,
     "lessons": lessons,

@@ -39,6 +39,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=inputs.positive_int,
         help="meshes in each row, in suites that draw them",
     )
+    parser.add_argument(
+        "--prefer",
+        choices=("blocks", "balanced", "shape"),
+        help="as for improve, in suites that search for blocks",
+    )
+    parser.add_argument(
+        "--elements-shape",
+        metavar="X",
+        type=inputs.share,
+        help="as for improve, in suites that search for blocks",
+    )
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
@@ -61,6 +72,12 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         if "meshes" not in inspect.signature(suite.run).parameters:
             raise UserError(f"--meshes: the suite {arguments.suite} has fixed meshes")
         options["meshes"] = arguments.meshes
+    for option in ("prefer", "elements_shape"):
+        if getattr(arguments, option) is not None:
+            if option not in inspect.signature(suite.run).parameters:
+                name = option.replace("_", "-")
+                raise UserError(f"--{name}: the suite {arguments.suite} does not search for blocks")
+            options[option] = getattr(arguments, option)
     start = time.perf_counter()
     with report.progress(arguments.suite) as update:
         results = suite.run(arguments.seed, arguments.quick, update, **options)

@@ -48,7 +48,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", metavar="N", type=inputs.seed, default=0, help="random seed (0)")
     parser.add_argument(
-        "--policy", metavar="P", help="name of a shipped policy, or a policy file (the shipped one)"
+        "--policy",
+        metavar="P",
+        help="name of a shipped policy, a policy file, or a folder of a training (the shipped one)",
     )
     parser.add_argument(
         "--steps",

@@ -11,17 +11,21 @@ from typing import TYPE_CHECKING, Any
 from meshwright.cli import arguments as inputs
 from meshwright.cli import mesh_input, mesh_output
 from meshwright.cli.output_files import checked_output, replacing
-from meshwright.console import Report, table
+from meshwright.console import Report, UserError, table
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from meshwright_agent.search.annealing import Operations
-    from meshwright_agent.search.solver import Solution
+    from meshwright_agent.search.improvement import Improved, Wishes
     from meshwright_core import HalfEdgeMesh
 
 SUMMARY = "let a trained policy improve the connectivity of a mesh file or a drawing"
 DESCRIPTION = (
     "Read a mesh of triangles or of quads, or mesh a drawing coarsely; let a policy change its "
-    "connectivity until no vertex is more irregular than it must be, smooth it, and write it. "
+    "connectivity until no vertex is more irregular than it must be, and write it. The elements of "
+    "a mesh keep their size; a drawing becomes few large quads, its blocks, and so does a mesh "
+    "with --blocks. Among meshes of equal s the worst element shape counts, then their number. "
     "Corners stay where they are, and every other boundary vertex stays on its own side of the "
     "outline. Curved sides stay curves: those of a drawing, and those that --geometry or "
     "--fit-arcs finds for a mesh. A valid mesh never becomes an invalid one; where the input has "
@@ -29,8 +33,8 @@ DESCRIPTION = (
 )
 
 ROLLOUTS = 10
-EARLIER = 8
-"""The number of parts of a run between which it may end earlier, to keep a mesh valid."""
+CHECKED = 20_000
+"""Elements up to which all invariants of the answer are checked; that of more takes seconds."""
 PICTURE_SIZE = (1200, 900)
 STILL_INVERTED = 3
 """The exit code where elements were inverted before and still are."""
@@ -62,13 +66,43 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--policy", metavar="P", help="name of a shipped policy, or a policy file (the shipped one)"
     )
+    parser.add_argument(
+        "--blocks",
+        action="store_true",
+        help="decompose a quad mesh into blocks; otherwise its elements keep their size",
+    )
+    parser.add_argument(
+        "--prefer",
+        choices=("blocks", "balanced", "shape"),
+        default="balanced",
+        help="among meshes of equal s: few blocks whatever their shape, a good worst shape and "
+        "then few blocks, or the best worst shape (balanced)",
+    )
+    parser.add_argument(
+        "--min-shape",
+        metavar="X",
+        type=inputs.share,
+        help="worst scaled Jacobian, 0 to 1, beyond which only the number of blocks counts",
+    )
+    parser.add_argument(
+        "--elements-shape",
+        metavar="X",
+        type=inputs.share,
+        help="divide the blocks until the shape 2J/(a*a + b*b) of every element, which sees the "
+        "ratio of its sides, is at least X",
+    )
     parser.add_argument("--png", metavar="P.png", help="also write a picture of the result")
-    parser.add_argument("--film", metavar="F", help="also write the run as a film, F.gif or F.mp4")
+    parser.add_argument(
+        "--film",
+        metavar="F",
+        help="also write the run as a film, F.gif or F.mp4; "
+        "a mesh that keeps its size is then changed by operations only",
+    )
     mesh_input.add_geometry_arguments(parser)
 
 
 def run(arguments: argparse.Namespace, report: Report) -> int | None:
-    """Check the inputs, then search, apply the result, smooth and untangle, write."""
+    """Check the inputs, search, and write the answer."""
     from meshwright_core.core.score import normalised_return
     from meshwright_core.geometry import quality
 
@@ -77,16 +111,19 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
     film = checked_output(arguments.film, (".gif", ".mp4"), "--film") if arguments.film else None
     start = mesh_input.read_mesh(arguments)
     output = mesh_output.checked_mesh_output(arguments.output, start.kind)
+    wishes = _wishes(arguments, start)
     policy = inputs.read_policy(arguments.policy, start.kind)
 
     inputs.prepare_agent(report)
     began = time.perf_counter()
-    sound = not len(quality.inverted(start))
-    solution = _search(arguments, report, start, policy)
-    mesh, operations, inverted = _improved(start, solution, sound)
-    mesh.validate()
+    inverted_before = len(quality.inverted(start))
+    improved = _search(arguments, report, start, policy, wishes)
+    mesh = improved.mesh
+    if mesh.n_elements <= CHECKED:
+        mesh.validate()
     if mesh.optimum != start.optimum:
         raise RuntimeError(f"s* changed from {start.optimum} to {mesh.optimum}")
+    inverted = _rows(mesh, quality.inverted(mesh))
     with (
         ExitStack() as stack
     ):  # all files or none: the others replace their targets after the mesh is written
@@ -95,7 +132,7 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
         if film is not None:
             temporary = stack.enter_context(replacing(film))
             name = Path(arguments.input).stem
-            _write_film(temporary, start, operations, policy.name, name, report)
+            _write_film(temporary, start, improved.operations, policy.name, name, report)
         mesh_output.write_mesh(output, mesh)
 
     values = {
@@ -115,43 +152,60 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
         "elements": mesh.n_elements,
         "vertices": mesh.n_vertices,
         **mesh_output.measures(mesh),
+        "target_scaled_jacobian": improved.target,
+        "prefer": arguments.prefer,
+        "inverted_before": inverted_before,
         "inverted_elements": len(inverted),
         "inverted_ids": inverted,
-        "operations": len(operations),
-        "rollouts": solution.rollouts,
+        "size_kept": improved.size_kept,
+        "divided": improved.divided,
+        "method": improved.method,
+        "operations": len(improved.operations),
+        "rollouts": improved.rollouts,
+        "reason": improved.reason,
         "seconds": round(time.perf_counter() - began, 3),
     }
     report.result(values, _text(values))
     if not inverted:
+        if inverted_before:
+            count = _counted(inverted_before, "was", "were")
+            report.note(f"meshwright improve: {arguments.input}: {count} inverted; none is now")
         return None
-    count = "1 element is" if len(inverted) == 1 else f"{len(inverted):,} elements are"
+    count = _counted(len(inverted), "is", "are")
     report.note(f"meshwright improve: {output}: {count} still inverted")
     return STILL_INVERTED
 
 
-def _improved(
-    start: HalfEdgeMesh, solution: Solution, sound: bool
-) -> tuple[HalfEdgeMesh, Operations, list[int]]:
-    """The improved mesh, the operations that lead to it, and the elements that stay inverted.
+def _wishes(arguments: argparse.Namespace, start: HalfEdgeMesh) -> Wishes:
+    """What is asked of the answer; UserError for what triangles do not have."""
+    from meshwright_agent.search.improvement import Wishes
 
-    ``start`` is not changed. If it is ``sound`` the result is so too: where smoothing cannot
-    straighten all elements at the end of the search, it is the best of some states on the way.
-    """
-    from meshwright.document.position_repair import settle
+    for option, asked in (
+        ("--blocks", arguments.blocks),
+        ("--elements-shape", arguments.elements_shape is not None),
+    ):
+        if asked and start.kind == "tri":
+            raise UserError(f"{option}: only quad meshes have blocks, and this one is of triangles")
+    if arguments.elements_shape is not None and not 0.0 < arguments.elements_shape < 1.0:
+        raise UserError("--elements-shape: a shape that can be reached lies between 0 and 1")
+    blocks = arguments.blocks or arguments.elements_shape is not None
+    return Wishes(
+        arguments.prefer,
+        arguments.min_shape,
+        arguments.elements_shape,
+        keep_size=mesh_input.is_mesh(arguments.input) and not blocks,
+        in_place=arguments.film is not None,
+    )
 
-    mesh = start.copy()
-    inverted = [] if solution.carry_out(mesh) else settle(mesh)
-    if not (inverted and sound):
-        return mesh, solution.operations, inverted
-    best, done = start.copy(), 0
-    count = len(solution.operations)
-    for stop in sorted({count * share // EARLIER for share in range(1, EARLIER)}):
-        mesh = start.copy()
-        for operation, halfedge in solution.operations[:stop]:
-            mesh.apply(operation, halfedge)
-        if mesh.score <= best.score and not settle(mesh):
-            best, done = mesh, stop
-    return best, solution.operations[:done], []
+
+def _rows(mesh: HalfEdgeMesh, ids: np.ndarray) -> list[int]:
+    """Places in a written file, counted from 0, of elements by id."""
+    places = {int(e): row for row, e in enumerate(mesh.element_ids())}
+    return [places[int(e)] for e in ids]
+
+
+def _counted(count: int, one: str, many: str) -> str:
+    return f"1 element {one}" if count == 1 else f"{count:,} elements {many}"
 
 
 def _write_picture(path: Path, mesh: HalfEdgeMesh) -> None:
@@ -175,15 +229,20 @@ def _write_film(
 
 
 def _search(
-    arguments: argparse.Namespace, report: Report, mesh: HalfEdgeMesh, policy: Any
-) -> Solution:
-    from meshwright_agent.search import solver
+    arguments: argparse.Namespace,
+    report: Report,
+    mesh: HalfEdgeMesh,
+    policy: Any,
+    wishes: Wishes,
+) -> Improved:
+    from meshwright_agent.search import improvement
 
     rollouts = None if arguments.search else arguments.rollouts or ROLLOUTS
     with report.progress("searching", rollouts) as update:
-        return solver.solve(
+        return improvement.improve(
             mesh,
             policy,
+            wishes,
             rollouts=rollouts,
             seconds=arguments.search,
             max_steps=arguments.steps,
@@ -197,12 +256,19 @@ def _text(values: dict[str, Any]) -> str:
     if values["at_optimum"]:
         s += ", at the optimum"
     elements = mesh_output.counted(values["elements"], values["kind"])
+    inverted = mesh_output.inverted_words(values["inverted_ids"]) or "none"
+    if values["inverted_before"]:
+        inverted += f" (before: {values['inverted_before']:,})"
+    operations = f"{values['operations']} (best of {values['rollouts']})"
+    if values["size_kept"] and values["method"] == "blocks":
+        operations = f"new blocks, divided (best of {values['rollouts']})"
     rows = [
         ("s", s),
         ("elements", f"{values['elements_before']:,} -> {elements}"),
         *mesh_output.measure_rows(values),
-        ("inverted", mesh_output.inverted_words(values["inverted_ids"]) or "none"),
-        ("operations", f"{values['operations']} (best of {values['rollouts']})"),
+        ("inverted", inverted),
+        ("operations", operations),
+        ("end", values["reason"]),
         ("seconds", f"{values['seconds']:.1f}"),
     ]
     files = (values["output"], values["png"], values["film"])

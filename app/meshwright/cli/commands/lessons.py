@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 SUMMARY = "list the lessons, or copy them into a folder"
 DESCRIPTION = (
     "List the lessons, or copy them into a folder to be opened in JupyterLab. They are notebooks "
-    "with self-checking exercises, and take ten to twenty minutes each."
+    "with self-checking exercises, and take twenty to thirty minutes each."
 )
 
 INSTALL = 'pip install "meshwright[notebook]"'

@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--output",
         metavar="FOLDER",
         required=True,
-        help="folder to write to, or to resume in",
+        help="folder to write to, or to resume in; made where it does not exist",
     )
     parser.add_argument(
         "--config",
@@ -46,11 +46,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seed", metavar="N", type=inputs.seed, help="replaces the seed of the configuration"
     )
+    parser.add_argument(
+        "--no-table",
+        action="store_true",
+        help="leave out the rows of the paper's table at the end, which take minutes",
+    )
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Train, then report the evaluation of the policy."""
-    folder = checked_folder(arguments.output)
+    folder = checked_folder(arguments.output, parents=True)
     configuration = inputs.read_configuration(arguments.config, arguments.kind)
     from meshwright.cli.training_progress import shown
     from meshwright_agent.training import tensorboard, trainer
@@ -69,6 +74,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
                 seed=arguments.seed,
                 report=display.update if display else None,
                 finishing=display.finish if display else None,
+                table=not arguments.no_table,
             )
         except trainer.ConfigurationError as error:
             raise UserError(str(error)) from error

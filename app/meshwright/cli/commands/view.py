@@ -24,8 +24,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "file",
         metavar="FILE-or-SHAPE",
         nargs="?",
-        help="mesh file, project (.meshwright), file of a shape (.dxf .svg .geojson .wkt .json) "
-        "or name of a shape",
+        help="mesh file, project (.meshwright), file of a shape (.dxf .svg .geojson .wkt .poly "
+        ".dat .json) or name of a shape",
     )
     parser.add_argument(
         "--kind", choices=("tri", "quad"), default="quad", help="elements of a shape (quad)"

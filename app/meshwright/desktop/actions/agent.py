@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import partial
 
 from meshwright.assistant.assistant import State
-from meshwright.assistant.search_runner import COMPLETE_SECONDS
 from meshwright.desktop.actions.action import Action, can_run, needing
 from meshwright.desktop.actions.context import ActionContext
 
@@ -15,7 +14,12 @@ HINTS = 5
 
 @needing("Needs a mesh, and the agent must be ready.")
 def _can_hint(context: ActionContext) -> bool:
-    return can_run(context) and context.assistant.state is not State.SEARCHING
+    return can_run(context) and context.assistant.state not in (State.SEARCHING, State.GOING)
+
+
+@needing("Nothing is on the way to a result.")
+def _is_going(context: ActionContext) -> bool:
+    return context.assistant.state is State.GOING
 
 
 def _has_region(context: ActionContext) -> bool:
@@ -68,10 +72,18 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.complete",
         "Complete",
-        f"Search for up to {COMPLETE_SECONDS:g} seconds, and apply the best result",
-        run=lambda context: context.assistant.search(),
+        "Search until the optimum is reached or nothing more is won, and apply the best result",
+        run=lambda context: context.agent.complete(),
         shortcuts=("Ctrl+Return",),
         enabled=can_run,
+        menu="Agent",
+    ),
+    Action(
+        "agent.skip",
+        "Skip",
+        "Go to the result of a search at once; its operations are in the history",
+        run=lambda context: context.assistant.skip(),
+        enabled=_is_going,
         menu="Agent",
     ),
     Action(
@@ -122,7 +134,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.stop",
         "Stop",
-        "Stop the policy and keep its operations; a search applies its best result so far",
+        "Stop, and keep what was done; a search applies its best result so far",
         run=lambda context: context.agent.stop(),
         shortcuts=("Esc",),
         enabled=_is_busy,

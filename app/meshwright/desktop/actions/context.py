@@ -16,11 +16,15 @@ from meshwright.desktop.editing.cleanable_lines_controller import CleanableLines
 from meshwright.desktop.editing.edit_controller import EditController
 from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
+from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.history.playback_controller import PlaybackController
 from meshwright.desktop.levels.level_controller import LevelController
+from meshwright.desktop.quality.colour_controller import ColourController
+from meshwright.desktop.quality.quality_controller import QualityController
 from meshwright.document.document import Document
 
 
@@ -39,8 +43,12 @@ class ActionContext:
     hover: HoverController
     editing: EditController
     lines: CleanableLinesController
+    quality: QualityController
+    colours: ColourController
     selection_tools: SelectionController
+    names: NamesController
     navigation: KeyboardNavigation
+    vertices: VertexCommands
     hints: HintsController
     agent: AgentController
     preferences: PreferencesController

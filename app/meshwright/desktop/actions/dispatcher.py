@@ -35,6 +35,7 @@ class ActionDispatcher(Controller):
             context.selection_tools.tool_changed,
         ):
             self._connections.add(signal, self.refresh)
+        context.quality.monitor.measured.connect(self.refresh)
         self.refresh()
 
     def set_theme(self, theme: Theme) -> None:

@@ -52,7 +52,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "save_as",
         "Save as\u2026",
-        "Save the mesh to another file, or mesh and history to a project",
+        "Save mesh and history to a project, or the mesh alone to another file",
         run=lambda context: context.files.save_as(),
         shortcuts=("Ctrl+Shift+S",),
         enabled=has_mesh,

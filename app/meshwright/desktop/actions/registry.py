@@ -10,8 +10,10 @@ from meshwright.desktop.actions import (
     history,
     levels,
     mesh,
+    names,
     navigate,
     select,
+    vertex,
     view,
 )
 from meshwright.desktop.actions.action import Action
@@ -21,6 +23,8 @@ ACTIONS: tuple[Action, ...] = (
     *edit.ACTIONS,
     *select.ACTIONS,
     *mesh.ACTIONS,
+    *names.ACTIONS,
+    *vertex.ACTIONS,
     *view.ACTIONS,
     *navigate.ACTIONS,
     *history.ACTIONS,
@@ -30,6 +34,16 @@ ACTIONS: tuple[Action, ...] = (
 )
 
 MENUS = ("File", "Edit", "Select", "Mesh", "View", "Go", "History", "Agent", "Levels", "Help")
+DIVIDERS = frozenset(
+    (
+        "save", "recover", "quit", "auto_smooth", "select.all", "select.irregular", "clean_all",
+        "smooth", "zoom_selection", "ghosts", "colour.block", "theme", "walk.operation",
+        "walk.turn", "walk.left", "history.back", "history.export", "history.list",
+        "agent.complete", "agent.watch", "agent.stop", "agent.take_1", "level.again",
+        "level.answer", "level.leave",
+    )
+)  # fmt: skip
+"""Actions above which their menu has a line."""
 TOOLBAR = (
     ("new", "open", "save"),
     ("undo", "redo"),

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from qtpy.QtCore import QTimer
 from qtpy.QtWidgets import QFileDialog, QWidget
 
 from meshwright.assistant.assistant import Assistant, State
@@ -14,6 +16,7 @@ from meshwright.assistant.policy_catalogue import label as policy_label
 from meshwright.assistant.search_runner import Effort
 from meshwright.desktop.agent.agent_panel import AgentPanel
 from meshwright.desktop.agent.hints_controller import HintsController
+from meshwright.desktop.application.readiness import Readiness
 from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.canvas.layers.hints import percent
@@ -29,6 +32,9 @@ from meshwright_core.core.kinds import ELEMENT_NOUN
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
     from meshwright_core import HalfEdgeMesh
+
+IDLE = 1500
+"""Milliseconds without a change or a hover after which the policy is loaded."""
 
 
 class AgentController(Controller):
@@ -52,6 +58,10 @@ class AgentController(Controller):
         self._canvas, self._panel, self._hints = canvas, panel, hints
         self._status, self._notice, self._parent = status, notice, parent
         self._region: tuple[HalfEdgeMesh, np.ndarray] | None = None  # mesh, elements outside
+        self._readiness: Readiness | None = None
+        self._prepared = False
+        self._idle = QTimer(parent, singleShot=True, interval=IDLE)
+        self._idle.timeout.connect(self._on_idle)
         overlay = canvas.overlay
         self.field = FieldLayer(theme, overlay.font())
         overlay.add(self.field, below=overlay.markers)
@@ -61,6 +71,26 @@ class AgentController(Controller):
         self._connections.add(assistant.message, status.show_message)
         self._connections.add(assistant.failed, notice.show_message)
 
+    def prepare_while_idle(self, readiness: Readiness) -> None:
+        """Load the policy once nobody has done anything for a moment, so that the first run need
+        not wait for it.
+        """
+        self._readiness = readiness
+        for signal in (readiness.changed, self._document.changed, self._document.hover_changed):
+            self._connections.add(signal, self._await_idle)
+        self._await_idle()
+
+    def _await_idle(self, *_: object) -> None:
+        if self._readiness is not None and not self._prepared:
+            self._idle.start()
+
+    def _on_idle(self) -> None:
+        assistant, readiness = self._assistant, self._readiness
+        ready = readiness is not None and readiness.agent and bool(assistant.policy)
+        if ready and not assistant.running and not assistant.loading:
+            self._prepared = True
+            assistant.prepare()
+
     def set_theme(self, theme: Theme) -> None:
         """Draw in the colours of ``theme``."""
         super().set_theme(theme)
@@ -68,6 +98,7 @@ class AgentController(Controller):
 
     def close(self) -> None:
         """End what runs, and disconnect."""
+        self._idle.stop()
         self._assistant.close()
         super().close()
         self._panel.release()
@@ -88,14 +119,25 @@ class AgentController(Controller):
         else:
             self._assistant.play()
 
+    def _wished(self, effort: Effort) -> Effort:
+        """The effort with what the panel says of blocks, shape and size."""
+        panel = self._panel
+        return replace(effort, prefer=panel.preference, keep_size=panel.keep_size.isChecked())
+
+    def complete(self) -> None:
+        """Search until s* is reached or nothing more is won."""
+        self._assistant.search(self._wished(Effort(until_done=True)))
+
     def best_of(self) -> None:
         """Run the policy as often as set in the panel, and apply the best result."""
         rollouts = self._panel.rollouts
-        self._assistant.search(Effort(rollouts=rollouts, seconds=None))
+        self._assistant.search(
+            Effort(rollouts=rollouts, seconds=None, prefer=self._panel.preference)
+        )
 
     def search(self) -> None:
         """Search for the time set in the panel."""
-        self._assistant.search(Effort(seconds=self._panel.seconds))
+        self._assistant.search(self._wished(Effort(seconds=self._panel.seconds)))
 
     def finish_region(self) -> None:
         """Search in the selected region for the time set in the panel; the rest of the mesh is

@@ -20,6 +20,7 @@ from qtpy.QtWidgets import (
 
 from meshwright.assistant.assistant import Assistant, State
 from meshwright.assistant.policy_catalogue import kind_of, label, shipped
+from meshwright.assistant.search_runner import PREFERENCES
 from meshwright.desktop.agent.hint_list import HintList
 from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.controller import Connections
@@ -35,6 +36,11 @@ SPEEDS = (0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60)
 """Steps of the slider, in decisions per second."""
 USUAL_SPEED, USUAL_ROLLOUTS, USUAL_SECONDS = 4, 10, 10
 MOST_ROLLOUTS, MOST_SECONDS = 1000, 3600
+PREFER = "agent/prefer"
+"""The setting of what searches prefer at s*."""
+PREFERRED = {"blocks": "few blocks", "balanced": "balanced", "shape": "good shape"}
+KEEP_SIZE = "agent/keep-size"
+"""The setting of whether searches keep the size of the elements."""
 TICK = 100
 """Milliseconds between updates of the elapsed time during a run."""
 FILES = "agent/files"
@@ -89,6 +95,11 @@ class AgentPanel(QWidget):
         return int(self.rollouts_box.value())
 
     @property
+    def preference(self) -> str:
+        """What searches prefer at s*: "blocks", "balanced" or "shape"."""
+        return PREFERENCES[self.prefer.value()]
+
+    @property
     def seconds(self) -> float:
         """Time limit of *Search* in seconds."""
         return float(self.seconds_box.value())
@@ -120,6 +131,7 @@ class AgentPanel(QWidget):
         self.complete = self._button("agent.complete", "Complete")
         self.complete.setObjectName("Primary")
         self.stop = self._button("agent.stop", "Stop")
+        self.skip = self._button("agent.skip", "Skip")
         self.best_of = self._button("agent.best_of", "Best of")
         self.search = self._button("agent.search", "Search")
         self.region = self._button("agent.region", "Finish only this region")
@@ -129,6 +141,7 @@ class AgentPanel(QWidget):
         self.seconds_box = self._number("agent/seconds", MOST_SECONDS, USUAL_SECONDS, " s")
         self.seconds_box.setAccessibleName("Seconds of Search")
         self.seconds_box.setToolTip("Time limit of Search and of Finish only this region")
+        self._make_preference()
         self.watch = QCheckBox("Show what the policy sees")
         self.watch.setToolTip(self._actions["agent.watch"].toolTip())
         self.watch.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -144,6 +157,37 @@ class AgentPanel(QWidget):
         self.speed.setValue(min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - usual)))
         self._set_speed(self.speed.value())
         self.speed.valueChanged.connect(self._on_speed_moved)
+
+    def _make_preference(self) -> None:
+        self.prefer = QSlider(Qt.Orientation.Horizontal)
+        self.prefer.setRange(0, len(PREFERENCES) - 1)
+        self.prefer.setPageStep(1)
+        self.prefer.setTickPosition(QSlider.TickPosition.NoTicks)
+        self.prefer.setToolTip(
+            "What searches aim at once s is at its optimum: few blocks, or corners as good as the"
+            " outline permits"
+        )
+        self.prefer.setAccessibleName("Blocks or shape")
+        self.prefer.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.preferred = named("", "Label")
+        self.keep_size = QCheckBox("Keep the size of the elements")
+        self.keep_size.setToolTip(
+            "Searches keep the size of the elements; otherwise they look for few, large blocks"
+        )
+        self.keep_size.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.keep_size.setChecked(self._settings.flag(KEEP_SIZE, False))
+        self.keep_size.toggled.connect(partial(self._settings.put, KEEP_SIZE))
+        self.prefer.setValue(PREFERENCES.index(self._settings.choice(PREFER, _PREFERRED_FIRST)))
+        self.prefer.valueChanged.connect(self._on_preferred)
+        self._show_preference()
+
+    def _show_preference(self) -> None:
+        self.preferred.setText(PREFERRED[self.preference].capitalize())
+        self.prefer.setAccessibleDescription(PREFERRED[self.preference])
+
+    def _on_preferred(self, index: int) -> None:
+        self._settings.put(PREFER, self.preference)
+        self._show_preference()
 
     def _make_progress(self) -> None:
         self.bar = ShareBar(self._theme)
@@ -187,12 +231,15 @@ class AgentPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(GRID)
         layout.addLayout(_line((self.policy, 1), (self.more, 0)))
+        layout.addLayout(_line((self.complete, 1), (self.stop, 1)))
+        self.preferred.setMinimumWidth(self.preferred.fontMetrics().horizontalAdvance("Good shape"))
+        layout.addLayout(_line((self.prefer, 1), (self.preferred, 0)))
+        layout.addWidget(self.keep_size)
+        layout.addWidget(self.bar)
+        layout.addLayout(_line((self.progress, 1), (self.skip, 0)))
         layout.addLayout(_line((self.hint, 1), (self.step, 1), (self.play, 1)))
         layout.addWidget(self.hints)
         layout.addLayout(_line((self.speed, 1), (self.pace, 0)))
-        layout.addLayout(_line((self.complete, 1), (self.stop, 1)))
-        layout.addWidget(self.bar)
-        layout.addWidget(self.progress)
         layout.addWidget(self.watch)
         grid = QGridLayout()
         grid.setSpacing(GRID)
@@ -266,6 +313,8 @@ class AgentPanel(QWidget):
             self.step.setIcon(icons.icon("step", self._theme))
             self.play.setIcon(icons.icon("pause" if playing else "play", self._theme))
         self.stop.setText("Stop now" if assistant.stopping else "Stop")
+        self.skip.setVisible(assistant.state is State.GOING)
+        self.complete.setText("Go on" if assistant.unfinished else "Complete")
         self.watch.setChecked(assistant.watch)
         self._select()
         if assistant.running != self._clock.isActive():
@@ -284,15 +333,20 @@ class AgentPanel(QWidget):
             self.progress.setText(text)
 
 
+_PREFERRED_FIRST = ("balanced", *(one for one in PREFERENCES if one != "balanced"))
+
+
 def activity(assistant: Assistant) -> str:
     """The state of the assistant in a few words."""
     progress = assistant.progress
     decisions = progress.counted
-    best = "" if progress.best is None else f", best s {progress.best}"
+    best = "" if progress.best is None else f", best s {progress.best:,}"
     if assistant.loading:
         return "Loading the policy\u2026"
     if assistant.hinting.asking:
         return "Computing hints\u2026"
+    if progress.way is not None:
+        return "Going there: {:,} of {:,}".format(*progress.way)
     if assistant.stopping:
         return f"Stopping{best}"
     if assistant.state is State.SEARCHING:
@@ -300,11 +354,14 @@ def activity(assistant: Assistant) -> str:
         done = (
             f", {progress.rollouts} of {effort.rollouts} runs" if effort and effort.rollouts else ""
         )
-        return f"Searching: {progress.elapsed:.1f} s{done}{best}"
+        above = f", {progress.gap:,} above the optimum" if progress.gap else ""
+        return f"Searching: {progress.elapsed:.1f} s{done}{best}{above}"
     if assistant.state is State.PAUSED:
         return f"Paused after {decisions}{best}"
     if assistant.state is State.PLAYING:
         return f"Playing: {decisions}, {progress.elapsed:.0f} s{best}"
+    if assistant.outcome:
+        return assistant.outcome
     return f"{decisions} taken{best}" if progress.decisions else "Ready" if assistant.policy else ""
 
 

@@ -47,12 +47,13 @@ class HintRow(QPushButton):
         """Show this hint."""
         change = label(hint.ghost.change)
         self.number.setText(str(hint.number))
-        self.title.setText(hint.title)
+        self.title.setText(f"{hint.title}, next step" if hint.is_next else hint.title)
         self.chance.setText(hint.chance)
         self.change.setText(change)
         self.change.setStyleSheet(f"color: {change_colour(hint.ghost.change, theme)};")
-        self.setToolTip(f"Apply: s changes by {change}  ({hint.number})")
-        self.setAccessibleName(f"Hint {hint.number}: {hint.title}, {hint.chance}, s {change}")
+        step = "; Step applies this one" if hint.is_next else ""
+        self.setToolTip(f"Apply: s changes by {change}  ({hint.number}){step}")
+        self.setAccessibleName(f"Hint {hint.number}: {hint.title}, {hint.chance}, s {change}{step}")
 
 
 class HintList(QWidget):

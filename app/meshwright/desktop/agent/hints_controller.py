@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -119,8 +120,8 @@ class HintsController(Controller):
         pairs = [(c, shown) for c in choices if mesh and (shown := self._hint(mesh, c))]
         self._choices = tuple(choice for choice, _ in pairs)
         self.shown = tuple(
-            Hint(number, hint.title, hint.probability, hint.ghost, hint.place)
-            for number, (_, hint) in enumerate(pairs, 1)
+            replace(hint, number=number, is_next=choice is self._assistant.hinting.next_step)
+            for number, (choice, hint) in enumerate(pairs, 1)
         )
         marks = None
         if mesh is not None:

@@ -53,6 +53,7 @@ class Canvas(QWidget):
         self._edges: TrueEdges | None = None
         self._picker: Picker | None = None
         self._delta = np.empty(0, dtype=int)  # irregularities of the picker's mesh
+        self._fills: np.ndarray | None = None
         self._fitted = True
         self._stale = False
         self._at: QPointF | None = None  # the position of the mouse
@@ -111,6 +112,7 @@ class Canvas(QWidget):
         self.plotter.show()  # at once, so that it can take the keyboard focus
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())
+        self.view.fill(None, None, self._fills)
         self._on_replaced()
 
     def release(self) -> None:
@@ -131,6 +133,17 @@ class Canvas(QWidget):
         self.overlay.set_theme(theme)
         self.view.set_theme(theme, self.document.mesh, self.edges)
         self._look()
+
+    def fill(self, fills: np.ndarray | None) -> None:
+        """Fill the elements with these colours (n, 3) by id, uint8; None: the plain fill."""
+        if fills is None and self._fills is None:
+            return
+        self._fills = fills
+        if self.built and not self._stale:
+            self.view.fill(self.document.mesh, self.edges, fills)
+            self._look()
+        else:
+            self.view.fill(None, None, fills)  # seen with the next update
 
     # Camera
 
@@ -217,6 +230,23 @@ class Canvas(QWidget):
             mesh = self.document.mesh
             return self._pinned if mesh is not None and mesh.live(self._pinned) else -1
         return self._halfedge_at(self._at)
+
+    @property
+    def vertex_at_hand(self) -> int:
+        """The vertex near the mouse, or else the end nearest to it of the half-edge under it; the
+        origin of one pinned by keyboard; -1 for none.
+        """
+        mesh, halfedge = self.document.mesh, self.under_mouse
+        if mesh is None:
+            return -1
+        if self._at is None:
+            return mesh.origin(halfedge) if halfedge >= 0 else -1
+        vertex = self.vertex_at(self._at)
+        if vertex >= 0 or halfedge < 0:
+            return vertex
+        ends = [mesh.origin(halfedge), mesh.target(halfedge)]
+        away = self.viewport.to_screen(mesh.points[ends]) - (self._at.x(), self._at.y())
+        return ends[int(np.argmin((away**2).sum(axis=1)))]
 
     def pin(self, halfedge: int) -> None:
         """Hover ``halfedge`` until the mouse moves, for navigation by keyboard; -1 for none."""

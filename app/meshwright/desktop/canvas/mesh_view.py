@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from qtpy.QtCore import QObject, Qt
 from qtpy.QtWidgets import QWidget
 
@@ -47,6 +48,11 @@ class CanvasView:
 
     def update_edges(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
         """Draw curved edges by other polylines."""
+
+    def fill(
+        self, mesh: HalfEdgeMesh | None, edges: TrueEdges | None, fills: np.ndarray | None
+    ) -> None:
+        """Fill the elements with these colours (n, 3) by id, uint8; None: the plain fill."""
 
     def look(self, viewport: Viewport) -> None:
         """Move the camera."""
@@ -113,6 +119,14 @@ class VtkView(CanvasView):
     def update_edges(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
         """Draw curved edges by other polylines."""
         self._scene.update_edges(mesh, edges)
+
+    def fill(
+        self, mesh: HalfEdgeMesh | None, edges: TrueEdges | None, fills: np.ndarray | None
+    ) -> None:
+        """Fill the elements with these colours (n, 3) by id, uint8; None: the plain fill."""
+        self._scene.fills = fills
+        if mesh is not None and edges is not None:
+            self._scene.refill(mesh, edges)
 
     def look(self, viewport: Viewport) -> None:
         """Move the camera."""

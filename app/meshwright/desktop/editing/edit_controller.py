@@ -157,7 +157,8 @@ class EditController(Controller):
         """Smooth the whole mesh."""
         if self.is_ready():
             self._document.smooth()
-            self._status.show_message("Mesh smoothed.")
+            lost = "" if self._document.plane else " It is not held to the shape of its surface."
+            self._status.show_message(f"Mesh smoothed.{lost}")
 
     def smooth_here(self) -> None:
         """Smooth the selected vertices only."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 from qtpy.QtCore import QTimer
 
@@ -26,6 +28,10 @@ flicker.
 """
 REST = 60
 """Milliseconds without a move after which the mouse rests."""
+MEASURED_AFTER = 90
+"""Milliseconds at a half-edge after which the change of shape of each operation is computed."""
+PATIENCE = 0.03
+"""Seconds that this may take."""
 FEW = 2000
 """The tag of a preview avoids irregular vertices only up to this many."""
 
@@ -63,6 +69,11 @@ class HoverController(Controller):
         self._rest.setSingleShot(True)
         self._rest.setInterval(REST)
         self._rest.timeout.connect(self._draw_ghost)
+        self._open = True
+        self._measuring = QTimer(canvas)
+        self._measuring.setSingleShot(True)
+        self._measuring.setInterval(MEASURED_AFTER)
+        self._measuring.timeout.connect(self._measure)
         overlay = canvas.overlay
         overlay.add(self.layer, below=overlay.markers)
         overlay.add(self.layer.numbers, below=overlay.card)
@@ -81,8 +92,10 @@ class HoverController(Controller):
         self.panel.set_theme(theme)
 
     def close(self) -> None:
-        """Disconnect, and stop the timer."""
+        """Disconnect, and stop the timers."""
         super().close()
+        self._open = False
+        self._measuring.stop()
         self._rest.stop()
         self.panel.release()
 
@@ -162,6 +175,8 @@ class HoverController(Controller):
         if (*at, operation) != self._shown:
             self._shown = (*at, operation)
             self.panel.offer(self.choices, operation)
+            if self._open:
+                self._measuring.start()
             self._show_ghost(mesh, meant, halfedge)
 
     def _show_ghost(self, mesh: HalfEdgeMesh, meant: OperationOffer | None, halfedge: int) -> None:
@@ -173,6 +188,23 @@ class HoverController(Controller):
             self._rest.start()
         else:
             self._draw_ghost()
+
+    def _measure(self) -> None:
+        """Show how each local operation would change the shape of the elements near it."""
+        from meshwright.document.shape_change import shape_change  # imports scipy
+
+        mesh, at = self._document.mesh, self._at
+        if mesh is None or at[0] != self._document.revision or self._assistant.running:
+            return
+        began, found = time.perf_counter(), {}
+        for offer in self.choices:
+            if offer.allowed and offer.info.is_local:
+                change = shape_change(mesh, offer.operation, at[1], self._document.auto_smooth)
+                if change is not None:
+                    found[offer.operation] = change
+                if time.perf_counter() - began > PATIENCE:
+                    break
+        self.panel.show_shapes(found)
 
     def _draw_ghost(self) -> None:
         """Show the preview of the current operation."""
@@ -190,6 +222,7 @@ class HoverController(Controller):
         if self._shown != (-1, -1, None):
             self._shown = (-1, -1, None)
             self.panel.offer((), None)
+            self._measuring.stop()
             self._rest.stop()
             self.layer.show(None)
 

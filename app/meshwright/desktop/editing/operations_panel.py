@@ -1,4 +1,4 @@
-"""The panel of operations for the kind of mesh: keys, change of s, armed operation."""
+"""The panel of operations for the kind of mesh: keys, changes of s and shape, armed operation."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ from meshwright_core.errors import sentence
 from meshwright_core.operations.catalogue import Operation, OperationInfo, of_kind
 
 HEIGHT = 26
+SHAPE_GAP = 28
+"""Pixels at the right of the change of shape, for the change of s."""
 POINT = "Point at a half-edge to see its operations and how each changes s."
 ARMED = "{}: click half-edges to apply it; Esc cancels."
 EMPTY = "Operations are listed here when there is a mesh."
@@ -64,6 +66,11 @@ class OperationsPanel(QWidget):
         for row in self.rows:
             row.offer(by_operation.get(row.info.operation), row.info.operation == current)
 
+    def show_shapes(self, changes: dict[Operation, float]) -> None:
+        """Show how operations would change the worst scaled Jacobian near them."""
+        for row in self.rows:
+            row.show_shape(changes.get(row.info.operation))
+
     def arm(self, operation: Operation | None) -> None:
         """Mark the armed operation; None for none."""
         self._armed = operation
@@ -104,7 +111,7 @@ class OperationsPanel(QWidget):
 
 
 class OperationButton(QAbstractButton):
-    """One row: key, title, and the change of s at the hovered half-edge."""
+    """One row: key, title, and the changes of shape and of s at the hovered half-edge."""
 
     def __init__(self, info: OperationInfo, theme: Theme) -> None:
         super().__init__()
@@ -112,6 +119,7 @@ class OperationButton(QAbstractButton):
         self._theme = theme
         self._choice: OperationOffer | None = None
         self._current = False
+        self._shape: float | None = None
         self.setText(info.title)
         self.setCheckable(True)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -133,7 +141,26 @@ class OperationButton(QAbstractButton):
     def offer(self, choice: OperationOffer | None, current: bool) -> None:
         """Set the choice at the hovered half-edge; ``current``: this operation is previewed."""
         if choice != self._choice or current != self._current:
+            if choice != self._choice:
+                self._shape = None
             self._choice, self._current = choice, current
+            self._describe()
+            self.update()
+
+    @property
+    def shape(self) -> str:
+        """The change of the worst scaled Jacobian near the half-edge; empty if it is unknown."""
+        if self._shape is None:
+            return ""
+        if abs(self._shape) < 0.005:
+            return "\u00b1.00"
+        sign = "+" if self._shape > 0 else "\u2212"
+        return sign + f"{abs(self._shape):.2f}".removeprefix("0")
+
+    def show_shape(self, change: float | None) -> None:
+        """Show the change of the worst scaled Jacobian; None: nothing."""
+        if change != self._shape:
+            self._shape = change
             self._describe()
             self.update()
 
@@ -152,6 +179,8 @@ class OperationButton(QAbstractButton):
             text = f"{text}\nNot here: {self._choice.verdict.reason}."
         else:
             text += "\nClick to choose it; each click on the mesh then applies it."
+        if self.shape:
+            text += f"\nWorst scaled Jacobian near it: {self.shape}"
         self.setToolTip(text)
         self.setAccessibleDescription(text)
 
@@ -181,6 +210,12 @@ class OperationButton(QAbstractButton):
         if self._choice is not None and self._choice.change is not None:
             painter.setPen(QColor(change_colour(self._choice.change, theme)))
             painter.drawText(inner, Qt.AlignmentFlag.AlignRight | middle, self.change)
+            font.setPixelSize(11)
+            font.setWeight(QFont.Weight.Normal)
+            painter.setFont(font)
+            painter.setPen(QColor(theme.muted))
+            beside = inner.adjusted(0, 0, -SHAPE_GAP, 0)
+            painter.drawText(beside, Qt.AlignmentFlag.AlignRight | middle, self.shape)
         painter.end()
 
     def _paint_back(self, painter: QPainter) -> None:

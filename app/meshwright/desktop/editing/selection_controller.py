@@ -183,8 +183,10 @@ class SelectionController(Controller):
         if not drag.moved:
             return
         folded = len(drag.folded)
-        self._document.move(drag.vertices, drag.places, parameters=drag.parameters)
-        moved = f"Moved {plural(len(drag.vertices), 'vertex', 'vertices')}."
+        self._document.move(drag.vertices, drag.places, parameters=drag.parameters, pin=True)
+        count = len(drag.vertices)
+        moved = f"Moved and pinned {plural(count, 'vertex', 'vertices')}; P frees"
+        moved += " it." if count == 1 else " them."
         if folded:
             verb = "is" if folded == 1 else "are"
             moved += f" {plural(folded, 'element')} {verb} inverted now; Untangle repairs this."

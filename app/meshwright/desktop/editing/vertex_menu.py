@@ -1,4 +1,6 @@
-"""The context menus of a vertex and of the selection: desired degree, corner, lock, smoothing."""
+"""The context menus of a vertex and of the selection: desired degree, corner, pin, lock,
+smoothing.
+"""
 
 from __future__ import annotations
 
@@ -63,13 +65,14 @@ class VertexMenus:
         self._fill(menu, mesh, selection.vertices)
         menu.addSeparator()
         menu.addAction(self._actions["agent.region"])
+        menu.addAction(self._actions["names"])
         menu.addSeparator()
         for action_id in ("select.grow", "select.shrink", "select.invert", "select.none"):
             menu.addAction(self._actions[action_id])
         return menu
 
     def _fill(self, menu: QMenu, mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
-        """Add desired degree, corner, lock and smoothing of ``vertices`` (n,).
+        """Add desired degree, corner, pin, lock and smoothing of ``vertices`` (n,).
 
         A switch is on where it is on for all of them; where it is for some, the next click
         switches all on. Entries that need compiled kernels are disabled until these are loaded.
@@ -93,13 +96,16 @@ class VertexMenus:
             action = _checkable(degrees, str(wanted), present == {wanted})
             action.triggered.connect(then(document.set_desired, wanted))
         geometric, locked = mesh.geometric()[vertices], mesh.locked()[vertices]
+        pinned = mesh.pinned()[vertices]
         corner = _checkable(menu, "Corner (keeps its position)", bool(geometric.all()))
         corner.triggered.connect(then(document.set_geometric))
+        pin = _checkable(menu, "Pinned (not moved by smoothing)", bool(pinned.all()))
+        pin.triggered.connect(then(document.set_pinned))
         lock = _checkable(menu, "Locked (not moved or removed)", bool(locked.all()))
         lock.triggered.connect(then(document.set_locked))
         smooth = menu.addAction("Smooth here")
         smooth.triggered.connect(then(_smooth, document))
-        for part in (degrees, corner, lock, smooth):
+        for part in (degrees, corner, pin, lock, smooth):
             part.setEnabled(self._readiness.editing)
         for part in (degrees, corner, lock):
             if self._levels.level is not None:  # they would change the puzzle

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -19,7 +20,8 @@ from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.controller import Controller
 from meshwright.desktop.files.drop_target import DropTarget
 from meshwright.desktop.files.recent_menu import RecentMenu
-from meshwright.desktop.files.unsaved_work import Guard, NoGuard, UnsavedWorkGuard
+from meshwright.desktop.files.save_question import QuestionDialog
+from meshwright.desktop.files.unsaved_work import Guard, NoGuard, UnsavedWorkGuard, counted
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
@@ -29,13 +31,17 @@ from meshwright.document.storage.document_file import is_drawing
 from meshwright.document.storage.project_file import ENDING, is_project
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import FARTHEST, NEAREST
-from meshwright_core.errors import sentence
+from meshwright_core.errors import FileWarning, MeshError, MixedElementsError, sentence
 from meshwright_core.io import formats, mesh_files
 
 if TYPE_CHECKING:
     from meshwright_core.io.drawings import DrawingReport
 
 MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"
+FLAT = 0.005
+"""Distance of straight edges from their curves, as a fraction of the mesh's size, below which a
+mesh file is written without a word.
+"""
 USUAL = ".vtk"
 """The suffix of a mesh file whose name is typed without one."""
 
@@ -63,6 +69,7 @@ class FileController(Controller):
         self._settings, self._status, self._notice = settings, status, notice
         self._window = window
         self.guard: Guard = NoGuard(window)
+        self._agreed: set[tuple[Path | str, ...]] = set()
         self.dropping = DropTarget(window, self.open, theme)
         self.recent = RecentMenu(settings, self.open, window)
         actions["recent"].setMenu(self.recent)
@@ -91,6 +98,7 @@ class FileController(Controller):
             self._notice,
             self._window,
             self.save,
+            self.save_as,
             self.show_all,
             folder,
         )
@@ -113,7 +121,10 @@ class FileController(Controller):
 
     def _on_saved_changed(self) -> None:
         document = self._document
-        self._window.setWindowTitle(f"{document.name or 'No mesh'}[*] \u2013 Meshwright")
+        name = document.name or "No mesh"
+        only_history = document.modified and document.path and not document.mesh_modified
+        note = ", history not saved" if only_history else ""
+        self._window.setWindowTitle(f"{name}[*]{note} \u2013 Meshwright")
         self._window.setWindowModified(document.modified)
 
     # Another mesh
@@ -164,11 +175,16 @@ class FileController(Controller):
         place = Path(path).absolute()
         if not self.may_drop():
             return
+        said: list[str] = []
         try:
-            with waiting():
+            with waiting(), file_warnings(said):
                 report = self._report(place)
                 if report is None or len(report.groups()) == 1:
                     self._document.open(place)
+        except MixedElementsError as error:
+            if not self._open_as_quads(place, one_line(error), said):
+                return
+            report = None
         except (ValueError, OSError) as error:
             if not place.exists():
                 self._forget(place)
@@ -181,6 +197,27 @@ class FileController(Controller):
         self.show_all()
         if report is not None:
             self._status.show_message(_found(report))
+        if said:
+            self._notice.show_message(" ".join(said))
+
+    def _open_as_quads(self, place: Path, reason: str, said: list[str]) -> bool:
+        """Offer to make quads of a file of triangles and quads; whether that was done."""
+        answer = QuestionDialog(
+            f"Make quads of all elements of {place.name}?",
+            f"{reason} Triangles are joined in pairs; if some are left, every element is split. "
+            "The file stays as it is.",
+            (("", "Cancel"), ("quads", "Make quads")),
+            parent=self._window,
+        ).ask()
+        if answer != "quads":
+            return False
+        try:
+            with waiting(), file_warnings(said):
+                self._document.open(place, to_quads=True)
+        except (ValueError, OSError) as error:
+            self._notice.show_message(one_line(error))
+            return False
+        return True
 
     def _report(self, place: Path) -> DrawingReport | None:
         """What is in a drawing; None for other files, and for domains, which need no search."""
@@ -212,25 +249,96 @@ class FileController(Controller):
     # Saving
 
     def save(self) -> bool:
-        """Save the mesh to its file, or ask for one; returns whether it was saved."""
-        if self._document.path is None:
+        """Save the mesh to its file, or ask for one; returns whether it was saved.
+
+        Where another window or program has changed the file meanwhile, asks what to do.
+        """
+        document = self._document
+        if document.path is None:
             return self.save_as()
+        if document.changed_on_disk:
+            answer = self._ask_about_change(document.path)
+            if answer == "save_as":
+                return self.save_as()
+            if answer == "reload":
+                return self._reload(document.path)
+            if answer != "overwrite":
+                return False
         return self._save(None)
 
+    def _ask_about_change(self, path: Path) -> str:
+        there = path.exists()
+        what = "changed" if there else "deleted or moved"
+        reload = (("reload", "Reload"),) if there else ()
+        return QuestionDialog(
+            f"{path.name} was {what} by another program",
+            "Another window or program has saved to it since it was opened or saved here."
+            " Overwrite replaces what was saved there, Reload drops what was changed here."
+            if there
+            else "It is no longer where it was opened or saved.",
+            (("cancel", "Cancel"), *reload, ("save_as", "Save as\u2026")),
+            ("overwrite", "Overwrite" if there else "Save it there again"),
+            self._window,
+        ).ask()
+
+    def _reload(self, path: Path) -> bool:
+        """Read the file again; returns whether it could be read."""
+        try:
+            with waiting():
+                self._document.open(path)
+        except (ValueError, OSError) as error:
+            self._notice.show_message(one_line(error))
+            return False
+        self.show_all()
+        self._status.show_message(f"Reloaded {path.name}.")
+        return True
+
     def save_as(self) -> bool:
-        """Ask for a file and save the mesh to it, or mesh and history to a project."""
+        """Ask for a file and save mesh and history to a project, which is proposed, or the mesh
+        alone to a mesh file.
+        """
         document = self._document
-        start = str(document.path or f"{document.name or 'mesh'}{USUAL}")
-        chosen = PROJECTS if document.path and is_project(document.path) else MESHES
-        filters = {one.partition(" (")[0]: one for one in to_save().split(";;")}
+        start = (document.path or Path(document.name or "mesh")).with_suffix(ENDING)
         path, kind = QFileDialog.getSaveFileName(
-            self._window, "Save as", start, to_save(), filters[chosen]
+            self._window, "Save as", str(start), to_save(), to_save().split(";;")[0]
         )
         if path and not Path(path).suffix:
-            path += ENDING if kind.startswith(PROJECTS) else USUAL
+            path += USUAL if kind.startswith(MESHES) else ENDING
         return bool(path) and self._save(path)
 
+    def _may_lose(self, path: str | None) -> str:
+        """Ask whether to save to a file that holds less than the mesh, or than it held itself.
+
+        Returns "save", "save_as" or "", for not at all; asked once for a file and what is lost.
+        """
+        document = self._document
+        target = Path(path) if path is not None else document.path
+        if target is None or document.mesh is None or is_project(target):
+            return "save"
+        try:
+            lost = [*mesh_files.losses(target, document.mesh)]
+        except MeshError:
+            return "save"  # saving says why it cannot
+        if path is None and document.mesh.left_out:
+            held = ", ".join(document.mesh.left_out)
+            lost.append(f"The file on the disk holds more: {held} would be gone.")
+        if not lost or (target, *lost) in self._agreed:
+            return "save"
+        answer = QuestionDialog(
+            f"Save to {target.name} all the same?",
+            " ".join(lost),
+            (("save", "Save all the same"), ("save_as", "Save as\u2026")),
+            ("", "Cancel"),
+            self._window,
+        ).ask()
+        if answer == "save":
+            self._agreed.add((target, *lost))
+        return answer
+
     def _save(self, path: str | None) -> bool:
+        answer = self._may_lose(path)
+        if answer != "save":
+            return self.save_as() if answer == "save_as" else False
         viewport = self._canvas.viewport
         self._document.settings.update(
             policy=self._assistant.policy,
@@ -243,7 +351,11 @@ class FileController(Controller):
             self._notice.show_message(one_line(error))
             return False
         self._remember(written)
-        self._status.show_message(f"Saved {written.name}.{left_out(written)}")
+        lost = left_out(written) or unsaved_history(self._document, written)
+        self._status.show_message(f"Saved {written.name}.{lost}")
+        flattened = straightened(self._document, written)
+        if flattened:
+            self._notice.show_message(flattened)
         return True
 
     def _forget(self, path: Path) -> None:
@@ -251,6 +363,15 @@ class FileController(Controller):
 
     def _remember(self, path: Path) -> None:
         self._settings.recent = [str(path.absolute()), *self._settings.recent]
+
+
+@contextmanager
+def file_warnings(said: list[str]) -> Iterator[None]:
+    """Add what a reader of files warns of to a list, a sentence each."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", FileWarning)
+        yield
+    said += [str(one.message) for one in caught if issubclass(one.category, FileWarning)]
 
 
 @contextmanager
@@ -265,13 +386,17 @@ def waiting() -> Iterator[None]:
 
 def to_open() -> str:
     """The filters of the Open dialog."""
-    groups = {MESHES: mesh_files.endings(), PROJECTS: (ENDING,), SHAPES: formats.SHAPES}
+    groups = {
+        MESHES: mesh_files.endings(),
+        PROJECTS: (ENDING,),
+        SHAPES: (*formats.SHAPES, formats.DAT),
+    }
     return _filters({"All supported files": sum(groups.values(), ()), **groups})
 
 
 def to_save() -> str:
     """The filters of the Save dialog."""
-    return _filters({MESHES: mesh_files.endings(), PROJECTS: (ENDING,)})
+    return _filters({PROJECTS: (ENDING,), MESHES: mesh_files.endings()})
 
 
 def _filters(groups: dict[str, tuple[str, ...]]) -> str:
@@ -285,6 +410,30 @@ def left_out(path: Path) -> str:
         return ""
     title = formats.of(path).title
     return f" {title} files store no corners, desired degrees or history; projects do."
+
+
+def straightened(document: Document, path: Path) -> str:
+    """That the straight edges of the file just written lie far from the curves, as a sentence;
+    empty if they do not, and for projects, which keep the curves.
+    """
+    if is_project(path) or document.mesh is None:
+        return ""
+    from meshwright_core.geometry.chord_distances import largest_chord_distance
+
+    away = largest_chord_distance(document.mesh)
+    if away < FLAT:
+        return ""
+    return (
+        f"{path.name} has straight edges: they lie up to {100 * away:.2g} % of the mesh's size off"
+        " the curves. A project keeps the curves; a finer mesh comes closer to them."
+    )
+
+
+def unsaved_history(document: Document, path: Path) -> str:
+    """That the history is not in the file just written, as a sentence; empty if it is."""
+    if not document.modified:
+        return ""
+    return f" {formats.of(path).title} files store no history ({counted(document)}); projects do."
 
 
 def _found(report: DrawingReport) -> str:

@@ -26,6 +26,7 @@ class QuestionDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.answer = ""
+        self.answer_text = text
         self.buttons: dict[str, QPushButton] = {}
         self.setWindowTitle("Meshwright")
         self.setFixedWidth(440)

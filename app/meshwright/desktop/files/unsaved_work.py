@@ -13,9 +13,12 @@ from meshwright.desktop.controller import Connections
 from meshwright.desktop.files.save_question import QuestionDialog
 from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
+from meshwright.desktop.widgets.wording import plural
+from meshwright.document.branches import every
 from meshwright.document.document import Document
 from meshwright.document.storage import recovery
 from meshwright.document.storage.autosave import Autosave
+from meshwright.document.storage.project_file import is_project
 from meshwright_core import MeshError
 
 if TYPE_CHECKING:
@@ -70,11 +73,24 @@ class NoGuard:
         """There is nothing to end."""
 
 
+def counted(document: Document) -> str:
+    """What the history holds: ``14 steps, 12 of them undone, and 4 branches``."""
+    history = document.history
+    undone = len(history) - history.cursor
+    words = plural(len(history), "step")
+    if undone:
+        words += f", {undone:,} of them undone,"
+    branches = sum(1 for _ in every(history.branches))
+    return (
+        f"{words} and {plural(branches, 'branch', 'branches')}" if branches else words.rstrip(",")
+    )
+
+
 class UnsavedWorkGuard:
     """Saves every step of ``document``, and asks before unsaved work is dropped.
 
-    ``save()`` saves the document and returns whether it is saved, ``show_all()`` fits the view to
-    a recovered mesh. Autosave writes to ``folder``; None for the user's own.
+    ``save()`` and ``save_as()`` save the document and return whether it is saved, ``show_all()``
+    fits the view to a recovered mesh. Autosave writes to ``folder``; None for the user's own.
     """
 
     def __init__(
@@ -85,12 +101,13 @@ class UnsavedWorkGuard:
         notice: NoticeBar,
         window: QWidget,
         save: Callable[[], bool],
+        save_as: Callable[[], bool],
         show_all: Callable[[], None],
         folder: Path | None = None,
     ) -> None:
         self._document, self._settings = document, settings
         self._status, self._notice, self._window = status, notice, window
-        self._save, self._show_all = save, show_all
+        self._save, self._save_as, self._show_all = save, save_as, show_all
         self._folder = folder
         self._question: QuestionDialog | None = None
         self._leaving = False
@@ -123,21 +140,38 @@ class UnsavedWorkGuard:
             return True
         if self._question is not None:
             return False
-        name = document.name or "this mesh"
-        self._question = QuestionDialog(
-            f"Save the changes to {name}?",
-            f"Otherwise the changes since {document.path.name} was saved are lost."
-            if document.path is not None
-            else "It has not been saved to a file yet, and would be lost.",
-            (("cancel", "Cancel"), ("save", "Save")),
-            ("drop", "Don\u2019t save"),
-            self._window,
-        )
+        self._question = self._make_question()
         answer = self._question.ask()
         self._question = None
-        if answer == "save":
-            return self._save()
+        if answer in ("save", "save_as"):
+            return self._save() if answer == "save" else self._save_as()
         return answer == "drop" or self._leaving
+
+    def _make_question(self) -> QuestionDialog:
+        """The question about unsaved work; it says what would be lost."""
+        document = self._document
+        name, path = document.name or "this mesh", document.path
+        history, title = counted(document), f"Save the changes to {name}?"
+        project = ("save_as", "Save project\u2026")
+        saves = [project]
+        if path is not None and is_project(path):
+            text = f"Otherwise the changes since {path.name} was saved are lost."
+            saves = [("save", "Save")]
+        elif not document.mesh_modified:
+            title = f"Save the history of {name}?"
+            holds = f"{path.name} holds the mesh alone." if path else "The mesh is as it began."
+            text = f"{holds} Its history would be lost: {history}. A project keeps it."
+        elif path is not None:
+            text = (
+                f"Otherwise the changes since {path.name} was saved are lost. That file holds the"
+                f" mesh alone; a project also keeps its history: {history}."
+            )
+            saves = [("save", "Save mesh"), project]
+        else:
+            text = f"It has not been saved yet, and would be lost with its history: {history}."
+        return QuestionDialog(
+            title, text, (("cancel", "Cancel"), *saves), ("drop", "Don\u2019t save"), self._window
+        )
 
     def offer(self) -> None:
         """Offer unsaved work of ended processes, if there is any."""

@@ -12,6 +12,10 @@ from meshwright.desktop.widgets.action_set import ActionSet, key_text
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import Theme
+from meshwright_core.domains import gallery, meshing
+
+SHAPE = "star"
+"""The shape of the gallery that the tour loads if there is no mesh."""
 
 
 class HelpController(Controller):
@@ -65,14 +69,11 @@ class HelpController(Controller):
             self.show_tour()
 
     def show_tour(self) -> None:
-        """Start or restart the tour; without a mesh it starts when there is one."""
+        """Start or restart the tour; without a mesh on one of the gallery."""
         self.end_tour()
         if self._document.empty:
-            self._awaits_mesh = True
-            self._status.show_message(
-                "The tour starts with the first mesh: make one or open a file."
-            )
-            return
+            self._awaits_mesh = False
+            self._document.replace(meshing.mesh_domain(gallery.shape(SHAPE), "quad"), SHAPE)
         self._awaits_mesh = False
         self._settings.toured = True
         self.tour = Tour(self._document, self.places, self._theme)

@@ -26,7 +26,7 @@ Block = tuple[str, list[tuple[str, str, str]]]
 MOUSE = (
     ("Move", "Point at a half-edge"),
     ("Click", "Menu of operations"),
-    ("Right click", "Desired degree, corner, lock"),
+    ("Right click", "Desired degree, corner, pin, lock"),
     ("Drag", "Move a vertex, or pan"),
     ("Wheel", "Zoom"),
     ("Shift click", "Add to the selection"),

@@ -18,6 +18,7 @@ from meshwright.desktop.controller import Controller
 from meshwright.desktop.widgets.basic import NoticeBar, named
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
+from meshwright.graphics.colouring import COLOUR_BY, MEASURES
 from meshwright.graphics.export.export_job import ExportOptions, write_export
 from meshwright.graphics.theme import GRID, Theme
 from meshwright_core.errors import MeshError
@@ -108,7 +109,8 @@ class ExportController(Controller):
         document = self._document
         film = Film(document)
         colours = self._settings.colours
-        order = replace(self._order, theme=self._theme.name, colours=colours)
+        measure = self._settings.choice(COLOUR_BY, ("", *MEASURES))  # as in the view
+        order = replace(self._order, theme=self._theme.name, colours=colours, measure=measure)
         dialog = ExportDialog(film, order, self._parent)
         accepted = bool(dialog.exec())
         self._order = dialog.order

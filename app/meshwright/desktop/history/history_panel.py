@@ -2,7 +2,16 @@
 
 from typing import Any
 
-from qtpy.QtCore import QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import (
+    QEvent,
+    QModelIndex,
+    QPersistentModelIndex,
+    QPointF,
+    QRectF,
+    QSize,
+    Qt,
+    Signal,
+)
 from qtpy.QtGui import (
     QColor,
     QFont,
@@ -167,6 +176,7 @@ class HistoryList(QTableView):
     """
 
     activated_at = Signal(int)
+    left = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -203,17 +213,24 @@ class HistoryList(QTableView):
         super().resizeEvent(event)
         self.scrollTo(self.currentIndex())
 
+    def leaveEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Report that the mouse has left."""
+        super().leaveEvent(event)
+        self.left.emit()
+
     def _on_clicked(self, index: QModelIndex) -> None:
         self.activated_at.emit(index.row())
 
 
 class HistoryPanel(QFrame):
     """The list with its heading; a click emits ``state_requested(state)`` or
-    ``branch_requested(index)``.
+    ``branch_requested(index)``. ``state_hovered(state)`` when the mouse is over the line of a
+    state, -1 when it has left.
     """
 
     state_requested = Signal(int)
     branch_requested = Signal(int)
+    state_hovered = Signal(int)
 
     def __init__(self, theme: Theme) -> None:
         super().__init__()
@@ -224,6 +241,8 @@ class HistoryPanel(QFrame):
         self._delegate = HistoryDelegate(self.model, theme)
         self.list.setItemDelegate(self._delegate)
         self.list.activated_at.connect(self._on_activated)
+        self.list.entered.connect(self._on_entered)
+        self.list.left.connect(self._on_left)
         self.count = named("", "Label")
         head = QHBoxLayout()
         head.setContentsMargins(2 * GRID, 0, 2 * GRID, 0)
@@ -257,6 +276,13 @@ class HistoryPanel(QFrame):
             if moved:
                 self.list.scrollTo(place)
         self.list.viewport().update()
+
+    def _on_entered(self, index: QModelIndex) -> None:
+        line = self.model.line(index.row())
+        self.state_hovered.emit(line.state if line.branch < 0 else -1)
+
+    def _on_left(self) -> None:
+        self.state_hovered.emit(-1)
 
     def _on_activated(self, place: int) -> None:
         line = self.model.line(place)

@@ -47,6 +47,8 @@ class PlaybackController(Controller):
             self._speed = 4
         self._wanted = 0
         self._ours = False  # whether this controller is changing the history itself
+        self.moving = False
+        """Whether the last change of the document was a move through the history."""
         self._late = QTimer(parent, singleShot=True, interval=PAUSE)
         self._late.timeout.connect(self._show)
         self._soon = QTimer(parent, singleShot=True, interval=0)
@@ -149,7 +151,7 @@ class PlaybackController(Controller):
     def _go(self, state: int) -> None:
         if not self._is_ready():
             return
-        self._ours = True
+        self._ours = self.moving = True
         try:
             self._document.go_to(state)
         finally:
@@ -206,6 +208,7 @@ class PlaybackController(Controller):
 
     def _on_history_changed(self) -> None:
         if not self._ours:
+            self.moving = False
             self.hold()
         if not self._late.isActive():
             self._late.start()

@@ -22,6 +22,7 @@ from meshwright.desktop.actions.dispatcher import ActionDispatcher
 from meshwright.desktop.agent.agent_controller import AgentController
 from meshwright.desktop.agent.agent_panel import AgentPanel
 from meshwright.desktop.agent.hints_controller import HintsController
+from meshwright.desktop.application.error_notice import ErrorNotice
 from meshwright.desktop.application.kernel_warmup import KernelWarmup
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.application.preferences_controller import PreferencesController, theme_name
@@ -35,15 +36,19 @@ from meshwright.desktop.editing.edit_controller import EditController
 from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.editing.inverted_controller import InvertedController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
+from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
 from meshwright.desktop.help.tour import TourPlaces
+from meshwright.desktop.history.changes_controller import ChangesController
 from meshwright.desktop.history.playback_controller import PlaybackController
 from meshwright.desktop.levels.level_controller import LevelController
 from meshwright.desktop.main_window.empty_page import EmptyPage
 from meshwright.desktop.main_window.left_column import LeftColumn
 from meshwright.desktop.main_window.sidebar import Section, Sidebar
+from meshwright.desktop.quality.colour_controller import ColourController
 from meshwright.desktop.quality.quality_controller import QualityController
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
@@ -107,10 +112,14 @@ class MainWindow(QMainWindow):
         self.playback = PlaybackController(
             document, settings, readiness, actions, status, notice, self, colours
         )
+        self.changes = ChangesController(document, assistant, canvas, self.playback, colours)
         self.levels = LevelController(
             document, assistant, canvas, self.files, self.playback, status, notice, self, colours
         )
         self.quality = QualityController(document, canvas, settings, status, colours)
+        self.colours = ColourController(
+            document, canvas, self.quality.monitor, settings, status, colours
+        )
         self.inverted = InvertedController(document, canvas, self.quality.monitor, colours)
         self.hover = HoverController(
             document, assistant, canvas, settings, readiness, status, colours
@@ -124,9 +133,12 @@ class MainWindow(QMainWindow):
         self.selection_tools = SelectionController(
             document, canvas, self.levels, readiness, actions, status, self, colours
         )
+        self.names = NamesController(document, canvas, status, self, colours)
         self.navigation = KeyboardNavigation(
             document, canvas, self.quality.highlight, status, colours
         )
+        self.vertices = VertexCommands(document, canvas, self.levels, readiness, status, colours)
+        self.errors = ErrorNotice(document, notice, colours)
         self.agent_panel = AgentPanel(document, assistant, settings, actions, colours)
         self.hints = HintsController(
             document, assistant, canvas, self.agent_panel, status, notice, colours
@@ -161,14 +173,19 @@ class MainWindow(QMainWindow):
         self.controllers += [
             self.files,
             self.playback,
+            self.changes,
             self.levels,
             self.quality,
+            self.colours,
             self.inverted,
             self.hover,
             self.editing,
             self.lines,
             self.selection_tools,
+            self.names,
             self.navigation,
+            self.vertices,
+            self.errors,
             self.hints,
             self.agent,
             self.clicks,
@@ -215,8 +232,12 @@ class MainWindow(QMainWindow):
             hover=self.hover,
             editing=self.editing,
             lines=self.lines,
+            quality=self.quality,
+            colours=self.colours,
             selection_tools=self.selection_tools,
+            names=self.names,
             navigation=self.navigation,
+            vertices=self.vertices,
             hints=self.hints,
             agent=self.agent,
             preferences=self.preferences,
@@ -295,15 +316,19 @@ class MainWindow(QMainWindow):
         for title, members in self.actions_by_id.menus(self.document.kind):
             menu = bar.addMenu(title)
             for entry in members:
+                if entry.id in registry.DIVIDERS:
+                    menu.addSeparator()
                 menu.addAction(self.actions_by_id[entry.id])
 
     # Session
 
     def start_session(self) -> None:
-        """Restore the position, save every step, offer unsaved work, and show the tour at the first
-        start: for a window that a user has started.
+        """Show errors, restore the position, save every step, offer unsaved work, and show the tour
+        at the first start: for a window that a user has started.
         """
+        self.errors.watch()
         self.preferences.restore_place()
+        self.agent.prepare_while_idle(self.readiness)
         self.files.watch()
         self.opened.connect(self.help.welcome)
         # after everything else that starts with the window

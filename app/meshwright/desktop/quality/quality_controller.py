@@ -14,6 +14,7 @@ from meshwright.desktop.quality.quality_panel import QualityPanel
 from meshwright.desktop.quality.score_panel import ScorePanel
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
+from meshwright.document.quality_summary import decimal
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import Theme
 
@@ -42,6 +43,7 @@ class QualityController(Controller):
         canvas.overlay.add(self.highlight, below=canvas.overlay.card)
         self.score.delta_chosen.connect(self.go_to_next)
         self.score.inverted_chosen.connect(self.go_to_inverted)
+        self.score.element_chosen.connect(self.go_to_element)
         self.quality.worst_chosen.connect(self.go_to_element)
         self._connections.add(document.changed, self.highlight.clear)
 
@@ -86,6 +88,21 @@ class QualityController(Controller):
         summary = self.monitor.summary
         if summary is not None and len(summary.inverted):
             self.go_to_element(_after(summary.inverted, self._element))
+
+    def go_to_worst(self) -> None:
+        """Go to the element with the smallest scaled Jacobian."""
+        summary = self.monitor.summary
+        if summary is not None and summary.jacobian.worst_element >= 0:
+            self.go_to_element(summary.jacobian.worst_element)
+            worst = decimal(summary.jacobian.worst)
+            element = summary.jacobian.worst_element
+            self._status.show_message(f"Element {element}: scaled Jacobian {worst}, the lowest.")
+
+    def go_to_selection(self) -> None:
+        """Show the selected vertices as large as they fit."""
+        mesh, chosen = self._document.mesh, self._document.selection.vertices
+        if mesh is not None and len(chosen):
+            self._canvas.see(self._canvas.viewport.fitted(mesh.points[chosen]))
 
     def go_to_element(self, element: int) -> None:
         """Go to an element."""

@@ -9,6 +9,7 @@ from qtpy.QtCore import QObject, QTimer, Signal
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.controller import Connections
 from meshwright.document.document import Document
+from meshwright.document.element_quality import ElementQuality
 from meshwright.document.quality_summary import QualitySummary, summarise
 from meshwright_core import HalfEdgeMesh
 
@@ -39,6 +40,7 @@ class QualityMonitor(QObject):
         """Whether :attr:`summary` is that of the current mesh."""
         self.stale = True
         """Whether :attr:`summary` has been out of date for a while."""
+        self._quality = ElementQuality()  # used by the thread while there is one
         self._dispatch = Dispatcher()
         self._thread: threading.Thread | None = None
         self._cancel = threading.Event()
@@ -98,7 +100,7 @@ class QualityMonitor(QObject):
     def _measure(self, mesh: HalfEdgeMesh, cancel: threading.Event) -> None:
         summary = None
         try:
-            summary = summarise(mesh, partial(_give_way, cancel))
+            summary = summarise(mesh, partial(_give_way, cancel), self._quality)
         finally:
             self._dispatch(partial(self._finish, summary, cancel))
 

@@ -1,21 +1,29 @@
-"""The score panel: s, s*, their difference, irregular vertices, and counts of the mesh."""
+"""The score panel: s, s*, shape and its bound, inverted elements, irregular vertices, counts."""
 
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from meshwright.desktop.controller import Connections
 from meshwright.desktop.quality.irregularity_chart import IrregularityChart
+from meshwright.desktop.quality.optimum_badge import OptimumBadge
 from meshwright.desktop.quality.quality_job import QualityMonitor
 from meshwright.desktop.widgets.basic import (
-    OptimumBadge,
     ShareBar,
     ValueLine,
     ValueLink,
     named,
     tabular,
 )
+from meshwright.desktop.widgets.wording import plural
 from meshwright.document.document import Document
+from meshwright.document.quality_summary import (
+    QualitySummary,
+    decimal,
+    shape_words,
+)
+from meshwright.document.verdict import findings
 from meshwright.graphics.theme import GRID, Theme
+from meshwright_core import HalfEdgeMesh
 
 _NONE = "\u2013"
 _STALE = "\u2026"
@@ -26,11 +34,12 @@ class ScorePanel(QWidget):
     available.
 
     ``delta_chosen(delta)`` when a column of the chart is clicked, ``inverted_chosen()`` when the
-    number of inverted elements is.
+    number of inverted elements is, ``element_chosen(element)`` when the worst of a measure is.
     """
 
     delta_chosen = Signal(int)
     inverted_chosen = Signal()
+    element_chosen = Signal(int)
 
     def __init__(self, document: Document, monitor: QualityMonitor, theme: Theme) -> None:
         super().__init__()
@@ -45,6 +54,16 @@ class ScorePanel(QWidget):
         self.bar = ShareBar(theme)
         self.bar.setToolTip("Progress from the start score to the optimum")
         self.optimal = OptimumBadge(theme)
+        self.shape = ValueLink(
+            "Shape",
+            "Worst scaled Jacobian, the smallest sine of a corner, and what the angles of the"
+            " corners permit where they are regular; click to go to the element",
+        )
+        self.flattest = ValueLink(
+            "Worst element shape",
+            "Worst corner of an element by angle and ratio of sides: 1 for a square or an"
+            " equilateral triangle; click to go to the element",
+        )
         self.irregular = ValueLine(
             "Irregular vertices", "Vertices whose degree is not the desired one"
         )
@@ -56,6 +75,8 @@ class ScorePanel(QWidget):
         self._arrange()
         self.tally.chosen.connect(self.delta_chosen)
         self.inverted.clicked.connect(self.inverted_chosen)
+        self.shape.clicked.connect(lambda: self._choose("jacobian"))
+        self.flattest.clicked.connect(lambda: self._choose("shape"))
         self._connections = Connections()
         self._connections.add(document.score_changed, self._on_score_changed)
         monitor.aged.connect(self._on_measured)
@@ -90,11 +111,10 @@ class ScorePanel(QWidget):
         line.addWidget(self.optimal, 1)
         layout.addLayout(line)
         layout.addWidget(self.bar)
-        layout.addSpacing(GRID // 2)
-        layout.addWidget(self.irregular)
+        for fact in (self.shape, self.flattest, self.inverted, self.irregular):
+            layout.addWidget(fact)
         layout.addWidget(self.tally)
-        layout.addSpacing(GRID // 2)
-        for fact in (self.gained, self.way, self.elements, self.inverted):
+        for fact in (self.gained, self.way, self.elements):
             layout.addWidget(fact)
 
     def _on_score_changed(self) -> None:
@@ -124,23 +144,36 @@ class ScorePanel(QWidget):
         self.tally.show_deltas(mesh.irregularity())
 
     def _on_measured(self) -> None:
-        """Show blocks and inverted elements; an ellipsis while they are being measured."""
+        """Show shape, blocks and inverted elements; an ellipsis while they are being measured."""
         mesh, summary = self._document.mesh, self._monitor.summary
         if mesh is None:
             self.elements.text = _NONE
-            self.inverted.show_value(_NONE)
+            for link in (self.shape, self.flattest, self.inverted):
+                link.show_value(_NONE)
             return
-        if mesh.k == 4:
-            blocks = "blocks"
-            number = _STALE
-            if not self._monitor.stale and summary is not None and summary.blocks is not None:
-                number = f"{summary.blocks:,}"
-                blocks = "block" if summary.blocks == 1 else blocks
-            self.elements.text = f"{mesh.n_elements:,} quads in {number} {blocks}"
-        else:
-            self.elements.text = f"{mesh.n_elements:,} triangles"
-        if summary is None or self._monitor.stale:
-            self.inverted.show_value(_STALE)
+        fresh = summary if not self._monitor.stale else None
+        self.elements.text = _counted(mesh, fresh)
+        if fresh is None:
+            self.optimal.show_findings(())
+            for link in (self.shape, self.flattest, self.inverted):
+                link.show_value(_STALE)
             return
-        count = len(summary.inverted)
+        worst, count = fresh.jacobian.worst, len(fresh.inverted)
+        self.shape.show_value(shape_words(worst, fresh.bound), leads=True, warns=worst <= 0.0)
+        self.flattest.show_value(decimal(fresh.shape.worst), leads=True)
         self.inverted.show_value(f"{count:,}", leads=count > 0, warns=count > 0)
+        self.optimal.show_findings(findings(mesh, worst, fresh.bound, count))
+
+    def _choose(self, measure: str) -> None:
+        if self._monitor.summary is not None:
+            spread = getattr(self._monitor.summary, measure)
+            self.element_chosen.emit(spread.worst_element)
+
+
+def _counted(mesh: HalfEdgeMesh, summary: QualitySummary | None) -> str:
+    """``24 quads in 5 blocks``; the number of blocks is an ellipsis while it is not known."""
+    if mesh.k == 3:
+        return f"{mesh.n_elements:,} triangles"
+    if summary is None or summary.blocks is None:
+        return f"{mesh.n_elements:,} quads in {_STALE} blocks"
+    return f"{mesh.n_elements:,} quads in {plural(summary.blocks, 'block')}"

@@ -8,7 +8,6 @@ from qtpy.QtWidgets import (
     QLabel,
     QPushButton,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -198,30 +197,3 @@ class NoticeBar(QFrame):
     def set_theme(self, theme: Theme) -> None:
         """Draw in the colours of ``theme``."""
         self._close.setIcon(icons.icon("close", theme))
-
-
-class OptimumBadge(QFrame):
-    """The badge in the score panel at s = s*."""
-
-    def __init__(self, theme: Theme) -> None:
-        super().__init__()
-        self.setObjectName("Optimal")
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(12, GRID, 12, GRID)
-        layout.setSpacing(2)
-        head = QHBoxLayout()
-        head.setSpacing(6)
-        self._mark = QLabel()
-        head.addWidget(self._mark)
-        head.addWidget(named("Provably optimal", "OptimalTitle"), 1)
-        proof = named(
-            "s = s*: no connectivity is better under these desired degrees.", "OptimalText"
-        )
-        proof.setWordWrap(True)
-        layout.addLayout(head)
-        layout.addWidget(proof)
-        self.set_theme(theme)
-
-    def set_theme(self, theme: Theme) -> None:
-        """Draw in the colours of ``theme``."""
-        self._mark.setPixmap(icons.pixmap("check", theme.accent, 16, self.devicePixelRatioF()))

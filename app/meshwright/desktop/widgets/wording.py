@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from meshwright.document.history import YOU, HistoryStep
 from meshwright.graphics.markers import label
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.core.curve_edges import edge_places
 
 
 def plural(count: int, one: str, many: str = "") -> str:
@@ -18,24 +15,13 @@ def plural(count: int, one: str, many: str = "") -> str:
 def halfedge_words(mesh: HalfEdgeMesh, halfedge: int) -> str:
     """``Half-edge 12:  3 \u2192 7,  side inlet,  region steel``, with the names that there are."""
     words = [f"Half-edge {halfedge}:  {mesh.origin(halfedge)} \u2192 {mesh.target(halfedge)}"]
-    side = _side_name(mesh, halfedge)
+    side = mesh.side_of(halfedge)
     if side:
         words.append(f"side {side}")
-    if len(mesh.region_names) > 1:
+    if len(mesh.region_names) > 1 or mesh.region_names[0]:
         region = int(mesh.arrays.region[halfedge // mesh.k])
         words.append(f"region {mesh.region_names[region] or region + 1}")
     return ",  ".join(words)
-
-
-def _side_name(mesh: HalfEdgeMesh, halfedge: int) -> str:
-    """The name of the drawn curve that an edge follows; empty if it has none."""
-    boundary = mesh.boundary_info
-    (curve,), (span,) = edge_places(mesh.arrays, np.array([halfedge]), mesh.k)
-    if curve < 0 or curve >= len(boundary.pieces):
-        return ""
-    middle = float(np.mod(span.mean(), boundary.lengths()[curve]))
-    found = (one.name for one in boundary.pieces[curve] if one.start <= middle <= one.stop)
-    return next(found, "")
 
 
 def step_message(row: HistoryStep | None) -> str:

@@ -1,7 +1,8 @@
 """Autosave: writes every step to a file at once, so that a killed process loses at most the last.
 
 The first step after a mesh was opened or saved writes the whole document; each later event appends
-its change. Saving and closing remove the file. Files of processes that died are found by
+its change. Saving all of it and closing remove the file; saving to a mesh file, which has no
+history, begins it anew. Files of processes that died are found by
 :mod:`meshwright.document.storage.recovery`.
 """
 
@@ -15,13 +16,14 @@ from typing import Any
 import platformdirs
 from msgspec import to_builtins
 
-from meshwright.document.document import Document
+from meshwright.document.document import NAME, Document
 from meshwright.document.storage import document_state, file_lock
 from meshwright.document.storage.autosave_log import encoded
 from meshwright.signals import Signal
 from meshwright_core.io import snapshot
 from meshwright_core.io.atomic_write import reason
 from meshwright_core.io.snapshot import Arrays
+from meshwright_core.io.snapshot_curves import names_record
 
 ENDING = ".journal"
 WAITING_BYTES = 256 << 20
@@ -95,8 +97,12 @@ class Autosave:
     # Events
 
     def _on_recorded(self, event: str, number: int) -> None:
+        if event == "python":  # not one step: the whole document is written again
+            self._remove()
         if event == "saved" or self._document.passing:
             self._remove()
+            if self._enabled and self._document.modified:
+                self._begin()
         elif self._enabled and self._path is None:
             self._begin()
         elif self._enabled:
@@ -109,6 +115,8 @@ class Autosave:
             return header, {}
         header["row"] = to_builtins(row)
         header["room"] = [len(mesh.arrays.vertex), len(mesh.arrays.element_mark)]
+        if row.action == NAME:
+            header["names"] = [mesh.naming, names_record(mesh.boundary_info)]
         return header, snapshot.steps_arrays([mesh.last_step()], "step")
 
     def _now(self) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from msgspec import Struct, to_builtins
 from meshwright.document.branches import Branch, Branches
 from meshwright.document.history import History, HistoryStep
 from meshwright.document.json_records import Count, converted
+from meshwright.document.storage.file_stamp import Stamp
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.io import snapshot
 from meshwright_core.io.snapshot import Arrays
@@ -29,7 +30,8 @@ DEEPEST = 60
 class DocumentState:
     """What is stored of a document.
 
-    ``path`` is the file that *Save* writes; ``saved`` is
+    ``path`` is the file that *Save* writes, and ``stamp`` identifies its content when it was read
+    or written last (None: as it is now); ``saved`` is
     :attr:`meshwright.document.document.Document.saved_state` when it was written; ``settings`` are
     the plain values that the views store.
     """
@@ -40,6 +42,7 @@ class DocumentState:
     path: Path | None = None
     saved: tuple[int, int] = (0, 0)
     settings: Mapping[str, Any] = field(default_factory=dict)
+    stamp: Stamp | None = None
 
 
 class _Version(Struct):
@@ -66,6 +69,7 @@ class _Header(Struct):
     rows: list[HistoryStep]
     branches: list[_BranchRecord]
     path: str | None = None
+    stamp: tuple[int, int] | None = None
 
 
 def packed(state: DocumentState) -> tuple[dict[str, Any], Arrays]:
@@ -86,6 +90,7 @@ def packed(state: DocumentState) -> tuple[dict[str, Any], Arrays]:
             for number, branch in enumerate(history.branches)
         ],
         path=str(state.path) if state.path else None,
+        stamp=state.stamp,
     )
     return to_builtins(header), arrays
 
@@ -108,7 +113,9 @@ def unpacked(header: Any, arrays: Mapping[str, Any]) -> DocumentState:
         raise MeshError("its history counts its rows wrong")
     history = History.of(*record.first, record.rows, record.cursor, branches, *record.given)
     path = Path(record.path) if record.path else None
-    return DocumentState(mesh, history, record.name, path, record.saved, record.settings)
+    return DocumentState(
+        mesh, history, record.name, path, record.saved, record.settings, record.stamp
+    )
 
 
 def _branch_record(branch: Branch, name: str, arrays: Arrays) -> _BranchRecord:

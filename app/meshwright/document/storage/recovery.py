@@ -16,6 +16,7 @@ from meshwright.document.storage.autosave_log import Record, records
 from meshwright.document.storage.document_state import DocumentState
 from meshwright_core import MeshError
 from meshwright_core.io import snapshot
+from meshwright_core.io.snapshot_curves import stored_names
 
 
 @dataclass
@@ -125,6 +126,8 @@ class _Event(Struct):
     """The step, for the event "step"."""
     room: tuple[Count, Count] | None = None
     """Vertices and elements that the mesh had room for after the step."""
+    names: tuple[Count, dict[str, Any]] | None = None
+    """The number and the record of the names that the step puts in force."""
 
 
 def _repeat(document: Document, record: Record) -> None:
@@ -137,6 +140,9 @@ def _repeat(document: Document, record: Record) -> None:
     elif event.event == "step" and event.row is not None:
         _make_room(document, event.room)
         mesh = document.mesh
+        if mesh is not None and event.names is not None:
+            number, record_of_names = event.names
+            mesh.add_naming(number, stored_names(record_of_names, mesh.boundary_info))
         steps = snapshot.restored_steps(record.arrays, "step", mesh) if mesh else ()
         document.replay(event.row, steps)
     else:

@@ -41,6 +41,7 @@ class ExportOptions:
     curve: bool = True
     changes: bool = True
     colours: str = "vermilion"
+    measure: str = ""
 
     @property
     def moving(self) -> bool:
@@ -58,6 +59,7 @@ class ExportOptions:
             curve=self.curve,
             changes=self.changes,
             colours=self.colours,
+            measure=self.measure,
         )
 
     def stride(self, film: Film) -> int:

@@ -10,6 +10,7 @@ from typing import Any
 from meshwright.document.document import Document
 from meshwright.graphics.export.export_job import ExportOptions, save_export
 from meshwright.graphics.export.film import Film
+from meshwright.graphics.export.video import ReportProgress
 from meshwright.graphics.theme import THEMES
 from meshwright_core import MeshError
 from meshwright_core.arguments import is_whole_number
@@ -51,12 +52,14 @@ def gif(
     size: tuple[int, int] = SIZE,
     path: File = None,
     theme: str = "light",
+    progress: ReportProgress | None = None,
 ) -> bytes:
     """The history as GIF, each frame ``seconds`` long; also written to ``path``.
 
-    A long history is shown in a few hundred frames of several steps each.
+    A long history is shown in a few hundred frames of several steps each. ``progress(done, total)``
+    is called after each frame. An interrupt ends it, and leaves an existing file unchanged.
     """
-    return _made(document, ".gif", size, path, theme, seconds)
+    return _made(document, ".gif", size, path, theme, seconds, progress)
 
 
 def mp4(
@@ -65,9 +68,10 @@ def mp4(
     seconds: float = SECONDS,
     size: tuple[int, int] = SIZE,
     theme: str = "light",
+    progress: ReportProgress | None = None,
 ) -> bytes:
     """The history as MP4 (H.264); otherwise as :func:`gif`."""
-    return _made(document, ".mp4", size, path, theme, seconds)
+    return _made(document, ".mp4", size, path, theme, seconds, progress)
 
 
 def _made(
@@ -77,6 +81,7 @@ def _made(
     path: File,
     theme: str,
     seconds: float = SECONDS,
+    progress: ReportProgress | None = None,
 ) -> bytes:
     """The bytes of an image or animation; without ``path`` through a temporary folder."""
     options = ExportOptions(
@@ -87,12 +92,12 @@ def _made(
     film = Film(document)
     if path is not None:
         with atomic_write.replacing(path) as temporary:
-            save_export(film, options, temporary)
+            save_export(film, options, temporary, progress)
             return temporary.read_bytes()
     try:
         with TemporaryDirectory(prefix="meshwright-") as folder:
             made = Path(folder) / f"picture{ending}"
-            save_export(film, options, made)
+            save_export(film, options, made, progress)
             return made.read_bytes()
     except OSError as error:
         raise MeshError(f"The image cannot be made ({atomic_write.reason(error)}).") from error

@@ -37,7 +37,6 @@ def record(document: Document) -> dict[str, Any]:
     for state in range(1, len(shadow.history) + 1):
         shadow.go_to(state)
         packet = mesh_sync.patch(mesh)
-        status.inverted.follow(mesh, mesh_sync.moved, mesh_sync.turned)
         before, values = values, status.update()
         del values["track"]  # the recording holds all of it once
         packet.content["head"] = {

@@ -9,6 +9,7 @@ import { Pointer } from "./input/pointer.js";
 import { Shortcuts } from "./input/shortcuts.js";
 import { hostTheme, watchHost } from "./link/host_theme.js";
 import { AgentPanel } from "./panels/agent_panel.js";
+import { ColourChoice } from "./panels/colour_choice.js";
 import { canvasLabel, described, meshName, placed } from "./panels/labels.js";
 import { LevelBar } from "./panels/level_bar.js";
 import { Menus } from "./panels/menus.js";
@@ -60,6 +61,7 @@ class Card {
     this.stage = new Stage(place, this.colours, () => this._onPainted());
     this.zoomButtons = new ZoomButtons(this, place);
     this.notice = new Notice(place);
+    this.colourChoice = new ColourChoice(this, this.stage);
     this.score = new ScorePanel(this);
     this.operations = new OperationsPanel(this);
     this.agent = new AgentPanel(this);
@@ -191,6 +193,7 @@ class Card {
   _onChanged() {
     const { head } = this.replica;
     this.score.update(head);
+    this.colourChoice.update(head);
     this.timeline.update(head);
     this.root.setAttribute("aria-label", meshName(head));
     this.stage.surface.setAttribute("aria-label", canvasLabel(head));

@@ -80,11 +80,13 @@ class AgentBridge:
         assistant = self.assistant
         return not (assistant.running or assistant.loading or assistant.hinting.asking)
 
-    def act(self, action: str) -> None:
-        """Carry out the ``action`` of a request ``agent``."""
+    def act(self, action: str, prefer: str = "balanced", keep_size: bool = False) -> None:
+        """Carry out the ``action`` of a request ``agent``; the others are those of
+        :class:`meshwright.assistant.search_runner.Effort`.
+        """
         assistant = self.assistant
         if action == "complete":
-            assistant.search(Effort())
+            assistant.search(Effort(prefer=prefer, keep_size=keep_size, until_done=True))
         else:
             getattr(assistant, action)()
 
@@ -117,6 +119,8 @@ class AgentBridge:
                 "policies": [{"name": name, "label": label(name)} for name in self.policies],
                 "speed": min(assistant.speed, FASTEST),
                 "progress": self._progress(),
+                "outcome": assistant.outcome,
+                "unfinished": assistant.unfinished,
                 "hints": [self._hint(choice) for choice in hints],
             }
         )
@@ -127,6 +131,8 @@ class AgentBridge:
             "decisions": progress.decisions,
             "rollouts": progress.rollouts,
             "best": progress.best,
+            "gap": progress.gap,
+            "way": list(progress.way) if progress.way else None,
             "share": progress.share,
             "seconds": round(progress.elapsed, 2),
         }
@@ -138,6 +144,7 @@ class AgentBridge:
             "halfedge": choice.halfedge,
             "probability": round(choice.probability, 4),
             "change": choice.change,
+            "next": choice is self.assistant.hinting.next_step,
         }
 
 

@@ -167,8 +167,6 @@ class Broadcaster:
     def _send_patch(self, request: Request | None) -> None:
         mesh = self._document.mesh
         packet = self.mesh_sync.patch(mesh)
-        if mesh is not None:
-            self.status.inverted.follow(mesh, self.mesh_sync.moved, self.mesh_sync.turned)
         if packet.content["type"] == "state":
             self._send_states(request)
             return

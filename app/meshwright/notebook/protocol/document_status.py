@@ -7,61 +7,17 @@ from typing import Any
 import numpy as np
 
 from meshwright.document.document import Document
+from meshwright.document.element_quality import ElementQuality
+from meshwright.document.quality_summary import decimal, shape_words
 from meshwright.document.score_series import ScoreSeries
+from meshwright.document.verdict import findings
 from meshwright_core import HalfEdgeMesh
-from meshwright_core.core.arrays import ELEMENT_SLOTS, ORIGIN
-from meshwright_core.geometry.edge_curves import bent_edges
-from meshwright_core.geometry.planes import plane_normal
-from meshwright_core.geometry.quality import Measure, inverted
+from meshwright_core.geometry.shape_bound import shape_bound
 
 BLOCKS_UP_TO = 20_000
 """Number of elements above which the blocks of a quad mesh are not counted after every step."""
-
-
-class InvertedElements:
-    """Counts the inverted elements incrementally, at the cost of the elements that changed."""
-
-    def __init__(self) -> None:
-        self._normal: np.ndarray | None = None
-        self._inverted = np.zeros(0, dtype=bool)
-
-    def __len__(self) -> int:
-        return int(self._inverted.sum())
-
-    def curved(self, mesh: HalfEdgeMesh) -> list[int]:
-        """Those with a side that is not straight, which the browser does not test itself."""
-        ids = np.flatnonzero(self._inverted)
-        if not len(ids):
-            return []
-        bent = bent_edges(mesh, mesh.halfedges_of(ids).ravel())[0]
-        found: list[int] = np.unique(bent // mesh.k).tolist()
-        return found
-
-    def reset(self, mesh: HalfEdgeMesh) -> None:
-        """Test all elements."""
-        self._normal = plane_normal(mesh)
-        self._inverted = np.zeros(_element_slots(mesh), dtype=bool)
-        self._inverted[inverted(mesh)] = True
-
-    def follow(self, mesh: HalfEdgeMesh, vertices: np.ndarray, halfedges: np.ndarray) -> None:
-        """Test the elements at moved ``vertices`` and changed ``halfedges`` (ids) again."""
-        slots = _element_slots(mesh)
-        if self._normal is None or 4 * len(vertices) > mesh.n_vertices:
-            self.reset(mesh)
-            return
-        corners = mesh.arrays.edge[: slots * mesh.k, ORIGIN].reshape(slots, mesh.k)
-        moved = np.zeros(len(mesh.arrays.vertex), dtype=bool)
-        moved[vertices[vertices < len(moved)]] = True
-        look = moved[corners].any(axis=1)  # -1 of a dead element is filtered out below
-        touched = halfedges // mesh.k
-        look[touched[touched < slots]] = True
-        found = np.zeros(slots, dtype=bool)
-        kept = min(slots, len(self._inverted))
-        found[:kept] = self._inverted[:kept]
-        found[look] = False
-        elements = np.flatnonzero(look & (corners[:, 0] >= 0))
-        found[elements] = Measure(mesh, elements, self._normal).everything().inverted
-        self._inverted = found
+MOST_CURVED = 2000
+"""The browser measures straight elements itself; values of at most so many curved ones are sent."""
 
 
 class DocumentStatus:
@@ -70,12 +26,12 @@ class DocumentStatus:
     def __init__(self, document: Document) -> None:
         self._document = document
         self._series = ScoreSeries()
-        self.inverted = InvertedElements()
+        self._quality = ElementQuality()
+        self._bound: tuple[object, float] = None, 1.0  # what it depends on, and q*
 
     def reset(self) -> None:
         """The document has another mesh."""
-        if self._document.mesh is not None:
-            self.inverted.reset(self._document.mesh)
+        self._quality = ElementQuality()
 
     def full(self) -> dict[str, Any]:
         """All numbers, with the scores of all states."""
@@ -98,8 +54,7 @@ class DocumentStatus:
             "elements": mesh.n_elements if mesh is not None else 0,
             "vertices": mesh.n_vertices if mesh is not None else 0,
             "irregular": mesh.irregular_count if mesh is not None else 0,
-            "inverted": len(self.inverted),
-            "inverted_curved": self.inverted.curved(mesh) if mesh is not None else [],
+            **self._measures(mesh),
             "cursor": history.cursor,
             "length": len(history),
             "can_undo": document.can_undo,
@@ -125,6 +80,53 @@ class DocumentStatus:
             },
         }
 
+    def _measures(self, mesh: HalfEdgeMesh | None) -> dict[str, Any]:
+        """Inverted elements, worst elements and the bound on shape."""
+        if mesh is None:
+            return {
+                "inverted": 0, "inverted_curved": [], "shape": None, "findings": [], "curved": [],
+            }  # fmt: skip
+        quality = self._quality
+        quality.follow(mesh)
+        inverted, curved = quality.inverted, quality.curved(mesh)
+        rows = curved if len(curved) <= MOST_CURVED else curved[:0]
+        values = np.column_stack([rows, quality.jacobian[rows], quality.shape[rows]])
+        return {
+            "inverted": len(inverted),
+            "inverted_curved": np.intersect1d(inverted, curved).tolist(),
+            **self._shape(mesh),
+            "curved": [[int(e), *pair] for e, *pair in values.round(3).tolist()],
+        }
+
+    def _shape(self, mesh: HalfEdgeMesh) -> dict[str, Any]:
+        """Worst elements by both measures, the bound q*, and what is in order."""
+        quality, ids = self._quality, self._quality.ids
+        if not len(ids):
+            return {"shape": None, "findings": []}
+        worst = int(ids[np.argmin(quality.jacobian[ids])])
+        flattest = int(ids[np.argmin(quality.shape[ids])])
+        lowest, bound = float(quality.jacobian[worst]), self._shape_bound(mesh)
+        said = findings(mesh, lowest, bound, len(quality.inverted))
+        return {
+            "shape": {
+                "words": shape_words(lowest, bound),
+                "flattest": decimal(float(quality.shape[flattest])),
+                "worst_scaled_jacobian": round(lowest, 4),
+                "shape_bound": round(bound, 4),
+                "worst_shape": round(float(quality.shape[flattest]), 4),
+                "elements": [worst, flattest],
+            },
+            "findings": [[one.text, one.in_order] for one in said],
+        }
+
+    def _shape_bound(self, mesh: HalfEdgeMesh) -> float:
+        """q*, computed again only after corners or their desired degrees have changed."""
+        corners = np.flatnonzero(mesh.geometric() & (mesh.degree() > 0))
+        key = (corners.tobytes(), mesh.desired()[corners].tobytes(), mesh.points[corners].tobytes())
+        if key != self._bound[0]:
+            self._bound = key, shape_bound(mesh)
+        return self._bound[1]
+
     def _row(self) -> dict[str, Any] | None:
         row = self._document.history.last
         if row is None:
@@ -137,10 +139,6 @@ class DocumentStatus:
             "halfedge": row.halfedge,
             "operation": row.action,
         }
-
-
-def _element_slots(mesh: HalfEdgeMesh) -> int:
-    return int(mesh.arrays.counters[ELEMENT_SLOTS])
 
 
 def _blocks(mesh: HalfEdgeMesh | None) -> int | None:

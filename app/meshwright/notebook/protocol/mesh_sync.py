@@ -37,11 +37,12 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.composite_curves import Curves
 from meshwright_core.core.irregularity import usual_desired_degree
 from meshwright_core.core.mesh_boundary import MeshBoundary
+from meshwright_core.core.vertex_flags import PINNED
 
 VERSION = 2
-ALIVE, BOUNDARY, CORNER, FIXED, ANCHOR = 1, 2, 4, 8, 16
-"""Bits of a vertex's flags; FIXED is a vertex locked by the user, ANCHOR with CORNER a geometric
-vertex whose desired degree is that of a straight side.
+ALIVE, BOUNDARY, CORNER, FIXED, ANCHOR, PIN = 1, 2, 4, 8, 16, 32
+"""Bits of a vertex's flags; FIXED is a vertex locked by the user, PIN a pinned one, ANCHOR
+with CORNER a geometric vertex whose desired degree is that of a straight side.
 """
 
 
@@ -130,7 +131,8 @@ class SlotArrays:
             + BOUNDARY * on_boundary
             + CORNER * geometric
             + ANCHOR * (geometric & straight)
-            + FIXED * ((rows[:, FLAGS] & LOCKED) > 0),
+            + FIXED * ((rows[:, FLAGS] & LOCKED) > 0)
+            + PIN * ((rows[:, FLAGS] & PINNED) > 0),
             0,
         )
         delta = np.zeros(len(flags), np.int8)
@@ -190,8 +192,6 @@ class MeshSync:
     def __init__(self) -> None:
         self.revision = 0
         self.frame = CoordinateFrame()
-        self.moved = self.turned = np.zeros(0, np.int64)
-        """Ids of the vertices and the half-edges in the last patch."""
         self._k = 3
         self._boundary = MeshBoundary()
         self._sent = SlotArrays.none()
@@ -234,7 +234,7 @@ class MeshSync:
         turned = _differing((new.origin, new.twin), (old.origin, old.twin))
         reseated = _differing((new.curve, new.parameter), (old.curve, old.parameter), (-1, 0.0))
         renamed = _differing((new.region,), (old.region,), (0,))
-        self._sent, self.moved, self.turned = new, changed, turned
+        self._sent = new
         self.revision += 1
         buffers = [
             changed.astype("<i4").tobytes(),

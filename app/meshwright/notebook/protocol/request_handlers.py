@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import UNSET
 
 from meshwright.document.history import HistoryStep
 from meshwright.notebook.protocol import requests
@@ -101,13 +102,19 @@ def _lock(session: Session, request: requests.Lock) -> str:
     return ""
 
 
+def _pin(session: Session, request: requests.Pin) -> str:
+    session.document.set_pinned(_vertex(session, request.vertex), request.on)
+    return ""
+
+
 def _corner(session: Session, request: requests.Corner) -> str:
     session.document.set_geometric(_vertex(session, request.vertex), request.on)
     return ""
 
 
 def _agent(session: Session, request: requests.Agent) -> str:
-    session.agent.act(request.action)
+    prefer = "balanced" if request.prefer is UNSET else request.prefer
+    session.agent.act(request.action, prefer, request.keep_size)
     return ""
 
 
@@ -149,6 +156,7 @@ HANDLERS: dict[type[requests.Request], Handler] = {
     requests.AutoSmooth: _auto_smooth,
     requests.Desired: _desired,
     requests.Lock: _lock,
+    requests.Pin: _pin,
     requests.Corner: _corner,
     requests.Agent: _agent,
     requests.Speed: _speed,

@@ -119,6 +119,13 @@ class Lock(Request, frozen=True, tag="lock"):
     on: bool
 
 
+class Pin(Request, frozen=True, tag="pin"):
+    """Pin a vertex, so that smoothing keeps it in place, or free it."""
+
+    vertex: Id
+    on: bool
+
+
 class Corner(Request, frozen=True, tag="corner"):
     """Make a vertex a corner, or not."""
 
@@ -127,9 +134,14 @@ class Corner(Request, frozen=True, tag="corner"):
 
 
 class Agent(Request, frozen=True, tag="agent"):
-    """Start, pause or stop the agent, or ask it for hints."""
+    """Start, pause or stop the agent, skip the way to a result, or ask for hints.
 
-    action: Literal["step", "play", "pause", "complete", "stop", "hint"]
+    ``prefer`` is what a search prefers at s*, ``keep_size`` whether elements keep their size.
+    """
+
+    action: Literal["step", "play", "pause", "complete", "stop", "skip", "hint"]
+    prefer: Literal["blocks", "balanced", "shape"] | UnsetType = UNSET
+    keep_size: bool = False
 
 
 class Speed(Request, frozen=True, tag="speed"):
@@ -170,6 +182,7 @@ AnyRequest: TypeAlias = (
     | AutoSmooth
     | Desired
     | Lock
+    | Pin
     | Corner
     | Agent
     | Speed

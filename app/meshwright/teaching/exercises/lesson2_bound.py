@@ -13,6 +13,8 @@ from meshwright.teaching.exercises.exercise import WrongAnswer, declare
 
 ANGLES = {90: 2, 180: 3, 270: 4, 60: 2, 120: 2, 150: 3, 240: 4, 350: 5, 45.17: 2, 242.83: 4, 20: 2}
 """Desired degree in quads by the angle in degrees; none is half-way between two."""
+HALVES = {225: 4, 135: 3, 45: 2, 315: 5}
+"""The same for angles half-way between two, which are rounded up."""
 
 
 @declare("2.1", "The sum was -4 before the flip. Predict it, then look.")
@@ -28,7 +30,7 @@ def sum_after_flip(answer: object) -> str:
     return "Two vertices lose an edge and two gain one: s may change, the sum does not."
 
 
-@declare("2.2", "Round theta / 90, add 1, and return at least 2.")
+@declare("2.2", "Round theta / 90, halves up, add 1, and return at least 2.")
 def desired(function: object) -> str:
     """Equation 2 for quads."""
     for angle, wanted in ANGLES.items():
@@ -42,6 +44,12 @@ def desired(function: object) -> str:
                 f"At {angle} degrees it returns {n}. How many quads fit there best, and how many "
                 "edges does a fan of so many quads have?"
             )
+    for angle, wanted in HALVES.items():
+        require(
+            whole_number(result_of(function, angle), "what the function returns") == wanted,
+            f"At {angle} degrees {angle / 90:g} quads fit, and halves go up: {wanted}. Python's "
+            "round goes to the even number; floor(x + 0.5) does not.",
+        )
     return "A fan of n quads has n + 1 edges, for it has one at both of its ends."
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from copy import copy
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from meshwright_core.domains.elements import chord_conflicts
 from meshwright_core.domains.elements.curved_quads import CurvedTriangles
@@ -148,11 +148,12 @@ def _remedy(
     rows = np.arange(len(bad))
     spots, clear = np.zeros((len(bad), 2)), np.zeros(len(bad))
     if insert:
-        spots, clear = shape.free_places(corners, bends, sides[rows, bends])
+        wanted = np.where(~flat & bent, sides[rows, bends], -1)
+        spots, clear = shape.free_places(corners, bends, wanted)
     points: list[Points] = []
     cuts: set[int] = set()
     done: set[int] = set()
-    near = cKDTree(spots).query_ball_point(spots, _APART * clear)
+    near = _near(spots, _APART * clear)
     chosen, covered = np.zeros(len(bad), bool), np.zeros(len(bad), bool)
     for i in rows.tolist():
         if not flat[i] and bent[i]:
@@ -171,3 +172,11 @@ def _remedy(
         on_wall = np.isin(edge_keys(ends[None], len(shape.points)), walls)[0]
         points.append(shape.points[ends if flat[i] and not on_wall else corners[i]].mean(axis=0))
     return np.array(points).reshape(-1, 2), np.array(sorted(cuts), int)
+
+
+def _near(points: Points, distances: Reals) -> list[Ids]:
+    """Which of the points (n, 2) lie within the distance (n,) of each."""
+    places = shapely.points(points)
+    one, other = shapely.STRtree(places).query(places, predicate="dwithin", distance=distances)
+    order = np.argsort(one, kind="stable")
+    return np.split(other[order], np.searchsorted(one[order], np.arange(1, len(points))))

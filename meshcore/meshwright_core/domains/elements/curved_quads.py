@@ -24,6 +24,7 @@ Reals = NDArray[np.float64]
 _HALVINGS = 14
 _TOUCH = 0.03
 """Share of a circle's radius that its distance from sampled sides may be short of it."""
+_SURE = 1e-9
 _SEEN = 0.15
 """Sine of the angle at an end of an edge, from the edge to a point that sees it well."""
 
@@ -135,15 +136,20 @@ class CurvedTriangles:
         tree = shapely.STRtree(shapely.linestrings(shapes))
         low = np.zeros(len(rows))
         high = np.full(len(rows), float(np.ptp(self.points, axis=0).max()))
+        # points of sides that have been found too near once rule out most of the larger circles
+        known = np.full((len(rows), len(SAMPLES), 2), np.inf)
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
-            spots = shapely.points(places[:, half] + middle[:, None] * normal)
-            (which, _), distance = tree.query_nearest(
-                spots, return_distance=True, all_matches=False
+            spots = places[:, half] + middle[:, None] * normal
+            reach = (1.0 - _TOUCH) * middle
+            away = np.hypot(*np.moveaxis(known - spots[:, None], 2, 0)).min(axis=1)
+            clear = np.zeros(len(rows), bool)
+            open_ = np.flatnonzero(away >= (1.0 - _SURE) * reach)
+            (which, side), distance = tree.query_nearest(
+                shapely.points(spots[open_]), return_distance=True, all_matches=False
             )
-            nearest = np.zeros(len(rows))
-            nearest[which] = distance
-            clear = nearest >= (1.0 - _TOUCH) * middle
+            known[open_[which]] = shapes[side]
+            clear[open_[which]] = distance >= reach[open_[which]]
             low, high = np.where(clear, middle, low), np.where(clear, high, middle)
         found = np.zeros((len(triangles), 2))
         found[rows] = places[:, half] + low[:, None] * normal

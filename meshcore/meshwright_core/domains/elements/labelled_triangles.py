@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from meshwright_core.core.components import components
 from meshwright_core.errors import MeshError
 
 Points = NDArray[np.float64]
@@ -47,10 +46,7 @@ def regions_of(triangles: Ids, count: int, segments: Ids, left: Ids, right: Ids)
     walls = np.sort(edge_keys(segments, count))
     place = np.minimum(np.searchsorted(walls, keys), len(walls) - 1)
     open_edge = walls[place] != keys
-    links = coo_array(
-        (np.ones(open_edge.sum()), (one[open_edge] // 3, other[open_edge] // 3)), shape=(m, m)
-    )
-    _, part = connected_components(links, directed=False)
+    _, part = components(one[open_edge] // 3, other[open_edge] // 3, m)
     # directed edges of triangles against directed segments
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     directed = np.concatenate([segments[:, 0] * count + segments[:, 1],
@@ -78,9 +74,7 @@ def seeds(points: Points, triangles: Ids, regions: Ids, segments: Ids) -> Points
         return np.empty((0, 2))
     one, other, keys = neighbours(triangles[outside], len(points))
     free = ~np.isin(keys, edge_keys(segments, len(points)))
-    size = len(outside)
-    links = coo_array((np.ones(free.sum()), (one[free] // 3, other[free] // 3)), shape=(size, size))
-    _, part = connected_components(links, directed=False)
+    _, part = components(one[free] // 3, other[free] // 3, len(outside))
     _, first = np.unique(part, return_index=True)
     centres: Points = points[triangles[outside[first]]].mean(axis=1)
     return centres

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,8 @@ _EVEN = 1e-3
 _INSIDE = 1e-9
 """Distance from the ends of spans, in lengths of the side, at which their tangents are taken."""
 _SHARES = np.linspace(0.0, 1.0, 65)
+_TABLED = 9
+"""Places of a span that bends at which its direction is tabled."""
 SAMPLES = np.linspace(0.0, 1.0, 17)
 """Fractions of an edge's parameters at which its shape is looked at."""
 STRAIGHT = 1e-7
@@ -53,12 +55,13 @@ class SideEdges:
         every = sides.all_sides
         self.curves = side_curves(sides)
         self.starts = [piece_starts(self.curves, i, side) for i, side in enumerate(every)]
-        self._tables = [self._turning_table(number) for number in range(len(every))]
+        self._tables = self._turning_tables()
         self._refuse_too_many()
         self.curve, self.parameter, self.node = (np.zeros(0, int), np.zeros(0), np.zeros(0, int))
         self.side, self.ends = np.zeros(0, int), np.zeros((0, 2), int)
         self.span, self.turnings = np.zeros((0, 2)), np.zeros(0)
         self._known: dict[int, int] = {}
+        self._fresh: list[tuple[int, float, int]] = []
         rows: list[tuple[int, float, float, int, int]] = []
         for number, side in enumerate(every):
             at = [
@@ -90,34 +93,44 @@ class SideEdges:
 
     # Measures of the sides
 
-    def _turning_table(self, number: int) -> tuple[Reals, Reals]:
-        """Parameters, and the turning in radians up to there."""
-        spans = slice(self.curves.first_span[number], self.curves.first_span[number + 1])
-        start, stop = self.curves.start[spans], self.curves.stop[spans]
-        bent = np.diff(self.curves.first_control)[spans] > 2
+    def _turning_tables(self) -> list[tuple[Reals, Reals]]:
+        """Of each side: parameters, and the turning in radians up to there."""
+        curves = self.curves
+        start, stop, first = curves.start, curves.stop, curves.first_span
+        lengths = stop[first[1:] - 1]
+        side = np.repeat(np.arange(len(lengths)), np.diff(first))
         # a little inside of the spans, whose tangents may differ where they meet
-        margin = _INSIDE * stop[-1]
-        t = np.concatenate(
-            [
-                np.clip(np.linspace(a, b, 9 if bends else 2), a + margin, b - margin)
-                for a, b, bends in zip(start, stop, bent, strict=True)
-            ]
-        )
-        way = tangents(self.curves, np.full(len(t), number), t)
-        angle = np.arctan2(way[:, 1], way[:, 0])
-        turn = np.abs(np.angle(np.exp(1j * np.diff(angle))))
+        margin = _INSIDE * lengths[side]
+        counts = np.where(np.diff(curves.first_control) > 2, _TABLED, 2)
+        row = np.repeat(np.arange(len(counts)), counts)
+        place = np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
+        share = place / (counts - 1)[row]
+        t = np.where(share < 1.0, start[row] + share * (stop - start)[row], stop[row])
+        t = np.clip(t, (start + margin)[row], (stop - margin)[row])
+        way = tangents(curves, side[row], t)
+        turn = np.abs(np.angle(np.exp(1j * np.diff(np.arctan2(way[:, 1], way[:, 0])))))
         turn[turn < 1e-9] = 0.0
-        total = np.concatenate([[0.0], np.cumsum(turn)])
-        length = stop[-1]
-        if self.curves.closed[number]:  # twice around, for edges across its start
-            t, total = np.append(t, t + length), np.append(total, total + total[-1])
-        return t, total
+        tables = []
+        stops = np.concatenate([[0], np.cumsum(counts)])[first]
+        for number, (low, high) in enumerate(pairwise(stops.tolist())):
+            own, total = t[low:high], np.concatenate([[0.0], np.cumsum(turn[low : high - 1])])
+            if curves.closed[number]:  # twice around, for edges across its start
+                own = np.append(own, own + lengths[number])
+                total = np.append(total, total + total[-1])
+            tables.append((own, total))
+        return tables
 
     def turning(self, side: int, low: float, high: float) -> float:
         """Radians by which a side turns between two parameters, low < high, ends excluded."""
+        return float(self._turnings(side, np.array([[low, high]]))[0])
+
+    def _turnings(self, side: int, spans: Reals) -> Reals:
+        """(n,) radians by which a side turns in each of the spans (n, 2)."""
         t, total = self._tables[side]
         margin = 2.0 * _INSIDE * self.starts[side][-1]
-        return float(np.interp(high - margin, t, total) - np.interp(low + margin, t, total))
+        found = np.interp(spans + np.array([margin, -margin]), t, total)
+        turns: Reals = found[:, 1] - found[:, 0]
+        return turns
 
     def _cuts(self, side: int, low: float, high: float, count: int) -> list[float]:
         """Parameters that cut a stretch of a side in `count` parts, alike in turning and length."""
@@ -139,13 +152,11 @@ class SideEdges:
         """The vertex of a geometric point, or a new one."""
         if node >= 0 and node in self._known:
             return self._known[node]
-        number = len(self.curve)
+        number = len(self.curve) + len(self._fresh)
         length = self.starts[curve][-1]
         if self.curves.closed[curve] and t >= length:
             t -= length
-        self.curve = np.append(self.curve, curve)
-        self.parameter = np.append(self.parameter, t)
-        self.node = np.append(self.node, node)
+        self._fresh.append((curve, t, node))
         if node >= 0:
             self._known[node] = number
         return number
@@ -173,14 +184,24 @@ class SideEdges:
         ]
 
     def _append(self, rows: list[tuple[int, float, float, int, int]]) -> None:
+        """Append edges, and the vertices that were made for them."""
         if not rows:
             return
+        if self._fresh:
+            curve, parameter, node = zip(*self._fresh, strict=True)
+            self.curve = np.append(self.curve, np.array(curve, int))
+            self.parameter = np.append(self.parameter, parameter)
+            self.node = np.append(self.node, np.array(node, int))
+            self._fresh = []
         table = list(zip(*rows, strict=True))
         self.side = np.append(self.side, np.array(table[0], int))
         self.span = np.vstack([self.span, np.column_stack(table[1:3])])
         self.ends = np.vstack([self.ends, np.column_stack(table[3:5]).astype(int)])
-        turn = [self.turning(side, low, high) for side, low, high, _, _ in rows]
-        self.turnings = np.append(self.turnings, turn)
+        turns = [
+            self._turnings(side, np.array([row[1:3] for row in group]))
+            for side, group in groupby(rows, key=lambda row: row[0])
+        ]
+        self.turnings = np.append(self.turnings, np.concatenate(turns))
 
     def cut(self, edges: Ids, counts: Ids | None = None) -> None:
         """Cut edges in two, or in so many, alike in turning and length; new ones come last."""

@@ -9,6 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.curves.curve import Curve
+from meshwright_core.curves.many_curves import points_at
 from meshwright_core.domains.loops.side_pieces import sample_parameters
 from meshwright_core.errors import MeshError, capitalised
 
@@ -63,9 +64,9 @@ class _Edges:
 
     def __init__(self, curves: Sequence[Curve], ends: NDArray[np.int64]) -> None:
         points, spans, owner, nodes, sagitta = [], [], [], [], []
-        for number, curve in enumerate(curves):
-            t = sample_parameters(curve, _TURN)
-            place = curve.point(t)
+        at = [sample_parameters(curve, _TURN) for curve in curves]
+        places = points_at(curves, at)
+        for number, (curve, t, place) in enumerate(zip(curves, at, places, strict=True)):
             points.append(np.stack([place[:-1], place[1:]], axis=1))
             spans.append(np.column_stack([t[:-1], t[1:]]))
             owner.append(np.full(len(t) - 1, number))

@@ -2,8 +2,8 @@
 
 A *side* is a chain of curves that a mesh stores as one composite curve: a boundary loop, or the
 interface of two regions between two junctions. Its geometric points are *corners* (the tangent
-turns), *anchors* (smooth joints of a straight piece and a curved one) and *junctions* (more than
-two pieces meet).
+turns), *anchors* (smooth joints of a straight piece and a curved one, or of two with different
+names) and *junctions* (more than two pieces meet).
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ class PlanarGraph:
         for i, (start, end) in enumerate(self.ends.tolist()):
             self._leaving[start].append((i, False))
             self._leaving[end].append((i, True))
-        self._directions = [end_directions(piece.curve) for piece in self.pieces]
+        self._directions = end_directions([piece.curve for piece in self.pieces])
         self.points: dict[int, GeometricPoint] = {}
         for node in range(len(self.places)):
             point = self._point(node, corner_angle)
@@ -109,7 +109,7 @@ class PlanarGraph:
 
     def _away(self, leaving: tuple[int, bool]) -> Points:
         piece, ends_here = leaving
-        directions = self._directions[piece]
+        directions: Points = self._directions[piece]
         return -directions[1] if ends_here else directions[0]
 
     def _left(self, leaving: tuple[int, bool]) -> int:
@@ -162,7 +162,8 @@ class PlanarGraph:
         straight = [curve.straight for curve in (one, other)]
         if any(straight) and (is_smooth_piece(one) or is_smooth_piece(other)):
             return ANCHOR
-        return None
+        # the edges on both sides of a change of names are to have one each
+        return ANCHOR if len({self.pieces[piece].name for piece, _ in leaving}) > 1 else None
 
     # Sides
 

@@ -22,7 +22,7 @@ from meshwright_core.domains.loops.side_pieces import (
     closed_chain,
     extent,
     reversed_chain,
-    sampled_chain,
+    sampled_chains,
     samples,
 )
 from meshwright_core.errors import MeshError, capitalised
@@ -135,12 +135,9 @@ class RegionLoops:
         self._interface_sides = tuple(side for side in self.graph.sides if not side.boundary)
         self.regions = tuple(self._region(number) for number in range(len(regions)))
         self._refuse_overlaps()
-        self.polylines: list[Points] = []
-        self.flags: list[Flags] = []
-        for side in self.loop_sides:
-            points, flags = self.polyline(side, PREVIEW_TURN)
-            self.polylines.append(points)
-            self.flags.append(flags)
+        lines = self.side_polylines(PREVIEW_TURN)
+        self.polylines: list[Points] = [points for points, _ in lines]
+        self.flags: list[Flags] = [flags for _, flags in lines]
 
     def _chains(
         self,
@@ -203,10 +200,12 @@ class RegionLoops:
         curves = [tuple(piece.curve for piece in loop) for loop in loops]
         areas = [polygon_area(loop) for loop in curves]
         order = sorted(range(len(areas)), key=lambda i: -areas[i])
-        rings = [shapely.linearrings(sampled_chain(curves[i])) for i in order]
-        outlines = sum(area > 0.0 for area in areas)
-        inner = [hole for hole in rings[outlines:] if _contains(rings[0], hole)]
-        spot = shapely.make_valid(shapely.Polygon(rings[0], inner)).representative_point()
+        lines = sampled_chains([curves[i] for i in order])
+        rings, outlines = _rings(lines), sum(area > 0.0 for area in areas)
+        holes = rings[outlines:]
+        starts = shapely.points(np.array([line[0] for line in lines[outlines:]]).reshape(-1, 2))
+        inner = holes[shapely.contains(shapely.polygons(rings[0]), starts)]
+        spot = shapely.make_valid(shapely.polygons(rings[0], inner)).representative_point()
         corners = sum(
             1
             for point in self.graph.points.values()
@@ -226,11 +225,8 @@ class RegionLoops:
         if len(self.regions) < 2:
             return
         owner = [j for j, region in enumerate(self.regions) for _ in region.loops]
-        rings = [
-            shapely.make_valid(shapely.Polygon(sampled_chain(loop)))
-            for region in self.regions
-            for loop in region.loops
-        ]
+        lines = sampled_chains([loop for region in self.regions for loop in region.loops])
+        rings = shapely.make_valid(shapely.polygons(_rings(lines)))
         spots = shapely.points([region.inside for region in self.regions])
         inner, outer = shapely.STRtree(rings).query(spots, predicate="within")
         around = Counter(zip(inner.tolist(), [owner[k] for k in outer.tolist()], strict=True))
@@ -242,16 +238,20 @@ class RegionLoops:
                     f"The regions overlap: {names[0]} lies in {names[1]} near ({x:.6g}, {y:.6g})."
                 )
 
-    def polyline(self, side: Side, turn_degrees: float) -> tuple[Points, Flags]:
-        """Points (n, 2) along a boundary loop, and which of them are corners or junctions."""
-        rows, flags = [], []
-        for piece, node in zip(side.pieces, side.nodes[:-1], strict=True):
-            rows.append(samples(piece.curve, turn_degrees)[:-1])
-            own = np.zeros(len(rows[-1]), bool)
-            point = self.graph.points.get(node)
-            own[0] = point is not None and point.kind != ANCHOR
-            flags.append(own)
-        return np.concatenate(rows), np.concatenate(flags)
+    def side_polylines(self, turn_degrees: float) -> list[tuple[Points, Flags]]:
+        """Points (n, 2) along each boundary loop, and which of them are corners or junctions."""
+        lines = iter(samples([c for side in self.loop_sides for c in side.curves], turn_degrees))
+        found = []
+        for side in self.loop_sides:
+            rows = [next(lines)[:-1] for _ in side.pieces]
+            flags = np.zeros(sum(map(len, rows)), bool)
+            start = 0
+            for row, node in zip(rows, side.nodes[:-1], strict=True):
+                point = self.graph.points.get(node)
+                flags[start] = point is not None and point.kind != ANCHOR
+                start += len(row)
+            found.append((np.concatenate(rows), flags))
+        return found
 
     @property
     def boundary(self) -> tuple[tuple[Curve, ...], ...]:
@@ -321,17 +321,20 @@ def _labels(name: str, region: int, count: int, regions: int) -> list[str]:
     return [f"loop {i}{of}" for i in range(count)]
 
 
-def _contains(ring: Any, other: Any) -> bool:
-    return bool(shapely.Polygon(ring).contains(shapely.Point(other.coords[0])))
+def _rings(lines: Sequence[Points]) -> NDArray[np.object_]:
+    """Linear rings through points (n, 2) each."""
+    owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+    found: NDArray[np.object_] = shapely.linearrings(np.concatenate(lines), indices=owner)
+    return found
 
 
 def _depths(loops: Sequence[Sequence[Curve]]) -> list[int]:
     """How many of the loops each loop lies in; no two of them cross."""
     if len(loops) == 1:
         return [0]
-    rings = [sampled_chain(loop, 2.0) for loop in loops]
-    polygons = [shapely.make_valid(shapely.Polygon(ring)) for ring in rings]
-    spots = shapely.points([ring[0] for ring in rings])
+    lines = sampled_chains(loops, 2.0)
+    polygons = shapely.make_valid(shapely.polygons(_rings(lines)))
+    spots = shapely.points([line[0] for line in lines])
     inner, outer = shapely.STRtree(polygons).query(spots, predicate="within")
     depths = np.bincount(inner[inner != outer], minlength=len(loops))
     found: list[int] = depths.tolist()

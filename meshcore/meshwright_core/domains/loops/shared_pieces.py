@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains.loops.side_pieces import GAP, Piece
@@ -95,8 +94,9 @@ def _with_exact_ends(pieces: Sequence[Piece], size: float) -> list[Piece]:
     unique, number = np.unique(ends, axis=0, return_inverse=True)
     number = number.ravel()
     first = np.arange(len(unique))
-    for i, j in cKDTree(unique).query_pairs(2.0 * GAP * size):  # i < j
-        first[j] = min(first[j], i)
+    spots = shapely.points(unique)
+    near = shapely.STRtree(spots).query(spots, predicate="dwithin", distance=2.0 * GAP * size)
+    np.minimum.at(first, near[1], near[0])
     while (first[first] != first).any():
         first = first[first]
     places = unique[first[number]].reshape(-1, 2, 2)

@@ -9,6 +9,7 @@ import numpy as np
 
 from meshwright_core.core.composite_curves import Curves
 from meshwright_core.core.mesh_boundary import CurvePiece, Interface, MeshBoundary
+from meshwright_core.curves.many_curves import flattened
 from meshwright_core.domains.loops.planar_graph import Side
 from meshwright_core.domains.loops.region_loops import RegionLoops
 
@@ -18,23 +19,16 @@ def side_curves(sides: RegionLoops) -> Curves:
     pieces know.
     """
     every = sides.all_sides
-    pieces = [curve for side in every for curve in side.curves]
-    counts = np.concatenate([np.diff(curve.flat.first_control) for curve in pieces])
+    flat = flattened([curve for side in every for curve in side.curves])
     spans = [sum(len(curve.spans) for curve in side.curves) for side in every]
     first = np.concatenate([[0], np.cumsum(spans)]).astype(np.int64)
-    lengths = np.concatenate([np.diff(curve.stops) for curve in pieces])
+    lengths = flat.stop - flat.start
     start, stop = np.zeros(len(lengths)), np.zeros(len(lengths))
     for a, b in pairwise(first.tolist()):
         stop[a:b] = np.cumsum(lengths[a:b])
         start[a + 1 : b] = stop[a : b - 1]
-    return Curves(
-        control=np.concatenate([curve.flat.control for curve in pieces]),
-        first_control=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        start=start,
-        stop=stop,
-        first_span=first,
-        closed=np.array([side.closed for side in every], np.bool_),
-    )
+    closed = np.array([side.closed for side in every], np.bool_)
+    return flat._replace(start=start, stop=stop, first_span=first, closed=closed)
 
 
 def piece_starts(curves: Curves, number: int, side: Side) -> list[float]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshwright_core.curves.curve import Curve, polygon_area
+from meshwright_core.curves.many_curves import end_tangents, points_at
 from meshwright_core.domains.loops.ring_checks import LARGEST
 from meshwright_core.errors import MeshError, capitalised
 
@@ -45,16 +46,15 @@ def is_smooth_piece(curve: Curve) -> bool:
     return curve.kind != "polyline" and not curve.straight
 
 
-def end_directions(curve: Curve) -> Points:
-    """(2, 2) unit tangents at its start and end."""
-    found = np.empty((2, 2))
-    ends = ((0.0, 1e-6), (curve.length, -1e-6))
-    for row, (t, step) in enumerate(ends):
-        with np.errstate(invalid="ignore"):
-            found[row] = curve.tangent(t)
-        if not np.isfinite(found[row]).all():  # control points that coincide there
-            way = (curve.point(t + step * curve.length) - curve.point(t)) * np.sign(step)
-            found[row] = way / np.hypot(*way)
+def end_directions(curves: Sequence[Curve]) -> Points:
+    """(n, 2, 2) unit tangents of n curves at start and end."""
+    found = end_tangents(curves)
+    for i, end in np.argwhere(~np.isfinite(found).all(axis=2)).tolist():
+        # control points that coincide there
+        curve = curves[i]
+        t, step = (curve.length, -1e-6) if end else (0.0, 1e-6)
+        way = (curve.point(t + step * curve.length) - curve.point(t)) * np.sign(step)
+        found[i, end] = way / np.hypot(*way)
     return found
 
 
@@ -76,7 +76,7 @@ def cut_at_corners(piece: Piece, corner_angle: float) -> list[Piece]:
     if piece.curve.kind in ("line", "arc", "ellipse") or not len(piece.curve.kinks):
         return [piece]
     kinks = piece.curve.kinks
-    ends = [end_directions(part) for part in piece.curve.split(kinks)]
+    ends = end_directions(piece.curve.split(kinks))
     least = angle_at_corner(piece.curve, piece.curve, corner_angle)
     turns = [abs(turn_between(a[1], b[0])) for a, b in pairwise(ends)]
     corners = kinks[np.array(turns) > least]
@@ -149,7 +149,9 @@ def sample_parameters(curve: Curve, turn_degrees: float) -> NDArray[np.float64]:
         return stops
     if curve.kind == "arc":
         count = max(1, int(np.ceil(np.degrees(abs(curve.data["sweep"])) / turn_degrees - 1e-9)))
-        return np.linspace(0.0, stops[-1], count + 1)
+        found = np.arange(count + 1) * (stops[-1] / count)
+        found[-1] = stops[-1]
+        return found
     dense = (stops[:-1, None] + np.diff(stops)[:, None] * np.linspace(0.0, 1.0, 17)[:-1]).ravel()
     dense = np.append(dense, stops[-1])
     inner = 0.5 * (dense[:-1] + dense[1:])
@@ -165,11 +167,13 @@ def sample_parameters(curve: Curve, turn_degrees: float) -> NDArray[np.float64]:
     return np.unique(np.interp(np.linspace(0.0, measure[-1], count + 1), measure, dense))
 
 
-def samples(curve: Curve, turn_degrees: float) -> Points:
-    """(n, 2) points at :func:`sample_parameters`."""
-    return curve.point(sample_parameters(curve, turn_degrees))
+def samples(curves: Sequence[Curve], turn_degrees: float) -> list[Points]:
+    """(n, 2) points of each curve at its :func:`sample_parameters`."""
+    return points_at(curves, [sample_parameters(curve, turn_degrees) for curve in curves])
 
 
-def sampled_chain(curves: Sequence[Curve], turn_degrees: float = 5.0) -> Points:
-    """(n, 2) points along a closed chain of curves, the last one not repeated."""
-    return np.concatenate([samples(curve, turn_degrees)[:-1] for curve in curves])
+def sampled_chains(chains: Sequence[Sequence[Curve]], turn_degrees: float = 5.0) -> list[Points]:
+    """(n, 2) points along each closed chain of curves, the last one not repeated."""
+    rows = [points[:-1] for points in samples([c for chain in chains for c in chain], turn_degrees)]
+    stops = np.cumsum([0, *map(len, chains)]).tolist()
+    return [np.concatenate(rows[low:high]) for low, high in pairwise(stops)]

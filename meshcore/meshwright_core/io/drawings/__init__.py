@@ -34,6 +34,7 @@ __all__ = [
     "MAX_BYTES",
     "DrawingReport",
     "FoundRegion",
+    "domain_in",
     "endings",
     "is_geometry",
     "read_domain",
@@ -48,8 +49,8 @@ _HEAD = 4096
 
 
 def endings() -> tuple[str, ...]:
-    """Return the endings of geometry files, with their dots."""
-    return SHAPES
+    """Return the endings of geometry files, with their dots; .dat is also one of mesh files."""
+    return (*SHAPES, DAT)
 
 
 def is_geometry(path: str | os.PathLike[str]) -> bool:
@@ -97,9 +98,15 @@ def read_regions(
             gap.
     """
     place = Path(path)
+    wanted = None if layers is None else frozenset(layers)
+    key = (_stamp(place), corner_angle, gap, wanted)
+    if key[0] is not None and _last and _last[0][0] == key:
+        return _last[0][1]
     drawing = _drawing(place)
     with naming(place):
-        return traced(drawing, corner_angle, gap, layers)
+        report = traced(drawing, corner_angle, gap, layers)
+    _last[:] = [(key, report)]
+    return report
 
 
 def read_domain(
@@ -151,6 +158,30 @@ def read_domain(
         domain = domain_of(chosen, name, corner_angle, fit)
         domain.curve_step = curve_step
         return domain
+
+
+def domain_in(drawing: Drawing, corner_angle: float = CORNER_ANGLE) -> Domain:
+    """The domain of all regions in a drawing that comes from elsewhere than a file.
+
+    Raises:
+        MeshError: as `read_domain`, without a path.
+    """
+    return domain_of(traced(drawing, corner_angle, None, None).chosen(None), "", corner_angle, None)
+
+
+_last: list[tuple[Any, DrawingReport]] = []
+"""The last report and what it is of: whoever lists the regions of a file meshes them next."""
+
+
+def _stamp(place: Path) -> tuple[Any, ...] | None:
+    """What changes when a file does; None if there is none, or if it belongs to other files."""
+    try:
+        state = place.stat()
+    except OSError:
+        return None
+    if place.suffix.lower() == ".poly":  # its points may be in a file of their own
+        return None
+    return (place.absolute(), state.st_mtime_ns, state.st_size, state.st_ino)
 
 
 def _drawing(place: Path) -> Drawing:

@@ -46,7 +46,8 @@ class FoundRegion:
         loops: the outline, then what bounds it inside; sides end to end.
         inside: a point (2,) in it.
         touches: regions with which it shares a part of its boundary, by index.
-        crossing: a sentence on where its boundary crosses another, "" if it does not.
+        crossing: a sentence on where its boundary crosses or touches another one, or itself, ""
+            if it does not.
     """
 
     name: str
@@ -127,13 +128,14 @@ class DrawingReport:
 
         Raises:
             MeshError: there is no such region; none was named and they lie apart; the outline of
-                one crosses another; the outline of the whole is open.
+                one crosses or touches another; the outline of the whole is open.
         """
         if region is None:
             if self.serious:
                 raise MeshError(self.serious)
             groups = self.groups()
-            if len(groups) > 1:
+            crossed = [any(self.regions[i].crossing for i in group) for group in groups]
+            if len(groups) > 1 and not all(crossed):
                 raise MeshError(self._apart(groups))
             found = list(self.regions)
         elif str(region).strip().lower() == ALL:

@@ -37,6 +37,8 @@ class Hint:
     ghost: Ghost
     place: np.ndarray
     """(2,) the middle of its half-edge."""
+    is_next: bool = False
+    """Whether *Step* applies it."""
 
     @cached_property
     def strokes(self) -> tuple[EdgeStrokes, EdgeStrokes]:

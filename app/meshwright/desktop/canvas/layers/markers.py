@@ -1,11 +1,11 @@
-"""The layer of boundary, corners, irregular vertices with their numbers, and locks."""
+"""The layer of boundary, corners, irregular vertices with their numbers, locks and pins."""
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QFont, QPainter, QPainterPath, QPen
 
 from meshwright.desktop.canvas.layers.base import Layer, inside, pen, polyline
-from meshwright.graphics.markers import READABLE, Markers, label
+from meshwright.graphics.markers import PIN, READABLE, Markers, label
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.true_edges import TrueEdges
 from meshwright.graphics.viewport import Viewport
@@ -29,6 +29,7 @@ class MarkersLayer(Layer):
         self._corners = np.empty((0, 2))
         self._anchors = np.empty((0, 2))
         self._rings = np.empty((0, 2))
+        self._pins = np.empty((0, 2))
         self._outline = QPainterPath()
         self._interfaces = QPainterPath()
 
@@ -57,7 +58,7 @@ class MarkersLayer(Layer):
         """
         self.viewport = viewport
         self._discs = np.empty((0, 6))
-        self._corners = self._anchors = self._rings = np.empty((0, 2))
+        self._corners = self._anchors = self._rings = self._pins = np.empty((0, 2))
         self._outline, self._interfaces = QPainterPath(), QPainterPath()
         if marks is not None and edges is not None:
             if not outlined:
@@ -66,6 +67,7 @@ class MarkersLayer(Layer):
             for line in edges.interfaces():
                 self._interfaces.addPolygon(polyline(viewport.to_screen(line)))
             self._rings = inside(viewport.to_screen(marks.locked_places), viewport)
+            self._pins = inside(viewport.to_screen(marks.pinned_places), viewport)
             if not crowd:
                 corners = inside(viewport.to_screen(marks.corner_places), viewport)
                 self._corners = corners if len(corners) < MOST_CORNERS else self._corners
@@ -106,6 +108,15 @@ class MarkersLayer(Layer):
         for x, y in self._rings.tolist():
             if near.contains(x, y):
                 painter.drawEllipse(QPointF(x, y), 12.5, 12.5)
+        right, up, radius = PIN
+        for x, y in self._pins.tolist():
+            if near.contains(x, y):
+                head = QPointF(x + right, y - up)
+                painter.setPen(QPen(QColor(self.theme.boundary), 1.5))
+                painter.drawLine(QPointF(x, y), head)
+                painter.setPen(QPen(QColor(self.theme.background), 1.0))
+                painter.setBrush(QColor(self.theme.accent))
+                painter.drawEllipse(head, radius, radius)
 
     def _paint_discs(self, painter: QPainter, near: QRectF) -> None:
         plus, minus = QColor(self.theme.plus), QColor(self.theme.minus)

@@ -1,6 +1,6 @@
 // The colours of the card, read from its CSS variables after each change of theme.
 
-import { COLOUR_NAMES, REGION_HUES, REGION_SHARE } from "../generated/constants.js";
+import { COLOUR_NAMES, QUALITY_SCALES, QUALITY_STOPS, REGION_HUES, REGION_SHARE } from "../generated/constants.js";
 
 export class Colours {
   constructor() {
@@ -25,6 +25,21 @@ export class Colours {
       return Math.round(a + REGION_SHARE * (b - a));
     });
     return `rgb(${parts.join(", ")})`;
+  }
+
+  /** The colours [r, g, b] of the scale of a measure, at QUALITY_STOPS. */
+  qualityScale() {
+    const colours = QUALITY_SCALES[this.theme] || QUALITY_SCALES.light;
+    return colours.map((colour) => [1, 3, 5].map((at) => parseInt((colour || this.fill).slice(at, at + 2), 16)));
+  }
+
+  /** The fill of an element with this value of a measure. */
+  ofQuality(value, scale = this.qualityScale()) {
+    const known = Math.min(Math.max(value, 0), 1);
+    const i = Math.max(0, QUALITY_STOPS.findIndex((stop) => known <= stop) - 1);
+    const share = (known - QUALITY_STOPS[i]) / (QUALITY_STOPS[i + 1] - QUALITY_STOPS[i]);
+    const mixed = scale[i].map((a, channel) => Math.round(a + share * (scale[i + 1][channel] - a)));
+    return `rgb(${mixed.join(", ")})`;
   }
 
   /** The fill of a half-edge's element. */

@@ -1,4 +1,4 @@
-// Paints markers of vertices: corners, irregular vertices with their signed number, locks.
+// Paints markers of vertices: corners, irregular vertices with their signed number, locks, pins.
 //
 // Sizes are those of meshwright.graphics.markers. In crowded places a disc keeps its number as long as
 // it does not cover the next one; otherwise it is a plain dot until the view is zoomed in.
@@ -20,6 +20,8 @@ const ANCHOR_HALF = 2.75;
 const ANCHOR_LINE = 1.25;
 const FEW_CORNERS = 64;
 const LOCK_RADIUS = 12.5;
+/** A pinned vertex has a needle to this far right of it and above it, with a head of this radius. */
+const PIN = { right: 5, up: 10, radius: 3.2 };
 /** Extent of a marker in pixels, and the margin of repainted regions. */
 const MARK_REACH = 20;
 export const MARK_SLACK = 36;
@@ -76,6 +78,19 @@ export class Markers {
       pen.beginPath();
       pen.arc(at[0], at[1], LOCK_RADIUS, 0, 2 * Math.PI);
       pen.stroke();
+    }
+    pen.fillStyle = this._colours.accent;
+    for (const v of derived.pinned) {
+      const at = inside(v);
+      if (!at) continue;
+      const [x, y] = [at[0] + PIN.right, at[1] - PIN.up];
+      pen.beginPath();
+      pen.moveTo(at[0], at[1]);
+      pen.lineTo(x, y);
+      pen.stroke();
+      pen.beginPath();
+      pen.arc(x, y, PIN.radius, 0, 2 * Math.PI);
+      pen.fill();
     }
   }
 

@@ -4,6 +4,8 @@
 
 import { overlap } from "../mesh/boxes.js";
 import { COARSE } from "../mesh/edge_curves.js";
+import { curvedValues, qualityOf } from "../mesh/quality.js";
+import { outlineFrom } from "../mesh/sides.js";
 import { InvertedElementsPainter } from "./inverted_elements.js";
 import { MARK_SLACK } from "./markers.js";
 
@@ -22,6 +24,7 @@ export class MeshPainter {
   constructor(canvas, colours, marks, afterwards) {
     this.view = null; // the painted view; within half a pixel of the requested one
     this.paints = 0;
+    this.measure = ""; // what elements are coloured by: "jacobian", "shape" or nothing
     this._canvas = canvas;
     this._pen = canvas.getContext("2d");
     this._colours = colours;
@@ -188,6 +191,7 @@ export class MeshPainter {
     pen.clip();
     this._ground(pen);
     const elements = this._elementsIn(rectangles.map((r) => r.map((value) => value / ratio)));
+    if (this.measure) this._paintQuality(pen, elements);
     this._paintEdges(pen, elements);
     const { inverted, interfaces, loops } = this._derived;
     this._invertedPainter.paint(pen, ratio, view, this._replica, inverted, this._tolerance);
@@ -262,6 +266,26 @@ export class MeshPainter {
       return this._grid.near(left, bottom, right, top);
     });
     return found.length === 1 ? found[0] : new Set(found.flat());
+  }
+
+  /** Fill these elements by their quality. */
+  _paintQuality(pen, elements) {
+    const curved = curvedValues(this._replica.head);
+    const scale = this._colours.qualityScale();
+    for (const e of elements) {
+      if (!this._replica.live(this._replica.k * e)) continue;
+      const colour = this._colours.ofQuality(qualityOf(this._replica, e, this.measure, curved), scale);
+      pen.fillStyle = colour;
+      pen.strokeStyle = colour;
+      pen.lineWidth = 0.6; // neighbours of one colour show no gap
+      pen.beginPath();
+      for (const [x, y] of outlineFrom(this._replica, this._replica.k * e, this._tolerance)) {
+        pen.lineTo(...this.view.toScreen(x, y));
+      }
+      pen.closePath();
+      pen.fill();
+      pen.stroke();
+    }
   }
 
   /** Every inner edge of these elements once; all are straight but interfaces, painted later. */

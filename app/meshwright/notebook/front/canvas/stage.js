@@ -157,6 +157,13 @@ export class Stage {
     this.repaint();
   }
 
+  /** Colour elements by "jacobian" or "shape"; by nothing for "". */
+  colourBy(measure) {
+    this.painter.measure = measure;
+    this.painter.forget();
+    this.repaint();
+  }
+
   /** Schedule a paint for the next frame. */
   repaint() {
     if (!this._frame) this._frame = requestAnimationFrame(() => this.paint());

@@ -35,6 +35,22 @@ export const REGION_HUES = [
   "#bf5670"
 ];
 export const REGION_SHARE = 0.14;
+/** The scale of measures of meshwright.graphics.colouring; empty: the plain fill. */
+export const QUALITY_STOPS = [0.0, 0.3, 0.6, 1.0];
+export const QUALITY_SCALES = {
+  "light": [
+    "#4a1a6e",
+    "#8e63b4",
+    "#c7b4dc",
+    ""
+  ],
+  "dark": [
+    "#ecd2ff",
+    "#a47bcb",
+    "#523f66",
+    ""
+  ]
+};
 /** Paths of meshwright.graphics.icon_paths, on a square of 20. */
 export const ICON_STROKES = {
   "new": "M3 3h14v14H3z M10 3v14 M3 10h14",

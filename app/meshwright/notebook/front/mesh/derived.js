@@ -4,7 +4,7 @@
 // Everything is computed again after each change, in one pass over the arrays: well under a
 // millisecond for 10,000 elements, so that nothing is updated incrementally.
 
-import { FLAG_ALIVE, FLAG_ANCHOR, FLAG_CORNER, FLAG_LOCKED } from "./mesh_replica.js";
+import { FLAG_ALIVE, FLAG_ANCHOR, FLAG_CORNER, FLAG_LOCKED, FLAG_PINNED } from "./mesh_replica.js";
 
 const FLAT_SINE = 1e-5;
 const SAMPLES = 1500;
@@ -21,6 +21,7 @@ export class DerivedData {
     this.corners = geometric.filter((v) => !(replica.flags[v] & FLAG_ANCHOR));
     this.anchors = geometric.filter((v) => replica.flags[v] & FLAG_ANCHOR);
     this.locked = verticesWith(replica, (v) => (replica.flags[v] & FLAG_LOCKED) !== 0);
+    this.pinned = verticesWith(replica, (v) => (replica.flags[v] & FLAG_PINNED) !== 0);
     this.typical = typicalEdge(replica);
     this.reach = shortestEdges(replica);
     this.apart = distancesApart(replica, this.irregular, this.typical, this.box);

@@ -15,6 +15,7 @@ export const FLAG_CORNER = 4;
 export const FLAG_LOCKED = 8;
 /** With FLAG_CORNER: a geometric vertex on a straight side. */
 export const FLAG_ANCHOR = 16;
+export const FLAG_PINNED = 32;
 
 /** Buffers of a state message: five of vertices and half-edges, vertices on curves with curve and
  * parameter, regions of elements (empty: all are of one), then the curves.

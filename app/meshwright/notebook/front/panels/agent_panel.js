@@ -6,6 +6,8 @@ import { counted, signed } from "../numbers.js";
 
 const AGENT_SPEEDS = [0.5, 1, 2, 4, 6, 10, 15, 20, 30, 60];
 const AGENT_AT_REST = ["idle", "paused"];
+const PREFERENCES = ["blocks", "balanced", "shape"];
+const PREFERRED = ["Few blocks", "Balanced", "Good shape"];
 
 export class AgentPanel {
   constructor(card) {
@@ -19,8 +21,11 @@ export class AgentPanel {
       node("div", "mw-head-line", {}, node("h4", "mw-heading", {}, "Agent"), this._policy),
       node("div", "mw-buttons", {}, this._hint, this._step, this._play),
       node("div", "mw-buttons", {}, this._complete, this._stop,
-        node("label", "mw-speed", {}, this._speed, this._pace)),
-      this._words, this._list);
+        this._preferBox),
+      this._sizeBox,
+      node("div", "mw-agent-state", {}, this._words, this._skip),
+      node("label", "mw-speed", {}, this._speed, this._pace),
+      this._list);
   }
 
   /** Whether the agent is changing the mesh. */
@@ -37,9 +42,23 @@ export class AgentPanel {
     this._step = action("Step", "Apply one operation chosen by the policy (.)", "step", "step");
     this._play = button("mw-button", "Play", { text: "Play", sign: "play", act: () => this.toggle() });
     this._complete = action(
-      "Complete", "Search for a few seconds and go to the best state found", "complete", null,
+      "Complete", "Search until the optimum is reached or nothing more is won", "complete", null,
       "mw-button mw-primary",
     );
+    this._skip = action("Skip", "Go to the result at once; its operations are in the history", "skip");
+    this._skip.hidden = true;
+    this._prefer = node("input", "mw-range", {
+      type: "range", min: 0, max: 2, step: 1, value: 1, "aria-label": "Blocks or shape",
+      title: "What searches aim at once s is at its optimum: few blocks, or corners as good as the outline permits",
+    });
+    this._preferred = node("span", "mw-pace", { "aria-hidden": "true" });
+    this._preferBox = node("label", "mw-speed mw-prefer", {}, this._prefer, this._preferred);
+    this._keepSize = node("input", "", { type: "checkbox" });
+    this._sizeBox = node("label", "mw-check", {
+      title: "Searches keep the size of the elements; otherwise they look for few, large blocks",
+    }, this._keepSize, "Keep the size of the elements");
+    this._prefer.addEventListener("input", () => this._updatePreference());
+    this._updatePreference();
     this._stop = action("Stop", "Stop the policy; its operations are kept", "stop");
     this._speed = node("input", "mw-range", {
       type: "range", min: 0, max: AGENT_SPEEDS.length - 1, step: 1, value: 3, "aria-label": "Playing speed",
@@ -62,7 +81,8 @@ export class AgentPanel {
       return;
     }
     this._hidden = "";
-    this._card.request("agent", { action });
+    const prefer = PREFERENCES[this._prefer.valueAsNumber];
+    this._card.request("agent", action === "complete" ? { action, prefer, keep_size: this._keepSize.checked } : { action });
   }
 
   /** Play or pause. */
@@ -102,6 +122,8 @@ export class AgentPanel {
     this._play.disabled = none || (this.busy && !playing);
     this._stop.hidden = content.state === "idle";
     this._complete.hidden = !this._stop.hidden;
+    this._complete.lastChild.textContent = content.unfinished ? "Go on" : "Complete";
+    this._skip.hidden = content.state !== "going";
     if (!this._speed.matches(":active")) {
       const away = AGENT_SPEEDS.map((speed) => Math.abs(speed - content.speed));
       this._speed.value = away.indexOf(Math.min(...away));
@@ -119,15 +141,25 @@ export class AgentPanel {
     this._setHints([]);
   }
 
-  _statusText({ loading, asking, state, progress, policies }) {
+  _updatePreference() {
+    const words = PREFERRED[this._prefer.valueAsNumber];
+    setText(this._preferred, words);
+    this._prefer.setAttribute("aria-valuetext", words);
+  }
+
+  _statusText({ loading, asking, state, progress, policies, outcome = "" }) {
     if (!policies.length) return "No policy for meshes of this kind.";
-    const { decisions = 0, best = null } = progress || {};
+    const { decisions = 0, best = null, gap = null, way = null, seconds = 0 } = progress || {};
     const lowest = best === null ? "" : `, best s ${best}`;
     if (loading) return "Loading the policy\u2026";
     if (asking) return "Computing hints\u2026";
-    if (state === "searching") return `Searching${lowest}\u2026`;
+    if (way) return `Going there: ${way[0].toLocaleString("en")} of ${way[1].toLocaleString("en")}`;
+    if (state === "searching") {
+      return `Searching: ${seconds.toFixed(0)} s${lowest}${gap ? `, ${gap} above the optimum` : ""}`;
+    }
     if (state === "playing") return `Playing: ${counted(decisions, "decision")}${lowest}`;
     if (state === "paused") return `Paused after ${counted(decisions, "decision")}${lowest}`;
+    if (outcome) return outcome;
     return decisions ? `${counted(decisions, "decision")} taken${lowest}` : "Ready";
   }
 
@@ -163,7 +195,7 @@ export class AgentPanel {
         type: "button", "aria-label": `Hint ${index + 1}: ${hint.title}, ${chance}, s ${signed(hint.change)}`,
         title: `Apply it (${index + 1})`,
       },
-      node("kbd", "mw-key", {}, String(index + 1)), node("span", "mw-operation-title", {}, hint.title),
+      node("kbd", "mw-key", {}, String(index + 1)), node("span", "mw-operation-title", {}, hint.next ? `${hint.title}, next step` : hint.title),
       node("span", "mw-chance", {}, chance), change);
       row.addEventListener("click", () => this.take(index));
       for (const type of ["pointerenter", "focus"]) {

@@ -1,7 +1,7 @@
 // The context menus: operations of a half-edge, properties of a vertex.
 
 import { asSentence, icon, node } from "../dom.js";
-import { FLAG_CORNER, FLAG_LOCKED } from "../mesh/mesh_replica.js";
+import { FLAG_CORNER, FLAG_LOCKED, FLAG_PINNED } from "../mesh/mesh_replica.js";
 import { signed } from "../numbers.js";
 import { Popup } from "./popup.js";
 
@@ -144,6 +144,8 @@ class VertexMenu {
     const [corner, locked] = [(flags & FLAG_CORNER) !== 0, (flags & FLAG_LOCKED) !== 0];
     choice("Corner: keeps its position", corner, () => this._send("corner", { on: !corner }));
     choice("Locked: not moved or removed", locked, () => this._send("lock", { on: !locked }));
+    const pinned = (flags & FLAG_PINNED) !== 0;
+    choice("Pinned: not moved by smoothing", pinned, () => this._send("pin", { on: !pinned }));
     this.popup.show(x, y);
   }
 

@@ -15,11 +15,18 @@ export class ScorePanel {
       "aria-valuemin": "0", "aria-valuemax": "100",
       title: "Normalised return: (s at the start \u2212 s) / (s at the start \u2212 optimum)",
     }, this._bar);
-    this._optimal = node("div", "mw-optimal", { hidden: true },
-      node("div", "mw-optimal-title", {}, icon("check", 16), "Provably optimal"),
-      node("div", "mw-optimal-text", {}, "s = s*: no connectivity is better under these desired degrees."));
+    this._optimalTitle = node("div", "mw-optimal-title");
+    this._findings = node("div", "mw-optimal-text");
+    this._optimal = node("div", "mw-optimal", {
+      hidden: true, title: "s = s*: no connectivity is better under these desired degrees.",
+    }, this._optimalTitle, this._findings);
     this._summary = node("div", "mw-score-words", {}, this._goal, this._gap);
     this._facts = node("dl", "mw-facts");
+    this._shape = this._fact("Shape");
+    this._shape.parentElement.title = "Worst scaled Jacobian, the smallest sine of a corner, and what "
+      + "the angles of the corners permit where they are regular";
+    this._flattest = this._fact("Worst element shape");
+    this._flattest.parentElement.title = "Worst corner of an element by angle and ratio of sides";
     this._irregular = this._fact("Irregular vertices");
     this._elements = this._fact("Elements");
     this._blocks = this._fact("Blocks, each a regular grid");
@@ -28,7 +35,7 @@ export class ScorePanel {
     this.root = node("section", "mw-part mw-part-score", { "aria-label": "Score" },
       node("h4", "mw-heading", {}, "Score"),
       node("div", "mw-score", {}, this._number, this._summary, this._optimal),
-      this._barBox, this._facts, this._steps);
+      this._barBox, this._facts, card.colourChoice.root, this._steps);
   }
 
   /** Show the numbers of a head. */
@@ -51,7 +58,19 @@ export class ScorePanel {
     this._blocks.parentElement.hidden = head.blocks === null;
     setText(this._inverted, head.inverted.toLocaleString("en"));
     this._inverted.parentElement.hidden = !head.inverted;
+    this._updateShape(head);
     this._updateSteps(head);
+  }
+
+  _updateShape({ shape, findings, at_optimum: solved }) {
+    setText(this._shape, shape ? shape.words : "\u2013");
+    setText(this._flattest, shape ? shape.flattest : "\u2013");
+    if (!solved || !shape) return;
+    const fine = findings.every(([, inOrder]) => inOrder);
+    this._optimal.classList.toggle("mw-optimal-warns", !fine);
+    this._optimalTitle.replaceChildren(icon(fine ? "check" : "alert", 16), "Optimal connectivity");
+    this._findings.replaceChildren(...findings.map(([text, inOrder]) => (
+      node("div", inOrder ? "" : "mw-finding-warns", {}, inOrder ? text : `\u26a0 ${text}`))));
   }
 
   _fact(title) {

@@ -18,17 +18,23 @@ _EXACT = 1e-9
 """Distance, as a share of the drawing's size, of two curves that meet."""
 _NEAR = 0.02
 """Share of the shorter curve around a shared end in which a crossing is taken for that end."""
+_PARALLEL = 1e-3
+"""Sine of the angle of two tangents that are the same: files round their numbers."""
 _MOST = 2_000
 """Crossings beyond which no more are looked for."""
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """Two edges by index, the same one twice if it crosses itself, and the place (2,)."""
+    """Two edges by index, the same one twice if it crosses itself, and the place (2,).
+
+    touches: whether they have the same tangent there, so that neither goes to the other's far side.
+    """
 
     one: int
     other: int
     place: Points
+    touches: bool = False
 
 
 def crossings(
@@ -54,7 +60,8 @@ def crossings(
             place = _met(edges[i].curve, edges[j].curve, spot, _EXACT * size)
             if place is None or (len(shared) and np.hypot(*(shared - place).T).min() <= near):
                 continue
-            found.append(Crossing(i, j, place))
+            touches = _parallel(edges[i].curve, edges[j].curve, place)
+            found.append(Crossing(i, j, place, touches))
         if len(found) > _MOST:
             break
     for i in np.flatnonzero(~shapely.is_simple(lines)).tolist():
@@ -75,6 +82,12 @@ def _met(one: Curve, other: Curve, spot: Points, near: float) -> Points | None:
         if distance[0] <= near:
             return place
     return None
+
+
+def _parallel(one: Curve, other: Curve, place: Points) -> bool:
+    """Whether two curves that meet at a place have one tangent there."""
+    (a, b), (c, d) = (curve.tangent(curve.project(place)[0])[0] for curve in (one, other))
+    return abs(float(a * d - b * c)) < _PARALLEL
 
 
 def _with_itself(line: Points) -> list[Points]:

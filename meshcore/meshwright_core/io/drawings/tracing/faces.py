@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from meshwright_core.core.components import components
 from meshwright_core.io.drawings.drawn import Points
 from meshwright_core.io.drawings.tracing import measures
 from meshwright_core.io.drawings.tracing.network import Edge, Network
@@ -69,6 +71,15 @@ class Faces:
             points = self.edges[i].dense
             rows.append(points[::-1][:-1] if back else points[:-1])
         return np.concatenate(rows)
+
+    @cached_property
+    def polygons(self) -> NDArray[np.object_]:
+        """Of each face the polygon through points along it, whatever else lies inside."""
+        lines = [self.outline(face.ways) for face in self.faces]
+        owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+        rings = shapely.linearrings(np.concatenate(lines), indices=owner)
+        found: NDArray[np.object_] = shapely.polygons(rings)
+        return found
 
 
 def faces_of(network: Network) -> Faces:
@@ -200,15 +211,9 @@ def _around(network: Network, node: int, halves: list[int]) -> list[int]:
 
 def _labels(network: Network, alive: NDArray[np.bool_]) -> NDArray[np.int64]:
     """The connected part of each node."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     ends = np.array([(e.a, e.b) for e, is_alive in zip(network.edges, alive, strict=True)
                      if is_alive], dtype=np.int64).reshape(-1, 2)  # fmt: skip
-    count = len(network.nodes)
-    links = coo_array((np.ones(len(ends)), ends.T), shape=(count, count))
-    label: NDArray[np.int64] = connected_components(links, directed=False)[1].astype(np.int64)
-    return label
+    return components(ends[:, 0], ends[:, 1], len(network.nodes))[1]
 
 
 def around(faces: Faces) -> NDArray[np.int64]:
@@ -216,7 +221,7 @@ def around(faces: Faces) -> NDArray[np.int64]:
     found = np.full(len(faces.islands), -1)
     if len(faces.islands) < 2:
         return found
-    shapes = np.array([shapely.Polygon(faces.outline(face.ways)) for face in faces.faces])
+    shapes = faces.polygons
     shapely.prepare(shapes)
     spots = np.array([_middle(faces.edges[island.rim[0][0]]) for island in faces.islands])
     island, face = shapely.STRtree(shapes).query(shapely.points(spots), predicate="within")

@@ -92,11 +92,11 @@ def _parts(network: Network, stray: list[int]) -> list[_Part]:
 
 def _grouped(parts: list[_Part]) -> list[list[_Part]]:
     """Parts whose ends are each other's nearest, together: pieces of one outline."""
-    from scipy.spatial import cKDTree
-
     ends = [(end, i) for i, part in enumerate(parts) for end in part.ends]
     group = list(range(len(parts)))
     if len(ends) > 1:
+        from scipy.spatial import cKDTree  # here: it takes half a second, and most are closed
+
         places = np.array([end for end, _ in ends])
         away, near = cKDTree(places).query(places, k=2)
         # a point at the same place may be listed first

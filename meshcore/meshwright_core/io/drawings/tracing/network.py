@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from meshwright_core.core.components import components
 from meshwright_core.curves.curve import Curve
 from meshwright_core.errors import MeshError
 from meshwright_core.io.drawings.drawn import MAX_POINTS, Points
@@ -123,16 +124,15 @@ def _clustered(
     Points within one curve are not joined, whatever their distance: a coastline may be finely
     drawn. A node lies at the first of its points.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
     unique, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
     inverse = inverse.ravel()
-    tree = cKDTree(unique)
-    if tree.count_neighbors(tree, tolerance) > 2 * _PAIRS:
+    cell = np.floor((unique - unique.min(axis=0)) / tolerance).astype(np.int64)
+    crowd = np.unique(cell, axis=0, return_counts=True)[1]
+    if int((crowd**2).sum()) > 2 * _PAIRS:
         raise MeshError("too many of its points lie at one place")
-    near = tree.query_pairs(tolerance, output_type="ndarray")
+    spots = shapely.points(unique)
+    near = shapely.STRtree(spots).query(spots, predicate="dwithin", distance=tolerance)
+    near = near[:, near[0] < near[1]].T
     count = len(unique)
     low, high = np.full(count, len(points)), np.full(count, -1)
     np.minimum.at(low, inverse, piece)
@@ -142,11 +142,10 @@ def _clustered(
     i, j = near.T
     own = (low[i] == high[i]) & (low[j] == high[j]) & (low[i] == low[j]) & ~(end[i] & end[j])
     near = near[~own]
-    links = coo_array((np.ones(len(near)), near.T), shape=(count, count))
-    number, label = connected_components(links, directed=False)
+    number, label = components(near[:, 0], near[:, 1], count)
     leader = np.full(number, len(points))
     np.minimum.at(leader, label, first)
-    return points[leader], label[inverse].astype(np.int64)
+    return points[leader], label[inverse]
 
 
 def _split_atoms(atoms: Ids, host: Ids, nodes: Points, tolerance: float) -> tuple[Ids, Ids]:

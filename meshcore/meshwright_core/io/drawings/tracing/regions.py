@@ -8,6 +8,7 @@ that is drawn on two layers, once as a hole and once as an outline, separates tw
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Sequence
 
 import numpy as np
@@ -134,7 +135,8 @@ class _Tracer:
         if opened:
             return opened[0][0] + told
         for crossing in crossings(network.edges, network.nodes, self.tolerance, self.size):
-            return f"the outline crosses itself at {place_words(crossing.place)}"
+            verb = "touches" if crossing.touches else "crosses"
+            return f"the outline {verb} itself at {place_words(crossing.place)}"
         return f"there is no closed outline in it{told}"
 
     def _network(self) -> tuple[Network, list[Repair]]:
@@ -228,14 +230,14 @@ class _Tracer:
 
     def _inner_points(self, faces: Faces) -> Points:
         """A point in each face, outside of the islands in it."""
-        rims = [faces.outline(island.rim) for island in faces.islands]
-        shapes = []
-        for i, face in enumerate(faces.faces):
-            holes = [rims[island] for island in self.children.get(i, [])]
-            shapes.append(shapely.Polygon(faces.outline(face.ways), holes))
-        self._shapes = np.array(shapes)
-        if not shapes:
+        if not faces.faces:
+            self._shapes = np.zeros(0, object)
             return np.zeros((0, 2))
+        self._shapes = faces.polygons.copy()
+        for i, islands in self.children.items():
+            if i >= 0:
+                holes = [faces.outline(faces.islands[island].rim) for island in islands]
+                self._shapes[i] = shapely.Polygon(faces.outline(faces.faces[i].ways), holes)
         found: Points = shapely.get_coordinates(shapely.point_on_surface(self._shapes))
         return found
 
@@ -277,6 +279,8 @@ class _Tracer:
         ways = [self._loops(faces, i) for i in solid]
         names, layers = self._names(faces, solid, ways)
         crossing = self._crossings(faces, ways, network)
+        for k, place in self._pinches(faces, material, ways, network).items():
+            crossing[k] = crossing[k] or f"the boundary touches itself at {place_words(place)}"
         regions = []
         for k, i in enumerate(solid):
             loops = tuple(
@@ -360,6 +364,30 @@ class _Tracer:
             count += measures.turn_angle(arrive, leave) > least
         return count
 
+    def _pinches(
+        self, faces: Faces, material: Sequence[bool], ways: list[list[list[Way]]], network: Network
+    ) -> dict[int, Points]:
+        """Places (2,) at which regions touch themselves, so that two parts of what is not material
+        meet in one point there; by region.
+        """
+        crowded = set(np.flatnonzero(network.degrees() > 3).tolist())
+        if not crowded:
+            return {}
+        empty: Counter[int] = Counter()
+        for i, (left, right) in self._sides(faces).items():
+            # on the left of each edge that leaves a node begins one sector of it
+            for node, face in ((faces.edges[i].a, left), (faces.edges[i].b, right)):
+                empty[node] += node in crowded and not (face >= 0 and material[face])
+        found: dict[int, Points] = {}
+        for k, loops in enumerate(ways):
+            visits: Counter[int] = Counter()
+            for loop in loops:
+                visits.update(faces.edges[e].b if back else faces.edges[e].a for e, back in loop)
+            for node in sorted(crowded & visits.keys()):
+                if visits[node] > 1 and empty[node] > 1:
+                    found.setdefault(k, network.nodes[node])
+        return found
+
     def _crossings(self, faces: Faces, ways: list[list[list[Way]]], network: Network) -> list[str]:
         """For each region, a sentence on where its boundary crosses another curve."""
         of: dict[int, list[int]] = {}
@@ -372,8 +400,9 @@ class _Tracer:
         for crossing in crossings(edges, network.nodes, self.tolerance, self.size):
             place = place_words(crossing.place)
             alone = crossing.one == crossing.other
+            verb = "touches" if crossing.touches else "crosses"
             what = "itself" if alone else "another line or curve"
             for i in (crossing.one, crossing.other):
                 for k in of.get(kept[i], []):
-                    found[k] = found[k] or f"the boundary crosses {what} at {place}"
+                    found[k] = found[k] or f"the boundary {verb} {what} at {place}"
         return found

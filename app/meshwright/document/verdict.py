@@ -1,0 +1,45 @@
+"""What can be said of a mesh as an answer: connectivity, shape, inverted elements, irregularity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from meshwright.document.quality_summary import shape_in_order, shape_words
+from meshwright_core import HalfEdgeMesh
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One statement, and whether what it says is in order."""
+
+    text: str
+    in_order: bool
+
+
+def largest_delta(mesh: HalfEdgeMesh) -> int:
+    """The largest |delta| of a vertex."""
+    count = mesh.irregular_count
+    if not count:
+        return 0
+    irregular = mesh.arrays.irregular[:count]
+    return int(abs(mesh.irregularity()[irregular]).max())
+
+
+def findings(
+    mesh: HalfEdgeMesh, worst: float, bound: float, inverted: int
+) -> tuple[Finding, Finding, Finding]:
+    """Shape, inverted elements and largest |delta| of ``mesh``, in words.
+
+    Args:
+        mesh: the mesh.
+        worst: its worst scaled Jacobian.
+        bound: q*.
+        inverted: number of its inverted elements.
+    """
+    delta = largest_delta(mesh)
+    least = 1 if mesh.optimum else 0
+    return (
+        Finding(f"Shape {shape_words(worst, bound)}", shape_in_order(worst, bound)),
+        Finding(f"{inverted:,} inverted" if inverted else "Nothing inverted", not inverted),
+        Finding(f"Largest |\u0394| {delta}", delta <= least),
+    )

@@ -1,0 +1,1 @@
+"""Writers of block-structured grids, one format each."""

@@ -1,0 +1,83 @@
+"""``meshwright blocks``: grids of meshes and shapes, named sides, refusals."""
+
+import json
+
+import pytest
+from block_meshes import corner_blocks
+
+import meshwright_core
+from meshwright import cli
+
+
+@pytest.fixture
+def corner(tmp_path):
+    path = tmp_path / "corner.vtk"
+    meshwright_core.write(path, corner_blocks())
+    return path
+
+
+def run(capsys, *words) -> dict:
+    code = cli.main(["blocks", *map(str, words), "--json"])
+    values = json.loads(capsys.readouterr().out)
+    assert code == 0, values
+    return values
+
+
+def test_a_mesh_becomes_a_grid(capsys, corner, tmp_path):
+    values = run(capsys, corner, "-o", tmp_path / "corner.geo", "--size", "0.25")
+    assert (values["blocks"], values["chords"], values["cells"]) == (3, 4, 48)
+    assert values["score"] == values["optimum"]
+    assert values["worst_scaled_jacobian"] == pytest.approx(1.0)
+    assert values["patches"] == [{"name": "outline", "cells": 32}]
+    assert values["area"] == pytest.approx(3.0)
+    assert (tmp_path / "corner.geo").read_text().count("Transfinite Surface") == 3
+
+
+def test_layers_and_numbers_on_named_sides(capsys, corner, tmp_path):
+    options = ["--size", "0.25", "--wall", "outline:0.01:1.3"]
+    layered = run(capsys, corner, "-o", tmp_path / "blockMeshDict", *options)
+    assert layered["cells"] > 48
+    assert layered["worst_aspect_ratio"] > 5
+    assert "type wall;" in (tmp_path / "blockMeshDict").read_text()
+    given = run(capsys, corner, "-o", tmp_path / "a.vtu", "--count", "outline:40")
+    assert given["patches"] == [{"name": "outline", "cells": 40}]
+
+
+def test_the_text_names_the_files(capsys, corner, tmp_path):
+    assert cli.main(["blocks", str(corner), "-o", str(tmp_path / "a.xyz"), "--divide", "2"]) == 0
+    output = capsys.readouterr().out
+    assert "a.xyz" in output
+    assert "a.nmf" in output
+    assert "3, in 4 chords" in output
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["-o", "a.geo", "--wall", "inlet:0.1"], "no side named 'inlet'; there are outline"),
+        (["-o", "a.geo", "--wall", "inlet"], "not of the form NAME:HEIGHT[:RATIO]"),
+        (["-o", "a.geo", "--wall", "outline:0.1:99"], "ratio of growth"),
+        (["-o", "a.geo", "--wall", "outline:x"], "not a number"),
+        (["-o", "a.geo", "--count", "outline:1.5"], "not a whole number"),
+        (["-o", "a.geo", "--size", "1", "--divide", "2"], "not allowed with"),
+        (["-o", "a.geo", "--order", "2"], "order 2 cannot be written as .geo"),
+        (["-o", "a.geo", "--extrude", "1", "2"], "only a blockMeshDict is extruded"),
+        (["-o", "a.txt"], "not one of a grid"),
+        (["-o", "a.geo", "--size", "1e-7"], "cells; at most"),
+    ],
+)
+def test_wrong_use_is_one_sentence(capsys, corner, tmp_path, monkeypatch, options, words):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["blocks", str(corner), *options]) == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert output.err.count("\n") == 1
+    assert words in output.err
+    assert [path.name for path in tmp_path.iterdir()] == ["corner.vtk"]
+
+
+def test_triangles_are_refused(capsys, tmp_path):
+    mesh = meshwright_core.HalfEdgeMesh.from_elements([(0, 0), (1, 0), (0, 1)], [[0, 1, 2]])
+    meshwright_core.write(tmp_path / "t.vtk", mesh)
+    assert cli.main(["blocks", str(tmp_path / "t.vtk"), "-o", str(tmp_path / "a.geo")]) == 2
+    assert "triangles" in capsys.readouterr().err
