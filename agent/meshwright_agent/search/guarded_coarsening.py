@@ -412,10 +412,13 @@ class Coarsener:
         self._weights /= self._weights.sum()
         self._spare = copied(self.start)
 
-    def layout(self, operations: Operations, steps: int = STEPS) -> Layout:
+    def layout(
+        self, operations: Operations, steps: int = STEPS, placed: HalfEdgeMesh | None = None
+    ) -> Layout:
         """The layout that operations lead to, with positions.
 
-        steps: of each stage of the max-min positions. Raises ValueError if the operations do not
+        steps: of each stage of the max-min positions. placed: the same state of the mesh, with
+        positions to begin with. Raises ValueError if the operations do not
         replay on the start.
         """
         codes = np.array([(CODES[4][name], h) for name, h in operations], np.int32).reshape(-1, 2)
@@ -428,8 +431,16 @@ class Coarsener:
         state[LENGTH] = len(codes)
         record = Record(log, state, np.zeros(16, np.int64), np.zeros(MOST_CLEANUPS, np.int64))
         layout = Layout(arrays, np.zeros(4), record)
+        if placed is not None:
+            self.place(layout, placed)
         self.judge(layout, steps)
         return layout
+
+    def place(self, layout: Layout, placed: HalfEdgeMesh) -> None:
+        """Move the vertices of a layout to their positions in the same state of the mesh."""
+        live = placed.vertices()
+        layout.arrays.points[live] = placed.points[live]
+        layout.arrays.parameter[live] = placed.arrays.parameter[live]
 
     def judge(self, layout: Layout, steps: int = STEPS) -> None:
         """Position the vertices of a layout and update its key."""

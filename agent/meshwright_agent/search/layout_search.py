@@ -130,18 +130,23 @@ class LayoutSearch:
     ) -> None:
         """Add the layout that operations lead to, coarsened unless `stop` comes first.
 
-        placed: the same state of the mesh, with other positions, which are taken where those of the
-        layout are folded. unfold: whether it is smoothed and untangled where they are folded and
-        none are given, which may take seconds.
+        placed: the same state of the mesh, with valid positions. unfold: whether it is smoothed and
+        untangled where it is folded and no positions are given, which may take seconds.
         """
         self._served = self.idle // STALE
-        layout = self.coarsener.layout(operations)
+        layout = self.coarsener.layout(operations, placed=placed)
         if not layout.key[1] and placed is not None:
-            self._take_positions(layout, placed)
+            # raising the corners has folded a quad along a curve in the middle: keep what is valid
+            self.coarsener.place(layout, placed)
+            layout.key[1] = max(float(scaled_jacobian(placed).min()), 1e-3)
         elif not layout.key[1] and unfold and not (self.pool and stop()):
             reached = replayed(self._mesh, operations)
             if not len(relax(reached)):
-                self._take_positions(layout, reached)
+                self.coarsener.place(layout, reached)
+                self.coarsener.judge(layout)
+                if not layout.key[1]:
+                    self.coarsener.place(layout, reached)
+                    layout.key[1] = max(float(scaled_jacobian(reached).min()), 1e-3)
         if coarsen and layout.key[1]:
             self._coarsen(layout, stop)
         self._note(layout)
@@ -150,22 +155,6 @@ class LayoutSearch:
             place += 1
         self.pool.insert(place, layout)
         del self.pool[POOL:]
-
-    def _take_positions(self, layout: Layout, reached: HalfEdgeMesh) -> None:
-        """Position a layout from the valid positions of the same state of the mesh."""
-        live, m = reached.vertices(), layout.arrays
-
-        def take() -> None:
-            m.points[live] = reached.points[live]
-            m.parameter[live] = reached.arrays.parameter[live]
-
-        take()
-        self.coarsener.judge(layout)
-        if layout.key[1]:
-            return
-        # raising the corners folds a quad along a curve in the middle: keep what is valid
-        take()
-        layout.key[1] = max(float(scaled_jacobian(reached).min()), 1e-3)
 
     def _note(self, layout: Layout) -> None:
         if self.best is None or self.coarsener.better(layout, self.best):

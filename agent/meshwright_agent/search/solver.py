@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
 from meshwright_agent.search.coarsening import replayed, undrawable
+from meshwright_agent.search.guarded_rollouts import THIN_EVERY, TOGETHER, GuardedDescent
 from meshwright_agent.search.layout_search import LayoutSearch, Preference
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import (
@@ -35,10 +36,10 @@ from meshwright_agent.search.search_worker import (
 )
 from meshwright_agent.search.shortening import shorten as shorter
 from meshwright_agent.search.solution import Solution, judged
-from meshwright_agent.search.valid_descent import ValidDescent
 from meshwright_core.domains.meshing import benchmark_mesh
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.quality import inverted
+from meshwright_core.geometry.turning import has_bends
 from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
@@ -64,8 +65,10 @@ TRIED = 24
 COARSEST = 0.5
 """Share of the time for the polish that coarsening without regard to shape takes where nothing
 that rollouts found at s* can be drawn."""
-DESCENT = 0.7
-"""Share of the time after which no more rollouts are followed from one valid state to the next."""
+DESCENT = 0.6
+"""Share of the time after which no more guarded rollouts are made."""
+DRAWN = 2
+"""States found by guarded rollouts whose layouts are searched."""
 PATCHING, SMOOTHING = 0.75, 0.9
 """Shares of the time after which no more patches are improved, and none smoothed, on a large
 mesh: what follows takes the longer the more was done."""
@@ -150,24 +153,36 @@ def _has_layouts(mesh: HalfEdgeMesh) -> bool:
 def _search_layouts(
     search: _Search, preference: Preference, workers: int, coarsen: bool, shorten: bool
 ) -> Solution:
-    """Rollouts until s* is reached, then a search among layouts of the lowest s."""
+    """Rollouts until s* is reached, then a search among layouts of the lowest s.
+
+    From a start without inverted elements guarded rollouts come first
+    (:mod:`meshwright_agent.search.guarded_rollouts`); others only where no side bends, or where
+    these do not find anything better than the start.
+    """
     mesh, timed = search.mesh, search.timed
     search.thorough = True
-    if search.score > mesh.optimum:
+    startable = not len(inverted(mesh))
+    workers = max(1, workers)
+    descents = [
+        GuardedDescent(mesh, search.policy, search.max_steps, search.seed + 101 * i)
+        for i in range(workers if startable and search.score > mesh.optimum else 0)
+    ]
+    side_by_side(len(descents), lambda i: _descend(search, descents[i], len(descents)))
+    drawn = min((descent.score for descent in descents), default=mesh.score)
+    if search.score > mesh.optimum and (drawn == mesh.score or not has_bends(mesh)):
         search.look(workers, share=OPENING)
     candidates = search.take()
     total = 0 if not coarsen else None if timed else KICKS_EACH * search.wanted_rollouts
-    seekers = [
-        LayoutSearch(mesh, preference, search.seed + 7919 * i) for i in range(max(1, workers))
-    ]
-
-    startable = not len(inverted(mesh))
+    seekers = [LayoutSearch(mesh, preference, search.seed + 7919 * i) for i in range(workers)]
 
     def stop() -> bool:
         return search.over(1.0 - POLISH)
 
     def run(i: int) -> None:
         seeker = seekers[i]
+        for state in descents[i].states[:DRAWN] if descents else []:
+            if state.score == drawn and not (seeker.pool and stop()):
+                seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
         # every thread has all candidates where there are few, and its share of them otherwise
         mine = candidates if len(candidates) < 2 * workers else candidates[i::workers]
         for candidate in mine:
@@ -176,12 +191,8 @@ def _search_layouts(
             seeker.add(candidate.operations, coarsen, stop, unfold=not startable)
         if startable and not seeker.valid_at(mesh.optimum) and mine:
             _add_coarsest(search, seeker, mine[0], coarsen, stop)
-        if startable and not seeker.valid_at(mesh.score):
-            descent = ValidDescent(mesh, search.policy, search.max_steps, search.seed + 101 * i)
-            descent.follow(mine, stop)
-            if timed:
-                descent.run(lambda: search.over(DESCENT))
-            seeker.add(descent.operations, coarsen, stop, descent.mesh)
+        if not seeker.pool:
+            seeker.add([], coarsen, stop)
         while not stop():
             seeker.run(stop, 100 if total is None else total // len(seekers))
             if total is not None or not coarsen or seeker.exhausted:
@@ -190,11 +201,7 @@ def _search_layouts(
                 for candidate in search.more_rollouts(search.seed + 31 * seeker.kicks + 7919 * i):
                     seeker.add(candidate.operations, coarsen, stop)
 
-    if len(seekers) == 1:
-        run(0)
-    else:
-        with ThreadPoolExecutor(len(seekers), thread_name_prefix="layouts") as pool:
-            list(pool.map(run, range(len(seekers))))
+    side_by_side(workers, run)
     first = seekers[0].coarsener
     layout = seekers[0].best
     for seeker in seekers[1:]:
@@ -208,7 +215,9 @@ def _search_layouts(
             mesh, operations, seconds=search.share(0.4), slices=None if timed else SLICES,
             keep_layout=True, cancelled=search.stopped,
         )  # fmt: skip
-    method = candidates[0].method if not any(seeker.kicks for seeker in seekers) else "layouts"
+    method = candidates[0].method if candidates else "rollouts"
+    if any(seeker.kicks for seeker in seekers):
+        method = "layouts"
     answer = Solution(
         operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
         method=method if operations else "none", aims=first.aims,
@@ -218,6 +227,26 @@ def _search_layouts(
         # valid only at the positions that the search has come by
         found = judged(replace(answer, operations=layout.operations()), mesh, placed=layout.arrays)
     return found
+
+
+def side_by_side(count: int, run: Callable[[int], None]) -> None:
+    """Call `run` with 0 ... count - 1, in as many threads."""
+    if count == 1:
+        run(0)
+    elif count:
+        with ThreadPoolExecutor(count, thread_name_prefix="layouts") as pool:
+            list(pool.map(run, range(count)))
+
+
+def _descend(search: _Search, descent: GuardedDescent, workers: int) -> None:
+    """Guarded rollouts of one thread, until s*, the end of their share of the time, or as many as
+    are wanted.
+    """
+    rounds = None
+    if search.wanted is not None:
+        rounds = -(-search.wanted // (TOGETHER * workers))
+    descent.run(lambda: search.over(DESCENT), rounds)
+    search.count(descent.rollouts)
 
 
 def _add_coarsest(
@@ -332,8 +361,12 @@ def _patch_by_patch(
     return best
 
 
-@cache
-def _warm_up(task: Task) -> None:
+_prepared: set[Task] = set()
+"""Tasks of policies whose compiled code is loaded."""
+
+
+def _warm_up(policy: Policy) -> None:
+    task = policy.task
     mesh = benchmark_mesh(task.kind, 8, np.random.default_rng(0))
     operations = anneal(mesh, proposals=2000)[0]
     shorter(mesh, operations, keep_layout=True)
@@ -344,13 +377,16 @@ def _warm_up(task: Task) -> None:
         seeker.run(lambda: False, 8)
         found = Solution(seeker.pool[0].operations(), 0, 0, 0, coarse=True)
         assert judged(found, mesh).rank
+        GuardedDescent(mesh, policy, 2 * THIN_EVERY, 0).run(lambda: False, 1)
     batch = Batch(task, [mesh], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
 
 
 def prepare(policy: Policy) -> None:
     """Compile what a search needs, or load it, so that no search pays for it."""
-    _warm_up(policy.task)
+    if policy.task not in _prepared:
+        _warm_up(policy)
+        _prepared.add(policy.task)
 
 
 class _Search:

@@ -343,11 +343,10 @@ def _seams(m, x, gaps, offsets, count):
 @bare_kernel
 def _any_moves(m, h, variable):
     """Whether a vertex of the element of half-edge h may move."""
-    e = h - h % 4
+    e, largest = h - h % 4, -1
     for i in range(4):
-        if variable[m.edge[e + i, ORIGIN]] >= 0:
-            return True
-    return False
+        largest = max(largest, variable[m.edge[e + i, ORIGIN]])
+    return largest >= 0
 
 
 @kernel

@@ -152,3 +152,8 @@ class CurveTurning:
         if found is None:
             found = cls._known[boundary] = turning_of(boundary.curves)
         return found
+
+
+def has_bends(mesh: HalfEdgeMesh) -> bool:
+    """Whether a curve of the boundary or an interface bends between its joints."""
+    return bool((CurveTurning.of(mesh).inside > BENDS).any())
