@@ -77,9 +77,9 @@ def test_lock_corner_and_desired_degree_have_keys(qtbot, open_window, grid):
 def hole_area(mesh: HalfEdgeMesh) -> float:
     from meshwright_core.geometry.edge_lines import EdgeLines
 
-    areas = []
-    for rim in EdgeLines(mesh, 1e-6).rims():
-        x, y = rim[:, 0], rim[:, 1]
+    lines, areas = EdgeLines(mesh, 1e-6), []
+    for rim in lines.rims():
+        x, y = lines.chained(rim).T
         areas.append(0.5 * float(x @ np.roll(y, -1) - np.roll(x, -1) @ y))
     return min(areas, key=abs)
 
