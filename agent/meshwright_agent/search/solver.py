@@ -105,6 +105,8 @@ def solve(
         mesh: the start.
         policy: for meshes of the same kind, else PolicyError is raised.
         rollouts: number of rollouts, the best of which counts; 1 if `seconds` is not given either.
+            Where layouts are searched it is the number of guarded ones, rounded up to whole groups
+            (:data:`.guarded_rollouts.TOGETHER` per thread), and that of the others.
         seconds: time limit. Without `rollouts`, rollouts alternate with annealing.
         max_steps: length of a rollout, by default that of the policy's task.
         seed: of the random choices.
