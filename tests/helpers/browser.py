@@ -81,7 +81,7 @@ class WatchedPage:
 
     def _on_console(self, message: Any) -> None:
         if message.type == "error":
-            self.complaints.append(message.text)
+            self.complaints.append(f"{message.text} ({message.location['url']})")
 
 
 class Lab(LabNotebook):

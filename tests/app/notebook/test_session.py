@@ -305,6 +305,7 @@ def test_the_agent_steps_plays_pauses_and_hints(port, star):
         "halfedge",
         "probability",
         "change",
+        "next",
     }
     score = star.score
     port.ask("take_hint", index=0)
