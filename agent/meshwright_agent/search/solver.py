@@ -24,7 +24,7 @@ from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
 from meshwright_agent.search.coarsening import replayed, undrawable
-from meshwright_agent.search.guarded_rollouts import THIN_EVERY, TOGETHER, GuardedDescent
+from meshwright_agent.search.guarded_rollouts import THIN_EVERY, GuardedDescent
 from meshwright_agent.search.layout_search import LayoutSearch, Preference
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import (
@@ -239,13 +239,15 @@ def side_by_side(count: int, run: Callable[[int], None]) -> None:
 
 
 def _descend(search: _Search, descent: GuardedDescent, workers: int) -> None:
-    """Guarded rollouts of one thread, until s*, the end of their share of the time, or as many as
-    are wanted.
+    """Guarded rollouts of one thread, until s* or the end of their share of the time.
+
+    Of a given number of rollouts all are guarded where sides bend, half of them elsewhere.
     """
-    rounds = None
+    most = None
     if search.wanted is not None:
-        rounds = -(-search.wanted // (TOGETHER * workers))
-    descent.run(lambda: search.over(DESCENT), rounds)
+        share = search.wanted if has_bends(search.mesh) else (search.wanted + 1) // 2
+        most = search.book(-(-share // workers))
+    descent.run(lambda: search.over(DESCENT), most)
     search.count(descent.rollouts)
 
 
@@ -377,7 +379,7 @@ def _warm_up(policy: Policy) -> None:
         seeker.run(lambda: False, 8)
         found = Solution(seeker.pool[0].operations(), 0, 0, 0, coarse=True)
         assert judged(found, mesh).rank
-        GuardedDescent(mesh, policy, 2 * THIN_EVERY, 0).run(lambda: False, 1)
+        GuardedDescent(mesh, policy, 2 * THIN_EVERY, 0).run(lambda: False, 2)
     batch = Batch(task, [mesh], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
 

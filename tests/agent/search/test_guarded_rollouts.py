@@ -35,7 +35,7 @@ def test_all_states_found_are_valid_and_lower(start, policy):
 
 def test_the_start_is_not_changed(start, policy):
     before = start.points.copy(), start.score, start.n_elements
-    GuardedDescent(start, policy, 12, 3).run(lambda: False, 1)
+    GuardedDescent(start, policy, 12, 3).run(lambda: False, 4)
     assert (start.points == before[0]).all()
     assert (start.score, start.n_elements) == before[1:]
 
@@ -43,7 +43,7 @@ def test_the_start_is_not_changed(start, policy):
 def test_rounds_with_the_same_seed_find_the_same(start, policy):
     descents = [GuardedDescent(start, policy, 12, 5) for _ in range(2)]
     for descent in descents:
-        descent.run(lambda: False, 2)
+        descent.run(lambda: False, 6)
     first, second = descents
     assert first.score == second.score < start.score
     assert [state.operations for state in first.states] == [
