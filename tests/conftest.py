@@ -6,9 +6,14 @@ from pathlib import Path
 
 import pytest
 import system_requirements
+from hypothesis import HealthCheck, settings
 
 HERE = Path(__file__).parent
 NEEDED_BY_FIXTURE = {"qapp": "qt", "open_window": "window", "browser": "chromium"}
+
+# no property fails because the machine is slow
+settings.register_profile("suite", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("suite")
 
 
 def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginManager) -> None:

@@ -44,17 +44,18 @@ def test_a_stopped_search_returns_at_once_with_a_reason(star):
     assert "nothing better was found" in runner.reason
 
 
-def rounds(monkeypatch, mesh, found, greedy):
-    """Run *Complete* where the rounds of the solver find ``found`` operations each; returns the
-    runner and the score at the start and the seconds of each round.
+def rounds(monkeypatch, mesh, wins, greedy):
+    """Run *Complete* where the first ``wins`` rounds of the solver lower the score, as little as
+    they can, and the others find nothing; returns the runner and, for each round, the score at its
+    start, its seconds and the number of operations found.
     """
     asked = []
 
     def one(self, start, seconds, done):
-        count = found[len(asked)] if len(asked) < len(found) else 0
-        asked.append((start.score, seconds))
-        run = greedy(start)
-        operations = [operation for _ in range(count) for operation in run.step()]
+        run, operations = greedy(start), []
+        while len(asked) < wins and run.mesh.score == start.score:
+            operations += run.step()
+        asked.append((start.score, seconds, len(operations)))
         return judged(Solution(operations, 0, start.optimum, 0), start)
 
     monkeypatch.setattr(SearchRunner, "_round", one)
@@ -64,12 +65,12 @@ def rounds(monkeypatch, mesh, found, greedy):
 
 def test_complete_goes_on_from_the_best_state_until_nothing_is_won(star, monkeypatch, greedy):
     start = star.copy()
-    runner, asked = rounds(monkeypatch, star, [1, 1], greedy)
+    runner, asked = rounds(monkeypatch, star, 2, greedy)
     operations = runner.step()
-    assert runner.finished and len(operations) == 2
+    scores, seconds, found = zip(*asked, strict=True)
+    assert runner.finished and len(operations) == sum(found)
     # two rounds that win, then two without success, the second with twice the time
-    assert [seconds for _, seconds in asked] == [3.0, 3.0, 3.0, 6.0]
-    scores = [score for score, _ in asked]
+    assert seconds == (3.0, 3.0, 3.0, 6.0)
     assert scores[0] > scores[1] > scores[2] == scores[3]
     for operation, halfedge in operations:
         start.apply(operation, halfedge)

@@ -30,6 +30,9 @@ _FLAT = 165.0
 """Degrees of a corner of a triangle beyond which it needs an edge through it."""
 _APART = 0.7
 """Distance between two new points, in their distances from the sides, at least."""
+_TAKEN = 1e-6
+"""Distance from a vertex, in its distance from the sides, up to which a new point is that vertex.
+"""
 _BEND = np.radians(2.0)
 """An edge that turns by less is not cut for the sake of a triangle's shape."""
 
@@ -131,7 +134,8 @@ def _remedy(
 
     A triangle with a straight angle needs an edge there: a point on its opposite side. Where a side
     bends into a triangle, and hides one end of it from the third corner, either it is cut, or a
-    point is inserted where both ends see it, far from all sides.
+    point is inserted where both ends see it, far from all sides; where that point is a vertex
+    already, and has not helped, it is cut.
 
     insert: whether to insert points rather than cut, where both would do.
     """
@@ -150,6 +154,7 @@ def _remedy(
     if insert:
         wanted = np.where(~flat & bent, sides[rows, bends], -1)
         spots, clear = shape.free_places(corners, bends, wanted)
+        clear[_distances(spots, shape.points) <= _TAKEN * clear] = 0.0
     points: list[Points] = []
     cuts: set[int] = set()
     done: set[int] = set()
@@ -180,3 +185,10 @@ def _near(points: Points, distances: Reals) -> list[Ids]:
     one, other = shapely.STRtree(places).query(places, predicate="dwithin", distance=distances)
     order = np.argsort(one, kind="stable")
     return np.split(other[order], np.searchsorted(one[order], np.arange(1, len(points))))
+
+
+def _distances(points: Points, others: Points) -> Reals:
+    """(n,) the distance of each of the points (n, 2) from the nearest of the others."""
+    tree = shapely.STRtree(shapely.points(others))
+    found = tree.query_nearest(shapely.points(points), return_distance=True, all_matches=False)
+    return found[1]

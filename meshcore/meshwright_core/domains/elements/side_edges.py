@@ -192,7 +192,7 @@ class SideEdges:
             self.curve = np.append(self.curve, np.array(curve, int))
             self.parameter = np.append(self.parameter, parameter)
             self.node = np.append(self.node, np.array(node, int))
-            self._fresh = []
+            self._fresh.clear()  # a copy shares the list: emptied, not replaced
         table = list(zip(*rows, strict=True))
         self.side = np.append(self.side, np.array(table[0], int))
         self.span = np.vstack([self.span, np.column_stack(table[1:3])])

@@ -20,6 +20,9 @@ MAX_TRIANGLES = 4_000_000
 _ROUNDS = 200
 _FIRST_MARKER = 2
 """Triangle gives 0 and 1 a meaning of their own."""
+_NOTHING = 1e-30
+"""Coordinates below this share of the largest one are zero: squares of smaller distances
+underflow, on which Triangle crashes."""
 
 
 class Bounds(NamedTuple):
@@ -49,6 +52,8 @@ def triangulated(
 ) -> Triangulation:
     """Triangulate what segments enclose; MeshError if too many triangles would be needed.
 
+    MeshError also for fewer than three points, two that coincide, or one that is not finite.
+
     Args:
         points: (n, 2).
         segments: (s, 2) that do not cross.
@@ -63,7 +68,7 @@ def triangulated(
     turn, order = _shuffle(len(points), seed)
     place = np.argsort(order)
     raw = _triangle(
-        scale * points[order] @ turn,
+        scale * _fit(points)[order] @ turn,
         place[segments],
         scale * holes @ turn,
         Bounds(
@@ -84,7 +89,7 @@ def triangulated(
 
 def plain_triangles(points: Points, segments: Elements, bounds: Bounds) -> tuple[Points, Elements]:
     """Points and triangles of what segments enclose, without a shuffle; for benchmark meshes."""
-    found = _triangle(points, segments, np.empty((0, 2)), bounds)
+    found = _triangle(_fit(points), segments, np.empty((0, 2)), bounds)
     return found.points, found.triangles
 
 
@@ -118,6 +123,23 @@ def _triangle(points: Points, segments: Elements, holes: Points, bounds: Bounds)
         mesh["triangle_max_area"] = np.where(long, limit, -1.0)[:, None]
         mesh = _call(mesh, f"rp{quality}a")
     raise MeshError("Triangle did not bring all edges below the requested longest edge.")
+
+
+def _fit(points: Points) -> Points:
+    """The points (n, 2), with coordinates that are next to nothing set to zero.
+
+    Triangle is native code that crashes on numbers that are not finite, and on segments between
+    points of which two are the same, so both are refused here with MeshError.
+    """
+    if not np.isfinite(points).all():
+        raise MeshError("The domain could not be triangulated: a coordinate is not finite.")
+    if len(points) < 3:
+        raise MeshError("The domain could not be triangulated: it has fewer than three points.")
+    kept = np.where(np.abs(points) < _NOTHING * np.abs(points).max(), 0.0, points)
+    in_order = kept[np.lexsort(kept.T)]
+    if (in_order[1:] == in_order[:-1]).all(axis=1).any():
+        raise MeshError("The domain could not be triangulated: two of its points coincide.")
+    return kept
 
 
 def _call(mesh: dict[str, Any], switches: str) -> dict[str, Any]:
