@@ -14,6 +14,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
+from math import ceil
 
 import numpy as np
 
@@ -105,6 +106,7 @@ def solve(
         mesh: the start.
         policy: for meshes of the same kind, else PolicyError is raised.
         rollouts: number of rollouts, the best of which counts; 1 if `seconds` is not given either.
+            Where nothing that they reach can be drawn, as many guarded ones are made besides.
         seconds: time limit. Without `rollouts`, rollouts alternate with annealing.
         max_steps: length of a rollout, by default that of the policy's task.
         seed: of the random choices.
@@ -155,21 +157,23 @@ def _search_layouts(
 ) -> Solution:
     """Rollouts until s* is reached, then a search among layouts of the lowest s.
 
-    From a start without inverted elements guarded rollouts come first
-    (:mod:`meshwright_agent.search.guarded_rollouts`); others only where no side bends, or where
-    these do not find anything better than the start.
+    Where sides bend, guarded rollouts come first
+    (:mod:`meshwright_agent.search.guarded_rollouts`), and others only if these find nothing; where
+    all are straight, guarded ones are made if nothing at s* can be drawn.
     """
     mesh, timed = search.mesh, search.timed
     search.thorough = True
-    startable = not len(inverted(mesh))
+    startable, bends = not len(inverted(mesh)), has_bends(mesh)
     workers = max(1, workers)
     descents = [
         GuardedDescent(mesh, search.policy, search.max_steps, search.seed + 101 * i)
         for i in range(workers if startable and search.score > mesh.optimum else 0)
     ]
-    side_by_side(len(descents), lambda i: _descend(search, descents[i], len(descents)))
+    if bends:
+        share = None if search.wanted is None else search.book(search.wanted) / workers
+        side_by_side(len(descents), lambda i: _descend(search, descents[i], share))
     drawn = min((descent.score for descent in descents), default=mesh.score)
-    if search.score > mesh.optimum and (drawn == mesh.score or not has_bends(mesh)):
+    if search.score > mesh.optimum and drawn == mesh.score:
         search.look(workers, share=OPENING)
     candidates = search.take()
     total = 0 if not coarsen else None if timed else KICKS_EACH * search.wanted_rollouts
@@ -191,6 +195,10 @@ def _search_layouts(
             seeker.add(candidate.operations, coarsen, stop, unfold=not startable)
         if startable and not seeker.valid_at(mesh.optimum) and mine:
             _add_coarsest(search, seeker, mine[0], coarsen, stop)
+        if descents and not bends and not seeker.valid_at(mesh.optimum):
+            _descend(search, descents[i], search.wanted)
+            for state in descents[i].states[:DRAWN]:
+                seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
         if not seeker.pool:
             seeker.add([], coarsen, stop)
         while not stop():
@@ -238,17 +246,13 @@ def side_by_side(count: int, run: Callable[[int], None]) -> None:
             list(pool.map(run, range(count)))
 
 
-def _descend(search: _Search, descent: GuardedDescent, workers: int) -> None:
-    """Guarded rollouts of one thread, until s* or the end of their share of the time.
-
-    Of a given number of rollouts all are guarded where sides bend, half of them elsewhere.
+def _descend(search: _Search, descent: GuardedDescent, most: float | None) -> None:
+    """At most so many guarded rollouts of one thread, until s* or the end of their share of the
+    time.
     """
-    most = None
-    if search.wanted is not None:
-        share = search.wanted if has_bends(search.mesh) else (search.wanted + 1) // 2
-        most = search.book(-(-share // workers))
-    descent.run(lambda: search.over(DESCENT), most)
-    search.count(descent.rollouts)
+    before = descent.rollouts
+    descent.run(lambda: search.over(DESCENT), None if most is None else ceil(most))
+    search.count(descent.rollouts - before)
 
 
 def _add_coarsest(
