@@ -362,17 +362,19 @@ class Assistant:
             self._begin(State.LOOKING)
 
     def _on_document_replaced(self) -> None:
-        """Counts of runs on another mesh are out of date."""
+        """Counts of runs on another mesh are out of date; ``changed`` of the document follows."""
         self.progress.forget()
-        self._set_outcome("")
 
     def _on_document_changed(self) -> None:
         self.hinting.forget()
         self._sight.see(None)
         if not self._applying:
+            outdated = bool(self.outcome)
             self._set_outcome("")
             self.cancel()  # the user has edited: the next run starts from the new state
             self._runner_at = -1  # the runner has not seen this edit and cannot be reused
+            if outdated:
+                self.changed.emit()
             self._look_soon()
 
     # Results of the worker (:class:`meshwright.assistant.worker.Listener`)

@@ -99,6 +99,8 @@ class TrueEdges(DrawnEdges):
     def _closed_lines(self) -> list[np.ndarray]:
         mesh = self._mesh
         loops = mesh.boundary_loops()
+        if not loops:  # a closed surface
+            return []
         halfedges = mesh.arrays.vertex[np.concatenate(loops), HALF].astype(np.int64)
         points, first = without_last(*self.lines(halfedges))
         ends = first[np.cumsum([len(loop) for loop in loops])[:-1]]

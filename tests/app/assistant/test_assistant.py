@@ -469,8 +469,11 @@ def test_a_search_that_ends_above_the_optimum_asks_to_go_on(make, desk, star):
     assert above and assistant.unfinished
     assert assistant.outcome == f"Out of steps, {above} above the optimum: go on?"
     assert assistant.outcome == assistant.heard[-1]
+    seen = []
+    assistant.changed.connect(lambda: seen.append(assistant.unfinished))
     document.set_locked(0, True)
     assert not assistant.unfinished and not assistant.outcome
+    assert seen[-1:] == [False]
 
 
 def test_stop_on_the_way_to_a_result_stops_at_once(make, desk, star, monkeypatch):

@@ -77,9 +77,9 @@ def test_lock_corner_and_desired_degree_have_keys(qtbot, open_window, grid):
 def hole_area(mesh: HalfEdgeMesh) -> float:
     from meshwright_core.geometry.edge_lines import EdgeLines
 
-    areas = []
-    for rim in EdgeLines(mesh, 1e-6).rims():
-        x, y = rim[:, 0], rim[:, 1]
+    lines, areas = EdgeLines(mesh, 1e-6), []
+    for rim in lines.rims():
+        x, y = lines.chained(rim).T
         areas.append(0.5 * float(x @ np.roll(y, -1) - np.roll(x, -1) @ y))
     return min(areas, key=abs)
 
@@ -91,6 +91,8 @@ def test_clean_all_and_collapses_keep_a_round_hole(qtbot, open_window, tmp_path)
     press(qtbot, window, Qt.Key.Key_L, CONTROL)
     rng, done = np.random.default_rng(3), 0
     for _ in range(60):
+        if done == 5:
+            break
         h = int(rng.choice(mesh.element_ids())) * 4 + int(rng.integers(4))
         if not mesh.check("collapse", h):
             continue
@@ -99,7 +101,7 @@ def test_clean_all_and_collapses_keep_a_round_hole(qtbot, open_window, tmp_path)
             press(qtbot, window, Qt.Key.Key_C)
             done += 1
     press(qtbot, window, Qt.Key.Key_L, CONTROL)
-    assert done > 3
+    assert done == 5
     assert mesh.off_curve().max() < 1e-9
     assert hole_area(mesh) == pytest.approx(before, rel=1e-4)
     window.files._save(str(tmp_path / "kept.meshwright"))
@@ -130,6 +132,8 @@ def test_a_saved_closed_surface_can_be_edited(qtbot, open_window, tmp_path, way)
     window = open_window()
     window.errors.watch()
     window.files.open(tmp_path / f"ball{way}")
+    told = window.notice.text  # by the reader of the file; a project has been told before
+    assert ("it is a surface that is not plane" in told) == (way == ".obj")
     mesh = window.document.mesh
     for operation, key in (("flip", "F"), ("split", "S"), ("collapse", "C")):
         h = next(h for h in range(3 * mesh.n_elements) if mesh.check(operation, h))
@@ -139,7 +143,7 @@ def test_a_saved_closed_surface_can_be_edited(qtbot, open_window, tmp_path, way)
     press(qtbot, window, Qt.Key.Key_U, CONTROL)
     upper = mesh.vertices()[np.argmax(mesh.points[mesh.vertices(), 2])]
     drag(qtbot, window, mesh.points[upper, :2], mesh.points[upper, :2] + 0.05)
-    assert window.notice.text == ""
+    assert window.notice.text == told
     assert window.document.history.cursor >= 4
     mesh.validate()
     window.errors.close()

@@ -8,6 +8,7 @@ from meshwright.graphics.picking import Picker
 from meshwright.graphics.theme import LIGHT, region_fills
 from meshwright.graphics.true_edges import TOLERANCE, TrueEdges
 from meshwright.graphics.viewport import Viewport
+from meshwright_core import HalfEdgeMesh
 
 
 def seen(mesh, pixels=100.0, centre=(0.0, 0.0)):
@@ -23,6 +24,13 @@ def test_a_straight_mesh_has_no_curved_edges(star):
     element = int(star.element_ids()[0])
     assert (edges.outline(element) == star.points[star.corners(np.array([element]))[0], :2]).all()
     assert len(edges.loops()) == 1 and len(edges.loops()[0]) == len(star.boundary_loops()[0]) + 1
+
+
+def test_a_closed_surface_has_no_loops():
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)
+    faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+    edges, _ = seen(HalfEdgeMesh.from_elements(corners, faces))
+    assert edges.loops() == [] and edges.interfaces() == []
 
 
 def test_polylines_are_made_again_when_the_zoom_has_changed_much():
