@@ -159,7 +159,7 @@ def _search_layouts(
 
     Where sides bend, guarded rollouts come first
     (:mod:`meshwright_agent.search.guarded_rollouts`), and others only if these find nothing; where
-    all are straight, guarded ones are made if nothing at s* can be drawn.
+    all are straight, guarded ones are made if nothing that they reach can be drawn.
     """
     mesh, timed = search.mesh, search.timed
     search.thorough = True
@@ -195,7 +195,7 @@ def _search_layouts(
             seeker.add(candidate.operations, coarsen, stop, unfold=not startable)
         if startable and not seeker.valid_at(mesh.optimum) and mine:
             _add_coarsest(search, seeker, mine[0], coarsen, stop)
-        if descents and not bends and not seeker.valid_at(mesh.optimum):
+        if descents and not bends and not seeker.valid_at(search.score):
             _descend(search, descents[i], search.wanted)
             for state in descents[i].states[:DRAWN]:
                 seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
