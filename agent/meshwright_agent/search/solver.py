@@ -175,7 +175,8 @@ def _search_layouts(
     drawn = min((descent.score for descent in descents), default=mesh.score)
     if search.score > mesh.optimum and drawn == mesh.score:
         search.look(workers, share=OPENING)
-    candidates = search.take()
+    # without free rollouts the start is the only candidate
+    candidates = search.take() if drawn == mesh.score else []
     total = 0 if not coarsen else None if timed else KICKS_EACH * search.wanted_rollouts
     seekers = [LayoutSearch(mesh, preference, search.seed + 7919 * i) for i in range(workers)]
 
