@@ -1,10 +1,14 @@
 """The anytime solver: results can be replayed, are the best found, and arrive in time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import PolicyError
+from meshwright_agent.search import solver
+from meshwright_agent.search.solution import judged
 from meshwright_agent.search.solver import Solution, prepare, solve
 from meshwright_core.curves.curve import Curve
 from meshwright_core.domains import gallery
@@ -51,6 +55,24 @@ def test_best_of_k_plays_at_most_k_rollouts(policy):
     assert found.rollouts == 3
     assert replayed(mesh, found).score == found.score <= mesh.score
     assert solve(mesh, policy, max_steps=5).rollouts == 1
+
+
+@pytest.mark.parametrize("drawable", [3, 0])
+def test_what_cannot_be_drawn_is_given_up_for_the_best_state_that_can(monkeypatch, drawable):
+    """The answer is a part of the operations found, or the start, not an inverted mesh."""
+    mesh, found = mesh_domain(gallery.shape("star"), "quad"), []
+
+    def fails_late(solution, *more, **places):
+        inverted = int(len(solution.operations) > drawable)
+        found.append(replace(judged(solution, *more, **places), inverted=inverted))
+        return found[-1]
+
+    monkeypatch.setattr(solver, "judged", fails_late)
+    answer = solve(mesh, policy_files.load("quad"), rollouts=1)
+    assert any(one.inverted and one.score < mesh.score for one in found)
+    assert answer.inverted == 0
+    assert len(answer.operations) <= drawable
+    assert replayed(mesh, answer).score == answer.score <= mesh.score
 
 
 def test_a_search_ends_at_its_time_limit(policy):

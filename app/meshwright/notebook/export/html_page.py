@@ -119,7 +119,7 @@ p {{ margin: 4px 0 16px; color: var(--quiet); }}
 p.end {{ margin: 8px 0 0; font-size: 12px; text-align: right; }}
 @media print {{
 main .meshwright {{ break-inside: avoid; print-color-adjust: exact; }}
-main .mw-stage .mw-stage-tools {{ display: none; }}
+main .mw-stage .mw-stage-tools, main .mw-select {{ display: none; }}
 main .mw-timeline-row > :not(.mw-timeline-legend) {{ display: none; }}
 }}"""
 
