@@ -302,21 +302,27 @@ class GuardedDescent:
         """The lowest s."""
         return self.states[0].score if self.states else self._mesh.score
 
-    def run(self, stop: Callable[[], bool], rounds: int | None = None) -> None:
-        """Go on until s*, until `stop`, or for so many rounds."""
-        last = None if rounds is None else self._rounds + rounds
-        while self.score > self._mesh.optimum and not stop() and self._rounds != last:
-            self._rounds += 1
-            before: Operations = []
-            start = self._mesh
-            if self.states and self._rounds % 2 == 0:
-                before, start = self.states[0].operations, self.states[0].mesh(self._mesh)
-            batch = GuardedRollouts(start, self._policy, self._rng, TOGETHER, self._max_steps)
-            batch.run(stop)
-            self.rollouts += TOGETHER
-            for state in batch.found:
-                if state.score < start.score:
-                    state.operations = before + state.operations
-                    self.states.append(state)
-            self.states.sort(key=lambda state: state.rank)
-            self.states = [state for state in self.states if state.score == self.score]
+    def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
+        """Go on until s*, until `stop`, or for at most so many rollouts."""
+        left = most
+        while self.score > self._mesh.optimum and not stop() and left != 0:
+            count = TOGETHER if left is None else min(TOGETHER, left)
+            left = None if left is None else left - count
+            self._round(count, stop)
+
+    def _round(self, count: int, stop: Callable[[], bool]) -> None:
+        """So many rollouts from the start or from the best state, in turn."""
+        before: Operations = []
+        start = self._mesh
+        if self.states and self._rounds % 2:
+            before, start = self.states[0].operations, self.states[0].mesh(self._mesh)
+        batch = GuardedRollouts(start, self._policy, self._rng, count, self._max_steps)
+        batch.run(stop)
+        self._rounds += 1
+        self.rollouts += count
+        for state in batch.found:
+            if state.score < start.score:
+                state.operations = before + state.operations
+                self.states.append(state)
+        self.states.sort(key=lambda state: state.rank)
+        self.states = [state for state in self.states if state.score == self.score]

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
+from math import ceil
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
 from meshwright_agent.search.coarsening import replayed, undrawable
-from meshwright_agent.search.guarded_rollouts import THIN_EVERY, TOGETHER, GuardedDescent
+from meshwright_agent.search.guarded_rollouts import THIN_EVERY, GuardedDescent
 from meshwright_agent.search.layout_search import LayoutSearch, Preference
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import (
@@ -65,7 +66,7 @@ TRIED = 24
 COARSEST = 0.5
 """Share of the time for the polish that coarsening without regard to shape takes where nothing
 that rollouts found at s* can be drawn."""
-DESCENT = 0.6
+DESCENT = 0.7
 """Share of the time after which no more guarded rollouts are made."""
 DRAWN = 2
 """States found by guarded rollouts whose layouts are searched."""
@@ -105,8 +106,7 @@ def solve(
         mesh: the start.
         policy: for meshes of the same kind, else PolicyError is raised.
         rollouts: number of rollouts, the best of which counts; 1 if `seconds` is not given either.
-            Where layouts are searched it is the number of guarded ones, rounded up to whole groups
-            (:data:`.guarded_rollouts.TOGETHER` per thread), and that of the others.
+            Where nothing that they reach can be drawn, as many guarded ones are made besides.
         seconds: time limit. Without `rollouts`, rollouts alternate with annealing.
         max_steps: length of a rollout, by default that of the policy's task.
         seed: of the random choices.
@@ -157,23 +157,26 @@ def _search_layouts(
 ) -> Solution:
     """Rollouts until s* is reached, then a search among layouts of the lowest s.
 
-    From a start without inverted elements guarded rollouts come first
-    (:mod:`meshwright_agent.search.guarded_rollouts`); others only where no side bends, or where
-    these do not find anything better than the start.
+    Where sides bend, guarded rollouts come first
+    (:mod:`meshwright_agent.search.guarded_rollouts`), and others only if these find nothing; where
+    all are straight, guarded ones are made if nothing that they reach can be drawn.
     """
     mesh, timed = search.mesh, search.timed
     search.thorough = True
-    startable = not len(inverted(mesh))
+    startable, bends = not len(inverted(mesh)), has_bends(mesh)
     workers = max(1, workers)
     descents = [
         GuardedDescent(mesh, search.policy, search.max_steps, search.seed + 101 * i)
         for i in range(workers if startable and search.score > mesh.optimum else 0)
     ]
-    side_by_side(len(descents), lambda i: _descend(search, descents[i], len(descents)))
+    if bends:
+        share = None if search.wanted is None else search.book(search.wanted) / workers
+        side_by_side(len(descents), lambda i: _descend(search, descents[i], share))
     drawn = min((descent.score for descent in descents), default=mesh.score)
-    if search.score > mesh.optimum and (drawn == mesh.score or not has_bends(mesh)):
+    if search.score > mesh.optimum and drawn == mesh.score:
         search.look(workers, share=OPENING)
-    candidates = search.take()
+    # without free rollouts the start is the only candidate
+    candidates = search.take() if drawn == mesh.score else []
     total = 0 if not coarsen else None if timed else KICKS_EACH * search.wanted_rollouts
     seekers = [LayoutSearch(mesh, preference, search.seed + 7919 * i) for i in range(workers)]
 
@@ -193,6 +196,10 @@ def _search_layouts(
             seeker.add(candidate.operations, coarsen, stop, unfold=not startable)
         if startable and not seeker.valid_at(mesh.optimum) and mine:
             _add_coarsest(search, seeker, mine[0], coarsen, stop)
+        if descents and not bends and not seeker.valid_at(search.score):
+            _descend(search, descents[i], search.wanted)
+            for state in descents[i].states[:DRAWN]:
+                seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
         if not seeker.pool:
             seeker.add([], coarsen, stop)
         while not stop():
@@ -240,15 +247,13 @@ def side_by_side(count: int, run: Callable[[int], None]) -> None:
             list(pool.map(run, range(count)))
 
 
-def _descend(search: _Search, descent: GuardedDescent, workers: int) -> None:
-    """Guarded rollouts of one thread, until s*, the end of their share of the time, or as many as
-    are wanted.
+def _descend(search: _Search, descent: GuardedDescent, most: float | None) -> None:
+    """At most so many guarded rollouts of one thread, until s* or the end of their share of the
+    time.
     """
-    rounds = None
-    if search.wanted is not None:
-        rounds = -(-search.wanted // (TOGETHER * workers))
-    descent.run(lambda: search.over(DESCENT), rounds)
-    search.count(descent.rollouts)
+    before = descent.rollouts
+    descent.run(lambda: search.over(DESCENT), None if most is None else ceil(most))
+    search.count(descent.rollouts - before)
 
 
 def _add_coarsest(
@@ -379,7 +384,7 @@ def _warm_up(policy: Policy) -> None:
         seeker.run(lambda: False, 8)
         found = Solution(seeker.pool[0].operations(), 0, 0, 0, coarse=True)
         assert judged(found, mesh).rank
-        GuardedDescent(mesh, policy, 2 * THIN_EVERY, 0).run(lambda: False, 1)
+        GuardedDescent(mesh, policy, 2 * THIN_EVERY, 0).run(lambda: False, 2)
     batch = Batch(task, [mesh], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
 

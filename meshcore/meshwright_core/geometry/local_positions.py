@@ -58,7 +58,7 @@ def local_effort(
     iterations: int = 6,
     rounds: int = 3,
     inner: int = 8,
-    rings: int = 3,
+    rings: int = 2,
 ) -> LocalEffort:
     """Settings for :func:`settle`; see :class:`LocalEffort` and
     :class:`meshwright_core.geometry.layout_positions.Effort`.

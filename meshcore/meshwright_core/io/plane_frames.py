@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from meshwright_core.core.planes import Plane, Vector
 
-_THIN = 1e-8
-"""Distance from a plane, relative to the size of the mesh, up to which points lie in it."""
+_THIN = 1e-6
+"""Distance from a plane, relative to the size of the mesh, up to which points lie in it: that
+within which points are at the same place, and above the rounding of single precision."""
 
 Floats = NDArray[np.float64]
 

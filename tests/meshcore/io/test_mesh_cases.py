@@ -96,6 +96,7 @@ def test_points_that_differ_by_rounding_are_merged_and_it_is_said():
     assert found.mesh.n_vertices == 25
     assert len(found.mesh.boundary_loops()) == 1
     assert found.notes == ("71 points that differ by rounding only are merged",)
+    assert np.ptp(found.mesh.points[:, 2]) == 0.0
 
 
 @pytest.mark.parametrize(

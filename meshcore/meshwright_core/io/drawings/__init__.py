@@ -177,7 +177,7 @@ def _stamp(place: Path) -> tuple[Any, ...] | None:
     """What changes when a file does; None if there is none, or if it belongs to other files."""
     try:
         state = place.stat()
-    except OSError:
+    except (OSError, ValueError):  # no such file; no name for one
         return None
     if place.suffix.lower() == ".poly":  # its points may be in a file of their own
         return None
