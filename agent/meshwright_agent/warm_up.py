@@ -16,7 +16,7 @@ from contextlib import contextmanager
 
 from meshwright_core.core.compilation import cache_folder, entry_points_on_disk
 
-ENTRY_POINTS = 55
+ENTRY_POINTS = 59
 """Kernels of both packages that :func:`warm` stores on disk, for progress messages; tested."""
 
 _MARK = "warm"
@@ -86,6 +86,7 @@ def _exercise_changing() -> None:
     from meshwright_agent.search.region_search import solve_within
     from meshwright_agent.search.solver import prepare
     from meshwright_core.core.arrays import allocate
+    from meshwright_core.curves.curve import Curve
     from meshwright_core.domains.meshing import benchmark_mesh
     from meshwright_core.operations.catalogue import provide_rewrite
 
@@ -97,6 +98,8 @@ def _exercise_changing() -> None:
         Annealer(mesh, 0).restart()
         solve_within(mesh, policy, mesh.element_ids()[:20], rollouts=1)
         improve_large(mesh, policy, max_steps=40)
+        mesh.set_locked(int(mesh.vertices()[0]))
+    Curve.arc((0.0, 0.0), 1.0, 0.0, 1.0).project(np.array([[1.0, 1.0]]))
 
 
 @contextmanager
