@@ -108,7 +108,7 @@ class Desk:
     def dispatch(self, call: Callable[[], None]) -> None:
         self.calls.put(call)
 
-    def until(self, condition: Callable[[], bool], seconds: float = 20.0) -> None:
+    def until(self, condition: Callable[[], bool], seconds: float = 60.0) -> None:
         """Work off calls until ``condition()``; fails after ``seconds`` without a call."""
         while not condition():
             try:
