@@ -139,7 +139,7 @@ def test_legend_of_many_regions_is_cut(two):
     from dataclasses import replace
 
     names = tuple(f"material number {i}" for i in range(30))
-    two._boundary = replace(two.boundary_info, region_names=names)
+    two._take_boundary(replace(two.boundary_info, region_names=names))
     drawing = figure(two, OPTIONS)
     words = [text.text for text in shapes(drawing, Text) if text.text.startswith(("mat", "and"))]
     assert words[0] == names[0]

@@ -27,6 +27,7 @@ GOOD = {
     "desired": {"vertex": 0, "degree": 4},
     "lock": {"vertex": 0, "on": False},
     "corner": {"vertex": 0, "on": False},
+    "pin": {"vertex": 0, "on": True},
     "agent": {"action": "pause"},
     "speed": {"value": 4},
     "policy": {"name": "quad"},

@@ -114,7 +114,7 @@ def _corner(session: Session, request: requests.Corner) -> str:
 
 def _agent(session: Session, request: requests.Agent) -> str:
     prefer = "balanced" if request.prefer is UNSET else request.prefer
-    session.agent.act(request.action, prefer, request.keep_size)
+    session.agent.act(request.action, prefer, request.keep_size is True)
     return ""
 
 

@@ -141,7 +141,7 @@ class Agent(Request, frozen=True, tag="agent"):
 
     action: Literal["step", "play", "pause", "complete", "stop", "skip", "hint"]
     prefer: Literal["blocks", "balanced", "shape"] | UnsetType = UNSET
-    keep_size: bool = False
+    keep_size: bool | UnsetType = UNSET
 
 
 class Speed(Request, frozen=True, tag="speed"):
