@@ -70,7 +70,8 @@ def _around(mesh: HalfEdgeMesh, halfedges: np.ndarray) -> np.ndarray:
 def _loop_names(mesh: HalfEdgeMesh) -> dict[int, str]:
     """A name for each boundary curve: an outline runs counter-clockwise, a hole clockwise."""
     names: dict[int, str] = {}
-    outlines, holes = [], []
+    outlines: list[int] = []
+    holes: list[int] = []
     for loop in mesh.boundary_loops():
         at = mesh.points[loop]
         x, y = at[:, 0], at[:, 1]
