@@ -129,11 +129,13 @@ def test_an_element_that_is_there_twice_is_read_once():
 # -- others like them ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("ending", list(FORMATS))
+# those that trimesh reads are not text
+TEXTS = [ending for ending in FORMATS if ending not in (".glb", ".gltf", ".3mf")]
+
+
+@pytest.mark.parametrize("ending", TEXTS)
 def test_a_byte_order_mark_changes_nothing(ending, tmp_path):
     form = FORMATS[ending]
-    if ending in (".glb", ".gltf", ".3mf"):
-        pytest.skip("read by trimesh, and not text")
     faces = [[0, 1, 2, 3]] if "quad" in form.kinds else [[0, 1, 2], [0, 2, 3]]
     meshwright_core.write(tmp_path / f"plain{ending}", HalfEdgeMesh.from_elements(SQUARE, faces))
     whole = (tmp_path / f"plain{ending}").read_bytes()

@@ -47,7 +47,7 @@ def inp_text(grid: BlockGrid) -> str:
     points = fine.points[used].tolist()
     lines += [f"{i}, {x!r}, {y!r}, {z!r}" for i, (x, y, z) in enumerate(points, start=1)]
     lines.append("*ELEMENT, TYPE=CPS8, ELSET=ELEMENTS")
-    elements: list[list[int]] = local.tolist()
+    elements: list[list[int]] = [row.tolist() for row in local]
     lines += [f"{i}, {', '.join(map(str, row))}" for i, row in enumerate(elements, 1)]
     for region, name in enumerate(grid.structure.region_names):
         lines.append(f"*ELSET, ELSET={name}")
