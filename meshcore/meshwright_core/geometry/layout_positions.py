@@ -36,6 +36,15 @@ from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.composite_curves import curve_length, place_in_span, place_on
 from meshwright_core.core.curve_edges import edge_curve
 from meshwright_core.core.references import by_reference
+from meshwright_core.geometry.bent_elements import (
+    COUNT,
+    MIDDLES,
+    PLACES,
+    QUARTERS,
+    BentElements,
+    find_bent,
+)
+from meshwright_core.geometry.coons import Samples
 from meshwright_core.geometry.seats import beside
 from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.geometry.turning import (
@@ -67,8 +76,10 @@ SWEEPS = 40
 """Sweeps of averaging in the second attempt."""
 ROUNDS, INNER, POLISH = 12, 30, 20
 """The most values of its regularisation, L-BFGS steps at each, and steps for shape after them."""
-MOST_TURN = np.radians(150.0)
-"""Radians that one edge may turn."""
+MOST_TURN = np.radians(185.0)
+"""Radians that one edge may turn: half a circle, and a little more."""
+EVEN = 1.05
+"""Unsigned over signed area of all elements beyond which they should have equal areas."""
 _ASIDE = 1e-3
 """Share of a curve's length by which a direction is looked up: which side of a joint."""
 
@@ -97,13 +108,15 @@ class Rails(NamedTuple):
     """Of the curves."""
     angle: np.ndarray
     """(slots,) radians inside the domain at a geometric boundary vertex, 0 elsewhere."""
+    samples: Samples
+    """Where elements with sides that bend are measured besides their corners."""
 
 
 def rails_of(mesh: HalfEdgeMesh, slots: int) -> Rails:
     """The rails of a mesh in the plane z = 0 and of all that operations make of it."""
     angle = np.zeros(slots)
     angle[: mesh.slots] = corner_angles(mesh)
-    return Rails(CurveTurning.of(mesh), angle)
+    return Rails(CurveTurning.of(mesh), angle, QUARTERS)
 
 
 @kernel
@@ -310,12 +323,22 @@ def _average(problem, x):
 @kernel
 def _improve(problem, x, effort, afresh):
     """Untangle where needed, then raise the worst corner; returns its sine."""
+    used = problem.bent.used
+    used[0] = MIDDLES
     place_layout(problem, x)
     if afresh:
         _average(problem, x)
     worst = worst_sine(problem)
     if worst < POOR:
         worst = unfold_layout(problem, x, effort.rounds, effort.inner, effort.polish)
+    if worst > FOLDED and len(problem.bent.vertices):
+        # with all samples from the start more stays folded
+        climb(problem, x, effort.goal, effort.iterations)
+        used[0] = COUNT
+        place_layout(problem, x)
+        worst = worst_sine(problem)
+        if worst < POOR:
+            worst = unfold_layout(problem, x, effort.rounds, effort.inner, effort.polish)
     if FOLDED < worst < effort.goal and len(x):
         worst = climb(problem, x, effort.goal, effort.iterations)
         if effort.goal >= 1.0:
@@ -350,8 +373,46 @@ def _any_moves(m, h, variable):
 
 
 @kernel
+def _scale_by_targets(corners, scale, vertices):
+    """Replace `scale` (c,), a fourth of each element's signed area by its corners, by one over the
+    area that the element should have.
+
+    The areas are smoothed where little is folded, else all are the same, as in
+    :mod:`meshwright_core.geometry.untangling`.
+    """
+    elements = len(corners) // 4
+    areas, sums, counts = np.zeros(elements), np.zeros(vertices), np.zeros(vertices)
+    total = unsigned = 0.0
+    for e in range(elements):
+        for i in range(4 * e, 4 * e + 4):
+            areas[e] += scale[i]
+            counts[corners[i, 0]] += 1.0
+        total += areas[e]
+        unsigned += abs(areas[e])
+    mean = max(abs(total), 1e-3 * unsigned) / max(elements, 1) + 1e-300
+    alike = unsigned > EVEN * abs(total)
+    for e in range(elements):
+        areas[e] = mean if alike else max(abs(areas[e]), 1e-3 * mean)
+    for _ in range(0 if alike else 3):
+        for v in range(vertices):
+            sums[v] = 0.0
+        for c in range(len(corners)):
+            sums[corners[c, 0]] += areas[c // 4]
+        for e in range(elements):
+            areas[e] = 0.0
+            for i in range(4 * e, 4 * e + 4):
+                areas[e] += 0.25 * sums[corners[i, 0]] / counts[corners[i, 0]]
+    whole = 0.0
+    for e in range(elements):
+        whole += areas[e]
+    for c in range(len(corners)):
+        scale[c] = whole / (areas[c // 4] * mean * elements)
+
+
+@kernel
 def assemble(m, rails, afresh, active):
-    """The arrays of a :class:`LayoutProblem` in their order, but for the curves, and its variables.
+    """The arrays of a :class:`LayoutProblem` in their order, but for `bent` and the curves, its
+    variables, and the ids of its elements.
 
     afresh: the vertices on curves are spread evenly. active: bool by vertex, whether it may move,
     empty for all; corners of elements that stay are left out.
@@ -369,7 +430,8 @@ def assemble(m, rails, afresh, active):
         _seams(m, x, gaps, offsets, gap_count)
     total = 4 * m.counters[ELEMENTS]
     corners, kind = np.zeros((total, 3), np.int64), np.zeros((total, 2), np.int64)
-    ways = np.zeros((total, 4))
+    ways, scale = np.zeros((total, 4)), np.zeros(total)
+    elements = np.zeros(m.counters[ELEMENTS], np.int64)
     row, area = 0, 0.0
     for h in range(4 * m.counters[ELEMENT_SLOTS]):
         if m.edge[h, ORIGIN] < 0 or (len(active) and not _any_moves(m, h, variable)):
@@ -378,14 +440,16 @@ def assemble(m, rails, afresh, active):
         corners[row, 0], corners[row, 1] = o, s
         corners[row, 2] = m.edge[preceding(h, 4), ORIGIN]
         _find_ways(m, rails, variable, bends, h, kind[row], ways[row])
-        area += 0.5 * (points[o, 0] * points[s, 1] - points[o, 1] * points[s, 0])
+        part = 0.5 * (points[o, 0] * points[s, 1] - points[o, 1] * points[s, 0])
+        area += part
+        scale[row], elements[row // 4] = part, h // 4
         row += 1
     size = np.zeros(1)
     size[0] = np.sqrt(abs(area) / max(1, row // 4) + 1e-300)
+    _scale_by_targets(corners[:row], scale[:row], n)
     return (
         points, slope, tangent, variable, seat, bends, corners[:row], kind[:row], ways[:row],
-        gaps[:gap_count],
-        offsets[:gap_count], size, x,
+        gaps[:gap_count], offsets[:gap_count], size, scale[:row], x, elements[: row // 4],
     )  # fmt: skip
 
 
@@ -393,17 +457,31 @@ def assemble(m, rails, afresh, active):
 def _position(m, rails, effort, afresh, active):
     """The worst sine at new positions, these (n, 3), the numbers (n,) and values of variables."""
     (
-        points, slope, tangent, variable, seat, bends, corners, kind, ways, gaps, offsets, size, x,
+        points, slope, tangent, variable, seat, bends, corners, kind, ways, gaps, offsets, size,
+        scale, x, elements,
     ) = assemble(m, rails, afresh, active)  # fmt: skip
+    rows, corner, curve, ends, base = find_bent(m, rails.turning, variable, x, elements)
+    count = len(rows)
+    scales, places = np.zeros(count), np.zeros((count, 4, PLACES, 6))
+    vectors = np.zeros((count, COUNT, 4))
+    pulls, by_corner = np.zeros((count, COUNT, 4)), np.zeros((count, 4, 2))
+    used = np.zeros(1, np.int64)
+    for b in range(count):
+        scales[b] = scale[4 * rows[b]]
+    bent = BentElements(
+        rails.samples, used, corner, curve, ends, base, scales, places, vectors, pulls, by_corner
+    )
     problem = LayoutProblem(
         points, slope, tangent, variable, seat, bends, corners, kind, ways, gaps, offsets, size,
-        m.curves,
+        scale, bent, m.curves,
     )  # fmt: skip
     worst = _improve(problem, x, effort, afresh)
     # the problem only points to these arrays: their last use must come after its own
-    used = len(slope) + len(tangent) + len(seat) + len(bends) + len(corners) + len(kind)
-    used += len(ways) + len(gaps) + len(offsets) + len(size)
-    return (worst if used > 0 else 1.0), points, variable, x
+    last = used[0] + len(slope) + len(tangent) + len(seat) + len(bends) + len(corners) + len(kind)
+    last += len(ways) + len(gaps) + len(offsets) + len(size) + len(scale)
+    last += len(corner) + len(curve) + len(ends) + len(base) + len(scales) + len(places)
+    last += len(vectors) + len(pulls) + len(by_corner)
+    return (worst if last > 0 else 1.0), points, variable, x
 
 
 @kernel

@@ -15,6 +15,7 @@ import numpy as np
 from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ORIGIN,
+    VERTEX_SLOTS,
     along_curve,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
@@ -37,18 +38,51 @@ from meshwright_core.geometry.layout_positions import (
 )
 from meshwright_core.geometry.turning import BENDS, turning_between
 
+THOROUGH = 10, 30, 60, 10
+"""Iterations, rounds, inner and polishing steps of the second attempt."""
+
+
+@by_reference
+class Gauge(NamedTuple):
+    """Where elements with bending sides are measured, and scratch for one of them."""
+
+    samples: Samples
+    points: np.ndarray
+    """(4, 3) the corners of the element; the fields from here on are scratch."""
+    elements: np.ndarray
+    """(1, 4) rows of `points`."""
+    sides: np.ndarray
+    curve: np.ndarray
+    base: np.ndarray
+    parameter: np.ndarray
+    zero: np.ndarray
+    d: np.ndarray
+    slope: np.ndarray
+    vectors: np.ndarray
+
+
+def gauge() -> Gauge:
+    """A gauge at the samples of quads; one for each thread."""
+    return Gauge(
+        SAMPLES[4], np.zeros((4, 3)), np.arange(4).reshape(1, 4), np.full((1, 4), -1),
+        np.zeros(4, np.int64), np.zeros((4, 2)), np.zeros(4), np.zeros(1, np.int64),
+        np.zeros((4, NODES, 3)), np.zeros((4, NODES, 3)), np.zeros((4, 3)),
+    )  # fmt: skip
+
 
 @by_reference
 class LocalEffort(NamedTuple):
     """How the surroundings of an operation are positioned."""
 
     effort: Effort
+    """Of the first attempt."""
+    thorough: Effort
+    """Of the second attempt, where the first one leaves something folded."""
     rings: int
     """Rings of elements around the changed ones whose vertices move too."""
     least: float
     """Sine up to which a corner, or a sample of a curved element, counts as folded."""
-    samples: Samples
-    """Where elements with bending sides are measured."""
+    gauge: Gauge
 
 
 def local_effort(
@@ -63,7 +97,8 @@ def local_effort(
     """Settings for :func:`settle`; see :class:`LocalEffort` and
     :class:`meshwright_core.geometry.layout_positions.Effort`.
     """
-    return LocalEffort(Effort(goal, iterations, rounds, inner, 6), rings, least, SAMPLES[4])
+    quick = Effort(goal, iterations, rounds, inner, 6)
+    return LocalEffort(quick, Effort(goal, *THOROUGH), rings, least, gauge())
 
 
 @kernel
@@ -119,63 +154,90 @@ def _straight_sine(m, e):
     return worst
 
 
-@kernel
-def worst_around(m, turning, samples, active, least):
-    """The smallest sine of the quads with a vertex marked in `active` (empty: of all).
+@bare_kernel
+def element_sine(m, turning, gauge, e):
+    """The smallest sine of quad e, at its corners and at the samples if a side bends.
 
-    At corners, and at the samples of quads with bending sides; 0 where a side turns by more than
-    150 degrees. Ends at the first one that is not above `least`.
+    0 where a side turns by more than :data:`.layout_positions.MOST_TURN`.
     """
-    elements, sides = np.zeros((1, 4), np.int64), np.full((1, 4), -1)
-    curve, base = np.zeros(4, np.int64), np.zeros((4, 2))
-    zeros = np.zeros(len(m.points))
-    first, row = np.zeros(1, np.int64), np.zeros(1, np.int64)
-    curved = CurvedElements(m.curves, samples, elements, first, row, sides, curve, base, zeros)
-    d, slope = np.zeros((4, NODES, 3)), np.zeros((4, NODES, 3))
-    p, q, normal = np.zeros(3), np.zeros(3), np.zeros(3)
+    bent = False
+    for i in range(4):
+        gauge.sides[0, i] = -1
+        h = 4 * e + i
+        if not along_curve(m, h, 4):
+            continue
+        c = edge_curve(m, h, 4)
+        if c < 0:
+            continue
+        gauge.base[i, 0], gauge.base[i, 1] = edge_range(m, h, c, 4)
+        low, high = min(gauge.base[i, 0], gauge.base[i, 1]), max(gauge.base[i, 0], gauge.base[i, 1])
+        turn = turning_between(m.curves, turning, c, low, high)
+        if turn > MOST_TURN:
+            return 0.0
+        if turn > BENDS:
+            gauge.curve[i], gauge.sides[0, i] = c, i
+            bent = True
+    if not bent:
+        return _straight_sine(m, e)
+    for i in range(4):
+        for c in range(3):
+            gauge.points[i, c] = m.points[m.edge[4 * e + i, ORIGIN], c]
+    curved = CurvedElements(
+        m.curves, gauge.samples, gauge.elements, gauge.zero, gauge.zero, gauge.sides, gauge.curve,
+        gauge.base, gauge.parameter,
+    )  # fmt: skip
+    place_sides(curved, gauge.points, 0, gauge.d, gauge.slope)
+    p, q, normal = gauge.vectors[0], gauge.vectors[1], gauge.vectors[2]
     normal[2] = 1.0
+    worst = 1.0
+    for s in range(len(gauge.samples.nearest)):
+        derivatives(curved, gauge.points, 0, s, gauge.d, gauge.slope, p, q)
+        lengths = np.sqrt(np.dot(p, p) * np.dot(q, q))
+        worst = min(worst, determinant(p, q, normal) / lengths if lengths > 0.0 else 0.0)
+    return worst
+
+
+@kernel
+def worst_around(m, turning, gauge, active, least):
+    """The smallest :func:`element_sine` of the quads with a vertex marked in `active` (empty: of
+    all). Ends at the first one that is not above `least`.
+    """
     worst = 1.0
     for e in range(m.counters[ELEMENT_SLOTS]):
         if m.edge[4 * e, ORIGIN] < 0:
             continue
         near = not len(active)
         for i in range(4):
-            elements[0, i] = m.edge[4 * e + i, ORIGIN]
-            near = near or active[elements[0, i]]
-        if not near:
-            continue
-        bent = False
-        for i in range(4):
-            sides[0, i] = -1
-            h = 4 * e + i
-            if not along_curve(m, h, 4):
-                continue
-            c = edge_curve(m, h, 4)
-            if c < 0:
-                continue
-            base[i, 0], base[i, 1] = edge_range(m, h, c, 4)
-            low, high = min(base[i, 0], base[i, 1]), max(base[i, 0], base[i, 1])
-            turn = turning_between(m.curves, turning, c, low, high)
-            if turn <= BENDS:
-                continue
-            if turn > MOST_TURN:
-                worst = 0.0
-            curve[i], sides[0, i] = c, i
-            bent = True
-        if not bent:
-            worst = min(worst, _straight_sine(m, e))
+            near = near or active[m.edge[4 * e + i, ORIGIN]]
+        if near:
+            worst = min(worst, element_sine(m, turning, gauge, e))
+            if worst <= least:
+                break
+    return worst
+
+
+@kernel
+def _raised(m, rails, local, active, effort):
+    """Position the active vertices; returns the smallest sine around, or 0 if it is too small."""
+    if position_some(m, rails, effort, active) <= local.least:
+        return 0.0
+    worst = worst_around(m, rails.turning, local.gauge, active, local.least)
+    return worst if worst > local.least else 0.0
+
+
+@kernel
+def _copy_places(m, places, back):
+    """Copy positions and parameters into `places` (n, 4), or `back`."""
+    for v in range(len(places)):
+        for c in range(3):
+            if back:
+                m.points[v, c] = places[v, c]
+            else:
+                places[v, c] = m.points[v, c]
+        if back:
+            m.parameter[v] = places[v, 3]
         else:
-            place_sides(curved, m.points, 0, d, slope)
-            for s in range(len(samples.nearest)):
-                derivatives(curved, m.points, 0, s, d, slope, p, q)
-                lengths = np.sqrt(np.dot(p, p) * np.dot(q, q))
-                sine = determinant(p, q, normal) / lengths if lengths > 0.0 else 0.0
-                worst = min(worst, sine)
-        if worst <= least:
-            break
-    # the record only points to these arrays: their last use must come after its own
-    used = len(elements) + len(sides) + len(curve) + len(base) + len(zeros) + len(first) + len(row)
-    return worst if used > 0 else 1.0
+            places[v, 3] = m.parameter[v]
 
 
 @kernel
@@ -188,7 +250,13 @@ def settle(before, after, rails, local, active):
     if layout_bound(after, rails.angle) <= local.least:
         return 0.0
     mark_changed(before, after, local.rings, active)
-    if position_some(after, rails, local.effort, active) <= local.least:
-        return 0.0
-    worst = worst_around(after, rails.turning, local.samples, active, local.least)
-    return worst if worst > local.least else 0.0
+    places = np.zeros((after.counters[VERTEX_SLOTS], 4))
+    _copy_places(after, places, False)
+    first = worst_around(after, rails.turning, local.gauge, active, local.least)
+    worst = _raised(after, rails, local, active, local.effort)
+    if worst <= 0.0:
+        _copy_places(after, places, True)
+        worst = first
+        if first <= local.least:
+            worst = _raised(after, rails, local, active, local.thorough)
+    return worst

@@ -2,7 +2,9 @@
 
 A corner is described by the directions of its two sides and the lengths of their chords. The
 direction is that of the chord where the side is straight, and the tangent of the curve where it
-bends. With the sine s and the lengths P and Q of a corner, three functions are minimised by L-BFGS:
+bends. Elements with sides that bend have some samples besides
+(:mod:`meshwright_core.geometry.bent_elements`), which count like corners. With the sine s and the
+lengths P and Q of a corner, three functions are minimised by L-BFGS:
 
 - to unfold, the foldover-free energy of Garanzha et al. (2021, see
   :mod:`meshwright_core.geometry.foldover_energy`) of det = P Q s and trace = P^2 + Q^2;
@@ -25,6 +27,13 @@ import numpy as np
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.composite_curves import Curves, curve_length, place_on
 from meshwright_core.core.references import by_reference
+from meshwright_core.geometry.bent_elements import (
+    BentElements,
+    bent_sine,
+    place_bent,
+    pull_bent,
+    set_pull,
+)
 from meshwright_core.geometry.foldover_energy import (
     GAP_WEIGHT,
     MEMORY,
@@ -89,6 +98,10 @@ class LayoutProblem(NamedTuple):
     turning of its curve by length."""
     size: np.ndarray
     """(1,) the mean size of an element."""
+    scale: np.ndarray
+    """(c,) one over the area that the corner's element should have while it is unfolded."""
+    bent: BentElements
+    """Those with samples of their own besides the corners."""
     curves: Curves
 
 
@@ -115,6 +128,7 @@ def place_layout(problem, x):
         for c in range(2):
             problem.tangent[v, c] = problem.slope[v, c] / size
             problem.tangent[v, c + 2] = (ahead[c] / here - back[c] / there) / (2.0 * step)
+    place_bent(problem.bent, problem.curves, problem.points, x)
 
 
 @bare_kernel
@@ -180,11 +194,36 @@ def sine_of(problem, c):
 
 @kernel
 def worst_sine(problem):
-    """The smallest corner sine at the present points; 1 if there are no corners."""
+    """The smallest sine at the present points, of corners and of samples of bent elements; 1 if
+    there are none.
+    """
     worst = 1.0
     for c in range(len(problem.corners)):
         worst = min(worst, sine_of(problem, c))
+    for b in range(len(problem.bent.vertices)):
+        for s in range(problem.bent.used[0]):
+            sine, _, _ = bent_sine(problem.bent, b, s)
+            worst = min(worst, sine)
     return worst
+
+
+@kernel
+def terms(problem):
+    """How many sines there are, of corners and of samples."""
+    return len(problem.corners) + problem.bent.used[0] * len(problem.bent.vertices)
+
+
+@bare_kernel
+def _pull_samples(problem, x, gradient):
+    """Add what the pulls of bent elements come to."""
+    bent = problem.bent
+    pull_bent(bent, x, gradient)
+    for b in range(len(bent.vertices)):
+        for i in range(4):
+            _pull(
+                problem, gradient, bent.vertices[b, i], bent.by_corner[b, i, 0],
+                bent.by_corner[b, i, 1],
+            )  # fmt: skip
 
 
 @kernel
@@ -227,12 +266,17 @@ def _back(problem, gradient, c, by_p, by_q, by_sine):
 
 
 @kernel
-def _soft_worst(problem, gradient, sines, aim):
+def _soft_worst(problem, x, gradient, sines, aim):
     """The objective f of the positions, see the module; infinite where a corner folds."""
-    count = len(problem.corners)
-    worst = 1.0
-    for c in range(count):
+    corners, bent, used = len(problem.corners), problem.bent, problem.bent.used[0]
+    worst, count = 1.0, len(sines)
+    for c in range(corners):
         sines[c] = sine_of(problem, c)
+        if not sines[c] > FOLDED:
+            return np.inf, sines[c]
+        worst = min(worst, sines[c])
+    for c in range(corners, count):
+        sines[c], _, _ = bent_sine(bent, (c - corners) // used, (c - corners) % used)
         if not sines[c] > FOLDED:
             return np.inf, sines[c]
         worst = min(worst, sines[c])
@@ -243,27 +287,40 @@ def _soft_worst(problem, gradient, sines, aim):
     value = np.log(total) / sharpness - worst
     share = 0.5 * weight / count
     for c in range(count):
-        _, _, p = _side(problem, c, 0)
-        _, _, q = _side(problem, c, 1)
+        b, s = (c - corners) // used, (c - corners) % used
+        if c < corners:
+            _, _, p = _side(problem, c, 0)
+            _, _, q = _side(problem, c, 1)
+        else:
+            _, p, q = bent_sine(bent, b, s)
         sine, ratio = sines[c], p / q
         value += share * (ratio + 1.0 / ratio) / sine
         by_sine = -share * (ratio + 1.0 / ratio) / (sine * sine)
         by_sine -= np.exp(sharpness * (worst - sine)) / total
         by_ratio = share * (1.0 - 1.0 / (ratio * ratio)) / sine
-        _back(problem, gradient, c, by_ratio / q, -by_ratio * ratio / q, by_sine)
+        if c < corners:
+            _back(problem, gradient, c, by_ratio / q, -by_ratio * ratio / q, by_sine)
+        else:
+            set_pull(bent, b, s, by_ratio / q, -by_ratio * ratio / q, by_sine)
+    _pull_samples(problem, x, gradient)
     return value, worst
 
 
 @kernel
-def _foldover(problem, gradient, aim):
+def _foldover(problem, x, gradient, aim):
     """The foldover-free energy of the positions; aim: [3] epsilon, [1] the weight lambda."""
     eps, weight = aim[3], aim[1]
-    scale = 1.0 / (problem.size[0] * problem.size[0])
+    corners, bent, used = len(problem.corners), problem.bent, problem.bent.used[0]
     total, smallest = 0.0, np.inf
-    for c in range(len(problem.corners)):
-        _, _, p = _side(problem, c, 0)
-        _, _, q = _side(problem, c, 1)
-        sine = sine_of(problem, c)
+    for c in range(terms(problem)):
+        b, s = (c - corners) // used, (c - corners) % used
+        if c < corners:
+            _, _, p = _side(problem, c, 0)
+            _, _, q = _side(problem, c, 1)
+            sine, scale = sine_of(problem, c), problem.scale[c]
+        else:
+            sine, p, q = bent_sine(bent, b, s)
+            scale = bent.scale[b]
         det, trace = scale * p * q * sine, scale * (p * p + q * q)
         smallest = min(smallest, det)
         root = np.sqrt(eps * eps + det * det)
@@ -272,10 +329,12 @@ def _foldover(problem, gradient, aim):
         total += numerator / regular
         by_det = (2.0 * weight * det - numerator / root) / regular * scale
         by_trace = 2.0 * scale / regular
-        _back(
-            problem, gradient, c, by_trace * p + by_det * q * sine,
-            by_trace * q + by_det * p * sine, by_det * p * q,
-        )  # fmt: skip
+        by_p, by_q = by_trace * p + by_det * q * sine, by_trace * q + by_det * p * sine
+        if c < corners:
+            _back(problem, gradient, c, by_p, by_q, by_det * p * q)
+        else:
+            set_pull(bent, b, s, by_p, by_q, by_det * p * q)
+    _pull_samples(problem, x, gradient)
     return total, smallest
 
 
@@ -289,9 +348,9 @@ def _objective(problem, x, gradient, sines, aim):
     if not barrier < np.inf:
         return np.inf, -np.inf
     if aim[3] > 0.0:
-        value, smallest = _foldover(problem, gradient, aim)
+        value, smallest = _foldover(problem, x, gradient, aim)
         return value + barrier, smallest
-    value, smallest = _soft_worst(problem, gradient, sines, aim)
+    value, smallest = _soft_worst(problem, x, gradient, sines, aim)
     return value + barrier, smallest
 
 
@@ -307,7 +366,7 @@ def minimise(problem, x, aim, goal, iterations):
     gradient, trial, slope = np.zeros(n), np.zeros(n), np.zeros(n)
     direction, best_x = np.zeros(n), x.copy()
     steps, changes = np.zeros((MEMORY, n)), np.zeros((MEMORY, n))
-    rho, sines = np.zeros(MEMORY), np.zeros(len(problem.corners))
+    rho, sines = np.zeros(MEMORY), np.zeros(terms(problem))
     count, newest = 0, -1
     keeps_best = aim[3] <= 0.0 and aim[2] >= NO_LEVEL
     value, best = _objective(problem, x, gradient, sines, aim)
@@ -363,10 +422,11 @@ def unfold_layout(problem, x, rounds, inner, polish):
     The regularisation falls by the rule of the paper (section 3.1). Returns the smallest sine.
     """
     aim = np.array([0.0, UNFOLDING, NO_LEVEL, 1.0])
-    gradient, sines = np.zeros(len(x)), np.zeros(len(problem.corners))
+    gradient, sines = np.zeros(len(x)), np.zeros(terms(problem))
+    _, smallest = _objective(problem, x, gradient, sines, aim)
+    # the less is folded the sharper it begins, so that what is valid stays so
+    aim[3] = SHARPEST if smallest > 1e-3 else min(1.0, 0.01 - 4.0 * min(smallest, 0.0))
     value, smallest = _objective(problem, x, gradient, sines, aim)
-    if smallest > 1e-3:
-        aim[3] = SHARPEST
     for _ in range(rounds):
         if aim[3] <= SHARPEST or not value < np.inf:
             break

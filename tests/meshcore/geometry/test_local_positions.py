@@ -38,7 +38,7 @@ def interior_edge(mesh):
 
 def test_the_worst_sine_is_that_of_the_quality_measure(mesh):
     rails, effort = rails_of(mesh, mesh.slots), local_effort()
-    found = worst_around(mesh.arrays, rails.turning, effort.samples, np.zeros(0, bool), -1.0)
+    found = worst_around(mesh.arrays, rails.turning, effort.gauge, np.zeros(0, bool), -1.0)
     assert found == pytest.approx(scaled_jacobian(mesh).min(), abs=1e-9)
 
 
