@@ -24,6 +24,7 @@ from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations, copy_mesh
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import candidates
+from meshwright_agent.search.leaps import leap
 from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ELEMENTS,
@@ -40,8 +41,11 @@ from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
 
-TOGETHER = 4
-"""Rollouts side by side."""
+TOGETHER, ELEMENTS_EACH = 2, 200
+"""The most rollouts side by side, and elements of all of them together: on a large mesh one comes
+further in the same time."""
+STALLED = 40
+"""Decisions without a lower s after which a rollout ends."""
 TRIES = 6
 """Operations that are tried for one decision."""
 FORGET = 12
@@ -171,14 +175,15 @@ class GuardedRollouts:
         self._steps = task.step_limit(mesh.n_elements) if max_steps is None else max_steps
         self._optimum = mesh.optimum
         self._rails = rails_of(mesh, batch.meshes.vertex.shape[1])
-        self._local, self._thin = local_effort(), local_effort(least=THIN_LEAST)
+        self._local = local_effort(thorough=False)
+        self._thin = local_effort(least=THIN_LEAST, thorough=False)
         self._trial = copied(member_of(batch.meshes, 0))
         active = np.zeros(len(self._trial.points), np.bool_)
         self._scratch = batch.scratch.touched, batch.scratch.cleaned, active
         self._log = np.zeros((_LONGEST_PASS, 2), np.int32)
         self._done: list[Operations] = [[] for _ in range(count)]
         self._blocked: list[dict[tuple[int, int], int]] = [{} for _ in range(count)]
-        self._idle = np.zeros(count, int)
+        self._idle, self._gained = np.zeros(count, int), np.zeros(count, int)
         self.found = [self._state(b) for b in range(count)]
         self.tried = self.failed = 0
 
@@ -223,10 +228,12 @@ class GuardedRollouts:
             batch.steps[b] += 1
             if batch.meshes.counters[b, SCORE] < self.found[b].score:
                 self.found[b] = self._state(b)
+                self._gained[b] = batch.steps[b]
             if batch.steps[b] % THIN_EVERY == 0:
                 self._done[b] += self._thinned(member_of(batch.meshes, b))
             ended = self.found[b].score <= self._optimum or not possible[b].any()
-            if ended or batch.steps[b] >= self._steps or self._idle[b] > STUCK:
+            stalled = batch.steps[b] - self._gained[b] > STALLED or self._idle[b] > STUCK
+            if ended or stalled or batch.steps[b] >= self._steps:
                 batch.active[b] = False
 
     def _thinned(self, arrays: MeshArrays) -> Operations:
@@ -275,7 +282,8 @@ class GuardedRollouts:
 
 
 class GuardedDescent:
-    """Rounds of guarded rollouts, from the start and from the best state in turn.
+    """Rounds of guarded rollouts, from the start and from the best state in turn, and leaps from
+    the best state between them (:mod:`meshwright_agent.search.leaps`).
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -306,9 +314,23 @@ class GuardedDescent:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
         left = most
         while self.score > self._mesh.optimum and not stop() and left != 0:
-            count = TOGETHER if left is None else min(TOGETHER, left)
+            count = max(1, min(TOGETHER, ELEMENTS_EACH // self._mesh.n_elements))
+            count = count if left is None else min(count, left)
             left = None if left is None else left - count
             self._round(count, stop)
+            while self.states and self.score > self._mesh.optimum and self._leap(stop):
+                pass
+
+    def _leap(self, stop: Callable[[], bool]) -> bool:
+        """Leap from the best state; returns whether that has led to lower s."""
+        best = self.states[0]
+        found = leap(best.mesh(self._mesh), self._policy, self._rng, stop)
+        if found is None:
+            return False
+        operations, arrays = found
+        score, elements = int(arrays.counters[SCORE]), int(arrays.counters[ELEMENTS])
+        self.states = [DrawnState(best.operations + operations, score, elements, arrays)]
+        return True
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""

@@ -76,8 +76,8 @@ SWEEPS = 40
 """Sweeps of averaging in the second attempt."""
 ROUNDS, INNER, POLISH = 12, 30, 20
 """The most values of its regularisation, L-BFGS steps at each, and steps for shape after them."""
-MOST_TURN = np.radians(185.0)
-"""Radians that one edge may turn: half a circle, and a little more."""
+MOST_TURN = np.radians(300.0)
+"""Radians that one edge may turn: the samples of an element see no more."""
 EVEN = 1.05
 """Unsigned over signed area of all elements beyond which they should have equal areas."""
 _ASIDE = 1e-3

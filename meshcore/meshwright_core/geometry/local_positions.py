@@ -77,7 +77,7 @@ class LocalEffort(NamedTuple):
     effort: Effort
     """Of the first attempt."""
     thorough: Effort
-    """Of the second attempt, where the first one leaves something folded."""
+    """Of the second attempt, where the first one leaves something folded; none without rounds."""
     rings: int
     """Rings of elements around the changed ones whose vertices move too."""
     least: float
@@ -93,12 +93,14 @@ def local_effort(
     rounds: int = 3,
     inner: int = 8,
     rings: int = 2,
+    thorough: bool = True,
 ) -> LocalEffort:
     """Settings for :func:`settle`; see :class:`LocalEffort` and
     :class:`meshwright_core.geometry.layout_positions.Effort`.
     """
     quick = Effort(goal, iterations, rounds, inner, 6)
-    return LocalEffort(quick, Effort(goal, *THOROUGH), rings, least, gauge())
+    second = Effort(goal, *THOROUGH) if thorough else Effort(goal, 0, 0, 0, 0)
+    return LocalEffort(quick, second, rings, least, gauge())
 
 
 @kernel
@@ -256,7 +258,7 @@ def settle(before, after, rails, local, active):
     worst = _raised(after, rails, local, active, local.effort)
     if worst <= 0.0:
         _copy_places(after, places, True)
-        worst = first
-        if first <= local.least:
+        worst = first if first > local.least else 0.0
+        if first <= local.least and local.thorough.rounds > 0:
             worst = _raised(after, rails, local, active, local.thorough)
     return worst

@@ -1,0 +1,92 @@
+"""Leaps: several operations of a policy at once, whose result can be drawn though the states
+between may not be.
+
+From a mesh without inverted elements some rollouts go on, unguarded, until s is lower. The shortest
+of them are then positioned around all that they have changed; the first one that can be drawn is
+taken. Where a guarded rollout (:mod:`meshwright_agent.search.guarded_rollouts`) is stuck a leap
+often is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import torch
+
+from meshwright_agent.env.task import MOST_CLEANUPS, transition
+from meshwright_agent.env.vector_env import Batch
+from meshwright_agent.policy.inference import decide
+from meshwright_agent.policy.policy_files import Policy
+from meshwright_agent.search.annealing import Operations, with_room
+from meshwright_core.core.arrays import MeshArrays, copied
+from meshwright_core.geometry.layout_positions import rails_of
+from meshwright_core.geometry.local_positions import local_effort, settle
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import NAMES, Operation
+
+TOGETHER = 16
+"""Rollouts side by side."""
+LONGEST = 60
+"""The most decisions of a leap."""
+TRIED = 5
+"""Leaps that are positioned."""
+RINGS = 3
+"""Rings of elements around what has changed whose vertices move too."""
+
+Decisions = tuple[tuple[int, int], ...]
+
+
+def leap(
+    mesh: HalfEdgeMesh, policy: Policy, rng: np.random.Generator, stop: Callable[[], bool]
+) -> tuple[Operations, MeshArrays] | None:
+    """Operations that lead to lower s, and the arrays there with valid positions; None if no leap
+    of this round can be drawn.
+
+    mesh: of quads, without inverted elements; not changed.
+    """
+    rails = rails_of(mesh, len(mesh.arrays.vertex) + 4 * LONGEST * mesh.n_elements)
+    before = with_room(mesh, 3 * mesh.n_elements)
+    local = local_effort(rings=RINGS)
+    active = np.zeros(len(before.points), np.bool_)
+    cleaned, touched = np.zeros(MOST_CLEANUPS, np.int64), np.zeros(16, np.int64)
+    for decisions in _shortest(mesh, policy, rng, stop):
+        if stop():
+            break
+        after = copied(before)
+        operations: Operations = []
+        for code, h in decisions:
+            count = transition(after, code, h, policy.task.cap, touched, cleaned)
+            operations.append((NAMES[code], h))
+            operations += [(Operation.CLEANUP, line) for line in cleaned[:count].tolist()]
+        if settle(before, after, rails, local, active) > 0.0:
+            return operations, after
+    return None
+
+
+def _shortest(
+    mesh: HalfEdgeMesh, policy: Policy, rng: np.random.Generator, stop: Callable[[], bool]
+) -> list[Decisions]:
+    """The decisions of rollouts until s is lower, each once, the shortest first."""
+    task = policy.task
+    bounds = task.bounds(mesh.n_elements)
+    batch = Batch(task, [mesh], TOGETHER, rng, endless=False, bounds=bounds)
+    generator = torch.Generator().manual_seed(int(rng.integers(1 << 31)))
+    rows = np.arange(TOGETHER)
+    made: list[list[tuple[int, int]]] = [[] for _ in rows]
+    found: set[Decisions] = set()
+    for _ in range(LONGEST):
+        if not batch.active.any() or stop():
+            break
+        observation = batch.observe()
+        actions = decide(policy.network, observation, generator)[0]
+        chosen = observation.chosen[rows, actions // task.operations].tolist()
+        running = np.flatnonzero(batch.active & (actions >= 0)).tolist()
+        for b in running:
+            made[b].append((task.first_operation + int(actions[b]) % task.operations, chosen[b]))
+        batch.step(observation, actions)
+        for b in running:
+            if batch.best[b] < mesh.score:
+                found.add(tuple(made[b]))
+                batch.active[b] = False
+    return sorted(found, key=len)[:TRIED]
