@@ -25,6 +25,7 @@ from meshwright_agent.search.annealing import Operations, copy_mesh
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import candidates
 from meshwright_agent.search.leaps import leap
+from meshwright_agent.search.search_worker import RolloutBatch, Worker
 from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ELEMENTS,
@@ -35,8 +36,9 @@ from meshwright_core.core.arrays import (
     copied,
 )
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry.layout_positions import rails_of
+from meshwright_core.geometry.layout_positions import layout_bound, rails_of
 from meshwright_core.geometry.local_positions import local_effort, settle
+from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
@@ -52,6 +54,8 @@ FORGET = 12
 """Steps after which an operation that could not be drawn may be tried again."""
 STUCK = 20
 """Decisions in a row without an operation that can be drawn after which a rollout ends."""
+FREE = 8
+"""Free rollouts between two rounds of guarded ones."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1
@@ -282,8 +286,10 @@ class GuardedRollouts:
 
 
 class GuardedDescent:
-    """Rounds of guarded rollouts, from the start and from the best state in turn, and leaps from
-    the best state between them (:mod:`meshwright_agent.search.leaps`).
+    """Rounds of guarded rollouts, from the start and from the best state in turn.
+
+    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), and free rollouts
+    from the start: few of these reach s*, and few of what does can be drawn, but they are fast.
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -320,6 +326,8 @@ class GuardedDescent:
             self._round(count, stop)
             while self.states and self.score > self._mesh.optimum and self._leap(stop):
                 pass
+            if self.score > self._mesh.optimum and not stop():
+                self._free(stop)
 
     def _leap(self, stop: Callable[[], bool]) -> bool:
         """Leap from the best state; returns whether that has led to lower s."""
@@ -331,6 +339,24 @@ class GuardedDescent:
         score, elements = int(arrays.counters[SCORE]), int(arrays.counters[ELEMENTS])
         self.states = [DrawnState(best.operations + operations, score, elements, arrays)]
         return True
+
+    def _free(self, stop: Callable[[], bool]) -> None:
+        """Free rollouts from the start; a state at s* that can be drawn becomes the best one."""
+        mesh = self._mesh
+        batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
+        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(FREE)
+        self.rollouts += FREE
+        for candidate in sorted(batch.found, key=lambda found: len(found.operations)):
+            if stop():
+                break
+            reached = replayed(mesh, candidate.operations)
+            angle = rails_of(mesh, len(reached.arrays.vertex)).angle
+            if layout_bound(reached.arrays, angle) <= THIN_LEAST or len(relax(reached)):
+                continue
+            elements = reached.n_elements
+            state = DrawnState(candidate.operations, reached.score, elements, reached.arrays)
+            self.states = [state]
+            break
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""

@@ -135,18 +135,16 @@ class LayoutSearch:
         """
         self._served = self.idle // STALE
         layout = self.coarsener.layout(operations, placed=placed)
-        if not layout.key[1] and placed is not None:
-            # raising the corners has folded a quad along a curve in the middle: keep what is valid
-            self.coarsener.place(layout, placed)
-            layout.key[1] = max(float(scaled_jacobian(placed).min()), 1e-3)
-        elif not layout.key[1] and unfold and not (self.pool and stop()):
+        if not layout.key[1] and placed is None and unfold and not (self.pool and stop()):
             reached = replayed(self._mesh, operations)
             if not len(relax(reached)):
-                self.coarsener.place(layout, reached)
+                placed = reached
+                self.coarsener.place(layout, placed)
                 self.coarsener.judge(layout)
-                if not layout.key[1]:
-                    self.coarsener.place(layout, reached)
-                    layout.key[1] = max(float(scaled_jacobian(reached).min()), 1e-3)
+        if not layout.key[1] and placed is not None:
+            # raising the corners has folded a quad along a curve: keep what is valid
+            self.coarsener.place(layout, placed)
+            layout.key[1] = max(float(scaled_jacobian(placed).min()), 1e-3)
         if coarsen and layout.key[1]:
             self._coarsen(layout, stop)
         self._note(layout)

@@ -33,7 +33,7 @@ from meshwright_core.core.arrays import (
     preceding,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
-from meshwright_core.core.composite_curves import curve_length, place_in_span, place_on
+from meshwright_core.core.composite_curves import curve_length, place_in_span
 from meshwright_core.core.curve_edges import edge_curve
 from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.bent_elements import (
@@ -45,6 +45,7 @@ from meshwright_core.geometry.bent_elements import (
     find_bent,
 )
 from meshwright_core.geometry.coons import Samples
+from meshwright_core.geometry.element_sines import Gauge, gauge, worst_around
 from meshwright_core.geometry.seats import beside
 from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.geometry.turning import (
@@ -76,8 +77,6 @@ SWEEPS = 40
 """Sweeps of averaging in the second attempt."""
 ROUNDS, INNER, POLISH = 12, 30, 20
 """The most values of its regularisation, L-BFGS steps at each, and steps for shape after them."""
-MOST_TURN = np.radians(300.0)
-"""Radians that one edge may turn: the samples of an element see no more."""
 EVEN = 1.05
 """Unsigned over signed area of all elements beyond which they should have equal areas."""
 _ASIDE = 1e-3
@@ -110,13 +109,15 @@ class Rails(NamedTuple):
     """(slots,) radians inside the domain at a geometric boundary vertex, 0 elsewhere."""
     samples: Samples
     """Where elements with sides that bend are measured besides their corners."""
+    gauge: Gauge
+    """For the measure of the result; rails are for one thread."""
 
 
 def rails_of(mesh: HalfEdgeMesh, slots: int) -> Rails:
     """The rails of a mesh in the plane z = 0 and of all that operations make of it."""
     angle = np.zeros(slots)
     angle[: mesh.slots] = corner_angles(mesh)
-    return Rails(CurveTurning.of(mesh), angle, QUARTERS)
+    return Rails(CurveTurning.of(mesh), angle, QUARTERS, gauge())
 
 
 @kernel
@@ -485,51 +486,6 @@ def _position(m, rails, effort, afresh, active):
 
 
 @kernel
-def _worst_turned(m, rails, worst):
-    """`worst`, or 0 where an edge turns by more than MOST_TURN, or folds its quad in the middle."""
-    place, slope, far, aside = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
-    for h in range(4 * m.counters[ELEMENT_SLOTS]):
-        if m.edge[h, ORIGIN] < 0 or not along_curve(m, h, 4):
-            continue
-        c = edge_curve(m, h, 4)
-        if c < 0:
-            continue
-        forward = _forward(m, h, c)
-        a = _parameter(m, m.edge[h, ORIGIN], c, not forward)
-        b = _parameter(m, m.edge[following(h, 4), ORIGIN], c, forward)
-        if not forward:
-            a, b = b, a
-        if b <= a and m.curves.closed[c]:
-            b += curve_length(m.curves, c)
-        turn = turning_between(m.curves, rails.turning, c, a, b)
-        if turn <= BENDS:
-            continue
-        if turn > MOST_TURN:
-            return 0.0
-        place_on(m.curves, c, 0.5 * (a + b), place, slope)
-        across = following(following(h, 4), 4)
-        p, q = m.edge[across, ORIGIN], m.edge[following(across, 4), ORIGIN]
-        for i in range(2):
-            far[i] = 0.5 * (m.points[p, i] + m.points[q, i])
-        if along_curve(m, across, 4):
-            other = edge_curve(m, across, 4)
-            if other >= 0:
-                on = _forward(m, across, other)
-                s, t = _parameter(m, p, other, not on), _parameter(m, q, other, on)
-                if not on:
-                    s, t = t, s
-                if t <= s and m.curves.closed[other]:
-                    t += curve_length(m.curves, other)
-                place_on(m.curves, other, 0.5 * (s + t), far, aside)
-        dx, dy = far[0] - place[0], far[1] - place[1]
-        sine = (slope[0] * dy - slope[1] * dx) / (
-            np.hypot(slope[0], slope[1]) * np.hypot(dx, dy) + 1e-300
-        )
-        worst = min(worst, max(0.0, sine if forward else -sine))
-    return worst
-
-
-@kernel
 def _write_back(m, points, variable, x):
     """Move the vertices of `m` to `points` (n, 3), those on curves to the parameters in `x`."""
     for v in range(len(points)):
@@ -564,8 +520,8 @@ def position(m, rails, goal, iterations):
 
     Ends as soon as the worst corner sine reaches `goal`; with a goal of 1 all elements are given
     better shapes after that. Where corners stay folded a second attempt starts from evenly spread
-    vertices. iterations: of each stage of :func:`climb`. Returns the worst corner sine, also that
-    in the middle of edges that bend; 0 or less if the layout stays folded.
+    vertices. iterations: of each stage of :func:`climb`. Returns the worst sine of corners and of
+    samples of elements with sides that bend; 0 or less if the layout stays folded.
     """
     effort = Effort(goal, iterations, ROUNDS, INNER, POLISH)
     every = np.zeros(0, np.bool_)
@@ -575,4 +531,6 @@ def position(m, rails, goal, iterations):
         if other > worst:
             worst, points, x = other, others, other_x
     _write_back(m, points, variable, x)
-    return _worst_turned(m, rails, worst) if worst > 0.0 else worst
+    if worst <= 0.0:
+        return worst
+    return min(worst, max(0.0, worst_around(m, rails.turning, rails.gauge, every, 0.0)))

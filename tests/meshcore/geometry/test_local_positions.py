@@ -6,13 +6,9 @@ import pytest
 from meshwright_core.core.arrays import TWIN, copied
 from meshwright_core.domains import gallery
 from meshwright_core.domains.meshing import mesh_domain
+from meshwright_core.geometry.element_sines import worst_around
 from meshwright_core.geometry.layout_positions import rails_of
-from meshwright_core.geometry.local_positions import (
-    local_effort,
-    mark_changed,
-    settle,
-    worst_around,
-)
+from meshwright_core.geometry.local_positions import local_effort, mark_changed, settle
 from meshwright_core.geometry.quality import scaled_jacobian
 from meshwright_core.geometry.smoothing import relax
 
@@ -37,8 +33,8 @@ def interior_edge(mesh):
 
 
 def test_the_worst_sine_is_that_of_the_quality_measure(mesh):
-    rails, effort = rails_of(mesh, mesh.slots), local_effort()
-    found = worst_around(mesh.arrays, rails.turning, effort.gauge, np.zeros(0, bool), -1.0)
+    rails = rails_of(mesh, mesh.slots)
+    found = worst_around(mesh.arrays, rails.turning, rails.gauge, np.zeros(0, bool), -1.0)
     assert found == pytest.approx(scaled_jacobian(mesh).min(), abs=1e-9)
 
 
