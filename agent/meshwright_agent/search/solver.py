@@ -163,10 +163,14 @@ def _search_layouts(
     """
     mesh, timed = search.mesh, search.timed
     search.thorough = True
-    startable, bends = not len(inverted(mesh)), has_bends(mesh)
+    start, bends = mesh, has_bends(mesh)
+    startable = not len(inverted(mesh))
+    if bends and not startable:
+        start = mesh.copy()
+        startable = not len(smoothing.relax(start))
     workers = max(1, workers)
     descents = [
-        GuardedDescent(mesh, search.policy, search.max_steps, search.seed + 101 * i)
+        GuardedDescent(start, search.policy, search.max_steps, search.seed + 101 * i)
         for i in range(workers if startable and search.score > mesh.optimum else 0)
     ]
     if bends:
