@@ -318,16 +318,18 @@ class GuardedDescent:
 
     def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
-        left = most
-        while self.score > self._mesh.optimum and not stop() and left != 0:
-            count = max(1, min(TOGETHER, ELEMENTS_EACH // self._mesh.n_elements))
-            count = count if left is None else min(count, left)
-            left = None if left is None else left - count
+        begun, optimum = self.rollouts, self._mesh.optimum
+        together = max(1, min(TOGETHER, ELEMENTS_EACH // self._mesh.n_elements))
+
+        def granted(wanted: int) -> int:
+            return wanted if most is None else min(wanted, most - (self.rollouts - begun))
+
+        while self.score > optimum and not stop() and (count := granted(together)) > 0:
             self._round(count, stop)
-            while self.states and self.score > self._mesh.optimum and self._leap(stop):
+            while self.states and self.score > optimum and self._leap(stop):
                 pass
-            if self.score > self._mesh.optimum and not stop():
-                self._free(stop)
+            if self.score > optimum and not stop() and (count := granted(FREE)) > 0:
+                self._free(count, stop)
 
     def _leap(self, stop: Callable[[], bool]) -> bool:
         """Leap from the best state; returns whether that has led to lower s."""
@@ -340,12 +342,12 @@ class GuardedDescent:
         self.states = [DrawnState(best.operations + operations, score, elements, arrays)]
         return True
 
-    def _free(self, stop: Callable[[], bool]) -> None:
-        """Free rollouts from the start; a state at s* that can be drawn becomes the best one."""
+    def _free(self, count: int, stop: Callable[[], bool]) -> None:
+        """So many free rollouts from the start; what is at s* and can be drawn becomes the best."""
         mesh = self._mesh
         batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
-        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(FREE)
-        self.rollouts += FREE
+        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
+        self.rollouts += count
         for candidate in sorted(batch.found, key=lambda found: len(found.operations)):
             if stop():
                 break
