@@ -53,9 +53,7 @@ def test_alt_goes_to_the_menu_bar(qtbot, open_window, star):
     bar = window.menuBar()
     press(qtbot, window, Qt.Key.Key_Alt)
     qtbot.waitUntil(bar.hasFocus, timeout=WAIT)
-    QTest.keyClick(bar, Qt.Key.Key_Down)
-    qtbot.waitUntil(lambda: popup() is not None, timeout=WAIT)
-    popup().close()
+    assert bar.activeAction().text() == "&File"
 
 
 def test_a_menu_runs_an_action_by_keys(qtbot, open_window, star):
@@ -99,9 +97,12 @@ def test_the_tour_is_advanced_by_keys(qtbot, open_window, star):
     assert callout.next.hasFocus()
     qtbot.keyClick(callout.next, Qt.Key.Key_Space)
     assert window.help.tour.at == 2
-    for _ in range(3):
+    for expected in (3, 4, None):
         press(qtbot, window, Qt.Key.Key_N, ALT)
-    qtbot.waitUntil(lambda: window.help.tour is None, timeout=WAIT)
+        qtbot.waitUntil(
+            lambda at=expected: (window.help.tour and window.help.tour.at) == at, timeout=WAIT
+        )
+        qtbot.wait(150)
     window.help.show_tour()
     press(qtbot, window, Qt.Key.Key_I, ALT)
     qtbot.waitUntil(lambda: window.help.tour is None, timeout=WAIT)

@@ -108,6 +108,7 @@ class DrawPage(Page):
         self.sketch.changed.connect(self._on_sketch_changed)
         self.tools.changed.connect(self._on_tool)
         self.area.tool_picked.connect(self._on_tool_picked)
+        self.area.hinted.connect(self._on_hinted)
         self.area.message.connect(self.message.emit)
         self.table.message.connect(self.message.emit)
         self.area.picked.connect(self.table.select)
@@ -196,11 +197,13 @@ class DrawPage(Page):
     def _on_tool(self, name: str) -> None:
         self.area.use(name)
         self.area.setFocus()
-        self.hint.setText(HINTS[name])
 
     def _on_tool_picked(self, name: str) -> None:
         self.tools.key = name
-        self.hint.setText(HINTS[name])
+        self._on_hinted("")
+
+    def _on_hinted(self, words: str) -> None:
+        self.hint.setText(words or HINTS[self.tools.key])
 
     def _on_row_picked(self, loop: int, corner: int) -> None:
         self.area.select((loop, corner))

@@ -44,13 +44,14 @@ class DrawingArea(QWidget):
 
     ``hovered(x, y)``: the snapped position of the mouse; ``message(sentence)``: why a click would
     be refused; ``picked(loop, corner)`` when a corner is selected; ``tool_picked(name)`` when a
-    key has chosen a tool.
+    key has chosen a tool; ``hinted(sentence)``: what can be typed, empty while nothing is.
     """
 
     hovered = Signal(float, float)
     message = Signal(str)
     picked = Signal(int, int)
     tool_picked = Signal(str)
+    hinted = Signal(str)
 
     def __init__(self, sketch: Sketch, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -106,7 +107,7 @@ class DrawingArea(QWidget):
         self.pencil.tool = tool
         self._typed = ""
         self.select(None)
-        self.message.emit(self.pencil.hint)
+        self.hinted.emit("")
 
     def fit(self) -> None:
         """Fit the view to the drawing, or the square from -1 to 1."""
@@ -345,7 +346,8 @@ class DrawingArea(QWidget):
 
     def _type(self, text: str, drop: str = "") -> None:
         self._typed = "" if drop else self._typed + text
-        self.message.emit(self.pencil.hint if self._typed else "")
+        self.hinted.emit(self.pencil.hint if self._typed else "")
+        self.message.emit("")
         self.update()
 
     def _apply_typed(self) -> None:
@@ -356,6 +358,7 @@ class DrawingArea(QWidget):
             self.message.emit(str(error))
             return
         self._typed = ""
+        self.hinted.emit("")
         if self._mouse is not None:
             self._snap = self._snapped(self._mouse)
         self.message.emit(words)
