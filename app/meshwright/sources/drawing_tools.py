@@ -180,7 +180,8 @@ class Pencil:
         if self._tool == RECTANGLE:
             size = f"{short(abs(place[0] - start[0]))} \u00d7 {short(abs(place[1] - start[1]))}"
             return Draft(((*corners, corners[0]),), size)
-        rim = points_of(*corners, 1.0)[:-1] + points_of(corners[1], corners[0], bulges[1])
+        left, right = corners
+        rim = points_of(left, right, bulges[0])[:-1] + points_of(right, left, bulges[1])
         radius = math.dist(start, place)
         return Draft((tuple(rim), (start, place)), f"R {short(radius)}")
 

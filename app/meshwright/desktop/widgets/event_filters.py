@@ -104,8 +104,10 @@ class PanelInput(QObject):
             return False
         if isinstance(watched, QSpinBox | QDoubleSpinBox):
             if event.key() == Qt.Key.Key_Escape:
-                watched.setValue(type(watched.value())(self._value))
-                watched.lineEdit().setText(watched.textFromValue(watched.value()))
+                if isinstance(watched, QSpinBox):
+                    watched.setValue(round(self._value))
+                else:
+                    watched.setValue(self._value)
             else:
                 watched.interpretText()
         self._leave()
