@@ -44,7 +44,7 @@ def line_through(mesh: HalfEdgeMesh, halfedge: int) -> Line:
     if mesh.twin(halfedge) < 0:
         return Line([halfedge], False)
     ahead = _walk(mesh, halfedge)
-    if ahead[-1] == halfedge:
+    if len(ahead) > 1 and ahead[-1] == halfedge:
         return Line(ahead[:-1], True)
     back = _walk(mesh, mesh.twin(halfedge))
     return Line([mesh.twin(h) for h in reversed(back[1:])] + ahead, False)

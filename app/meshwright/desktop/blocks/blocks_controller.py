@@ -23,7 +23,7 @@ from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.desktop.widgets.wording import step_message
 from meshwright.document import block_edits
 from meshwright.document.block_preview import MOST_CELLS, GridPreview, PlannedBlocks
-from meshwright.document.document import Document
+from meshwright.document.document import PLAN, Document
 from meshwright.graphics.colouring import chord_colours
 from meshwright.graphics.theme import Theme
 from meshwright.signals import Signal
@@ -109,6 +109,7 @@ class BlocksController(Controller):
         self._hover.suspend(shown)
         overlay = self._canvas.overlay
         overlay.element.visible = overlay.arrow.visible = not shown
+        overlay.markers.strokes = not shown
         if shown:
             self._refresh()
             self._status.show_message("Blocks: click an edge to select its chord, or a block.")
@@ -430,7 +431,10 @@ class BlocksController(Controller):
             self._refuse(str(error), frozenset([chord] if chord >= 0 else []))
         else:
             if self._document.history.mark != done:
-                self._status.show_message(step_message(self._document.history.last))
+                row = self._document.history.last
+                plain = row is not None and row.action == PLAN
+                words = f"{row.title}." if row is not None and plain else step_message(row)
+                self._status.show_message(words)
 
     def _refuse(self, words: str, chords: frozenset[int]) -> None:
         self._say(words)

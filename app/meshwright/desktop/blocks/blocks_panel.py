@@ -33,6 +33,8 @@ TOOLS = (
     ("blocks.even", "Even cells"),
 )
 GROWTH = 1.2
+BUTTON = 30
+"""Height of a button in pixels."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,7 @@ class BlocksPanel(QWidget):
         self.count.setRange(1, MOST_ACROSS)
         self.count.setKeyboardTracking(False)
         self.count.setAccessibleName("Cells across the chord")
-        self.free = QPushButton("By size")
+        self.free = QPushButton("Auto")
         self.free.setToolTip(tooltip(actions.entry("blocks.free")))
         self.first, self.last = self._height("First cell"), self._height("Last cell")
         self.ratio = DecimalBox()
@@ -139,6 +141,7 @@ class BlocksPanel(QWidget):
             button.setToolTip(tooltip(self._actions.entry(action)))
             button.clicked.connect(self._actions[action].trigger)
             self.tools[action] = button
+            button.setMinimumHeight(BUTTON)
             tools.addWidget(button, number // 2, number % 2)
         grid.addLayout(tools, 4, 0, 1, 2)
         self._of_block = QWidget()
@@ -160,6 +163,9 @@ class BlocksPanel(QWidget):
         for line in self.values.values():
             layout.addWidget(line)
         self.export.setObjectName("Primary")
+        self.export.setMinimumHeight(BUTTON + 2)
+        for link in self.crossing:
+            link.setMinimumHeight(BUTTON)
         layout.addWidget(self.export)
 
     def _connect(self) -> None:
