@@ -11,6 +11,7 @@ from qtpy.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QPushButton,
+    QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
@@ -145,6 +146,8 @@ class BlocksPanel(QWidget):
             tools.addWidget(button, number // 2, number % 2)
         grid.addLayout(tools, 4, 0, 1, 2)
         self._of_block = QWidget()
+        for part in (self._fields, self._of_block):
+            part.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         links = QHBoxLayout(self._of_block)
         links.setContentsMargins(0, 0, 0, 0)
         for link in self.crossing:
@@ -195,10 +198,10 @@ class BlocksPanel(QWidget):
             return
         self._swatch.setPixmap(_square(shown.colour))
         self._title.setText(f"Chord {shown.chord}")
-        how = "set by you" if shown.pinned else "by size"
+        how = "cells set" if shown.pinned else "cells by size"
         edges = "1 edge" if shown.edges == 1 else f"{shown.edges} edges"
         blocks = "1 block" if shown.blocks == 1 else f"{shown.blocks} blocks"
-        self._note.setText(f"{edges} through {blocks}; cells {how}")
+        self._note.setText(f"{edges}, {blocks}; {how}")
         self.free.setEnabled(shown.pinned)
         fields = (self.count, self.first, self.last, self.ratio)
         blockers = [QSignalBlocker(box) for box in fields]
