@@ -11,6 +11,8 @@ from meshwright.desktop.agent.hints_controller import HintsController
 from meshwright.desktop.application.preferences_controller import PreferencesController
 from meshwright.desktop.application.readiness import Readiness
 from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.blocks.blocks_controller import BlocksController
+from meshwright.desktop.blocks.export_blocks_controller import ExportBlocksController
 from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.editing.cleanable_lines_controller import CleanableLinesController
 from meshwright.desktop.editing.edit_controller import EditController
@@ -49,6 +51,8 @@ class ActionContext:
     colours: ColourController
     selection_tools: SelectionController
     names: NamesController
+    blocks: BlocksController
+    block_export: ExportBlocksController
     navigation: KeyboardNavigation
     vertices: VertexCommands
     hints: HintsController

@@ -73,6 +73,7 @@ class HoverController(Controller):
         self._rest.setInterval(REST)
         self._rest.timeout.connect(self._draw_ghost)
         self._open = True
+        self._suspended = False
         self._measuring = QTimer(canvas)
         self._measuring.setSingleShot(True)
         self._measuring.setInterval(MEASURED_AFTER)
@@ -101,6 +102,14 @@ class HoverController(Controller):
         self._measuring.stop()
         self._rest.stop()
         self.panel.release()
+
+    def suspend(self, suspended: bool) -> None:
+        """Offer no operations at the hovered half-edge while another view uses the mouse."""
+        self._suspended = suspended
+        if suspended:
+            self.disarm()
+        self._clear()
+        self.refresh()
 
     # The current operation
 
@@ -165,7 +174,8 @@ class HoverController(Controller):
         """Update choices and preview; returns at once if nothing has changed."""
         mesh = self._document.mesh
         halfedge = self._document.hover
-        if mesh is None or not self._readiness.editing or halfedge < 0 or not mesh.live(halfedge):
+        missing = mesh is None or halfedge < 0 or not mesh.live(halfedge)
+        if mesh is None or missing or self._suspended or not self._readiness.editing:
             self._clear()
             return
         at = (self._document.revision, halfedge)

@@ -28,6 +28,8 @@ from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.application.preferences_controller import PreferencesController, theme_name
 from meshwright.desktop.application.readiness import Readiness
 from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.blocks.blocks_controller import BlocksController
+from meshwright.desktop.blocks.export_blocks_controller import ExportBlocksController
 from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.controller import Connections, Controller
 from meshwright.desktop.editing.cleanable_lines_controller import CleanableLinesController
@@ -137,6 +139,10 @@ class MainWindow(QMainWindow):
             document, canvas, self.levels, readiness, actions, status, self, colours
         )
         self.names = NamesController(document, canvas, status, self, colours)
+        self.blocks = BlocksController(
+            document, canvas, self.hover, actions, status, notice, colours
+        )
+        self.block_export = ExportBlocksController(document, status, notice, self, colours)
         self.navigation = KeyboardNavigation(
             document, canvas, self.quality.highlight, status, colours
         )
@@ -164,12 +170,13 @@ class MainWindow(QMainWindow):
             canvas,
             (
                 self.hints.click,
+                self.blocks.click,
                 self.selection_tools.click,
                 self.editing.click_armed,
                 self.lines.click,
                 self.editing.click_menu,
             ),
-            (self.hover.put_down, self.selection_tools.put_down),
+            (self.hover.put_down, self.blocks.put_down, self.selection_tools.put_down),
             colours,
         )
         self.preferences = PreferencesController(
@@ -188,6 +195,8 @@ class MainWindow(QMainWindow):
             self.lines,
             self.selection_tools,
             self.names,
+            self.blocks,
+            self.block_export,
             self.navigation,
             self.vertices,
             self.spoken,
@@ -243,6 +252,8 @@ class MainWindow(QMainWindow):
             colours=self.colours,
             selection_tools=self.selection_tools,
             names=self.names,
+            blocks=self.blocks,
+            block_export=self.block_export,
             navigation=self.navigation,
             vertices=self.vertices,
             hints=self.hints,
@@ -272,11 +283,19 @@ class MainWindow(QMainWindow):
         self.pages.addWidget(self.empty)
         middle = QWidget()
         _column(
-            middle, self.notice, self.pages, self.playback.exporting.bar, self.playback.timeline
+            middle,
+            self.notice,
+            self.pages,
+            self.block_export.bar,
+            self.playback.exporting.bar,
+            self.playback.timeline,
         ).setStretchFactor(self.pages, 1)
         self.left = LeftColumn(
-            Section("Operations", self.hover.panel, self.settings, self.theme), self.playback.panel
+            Section("Operations", self.hover.panel, self.settings, self.theme),
+            Section("Blocks", self.blocks.panel, self.settings, self.theme),
+            self.playback.panel,
         )
+        self._connections.add(self.blocks.changed, lambda: self.left.show_other(self.blocks.shown))
         self.sidebar = self._make_sidebar()
         below, whole = QWidget(), QWidget()
         row = QHBoxLayout(below)
