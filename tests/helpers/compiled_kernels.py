@@ -1,8 +1,8 @@
 """Kernels compiled once for all tests: by the warm-ups, in an empty cache.
 
-`tests/conftest.py` calls :func:`prepare` before the first test, and `.ci/run` runs this file. Copies
-of the cache as it is after each warm-up are kept, for `tests/test_cold_start.py`, which would
-otherwise compile everything again.
+`tests/conftest.py` calls :func:`prepare` before the first test, and `.ci/run` runs this file.
+Copies of the cache as it is after each warm-up are kept, for `tests/test_cold_start.py`, which
+would otherwise compile everything again.
 """
 
 import hashlib
