@@ -26,8 +26,8 @@ from meshwright_core.domains.meshing import mesh_domain
 
 IMAGES = Path(__file__).parent / "images" / "blocks"
 SECONDS = 10.0
-CELLS = 1200
-COLOURS = 64
+CELLS = 2400
+COLOURS = 160
 WALLS = {"cylinder in a channel": "cylinder", "airfoil with a wake": "wing"}
 WINDOW = "cylinder in a channel"
 
@@ -41,7 +41,11 @@ def picture(grid: BlockGrid, path: Path) -> None:
         at = points[grid.block_vertices(block)]
         lines += [*at, *at.swapaxes(0, 1)]
     for edge in range(len(grid.structure.edges)):
-        edges.append(points[grid.edge_vertices(edge)])
+        if grid.structure.parts.curve[edge] < 0:
+            edges.append(points[grid.edge_vertices(edge)])
+        else:
+            w = np.linspace(0.0, 1.0, 200)
+            edges.append(grid.structure.parts.points(np.full(len(w), edge), w)[:, :2])
     width, height = np.ptp(points, axis=0)
     size = (7.0, max(7.0 * height / width, 1.6))
     figure, axes = pyplot.subplots(figsize=size, dpi=100)
