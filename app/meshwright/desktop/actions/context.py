@@ -32,7 +32,9 @@ from meshwright.document.document import Document
 
 @dataclass(frozen=True)
 class ActionContext:
-    """Document, assistant and controllers of one window; ``close()`` closes the window."""
+    """Document, assistant and controllers of one window; ``open_menus()`` opens the first of its
+    menus, ``close()`` closes it.
+    """
 
     document: Document
     assistant: Assistant
@@ -57,4 +59,5 @@ class ActionContext:
     agent: AgentController
     preferences: PreferencesController
     help: HelpController
+    open_menus: Callable[[], None]
     close: Callable[[], bool]

@@ -18,6 +18,7 @@ from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.document.operation_preview import OperationOffer, best, choices, following, ghost
 from meshwright.graphics.theme import Theme
+from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, Operation
 
 GHOSTS = "editing/ghosts"
@@ -40,7 +41,7 @@ class HoverController(Controller):
     """Determines the current operation, previews it, and owns the panel of operations.
 
     The current operation is, in this order: the one of the hovered row of a menu, the one chosen
-    with Tab at this half-edge, the armed one, the best of the local ones (see
+    with T at this half-edge, the armed one, the best of the local ones (see
     :func:`meshwright.document.operation_preview.best`).
     """
 
@@ -60,6 +61,8 @@ class HoverController(Controller):
         self.panel = OperationsPanel(document, theme)
         self.choices: tuple[OperationOffer, ...] = ()
         self.armed: Operation | None = None
+        self.offered = Signal()
+        """Emitted when the choices or the current operation have changed."""
         self._at = (-1, -1)  # revision and half-edge that the choices are of
         self._picked: Operation | None = None
         self._previewed: Operation | None = None
@@ -188,6 +191,7 @@ class HoverController(Controller):
             if self._open:
                 self._measuring.start()
             self._show_ghost(mesh, meant, halfedge)
+            self.offered.emit()
 
     def _show_ghost(self, mesh: HalfEdgeMesh, meant: OperationOffer | None, halfedge: int) -> None:
         self._rest.stop()
@@ -235,6 +239,7 @@ class HoverController(Controller):
             self._measuring.stop()
             self._rest.stop()
             self.layer.show(None)
+            self.offered.emit()
 
     def _on_hover_changed(self, halfedge: int) -> None:
         if halfedge < 0:

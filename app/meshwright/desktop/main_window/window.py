@@ -1,7 +1,7 @@
 """The main window: constructs the controllers and lays out their widgets."""
 
 from qtpy.QtCore import QSize, Qt, QTimer, Signal
-from qtpy.QtGui import QCloseEvent, QShowEvent
+from qtpy.QtGui import QCloseEvent, QKeyEvent, QShowEvent
 from qtpy.QtWidgets import (
     QApplication,
     QHBoxLayout,
@@ -40,6 +40,8 @@ from meshwright.desktop.editing.inverted_controller import InvertedController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
 from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.editing.spoken_halfedge import SpokenHalfedge
+from meshwright.desktop.editing.unused_keys import UnusedKeys
 from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
@@ -52,8 +54,9 @@ from meshwright.desktop.main_window.left_column import LeftColumn
 from meshwright.desktop.main_window.sidebar import Section, Sidebar
 from meshwright.desktop.quality.colour_controller import ColourController
 from meshwright.desktop.quality.quality_controller import QualityController
-from meshwright.desktop.widgets.action_set import ActionSet
+from meshwright.desktop.widgets.action_set import ActionSet, with_mnemonics
 from meshwright.desktop.widgets.basic import NoticeBar
+from meshwright.desktop.widgets.event_filters import PanelInput
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import style_sheet, theme
@@ -144,6 +147,8 @@ class MainWindow(QMainWindow):
             document, canvas, self.quality.highlight, status, colours
         )
         self.vertices = VertexCommands(document, canvas, self.levels, readiness, status, colours)
+        self.spoken = SpokenHalfedge(document, canvas, self.hover, colours)
+        self.unused_keys = UnusedKeys(document, canvas, actions, status, colours)
         self.errors = ErrorNotice(document, notice, colours)
         self.agent_panel = AgentPanel(document, assistant, settings, actions, colours)
         self.hints = HintsController(
@@ -194,6 +199,8 @@ class MainWindow(QMainWindow):
             self.block_export,
             self.navigation,
             self.vertices,
+            self.spoken,
+            self.unused_keys,
             self.errors,
             self.hints,
             self.agent,
@@ -253,6 +260,7 @@ class MainWindow(QMainWindow):
             agent=self.agent,
             preferences=self.preferences,
             help=self.help,
+            open_menus=self._open_menus,
             close=self.close,
         )
 
@@ -298,6 +306,7 @@ class MainWindow(QMainWindow):
         row.addWidget(self.sidebar)
         _column(whole, self.levels.bar, below).setStretchFactor(below, 1)
         self.setCentralWidget(whole)
+        PanelInput(whole, self.canvas.focus)
 
     def _make_sidebar(self) -> Sidebar:
         settings, quality = self.settings, self.quality.quality
@@ -332,12 +341,18 @@ class MainWindow(QMainWindow):
     def _fill_menus(self) -> None:
         bar = self.menuBar()
         bar.clear()
-        for title, members in self.actions_by_id.menus(self.document.kind):
+        listed = self.actions_by_id.menus(self.document.kind)
+        titles = with_mnemonics([title for title, _ in listed])
+        for title, (_, members) in zip(titles, listed, strict=True):
             menu = bar.addMenu(title)
             for entry in members:
                 if entry.id in registry.DIVIDERS:
                     menu.addSeparator()
                 menu.addAction(self.actions_by_id[entry.id])
+
+    def _open_menus(self) -> None:
+        bar = self.menuBar()
+        bar.setActiveAction(bar.actions()[0])
 
     # Session
 
@@ -384,6 +399,15 @@ class MainWindow(QMainWindow):
         self.opened.emit()
         if not self.readiness.editing:
             QTimer.singleShot(0, self.warmup.start)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Escape gives the keyboard focus to the canvas; other keys that nothing has used are
+        explained.
+        """
+        if event.key() == Qt.Key.Key_Escape and not self.canvas.plotter.hasFocus():
+            self.canvas.focus()
+        else:
+            self.unused_keys.explain(event)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
         """Ask about unsaved work; then end runs and threads, and free VTK's resources."""
