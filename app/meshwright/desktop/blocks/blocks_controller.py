@@ -178,8 +178,9 @@ class BlocksController(Controller):
         elif self._said:
             self._notice.hide()
             self._said = ""
+        previewed = 0 < planned.cells <= MOST_CELLS
         for name in ("worst", "aspect"):
-            values[name].text = "\u2013"
+            values[name].text = "\u2026" if previewed else "\u2013"
         if planned.cells > MOST_CELLS:
             self.layer.show_grid([])
         self._show_selection()
