@@ -125,7 +125,8 @@ def _peer(grid: BlockGrid) -> dict[str, Any]:
             gmsh.option.setNumber("General.Terminal", 0)
             began = time.perf_counter()
             gmsh.open(str(path))
-            size = float(np.sqrt(grid.quality.areas.mean()))
+            # it cuts each quad of the size asked for in four
+            size = 2.0 * float(np.sqrt(grid.quality.areas.mean()))
             gmsh.option.setNumber("Mesh.MeshSizeMin", size)
             gmsh.option.setNumber("Mesh.MeshSizeMax", size)
             gmsh.option.setNumber("Mesh.Algorithm", _PEER)

@@ -15,6 +15,8 @@ from meshwright_core.blocks.structure import BlockStructure
 
 MOST_BLOCKS = 3000
 """Blocks of a mesh that are shown; a mesh of more is no block structure that one edits by hand."""
+ALONG_CURVES = 65
+"""Points of a block edge on a curve."""
 MOST_CELLS = 60_000
 """Cells that a preview has."""
 
@@ -69,6 +71,9 @@ class GridPreview:
 
     lines: list[np.ndarray]
     """(p, 2) each, the lines inside of blocks."""
+    edges: list[np.ndarray]
+    """(p, 2) each, the block edges, in the direction of their chords; smoothing bends those that
+    are not on curves."""
     quality: GridQuality
     final: bool
     """Whether it is the grid that is exported, and not yet without its smoothing."""
@@ -82,11 +87,11 @@ def previews(
         return
     rough = interpolated(planned.structure, planned.division)
     if not stopped():
-        show(GridPreview(_lines(rough), rough.quality, False))
+        show(GridPreview(_lines(rough), _edges(rough), rough.quality, False))
     if not stopped():
         fine = block_grid(planned.structure, planned.sizing)
         if not stopped():
-            show(GridPreview(_lines(fine), fine.quality, True))
+            show(GridPreview(_lines(fine), _edges(fine), fine.quality, True))
 
 
 def _lines(grid: BlockGrid) -> list[np.ndarray]:
@@ -94,4 +99,15 @@ def _lines(grid: BlockGrid) -> list[np.ndarray]:
     for block in range(len(grid.shapes)):
         at = grid.block_points(block)[:, :, :2]
         found += [*at[1:-1], *at[:, 1:-1].swapaxes(0, 1)]
+    return found
+
+
+def _edges(grid: BlockGrid) -> list[np.ndarray]:
+    structure, found = grid.structure, []
+    w = np.linspace(0.0, 1.0, ALONG_CURVES)
+    for edge, curve in enumerate(structure.parts.curve.tolist()):
+        if curve < 0:
+            found.append(grid.points[grid.edge_vertices(edge), :2])
+        else:
+            found.append(structure.parts.points(np.full(len(w), edge), w)[:, :2])
     return found

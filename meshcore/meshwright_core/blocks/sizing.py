@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -114,6 +114,22 @@ class Sizing:
             side_counts={name: n for name, n in plan.side_counts.items() if name in names},
             chord_counts=counts,
             edge_gradings=dict(gradings.values()),
+        )
+
+    def over(self, other: Sizing) -> Sizing:
+        """These wishes, and others where there are none of these."""
+        sized = self.size is not None or self.divide is not None or bool(self.side_sizes)
+        amounts = self if sized else other
+        return replace(
+            self,
+            size=amounts.size,
+            divide=amounts.divide,
+            side_sizes=amounts.side_sizes,
+            walls=self.walls or other.walls,
+            side_counts={**other.side_counts, **self.side_counts},
+            edge_counts={**other.edge_counts, **self.edge_counts},
+            chord_counts={**other.chord_counts, **self.chord_counts},
+            edge_gradings={**other.edge_gradings, **self.edge_gradings},
         )
 
 

@@ -115,8 +115,10 @@ def stored_boundary(
 
     That the vertices fit the curves, and the ends of interfaces are junctions, is not checked.
     """
+    # copies: arrays that are views of a file's bytes cannot be written, which is another type to
+    # numba, and so everything that takes curves would be compiled a second time
     curves = Curves(
-        *(stored(arrays, f"curves.{name}", kind, shape) for name, kind, shape in _FIELDS)
+        *(stored(arrays, f"curves.{name}", kind, shape).copy() for name, kind, shape in _FIELDS)
     )
     _require_curves(curves)
     count = len(curves.closed)

@@ -99,7 +99,7 @@ def test_a_grading_makes_the_first_cells_thin_and_even_cells_return(qtbot, shown
     window = shown(rows_of_blocks())
     click(qtbot, window, (0.0, 0.5))
     blocks = window.blocks
-    qtbot.waitUntil(lambda: blocks.panel.values["worst"].text != "\u2013", timeout=3 * WAIT)
+    qtbot.waitUntil(lambda: blocks.panel.values["worst"].text == "1.00", timeout=3 * WAIT)
     before = counts(window)[0, 4]
     blocks.panel.first.setValue(0.01)
     assert blocks.planned.division.first[blocks.chord] == 0.01

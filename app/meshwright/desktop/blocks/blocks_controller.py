@@ -22,13 +22,19 @@ from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.desktop.widgets.wording import step_message
 from meshwright.document import block_edits
-from meshwright.document.block_preview import MOST_CELLS, GridPreview, PlannedBlocks
+from meshwright.document.block_preview import (
+    ALONG_CURVES,
+    MOST_CELLS,
+    GridPreview,
+    PlannedBlocks,
+)
 from meshwright.document.document import PLAN, Document
 from meshwright.graphics.colouring import chord_colours
 from meshwright.graphics.theme import Theme
 from meshwright.signals import Signal
 from meshwright_core import MeshError, Operation
 from meshwright_core.blocks.sizing import GridConflictError
+from meshwright_core.blocks.structure import BlockStructure
 from meshwright_core.core.grid_plan import Grading
 from meshwright_core.errors import sentence
 
@@ -70,6 +76,9 @@ class BlocksController(Controller):
         self._edge: tuple[int, int] | None = None
         self._block = -1  # the element that is the selected block
         self._said = ""
+        self._bent: list[np.ndarray] | None = None
+        """The block edges where the fine grid has them, of the structure in `_bent_of`."""
+        self._bent_of: BlockStructure | None = None
         self._before = canvas.gesture_at
         canvas.gesture_at = self._gesture_at
         canvas.hovered.connect(self._on_hovered)
@@ -115,7 +124,7 @@ class BlocksController(Controller):
             self._status.show_message("Blocks: click an edge to select its chord, or a block.")
         else:
             self.job.stop()
-            self.planned = None
+            self.planned = self._bent = self._bent_of = None
             self.layer.show(None)
             self._status.show_message("Blocks hidden.")
         self.changed.emit()
@@ -149,17 +158,13 @@ class BlocksController(Controller):
         planned = self.planned
         assert planned is not None
         structure = planned.structure
-        edges = np.arange(len(structure.edges))
-        middles = structure.edge_points(edges, np.full(len(edges), 0.5))[:, :2]
         counts = planned.division.counts if planned.division is not None else None
-        strips: dict[int, list[np.ndarray]] = {}
-        for block, crossing in enumerate(structure.crossing.tolist()):
-            for chord in set(crossing):
-                strips.setdefault(chord, []).append(self._outline(block))
+        if self._bent_of is not None and not _alike(self._bent_of, structure):
+            self._bent = self._bent_of = None
         self.layer.show(
             BlocksShown(
-                structure.parts, middles, structure.chord, counts, frozenset(planned.pinned()),
-                frozenset(planned.chords), strips,
+                structure.parts, self._bent, structure.chord, counts, frozenset(planned.pinned()),
+                frozenset(planned.chords), self._strips(),
             )
         )  # fmt: skip
         values = self.panel.values
@@ -173,12 +178,22 @@ class BlocksController(Controller):
         elif self._said:
             self._notice.hide()
             self._said = ""
+        previewed = 0 < planned.cells <= MOST_CELLS
         for name in ("worst", "aspect"):
-            values[name].text = "\u2013"
+            values[name].text = "\u2026" if previewed else "\u2013"
         if planned.cells > MOST_CELLS:
             self.layer.show_grid([])
         self._show_selection()
         self.job.start(planned)
+
+    def _strips(self) -> dict[int, list[np.ndarray]]:
+        """The outlines of the blocks of each chord."""
+        assert self.planned is not None
+        found: dict[int, list[np.ndarray]] = {}
+        for block, crossing in enumerate(self.planned.structure.crossing.tolist()):
+            for chord in set(crossing):
+                found.setdefault(chord, []).append(self._outline(block))
+        return found
 
     def _outline(self, block: int) -> np.ndarray:
         """(p, 2) a block as a polygon."""
@@ -187,18 +202,25 @@ class BlocksController(Controller):
         lines = []
         for side in range(4):
             edge = int(structure.sides[block, side])
-            w = np.linspace(0.0, 1.0, 2 if structure.parts.curve[edge] < 0 else 33)[:-1]
+            if self._bent is not None:
+                line = self._bent[edge]
+            else:
+                w = np.linspace(0.0, 1.0, 2 if structure.parts.curve[edge] < 0 else ALONG_CURVES)
+                line = structure.parts.points(np.full(len(w), edge), w)[:, :2]
             # sides 2 and 3 run against the axes of the block
             along = bool(structure.forward[block, side]) ^ (side > 1)
-            fractions = w if along else 1.0 - w
-            lines.append(structure.parts.points(np.full(len(w), edge), fractions)[:, :2])
+            lines.append(line[:-1] if along else line[:0:-1])
         return np.concatenate(lines)
 
     def _on_preview(self, preview: GridPreview) -> None:
         if not self.shown:
             return
         self.layer.show_grid(preview.lines)
-        if preview.final:
+        if preview.final and self.planned is not None and self.layer.shown is not None:
+            self._bent, self._bent_of = preview.edges, self.planned.structure
+            self.layer.show(replace(self.layer.shown, bent=self._bent, strips=self._strips()))
+            if self.block >= 0:
+                self.layer.select(-1, -1, self._outline(self.block))
             quality, values = preview.quality, self.panel.values
             inverted = f", {quality.inverted:,} inverted" if quality.inverted else ""
             values["worst"].text = f"{quality.worst_scaled_jacobian:.2f}{inverted}"
@@ -315,19 +337,7 @@ class BlocksController(Controller):
 
     def edge_at(self, at: QPointF) -> int:
         """The block edge near pixel `at`, or whose number is there; -1 for none."""
-        planned, halfedge = self.planned, self._document.hover
-        found = self.layer.edge_at(at)
-        mesh = self._document.mesh
-        if found >= 0 or planned is None or mesh is None or halfedge < 0:
-            return found
-        edge = planned.structure.edge_between(mesh.origin(halfedge), mesh.target(halfedge))
-        if edge < 0:
-            return -1
-        w = np.linspace(0.0, 1.0, 65)
-        line = self._canvas.viewport.to_screen(
-            planned.structure.parts.points(np.full(len(w), edge), w)
-        )
-        return edge if _distance(line, np.array([at.x(), at.y()])) <= REACH else -1
+        return self.layer.edge_at(at, REACH)
 
     def click(self, click: Click) -> bool:
         """Select what is under a click of the left button while blocks are shown."""
@@ -453,9 +463,11 @@ class BlocksController(Controller):
         return self.chord >= 0
 
 
-def _distance(line: np.ndarray, place: np.ndarray) -> float:
-    """From a point (2,) to a polyline (n, 2)."""
-    start, along = line[:-1], np.diff(line, axis=0)
-    square = np.maximum((along**2).sum(axis=1), 1e-300)
-    t = np.clip(((place - start) * along).sum(axis=1) / square, 0.0, 1.0)
-    return float(np.linalg.norm(start + t[:, None] * along - place, axis=1).min())
+def _alike(one: BlockStructure, other: BlockStructure) -> bool:
+    """Whether two structures have the same edges at the same places."""
+    return (
+        one.edges.shape == other.edges.shape
+        and bool((one.edges == other.edges).all())
+        and one.points.shape == other.points.shape
+        and bool((one.points == other.points).all())
+    )

@@ -88,7 +88,7 @@ class BlocksPanel(QWidget):
         self.ratio.setSingleStep(0.05)
         self.ratio.setKeyboardTracking(False)
         self.ratio.setAccessibleName("Growth from cell to cell")
-        self.size = self._height("Size of a cell", "by geometry")
+        self.cell_size = self._height("Size of a cell", "by geometry")
         self.crossing = (QPushButton(), QPushButton())
         self.tools: dict[str, QPushButton] = {}
         self.export = QPushButton("Export blocks\u2026")
@@ -155,7 +155,7 @@ class BlocksPanel(QWidget):
             links.addWidget(link, 1)
         whole = QHBoxLayout()
         whole.addWidget(named("Cell size", "Label"))
-        whole.addWidget(self.size, 1)
+        whole.addWidget(self.cell_size, 1)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(GRID)
@@ -176,7 +176,7 @@ class BlocksPanel(QWidget):
         self.free.clicked.connect(lambda: self.count_freed.emit())
         for box in (self.first, self.last, self.ratio):
             box.valueChanged.connect(self._on_grading)
-        self.size.valueChanged.connect(self.size_set)
+        self.cell_size.valueChanged.connect(self.size_set)
         self.export.clicked.connect(self._actions["blocks.export"].trigger)
         for place, link in enumerate(self.crossing):
             link.clicked.connect(lambda checked=False, i=place: self._on_link(i))
@@ -228,9 +228,9 @@ class BlocksPanel(QWidget):
 
     def show_size(self, size: float | None, usual: float) -> None:
         """Show the size of cells that was set; None for none."""
-        blocker = QSignalBlocker(self.size)
-        self.size.setSingleStep(0.1 * usual)
-        self.size.setValue(size or 0.0)
+        blocker = QSignalBlocker(self.cell_size)
+        self.cell_size.setSingleStep(0.1 * usual)
+        self.cell_size.setValue(size or 0.0)
         del blocker
 
     def _on_grading(self) -> None:

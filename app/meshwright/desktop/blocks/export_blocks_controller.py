@@ -23,7 +23,7 @@ from meshwright_core.blocks.grid import BlockGrid, block_grid
 from meshwright_core.blocks.sizing import Sizing
 from meshwright_core.blocks.structure import BlockStructure
 from meshwright_core.errors import sentence
-from meshwright_core.io.grids.block_files import BLOCK_MESH_DICT, check_format, write_blocks
+from meshwright_core.io.grids.block_files import BLOCK_MESH_DICT, check_format, losses, write_blocks
 
 _log = logging.getLogger(__name__)
 STAGES = ("Dividing blocks for {}", "Writing {}")
@@ -148,6 +148,8 @@ class ExportBlocksController(Controller):
             words, failed = f"{name} was not written: {type(error).__name__}: {error}", True
         else:
             words, failed = result_words(grid, files), False
+            if lost := losses(path, grid):
+                words, failed = " ".join((words, *lost)), True
         self._dispatch(partial(self._finish, words, failed))
 
     def _give_way(self) -> None:

@@ -122,10 +122,10 @@ class ExportBlocksDialog(QDialog):
         self.order_box = QComboBox()
         self.volume_box = QComboBox()
         self.thickness = DecimalBox()
-        self.layers = IntegerBox()
+        self.layer_count = IntegerBox()
         self.modes: dict[str, QPushButton] = {}
         self._group = QButtonGroup(self)
-        self.size = DecimalBox()
+        self.cell_size = DecimalBox()
         self.divide = IntegerBox()
         self.sides = {
             patch.name: SideRow(patch.name, self._on_changed) for patch in structure.patches
@@ -154,20 +154,20 @@ class ExportBlocksDialog(QDialog):
         self.thickness.setRange(1e-4, 1e9)
         self.thickness.setValue(order.thickness)
         self.thickness.setPrefix("thickness ")
-        self.layers.setRange(1, 100_000)
-        self.layers.setValue(order.layers)
-        self.layers.setSuffix(" layers")
+        self.layer_count.setRange(1, 100_000)
+        self.layer_count.setValue(order.layers)
+        self.layer_count.setSuffix(" layers")
         mode = DIVIDE if plan.divide else SIZE if plan.size else GEOMETRY
         for key, title in MODES:
             button = segment(title)
             button.setChecked(key == mode)
             self._group.addButton(button)
             self.modes[key] = button
-        self.size.setDecimals(6)
-        self.size.setRange(1e-6, 1e9)
-        self.size.setSingleStep(0.1 * self._usual)
-        self.size.setValue(plan.size or self._usual)
-        self.size.setAccessibleName("Length of a cell")
+        self.cell_size.setDecimals(6)
+        self.cell_size.setRange(1e-6, 1e9)
+        self.cell_size.setSingleStep(0.1 * self._usual)
+        self.cell_size.setValue(plan.size or self._usual)
+        self.cell_size.setAccessibleName("Length of a cell")
         self.divide.setRange(1, 100_000)
         self.divide.setValue(plan.divide or USUAL_DIVIDE)
         self.divide.setAccessibleName("Cells along every block edge")
@@ -180,7 +180,7 @@ class ExportBlocksDialog(QDialog):
                 row.ratio.setValue(walls[name].ratio)
         for box in (self.format_box, self.order_box, self.volume_box):
             box.currentIndexChanged.connect(self._on_changed)
-        for spin in (self.thickness, self.layers, self.size, self.divide):
+        for spin in (self.thickness, self.layer_count, self.cell_size, self.divide):
             spin.valueChanged.connect(self._on_changed)
         self._group.buttonClicked.connect(self._on_changed)
 
@@ -195,7 +195,7 @@ class ExportBlocksDialog(QDialog):
         volume = QHBoxLayout()
         volume.addWidget(self.volume_box, 2)
         volume.addWidget(self.thickness, 2)
-        volume.addWidget(self.layers, 1)
+        volume.addWidget(self.layer_count, 1)
         self._volume = QWidget()
         volume.setContentsMargins(0, 0, 0, 0)
         self._volume.setLayout(volume)
@@ -204,7 +204,7 @@ class ExportBlocksDialog(QDialog):
         for button in self.modes.values():
             modes.addWidget(button)
         self._amount = QStackedWidget()
-        for field in (named("from size, curves and gaps", "Hint"), self.size, self.divide):
+        for field in (named("from size, curves and gaps", "Hint"), self.cell_size, self.divide):
             self._amount.addWidget(field)
         modes.addSpacing(2 * GRID)
         modes.addWidget(self._amount, 1)
@@ -279,16 +279,18 @@ class ExportBlocksDialog(QDialog):
         volume = str(self.volume_box.currentData())
         for part in (self._volume, self._volume_label):
             part.setVisible(ending == BLOCK_MESH_DICT)
-        for part in (self.thickness, self.layers):
+        for part in (self.thickness, self.layer_count):
             part.setVisible(volume == LAYERS)
-        self.order = BlockExport(ending, order, volume, self.thickness.value(), self.layers.value())
+        self.order = BlockExport(
+            ending, order, volume, self.thickness.value(), self.layer_count.value()
+        )
         mode = self.mode
         self._amount.setCurrentIndex([key for key, _ in MODES].index(mode))
         rows = self.sides.values()
         kept = tuple(wall for wall in self.plan.walls if wall.name not in self.sides)
         self.plan = replace(
             self.plan,
-            size=round(self.size.value(), 6) if mode == SIZE else None,
+            size=round(self.cell_size.value(), 6) if mode == SIZE else None,
             divide=self.divide.value() if mode == DIVIDE else None,
             walls=kept + tuple(
                 Wall(row.name, row.height.value(), row.ratio.value())

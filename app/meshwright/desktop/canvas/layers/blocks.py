@@ -30,8 +30,8 @@ class BlocksShown:
 
     edges: EdgeParts
     """The e block edges."""
-    middles: np.ndarray
-    """(e, 2) where their numbers stand, in the plane."""
+    bent: list[np.ndarray] | None
+    """The same as lines (p, 2) where the fine grid has them; None where that is not known."""
     chord: np.ndarray
     """(e,) their chords."""
     counts: np.ndarray | None
@@ -59,6 +59,8 @@ class BlocksLayer(PictureLayer):
         self._selected = self._hovered = self._edge = -1
         self._block: np.ndarray | None = None
         self._lines: list[np.ndarray] = []
+        self._segments = np.zeros((0, 2, 2))
+        self._edge_of = np.zeros(0, np.int64)
         self._cards: list[tuple[int, QRectF]] = []
         self._drag: np.ndarray | None = None
 
@@ -108,9 +110,24 @@ class BlocksLayer(PictureLayer):
         self._drag = line
         self.forget()
 
-    def edge_at(self, at: QPointF) -> int:
-        """The edge whose number is at pixel `at`; -1 for none."""
-        return next((edge for edge, card in self.cards if card.contains(at)), -1)
+    def edge_at(self, at: QPointF, reach: float) -> int:
+        """The edge whose number is at pixel `at`, or the nearest one within `reach` pixels; -1 for
+        none.
+        """
+        if self.shown is None:
+            return -1
+        if not self._lines:
+            self._place()
+        for edge, card in self._cards:
+            if card.contains(at):
+                return edge
+        place = np.array([at.x(), at.y()])
+        start, along = self._segments[:, 0], self._segments[:, 1] - self._segments[:, 0]
+        square = np.maximum((along**2).sum(axis=1), 1e-300)
+        t = np.clip(((place - start) * along).sum(axis=1) / square, 0.0, 1.0)
+        away = np.linalg.norm(start + t[:, None] * along - place, axis=1)
+        nearest = int(np.argmin(away))
+        return int(self._edge_of[nearest]) if away[nearest] <= reach else -1
 
     def look(self, viewport: Viewport) -> None:
         """Follow a change of the view."""
@@ -160,20 +177,23 @@ class BlocksLayer(PictureLayer):
         """Find the polylines of edges and the cards of their numbers."""
         shown = self.shown
         assert shown is not None
-        self._lines = [
-            self.viewport.to_screen(line) for line in polylines(shown.edges, self.viewport)
-        ]
+        lines = shown.bent or polylines(shown.edges, self.viewport)
+        self._lines = [self.viewport.to_screen(line) for line in lines]
+        self._segments = np.concatenate(
+            [np.stack([line[:-1], line[1:]], axis=1) for line in self._lines]
+        )
+        self._edge_of = np.repeat(np.arange(len(lines)), [len(line) - 1 for line in self._lines])
         metrics = QFontMetricsF(self._font)
-        middles = self.viewport.to_screen(shown.middles)
         self._cards = []
         taken: list[QRectF] = []
         for edge, line in enumerate(self._lines):
-            length = float(np.hypot(*np.diff(line, axis=0).T).sum())
+            arc = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
+            length = float(arc[-1])
             if shown.counts is None or length < ROOM:
                 continue
             text = str(shown.counts[shown.chord[edge]])
             width = max(metrics.horizontalAdvance(text) + 10.0, HEIGHT)
-            x, y = middles[edge].tolist()
+            x, y = (float(np.interp(0.5 * length, arc, line[:, c])) for c in range(2))
             card = QRectF(x - 0.5 * width, y - 0.5 * HEIGHT, width, HEIGHT)
             if not any(card.intersects(other) for other in taken):
                 taken.append(card)
