@@ -77,7 +77,7 @@ class Hinting:
     def show(
         self, choices: tuple[PolicyAction, ...], next_step: PolicyAction | None = None
     ) -> None:
-        """Set the hints, and which of them *Step* will apply; the one of :attr:`guide` comes first."""
+        """Set the hints, and which of them *Step* applies; that of :attr:`guide` comes first."""
         self._hints, self.next_step = self._led(choices), next_step
         self.changed.emit()
 
