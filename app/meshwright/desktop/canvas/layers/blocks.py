@@ -44,6 +44,41 @@ class BlocksShown:
     """The outlines (p, 2) of the blocks of each chord."""
 
 
+class GridLinesLayer(PictureLayer):
+    """Paints the lines of the fine grid; apart from the blocks, which change with every hover."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__(theme)
+        self._points = np.zeros((0, 2))
+        self._first = np.zeros(1, np.int64)
+
+    @property
+    def count(self) -> int:
+        """How many lines are shown."""
+        return len(self._first) - 1
+
+    @property
+    def empty(self) -> bool:
+        """Whether there are none."""
+        return not self.count
+
+    def show(self, lines: list[np.ndarray]) -> None:
+        """Show lines (p, 2) in the plane."""
+        if lines or not self.empty:
+            some = lines[:MOST_LINES]
+            self._points = np.concatenate([np.zeros((0, 2)), *some])
+            self._first = np.concatenate([[0], np.cumsum([len(line) for line in some])]).astype(int)
+            self.forget()
+
+    def draw(self, painter: QPainter) -> None:
+        """Paint all lines."""
+        colour = QColor(self.theme.edge)
+        colour.setAlpha(150)
+        painter.setPen(QPen(colour, 0.8))
+        for line in np.split(self.viewport.to_screen(self._points), self._first[1:-1]):
+            painter.drawPolyline(polyline(line))
+
+
 class BlocksLayer(PictureLayer):
     """Paints :class:`BlocksShown`; the selected chord, edge or block, and the hovered chord, are
     stronger.
@@ -55,7 +90,6 @@ class BlocksLayer(PictureLayer):
         self._font.setPixelSize(11)
         self._font.setWeight(QFont.Weight.DemiBold)
         self.shown: BlocksShown | None = None
-        self._grid: list[np.ndarray] = []
         self._selected = self._hovered = self._edge = -1
         self._block: np.ndarray | None = None
         self._lines: list[np.ndarray] = []
@@ -70,11 +104,6 @@ class BlocksLayer(PictureLayer):
         return self.shown is None
 
     @property
-    def grid_lines(self) -> int:
-        """How many lines of the fine grid are shown."""
-        return len(self._grid)
-
-    @property
     def cards(self) -> list[tuple[int, QRectF]]:
         """The edges that carry numbers, with the places of these in pixels."""
         if self._picture is None and self.shown is not None:
@@ -82,17 +111,10 @@ class BlocksLayer(PictureLayer):
         return self._cards
 
     def show(self, shown: BlocksShown | None) -> None:
-        """Show these blocks; None for none. The fine grid stays until another one is shown."""
+        """Show these blocks; None for none."""
         if shown is not None or self.shown is not None:
             self.shown = shown
-            if shown is None:
-                self._grid = []
             self.forget()
-
-    def show_grid(self, lines: list[np.ndarray]) -> None:
-        """Show lines (p, 2) of the fine grid."""
-        self._grid = lines[:MOST_LINES]
-        self.forget()
 
     def select(self, chord: int, edge: int = -1, block: np.ndarray | None = None) -> None:
         """Mark a chord and one of its edges, or a block by its outline (p, 2); -1 for none."""
@@ -140,13 +162,12 @@ class BlocksLayer(PictureLayer):
         super().forget()
 
     def draw(self, painter: QPainter) -> None:
-        """Paint grid, strips, edges and numbers, in this order."""
+        """Paint strips, edges and numbers, in this order."""
         shown = self.shown
         if shown is None:
             return
         self._place()
         colours = chord_colours(int(shown.chord.max(initial=-1)) + 1, self.theme)
-        self._draw_grid(painter)
         for chord, alpha in ((self._hovered, 34), (self._selected, 62)):
             for outline in shown.strips.get(chord, ()):
                 self._fill(painter, outline, colours[chord], alpha)
@@ -198,13 +219,6 @@ class BlocksLayer(PictureLayer):
             if not any(card.intersects(other) for other in taken):
                 taken.append(card)
                 self._cards.append((edge, card))
-
-    def _draw_grid(self, painter: QPainter) -> None:
-        colour = QColor(self.theme.edge)
-        colour.setAlpha(150)
-        painter.setPen(QPen(colour, 0.8))
-        for line in self._grid:
-            painter.drawPolyline(polyline(self.viewport.to_screen(line)))
 
     def _fill(self, painter: QPainter, outline: np.ndarray, hue: str, alpha: int) -> None:
         colour = QColor(hue)
