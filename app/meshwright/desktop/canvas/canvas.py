@@ -176,6 +176,7 @@ class Canvas(QWidget):
         edges = self.edges
         if mesh is not None and edges is not None and edges.look(self.viewport):
             view.update_edges(mesh, edges)
+        marks = view.markers  # with their sizes, if they are no longer a crowd
         self.overlay.show_markers(marks, edges, self.viewport, view.crowd, view.outlined)
         self._show_hover()
         self.plotter.update()
