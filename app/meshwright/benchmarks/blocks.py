@@ -112,8 +112,10 @@ def _written(grid: BlockGrid) -> list[str]:
 
 
 def _peer(grid: BlockGrid) -> dict[str, Any]:
-    """Gmsh's quasi-structured mesh of the same boundary and about the same number of cells."""
-    if importlib.util.find_spec("gmsh") is None:
+    """Gmsh's quasi-structured mesh of the same boundary and about the same number of cells; nothing
+    for several regions, as it gets the outline alone.
+    """
+    if importlib.util.find_spec("gmsh") is None or len(grid.structure.region_names) > 1:
         return {}
     import gmsh
 

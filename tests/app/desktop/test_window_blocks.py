@@ -92,7 +92,7 @@ def test_a_count_typed_for_a_clicked_chord_holds_on_all_its_edges_in_one_step(qt
     qtbot.mouseClick(panel.free, Qt.MouseButton.LeftButton)
     assert counts(window)[0, 1] == counts(window)[1, 2]
     qtbot.waitUntil(lambda: panel.values["worst"].text == "1.00", timeout=3 * WAIT)
-    assert window.blocks.layer.grid_lines > 0
+    assert window.blocks.grid.count > 0
 
 
 def test_a_grading_makes_the_first_cells_thin_and_even_cells_return(qtbot, shown):
@@ -201,7 +201,7 @@ def test_chords_that_an_edit_joins_with_two_numbers_are_shown(qtbot, shown):
     mesh = document.mesh
     for edge, count in (((0, 4), 5), ((4, 8), 9)):
         blocks.select_edge(structure.edge_between(*edge))
-        blocks.set_count(count)
+        blocks.tools.set_count(count)
     for h in [h for e in mesh.element_ids().tolist() for h in range(4 * e, 4 * e + 4)]:
         if mesh.check("flip_left", h):
             document.submit("flip_left", h)
@@ -270,7 +270,7 @@ def test_a_cancelled_export_writes_nothing(qtbot, shown, tmp_path):
 def test_numbers_and_gradings_are_saved_in_projects(qtbot, shown, tmp_path):
     window = shown(rows_of_blocks())
     click(qtbot, window, (0.5, 0.0))
-    window.blocks.set_count(13)
+    window.blocks.tools.set_count(13)
     window.blocks.panel.last.setValue(0.05)
     path = tmp_path / "grid.meshwright"
     window.document.save(path)

@@ -6,7 +6,7 @@ from functools import partial
 
 from meshwright.desktop.actions.action import Action, has_quads, needing
 from meshwright.desktop.actions.context import ActionContext
-from meshwright.desktop.blocks.blocks_controller import NUDGE
+from meshwright.desktop.blocks.chord_tools import NUDGE
 from meshwright_core.operations.catalogue import Operation
 
 
@@ -40,15 +40,15 @@ def _next(step: int, context: ActionContext) -> None:
 
 
 def _more(step: int, context: ActionContext) -> None:
-    context.blocks.add_cells(step)
+    context.blocks.tools.add_cells(step)
 
 
 def _slide(share: float, context: ActionContext) -> None:
-    context.blocks.nudge(share)
+    context.blocks.tools.nudge(share)
 
 
 def _apply(operation: Operation, context: ActionContext) -> None:
-    context.blocks.apply(operation)
+    context.blocks.tools.apply(operation)
 
 
 ACTIONS: tuple[Action, ...] = (
@@ -84,7 +84,7 @@ ACTIONS: tuple[Action, ...] = (
     ),
     _tool(
         "count", "Number of cells\u2026", "Set the number of cells across the selected chord",
-        "Ctrl+D", lambda context: context.blocks.focus_count(),
+        "Ctrl+D", lambda context: context.blocks.tools.focus_count(),
     ),
     _tool(
         "more", "One cell more", "Add a cell across the selected chord", "Ctrl+Up",
@@ -96,15 +96,15 @@ ACTIONS: tuple[Action, ...] = (
     ),
     _tool(
         "free", "Cells by size", "Let size and evenness decide the number of cells again",
-        "Ctrl+Shift+D", lambda context: context.blocks.set_count(None),
+        "Ctrl+Shift+D", lambda context: context.blocks.tools.set_count(None),
     ),
     _tool(
         "grading", "Grade chord\u2026", "Set lengths of the first and the last cell, and growth",
-        "Ctrl+Alt+G", lambda context: context.blocks.focus_grading(),
+        "Ctrl+Alt+G", lambda context: context.blocks.tools.focus_grading(),
     ),
     _tool(
         "even", "Even cells", "Remove the grading of the selected chord", "",
-        lambda context: context.blocks.set_grading(None),
+        lambda context: context.blocks.tools.set_grading(None),
     ),
     _tool(
         "insert", "Insert chord (global split)", "Open the selected edge into a block, and carry "
@@ -125,7 +125,7 @@ ACTIONS: tuple[Action, ...] = (
     ),
     _tool(
         "straighten", "Straighten line", "Make the line through the selected edge straight",
-        "Ctrl+Shift+T", lambda context: context.blocks.straighten(),
+        "Ctrl+Shift+T", lambda context: context.blocks.tools.straighten(),
     ),
     Action(
         "blocks.export",

@@ -1,48 +1,42 @@
-"""The Blocks view: shows chords and counts, selects, and runs the chord tools."""
+"""The Blocks view: shows chords, numbers of cells and the fine grid, and selects."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 from qtpy.QtCore import QPointF, Qt
 
 from meshwright.desktop.blocks.blocks_panel import GROWTH, BlocksPanel, ChordShown
+from meshwright.desktop.blocks.chord_tools import ChordTools
 from meshwright.desktop.blocks.preview_job import PreviewJob
 from meshwright.desktop.blocks.slide_gesture import SlideLine
 from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.canvas.gestures import Gesture
-from meshwright.desktop.canvas.layers.blocks import BlocksLayer, BlocksShown
+from meshwright.desktop.canvas.layers.blocks import BlocksLayer, BlocksShown, GridLinesLayer
 from meshwright.desktop.canvas.mouse import Click
 from meshwright.desktop.controller import Controller
 from meshwright.desktop.editing.hover_controller import HoverController
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
-from meshwright.desktop.widgets.wording import step_message
-from meshwright.document import block_edits
 from meshwright.document.block_preview import (
     ALONG_CURVES,
     MOST_CELLS,
     GridPreview,
     PlannedBlocks,
 )
-from meshwright.document.document import PLAN, Document
+from meshwright.document.document import Document
 from meshwright.graphics.colouring import chord_colours
 from meshwright.graphics.theme import Theme
 from meshwright.signals import Signal
-from meshwright_core import MeshError, Operation
-from meshwright_core.blocks.sizing import GridConflictError
+from meshwright_core import MeshError
 from meshwright_core.blocks.structure import BlockStructure
 from meshwright_core.core.grid_plan import Grading
 from meshwright_core.errors import sentence
 
 REACH = 9.0
 """Distance in pixels at which an edge counts as under the mouse."""
-NUDGE = 0.1
-"""Share of the way to the next line that a key slides a line."""
-SELECT_FIRST = "Select a chord first: click one of its edges."
 
 
 class BlocksController(Controller):
@@ -68,7 +62,9 @@ class BlocksController(Controller):
         self.shown = False
         self.planned: PlannedBlocks | None = None
         self.panel = BlocksPanel(actions, theme)
+        self.grid = GridLinesLayer(theme)
         self.layer = BlocksLayer(theme, canvas.font())
+        canvas.overlay.add(self.grid, below=canvas.overlay.markers)
         canvas.overlay.add(self.layer, below=canvas.overlay.markers)
         self.job = PreviewJob(canvas)
         self.job.ready.connect(self._on_preview)
@@ -85,17 +81,18 @@ class BlocksController(Controller):
         self._connections.add(document.changed, self._on_changed)
         self._connections.add(document.replaced, self._on_replaced)
         panel = self.panel
-        panel.count_set.connect(self.set_count)
-        panel.count_freed.connect(lambda: self.set_count(None))
-        panel.grading_set.connect(self.set_grading)
-        panel.size_set.connect(self.set_size)
+        self.tools = ChordTools(document, self, status)
+        panel.count_set.connect(self.tools.set_count)
+        panel.count_freed.connect(lambda: self.tools.set_count(None))
+        panel.grading_set.connect(self.tools.set_grading)
+        panel.size_set.connect(self.tools.set_size)
         panel.chord_chosen.connect(self.select_chord)
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in the colours of ``theme``."""
         super().set_theme(theme)
         self.panel.set_theme(theme)
-        self._show_selection()
+        self.show_selection()
 
     def close(self) -> None:
         """Disconnect, and end the thread."""
@@ -126,6 +123,7 @@ class BlocksController(Controller):
             self.job.stop()
             self.planned = self._bent = self._bent_of = None
             self.layer.show(None)
+            self.grid.show([])
             self._status.show_message("Blocks hidden.")
         self.changed.emit()
 
@@ -164,7 +162,7 @@ class BlocksController(Controller):
         self.layer.show(
             BlocksShown(
                 structure.parts, self._bent, structure.chord, counts, frozenset(planned.pinned()),
-                frozenset(planned.chords), self._strips(),
+                frozenset(planned.chords), self._strip,
             )
         )  # fmt: skip
         values = self.panel.values
@@ -173,8 +171,8 @@ class BlocksController(Controller):
         plan = self._document.need_mesh().grid_plan
         self.panel.show_size(plan.size, float(np.median(structure.lengths)) / 5.0)
         if planned.problem:
-            self.layer.show_grid([])
-            self._say(planned.problem)
+            self.grid.show([])
+            self.say(planned.problem)
         elif self._said:
             self._notice.hide()
             self._said = ""
@@ -182,18 +180,15 @@ class BlocksController(Controller):
         for name in ("worst", "aspect"):
             values[name].text = "\u2026" if previewed else "\u2013"
         if planned.cells > MOST_CELLS:
-            self.layer.show_grid([])
-        self._show_selection()
+            self.grid.show([])
+        self.show_selection()
         self.job.start(planned)
 
-    def _strips(self) -> dict[int, list[np.ndarray]]:
-        """The outlines of the blocks of each chord."""
+    def _strip(self, chord: int) -> list[np.ndarray]:
+        """The outlines of the blocks of a chord."""
         assert self.planned is not None
-        found: dict[int, list[np.ndarray]] = {}
-        for block, crossing in enumerate(self.planned.structure.crossing.tolist()):
-            for chord in set(crossing):
-                found.setdefault(chord, []).append(self._outline(block))
-        return found
+        blocks = np.flatnonzero((self.planned.structure.crossing == chord).any(axis=1))
+        return [self._outline(block) for block in blocks.tolist()]
 
     def _outline(self, block: int) -> np.ndarray:
         """(p, 2) a block as a polygon."""
@@ -215,10 +210,10 @@ class BlocksController(Controller):
     def _on_preview(self, preview: GridPreview) -> None:
         if not self.shown:
             return
-        self.layer.show_grid(preview.lines)
+        self.grid.show(preview.lines)
         if preview.final and self.planned is not None and self.layer.shown is not None:
             self._bent, self._bent_of = preview.edges, self.planned.structure
-            self.layer.show(replace(self.layer.shown, bent=self._bent, strips=self._strips()))
+            self.layer.show(replace(self.layer.shown, bent=self._bent))
             if self.block >= 0:
                 self.layer.select(-1, -1, self._outline(self.block))
             quality, values = preview.quality, self.panel.values
@@ -226,7 +221,8 @@ class BlocksController(Controller):
             values["worst"].text = f"{quality.worst_scaled_jacobian:.2f}{inverted}"
             values["aspect"].text = f"{quality.worst_aspect:.1f}"
 
-    def _say(self, words: str) -> None:
+    def say(self, words: str) -> None:
+        """Say in the notice bar what cannot be, until an edit resolves it."""
         self._said = sentence(words)
         self._notice.show_message(self._said)
 
@@ -277,7 +273,7 @@ class BlocksController(Controller):
         if edge >= 0:
             a, b = structure.vertices[structure.edges[edge]].tolist()
             self._edge = (a, b)
-        self._show_selection()
+        self.show_selection()
 
     def select_chord(self, chord: int) -> None:
         """Select a chord by its first edge."""
@@ -287,7 +283,9 @@ class BlocksController(Controller):
 
     def next_chord(self, step: int) -> None:
         """Select the next chord by number; the previous one for -1."""
-        if self._need_view() and self.planned is not None:
+        if not self.shown:
+            self.show(True)
+        if self.shown and self.planned is not None:
             count = self.planned.structure.chord_count
             now = self.chord
             first = 0 if step > 0 else count - 1
@@ -300,7 +298,8 @@ class BlocksController(Controller):
         self.select_edge(-1)
         return True
 
-    def _show_selection(self) -> None:
+    def show_selection(self) -> None:
+        """Show what is selected on the canvas and in the panel."""
         planned = self.planned
         if planned is None or not self.shown:
             return
@@ -346,7 +345,7 @@ class BlocksController(Controller):
         edge = self.edge_at(click.at)
         if edge < 0 and click.halfedge >= 0:
             self._edge, self._block = None, click.halfedge // 4
-            self._show_selection()
+            self.show_selection()
         else:
             self.select_edge(edge)
         return True
@@ -365,102 +364,7 @@ class BlocksController(Controller):
         if edge < 0:
             return None
         self.select_edge(edge)
-        return SlideLine(self._canvas, self.layer, mesh, self.halfedge, at, self._on_slid)
-
-    # Tools
-
-    def set_count(self, count: int | None) -> None:
-        """Give the selected chord a number of cells; None: by size."""
-        if self._need_chord() and self.planned is not None:
-            structure, chord = self.planned.structure, self.chord
-            self._try(lambda: block_edits.set_count(self._document, structure, chord, count))
-
-    def add_cells(self, more: int) -> None:
-        """Change the number of cells across the selected chord."""
-        if self._need_chord() and self.planned is not None and self.planned.division is not None:
-            self.set_count(max(int(self.planned.division.counts[self.chord]) + more, 1))
-
-    def set_grading(self, grading: Grading | None) -> None:
-        """Grade the selected chord; None for even cells or the layers of walls."""
-        if self._need_chord() and self.planned is not None:
-            structure, chord = self.planned.structure, self.chord
-            self._try(lambda: block_edits.set_grading(self._document, structure, chord, grading))
-
-    def set_size(self, size: float) -> None:
-        """Set the length of cells, 0 for what the geometry makes of it."""
-        plan = self._document.need_mesh().grid_plan
-        wanted = replace(plan, size=size or None, divide=None)
-        title = f"Cell size {size:g}" if size else "Cell size by geometry"
-        self._try(lambda: block_edits.change_plan(self._document, wanted, title))
-
-    def apply(self, operation: Operation) -> None:
-        """Apply an operation to the selected edge: the global split that inserts a chord, or the
-        collapse of the chord.
-        """
-        if self._need_chord():
-            halfedge = self.halfedge
-            self._try(lambda: self._document.submit(operation, halfedge))
-
-    def nudge(self, share: float) -> None:
-        """Slide the line through the selected edge by a share of the way to the next one."""
-        if self._need_chord():
-            halfedge = self.halfedge
-            self._try(lambda: block_edits.slide(self._document, halfedge, share))
-
-    def straighten(self) -> None:
-        """Make the line through the selected edge straight between its ends."""
-        if self._need_chord():
-            halfedge = self.halfedge
-            self._try(lambda: block_edits.straighten(self._document, halfedge))
-
-    def focus_count(self) -> None:
-        """Put the keyboard into the field of the number of cells."""
-        if self._need_chord():
-            self.panel.count.setFocus(Qt.FocusReason.ShortcutFocusReason)
-            self.panel.count.selectAll()
-
-    def focus_grading(self) -> None:
-        """Put the keyboard into the field of the first cell."""
-        if self._need_chord():
-            self.panel.first.setFocus(Qt.FocusReason.ShortcutFocusReason)
-            self.panel.first.selectAll()
-
-    def _on_slid(self, halfedge: int, share: float) -> None:
-        if abs(share) > 1e-3:
-            self._try(lambda: block_edits.slide(self._document, halfedge, share))
-
-    def _try(self, edit: Callable[[], object]) -> None:
-        """Do an edit, or say in the notice bar why not, with the chords it is about."""
-        done = self._document.history.mark
-        try:
-            edit()
-        except GridConflictError as error:
-            self._refuse(str(error), frozenset(error.chords))
-        except MeshError as error:
-            chord = self.chord
-            self._refuse(str(error), frozenset([chord] if chord >= 0 else []))
-        else:
-            if self._document.history.mark != done:
-                row = self._document.history.last
-                plain = row is not None and row.action == PLAN
-                words = f"{row.title}." if row is not None and plain else step_message(row)
-                self._status.show_message(words)
-
-    def _refuse(self, words: str, chords: frozenset[int]) -> None:
-        self._say(words)
-        if self.layer.shown is not None:
-            self.layer.show(replace(self.layer.shown, wrong=chords))
-        self._show_selection()  # the fields show what holds
-
-    def _need_view(self) -> bool:
-        if not self.shown:
-            self.show(True)
-        return self.shown
-
-    def _need_chord(self) -> bool:
-        if self._need_view() and self.chord < 0:
-            self._status.show_message(SELECT_FIRST)
-        return self.chord >= 0
+        return SlideLine(self._canvas, self.layer, mesh, self.halfedge, at, self.tools.slide)
 
 
 def _alike(one: BlockStructure, other: BlockStructure) -> bool:
