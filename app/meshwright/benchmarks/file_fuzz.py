@@ -157,7 +157,7 @@ def _limit_memory() -> None:
 
 
 def verdict(work: Callable[[], None]) -> str:
-    """ "refused", "read", or what is wrong with how a file was read."""
+    """What came of reading a file: refused, read, or what is wrong with how it was read."""
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     try:
         with _limited():

@@ -7,8 +7,12 @@ those are projected after each step, as an undo does, and checked as a whole.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Protocol
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
+from typing import Any, Protocol, cast
+
+import numba
+import numpy as np
 
 from meshwright_core.core.arrays import (
     END,
@@ -18,6 +22,7 @@ from meshwright_core.core.arrays import (
     STEP,
     STEP_END,
     MeshArrays,
+    allocate,
     copied,
 )
 from meshwright_core.core.curve_checks import require_seats
@@ -82,7 +87,7 @@ class _Walk:
         self._carried = state_checks.carried(
             self._m, ends[ends >= 0], self._recorded and self._boundary.count > 0, regions
         )
-        _require(state_checks.walk(self._m, self._carried, 0, True))
+        _require(_walk()(self._m, self._carried, 0, 1))
 
     def along(
         self, steps: Sequence[Steps], forward: bool, at: int, forks: Mapping[int, Sequence[Fork]]
@@ -107,7 +112,7 @@ class _Walk:
     def _advance(self, count: int, forward: bool) -> None:
         at_once = count if self._recorded else 1
         for _ in range(0, count, at_once):
-            _require(state_checks.walk(self._m, self._carried, at_once, forward))
+            _require(_walk()(self._m, self._carried, at_once, int(forward)))
             if not self._recorded:
                 self._project()
 
@@ -126,6 +131,18 @@ class _Walk:
             self.along(kept, False, end, {})
             self._m = here
             here.counters[list(_JOURNAL)] = journal
+
+
+@cache
+def _walk() -> Callable[..., int]:
+    """What runs :func:`state_checks.walk`, compiled for writable arrays alone: those of files are
+    read-only, which would be other types.
+    """
+    m = allocate(3, 1, 1)
+    known = state_checks.carried(m, np.zeros(0, np.int64), True, 1)
+    types = (numba.typeof(m), numba.typeof(known), numba.int64, numba.int64)
+    compiled: Any = state_checks.walk
+    return cast(Callable[..., int], compiled.compile(types))
 
 
 def _require(wrong: int) -> None:

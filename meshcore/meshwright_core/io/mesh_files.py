@@ -182,13 +182,14 @@ def losses(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> tuple[str, ...]:
     count = len(np.unique(mesh.regions()))
     if not lost and count > 1 and not form.regions:
         said.append(f"{form.title} files hold no regions: what parts the {count} of them is lost.")
+    sides, regions = sides if form.sides else [], regions if form.regions else []
     if form.numbers and (sides or regions):
         said.append(
             f"{form.title} files hold numbers in place of names: {_listed([*sides, *regions])} "
             "become numbers."
         )
     if form.spelling is not None:
-        written = form.spelling(sides if form.sides else (), regions if form.regions else ())
+        written = form.spelling(sides, regions)
         said += _respelled(form.title, {a: b for a, b in written.items() if a != b})
     return tuple(said)
 

@@ -90,10 +90,10 @@ def test_what_a_format_loses_is_said(ending, tmp_path):
     form = FORMATS[ending]
     mesh = plate("quad" if "quad" in form.kinds else "tri")
     said = mesh_files.losses(f"plate{ending}", mesh)
-    assert len(said) == (2 if ending == ".su2" else 1)
+    assert len(said) == (2 if ending in (".su2", ".avs") else 1)
     assert all(form.title in line for line in said)
     if not form.regions:
-        assert "'steel', 'copper'" in said[0]
+        assert "of the regions 'steel', 'copper' are lost" in said[0]
     if not form.sides:
         assert "'inlet'" in said[0]
 

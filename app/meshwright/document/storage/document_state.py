@@ -6,6 +6,7 @@ hold anything: :func:`unpacked` checks all of it.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -185,7 +186,7 @@ def _require_scores(
     ``states`` are s and s* of all states from the start of the history on; ``rows`` lead on from
     state ``first``.
     """
-    for row, before, after in zip(rows, states[first:], states[first + 1 :], strict=True):
+    for row, (before, after) in zip(rows, pairwise(states[first:]), strict=True):
         if (row.before, row.after, row.optimum) != (before[0], *after):
             raise MeshError("its history states other scores than its mesh has")
     for branch in branches:
