@@ -57,7 +57,7 @@ def kinds(folder: Path, by_bytes: Mutation) -> dict[str, Kind]:
 def _projects(folder: Path) -> list[bytes]:
     files = []
     for kind in ("quad", "tri"):
-        document = Document(meshing.mesh_domain(gallery.shape("plate"), kind, max_edge=0.5), "a")
+        document = Document(meshing.mesh_domain(gallery.shape("l-shape"), kind), "a")
         document.auto_smooth = kind == "tri"
         _wander(document, 10, 1)
         document.go_to(6)

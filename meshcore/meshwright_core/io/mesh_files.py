@@ -282,7 +282,7 @@ def _loaded(content: Content, corner_angle: float) -> Loaded:
     )
     mesh.left_out = content.dropped
     if plane is not None:
-        shown = ", ".join(f"{value + 0.0:.4g}" for value in plane.normal)
+        shown = ", ".join(f"{round(value, 6) + 0.0:.4g}" for value in plane.normal)
         said = f"it lies in a plane with the normal ({shown}): it is edited in that plane"
         found.warnings.append(f"{said}, and written back to it")
     elif not flat:
