@@ -162,7 +162,7 @@ class BlocksController(Controller):
         self.layer.show(
             BlocksShown(
                 structure.parts, self._bent, structure.chord, counts, frozenset(planned.pinned()),
-                frozenset(planned.chords), self._strips(),
+                frozenset(planned.chords), self._strip,
             )
         )  # fmt: skip
         values = self.panel.values
@@ -184,14 +184,11 @@ class BlocksController(Controller):
         self.show_selection()
         self.job.start(planned)
 
-    def _strips(self) -> dict[int, list[np.ndarray]]:
-        """The outlines of the blocks of each chord."""
+    def _strip(self, chord: int) -> list[np.ndarray]:
+        """The outlines of the blocks of a chord."""
         assert self.planned is not None
-        found: dict[int, list[np.ndarray]] = {}
-        for block, crossing in enumerate(self.planned.structure.crossing.tolist()):
-            for chord in set(crossing):
-                found.setdefault(chord, []).append(self._outline(block))
-        return found
+        blocks = np.flatnonzero((self.planned.structure.crossing == chord).any(axis=1))
+        return [self._outline(block) for block in blocks.tolist()]
 
     def _outline(self, block: int) -> np.ndarray:
         """(p, 2) a block as a polygon."""
@@ -216,7 +213,7 @@ class BlocksController(Controller):
         self.grid.show(preview.lines)
         if preview.final and self.planned is not None and self.layer.shown is not None:
             self._bent, self._bent_of = preview.edges, self.planned.structure
-            self.layer.show(replace(self.layer.shown, bent=self._bent, strips=self._strips()))
+            self.layer.show(replace(self.layer.shown, bent=self._bent))
             if self.block >= 0:
                 self.layer.select(-1, -1, self._outline(self.block))
             quality, values = preview.quality, self.panel.values

@@ -6,7 +6,7 @@ from meshwright.desktop.main_window.sidebar import Section
 from meshwright.desktop.widgets.basic import rule
 from meshwright.graphics.theme import GRID, Theme
 
-WIDTH = 232
+WIDTH = 240
 
 
 class LeftColumn(QFrame):

@@ -1,7 +1,7 @@
 """The main window: constructs the controllers and lays out their widgets."""
 
 from qtpy.QtCore import QSize, Qt, QTimer, Signal
-from qtpy.QtGui import QCloseEvent, QKeyEvent, QShowEvent
+from qtpy.QtGui import QCloseEvent, QKeyEvent, QResizeEvent, QShowEvent
 from qtpy.QtWidgets import (
     QApplication,
     QHBoxLayout,
@@ -61,6 +61,9 @@ from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import style_sheet, theme
 from meshwright.puzzles.level import Level
+
+WORDS_FROM = 1040
+"""Width of the window in pixels from which the toolbar has words beside icons."""
 
 
 class MainWindow(QMainWindow):
@@ -319,6 +322,7 @@ class MainWindow(QMainWindow):
         )
 
     def _make_toolbar(self) -> QToolBar:
+        self._worded: list[QToolButton] = []
         bar = QToolBar("Tools")
         bar.setMovable(False)
         bar.setIconSize(QSize(20, 20))
@@ -335,8 +339,18 @@ class MainWindow(QMainWindow):
                 button = bar.widgetForAction(self.actions_by_id[action_id])
                 button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
                 if self.actions_by_id.entry(action_id).word and isinstance(button, QToolButton):
-                    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+                    self._worded.append(button)
         return bar
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Show words in the toolbar where there is room for all of it."""
+        super().resizeEvent(event)
+        style = Qt.ToolButtonStyle
+        shown = self.width() >= WORDS_FROM
+        for button in self._worded:
+            button.setToolButtonStyle(
+                style.ToolButtonTextBesideIcon if shown else style.ToolButtonIconOnly
+            )
 
     def _fill_menus(self) -> None:
         bar = self.menuBar()

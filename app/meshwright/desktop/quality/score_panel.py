@@ -27,7 +27,7 @@ from meshwright_core import HalfEdgeMesh
 
 _NONE = "\u2013"
 _STALE = "\u2026"
-SCORE_SIZES = ((5, 40), (7, 30), (99, 22))
+SCORE_SIZES = ((5, 40), (7, 30), (99, 18))
 """Up to how many characters the score has which size in pixels, so that it fits the panel."""
 LONGEST = 24
 """Characters of the line *Elements*; a longer one leaves out the noun."""

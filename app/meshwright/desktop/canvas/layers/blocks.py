@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRectF, Qt
@@ -40,8 +41,8 @@ class BlocksShown:
     """Chords whose numbers the user has set."""
     wrong: frozenset[int] = frozenset()
     """Chords that a contradiction is about."""
-    strips: dict[int, list[np.ndarray]] = field(default_factory=dict)
-    """The outlines (p, 2) of the blocks of each chord."""
+    strip: Callable[[int], list[np.ndarray]] = lambda chord: []
+    """The outlines (p, 2) of the blocks of a chord."""
 
 
 class GridLinesLayer(PictureLayer):
@@ -106,14 +107,14 @@ class BlocksLayer(PictureLayer):
     @property
     def cards(self) -> list[tuple[int, QRectF]]:
         """The edges that carry numbers, with the places of these in pixels."""
-        if self._picture is None and self.shown is not None:
-            self._place()
+        self._place()
         return self._cards
 
     def show(self, shown: BlocksShown | None) -> None:
         """Show these blocks; None for none."""
         if shown is not None or self.shown is not None:
             self.shown = shown
+            self._lines = []
             self.forget()
 
     def select(self, chord: int, edge: int = -1, block: np.ndarray | None = None) -> None:
@@ -138,8 +139,7 @@ class BlocksLayer(PictureLayer):
         """
         if self.shown is None:
             return -1
-        if not self._lines:
-            self._place()
+        self._place()
         for edge, card in self._cards:
             if card.contains(at):
                 return edge
@@ -156,11 +156,6 @@ class BlocksLayer(PictureLayer):
         super().look(viewport)
         self._lines = []
 
-    def forget(self) -> None:
-        """Drop the cached image after a change of the content."""
-        self._lines = []
-        super().forget()
-
     def draw(self, painter: QPainter) -> None:
         """Paint strips, edges and numbers, in this order."""
         shown = self.shown
@@ -169,24 +164,25 @@ class BlocksLayer(PictureLayer):
         self._place()
         colours = chord_colours(int(shown.chord.max(initial=-1)) + 1, self.theme)
         for chord, alpha in ((self._hovered, 34), (self._selected, 62)):
-            for outline in shown.strips.get(chord, ()):
+            for outline in shown.strip(chord) if chord >= 0 else ():
                 self._fill(painter, outline, colours[chord], alpha)
         if self._block is not None:
             self._fill(painter, self._block, self.theme.accent, 70)
         strong = {self._selected, self._hovered} - {-1}
-        rows = sorted(range(len(shown.chord)), key=lambda e: int(shown.chord[e]) in strong)
-        for edge in rows:
-            chord = int(shown.chord[edge])
-            shape = polyline(self._lines[edge])
+        edges_of: dict[int, list[int]] = {}
+        for edge, chord in enumerate(shown.chord.tolist()):
+            edges_of.setdefault(chord, []).append(edge)
+        for chord in sorted(edges_of, key=strong.__contains__):
+            shapes = [polyline(self._lines[edge]) for edge in edges_of[chord]]
             if chord in shown.wrong:
-                painter.setPen(pen(self.theme.warning, 9.0))
-                painter.drawPolyline(shape)
+                _stroke(painter, shapes, self.theme.warning, 9.0)
             if chord == self._selected:
-                painter.setPen(pen(self.theme.raised, 7.0 if edge != self._edge else 9.0))
-                painter.drawPolyline(shape)
-            wide = 4.0 if chord in strong else 2.4
-            painter.setPen(pen(colours[chord], 5.5 if edge == self._edge else wide))
-            painter.drawPolyline(shape)
+                _stroke(painter, shapes, self.theme.raised, 7.0)
+            _stroke(painter, shapes, colours[chord], 4.0 if chord in strong else 2.4)
+        if self._edge >= 0:
+            one = [polyline(self._lines[self._edge])]
+            _stroke(painter, one, self.theme.raised, 9.0)
+            _stroke(painter, one, colours[self._selected], 5.5)
         if self._drag is not None:
             painter.setPen(pen(self.theme.accent, 2.5, Qt.PenStyle.DashLine))
             painter.drawPolyline(polyline(self.viewport.to_screen(self._drag)))
@@ -195,28 +191,35 @@ class BlocksLayer(PictureLayer):
                 self._draw_number(painter, card, int(shown.chord[edge]), colours, shown.counts)
 
     def _place(self) -> None:
-        """Find the polylines of edges and the cards of their numbers."""
+        """Find the polylines of edges and the cards of their numbers, once for each view."""
         shown = self.shown
-        assert shown is not None
+        if shown is None or self._lines:
+            return
         lines = shown.bent or polylines(shown.edges, self.viewport)
-        self._lines = [self.viewport.to_screen(line) for line in lines]
-        self._segments = np.concatenate(
-            [np.stack([line[:-1], line[1:]], axis=1) for line in self._lines]
-        )
-        self._edge_of = np.repeat(np.arange(len(lines)), [len(line) - 1 for line in self._lines])
+        first = np.concatenate([[0], np.cumsum([len(line) for line in lines])])
+        at = self.viewport.to_screen(np.concatenate(lines))
+        self._lines = np.split(at, first[1:-1])
+        self._edge_of = np.repeat(np.arange(len(lines)), np.diff(first))[:-1]
+        within = np.ones(len(at) - 1, bool)
+        within[first[1:-1] - 1] = False
+        self._segments = np.stack([at[:-1], at[1:]], axis=1)[within]
+        self._edge_of = self._edge_of[within]
+        steps = np.linalg.norm(self._segments[:, 1] - self._segments[:, 0], axis=1)
+        lengths = np.bincount(self._edge_of, steps, len(lines))
         metrics = QFontMetricsF(self._font)
         self._cards = []
         taken: list[QRectF] = []
-        for edge, line in enumerate(self._lines):
+        seen = QRectF(0.0, 0.0, *self.viewport.size)
+        if shown.counts is None:
+            return
+        for edge in np.flatnonzero(lengths >= ROOM).tolist():
+            line, length = self._lines[edge], float(lengths[edge])
             arc = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
-            length = float(arc[-1])
-            if shown.counts is None or length < ROOM:
-                continue
             text = str(shown.counts[shown.chord[edge]])
             width = max(metrics.horizontalAdvance(text) + 10.0, HEIGHT)
             x, y = (float(np.interp(0.5 * length, arc, line[:, c])) for c in range(2))
             card = QRectF(x - 0.5 * width, y - 0.5 * HEIGHT, width, HEIGHT)
-            if not any(card.intersects(other) for other in taken):
+            if seen.intersects(card) and not any(card.intersects(other) for other in taken):
                 taken.append(card)
                 self._cards.append((edge, card))
 
@@ -243,3 +246,9 @@ class BlocksLayer(PictureLayer):
         painter.setFont(self._font)
         painter.setPen(QColor(self.theme.background if set_by_user else self.theme.text))
         painter.drawText(card, int(Qt.AlignmentFlag.AlignCenter), str(counts[chord]))
+
+
+def _stroke(painter: QPainter, shapes: list[QPolygonF], colour: str, width: float) -> None:
+    painter.setPen(pen(colour, width))
+    for shape in shapes:
+        painter.drawPolyline(shape)

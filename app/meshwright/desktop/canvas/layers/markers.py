@@ -150,7 +150,7 @@ class MarkersLayer(Layer):
             painter.setBrush(plus if delta > 0 else minus)
             painter.drawEllipse(QPointF(x, y), r, r)
             if self._numbers and r >= READABLE:
-                font.setPixelSize(max(8, round(1.2 * r)))
+                font.setPixelSize(max(8, round(1.1 * r)))
                 painter.setFont(font)
                 painter.setPen(QColor(self.theme.marker_text))
                 box = QRectF(x - 2 * r, y - 2 * r, 4 * r, 4 * r)

@@ -12,7 +12,7 @@ from meshwright.sources.drawing_tools import short
 from meshwright.sources.polygon_sketch import Sketch
 from meshwright_core.errors import sentence
 
-WIDTH = 33 * GRID
+WIDTH, RADIUS_WIDTH = 30 * GRID, 7 * GRID
 NEW = "New"
 RADIUS = 3
 """The column of the radii."""
@@ -34,13 +34,12 @@ class CoordinateTable(QTableWidget):
         super().__init__(0, 4, parent)
         self.setObjectName("Table")
         self.setAccessibleName("Coordinates of the corners")
-        self.setFixedWidth(WIDTH)
         self.verticalHeader().hide()
         self.verticalHeader().setDefaultSectionSize(28)
         header = self.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
-        header.resizeSection(0, 9 * GRID)
+        header.resizeSection(0, 12 * GRID)
         header.setHighlightSections(False)
         left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
         titles = (("Corner", left), ("x", right), ("y", right), ("R", right))
@@ -80,7 +79,9 @@ class CoordinateTable(QTableWidget):
     def _fill(self) -> None:
         corners = self.sketch.corners()
         self._rows = [(i, j) for i, j, _ in corners]
-        self.setColumnHidden(RADIUS, not any(loop.curved for loop in self.sketch.loops))
+        curved = any(loop.curved for loop in self.sketch.loops)
+        self.setColumnHidden(RADIUS, not curved)
+        self.setFixedWidth(WIDTH + (RADIUS_WIDTH if curved else 0))
         with QSignalBlocker(self):
             self.setRowCount(len(corners) + (1 if self.sketch.open else 0))
             for row, (i, j, place) in enumerate(corners):
