@@ -225,7 +225,7 @@ class Monkey:
             return
         place = mesh.points[self._pick(mesh.vertices())]
         x, y = canvas.viewport.to_screen(place) + self.rng.normal(0.0, 12.0, 2)
-        if not canvas.rect().contains(round(x), round(y)):
+        if not (0 <= x < canvas.width() and 0 <= y < canvas.height()):  # may be far outside
             self._press(self.window, "Home")
             return
         QTest.mouseMove(canvas.plotter, QPoint(round(x), round(y)))
