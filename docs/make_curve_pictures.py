@@ -28,6 +28,8 @@ from meshwright_core import HalfEdgeMesh, warm_up
 from meshwright_core.domains import gallery
 
 BRACKET = "filleted-bracket"
+SHEET, COLOURS = 1700, 160
+"""Width in pixels and colours of curves-sheet.png, which docs/architecture.md shows."""
 SETTLE = 800
 """Milliseconds until all animations of the page have ended."""
 
@@ -116,7 +118,10 @@ def main(folder: Path) -> None:
         sheet.append((caption, image))
         sys.stderr.write(f"{caption}\n")
     sheet += widgets(folder).items()
-    put_together(sheet).save(folder / "contact-sheet.png", optimize=True)
+    whole = put_together(sheet)
+    whole.save(folder / "contact-sheet.png", optimize=True)
+    small = whole.resize((SHEET, whole.height * SHEET // whole.width), Image.Resampling.LANCZOS)
+    small.quantize(COLOURS).save(folder / "curves-sheet.png", optimize=True)
 
 
 if __name__ == "__main__":

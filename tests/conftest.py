@@ -1,7 +1,7 @@
 """Skips tests whose display, browser or other program is missing, and compiles kernels first."""
 
-import subprocess
-import sys
+import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -9,6 +9,8 @@ import system_requirements
 from hypothesis import HealthCheck, settings
 
 HERE = Path(__file__).parent
+MOST_WORKERS = 8
+"""Each holds PyTorch, Qt and the kernels, which is about a gigabyte."""
 NEEDED_BY_FIXTURE = {"qapp": "qt", "open_window": "window", "browser": "chromium"}
 
 # no property fails because the machine is slow
@@ -37,22 +39,34 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """Compile kernels before the first test: on a slow machine this exceeds a test's time limit."""
+    """Compile kernels before the first test: on a slow machine this exceeds a test's time limit.
+
+    Of several processes that are about to test, one compiles and the others wait.
+    """
     needing = (HERE / "agent", HERE / "app")
     if session.config.option.collectonly or not any(
         item.path.is_relative_to(folder) for item in session.items for folder in needing
     ):
         return
-    from meshwright_agent import warm_up
+    from compiled_kernels import prepare
 
-    if not warm_up.is_warm_on_disk():
-        from compiled_kernels import compile_all
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    prepare(reporter.write_line if reporter else lambda line: None)
 
-        reporter = session.config.pluginmanager.get_plugin("terminalreporter")
-        reporter.write_line("compiling kernels; this takes some minutes, once")
-        if not compile_all():
-            for package in ("meshwright_core", "meshwright_agent"):
-                subprocess.run([sys.executable, "-m", f"{package}.warm_up"], check=False)
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """How many processes ``-n auto`` starts.
+
+    One where windows of several would take the focus from each other on a screen that they share.
+    """
+    if shutil.which("Xvfb") is None and not system_requirements.missing_display():
+        return 1
+    try:
+        cores = len(os.sched_getaffinity(0))
+    except AttributeError:  # Windows, macOS
+        cores = os.cpu_count() or 1
+    return min(cores, MOST_WORKERS)
 
 
 def needs(item: pytest.Item) -> list[str]:

@@ -39,6 +39,7 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.curve_edges import edge_places
 from meshwright_core.core.entry_points import entry
+from meshwright_core.core.grid_plan import GridPlan
 from meshwright_core.core.mesh_boundary import MeshBoundary, Seats
 from meshwright_core.core.mesh_view import MeshView
 from meshwright_core.core.names import clean
@@ -351,6 +352,13 @@ class HalfEdgeMesh(MeshView):
         Raises MeshError if nothing has the name.
         """
         self._name(side_names.renamed(self._boundary, old, clean(new)))
+
+    def plan_grid(self, plan: GridPlan) -> None:
+        """Set what is wanted of a block grid of this mesh: one undoable step, unless it is that
+        already.
+        """
+        if plan != self.grid_plan:
+            self._name(replace(self._boundary, plan=plan))
 
     def _name(self, boundary: MeshBoundary) -> None:
         """Put other names in force, as part of the history."""

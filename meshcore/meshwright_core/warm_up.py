@@ -17,6 +17,7 @@ from meshwright_core.geometry.edge_curves import curved_edge_polylines, edge_poi
 from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.smoothing import relax
+from meshwright_core.io.history_checks import require_history
 from meshwright_core.mesh import HalfEdgeMesh
 
 _KEPT_SECONDS = 30 * 24 * 3600
@@ -47,6 +48,7 @@ def exercise() -> None:
     while quads.undo():
         continue
     quads.redo()
+    require_history(quads)
     cleanable_lines(quads)
     quads.clean_all()
 

@@ -1,8 +1,8 @@
 """Kernels compiled once for all tests: by the warm-ups, in an empty cache.
 
-`tests/conftest.py` calls :func:`compile_all` where this machine has no kernels yet. Copies of the
-cache as it is after each warm-up are kept, for `tests/test_cold_start.py`, which would otherwise
-compile everything again.
+`tests/conftest.py` calls :func:`prepare` before the first test, and `.ci/run` runs this file.
+Copies of the cache as it is after each warm-up are kept, for `tests/test_cold_start.py`, which
+would otherwise compile everything again.
 """
 
 import hashlib
@@ -11,12 +11,15 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numba
+from filelock import FileLock
 
 import meshwright_agent
 import meshwright_core
+from meshwright_agent import warm_up
 from meshwright_core.core.compilation import cache_root, entry_points_on_disk
 
 PACKAGES = ("meshwright_core", "meshwright_agent")
@@ -54,7 +57,21 @@ def run(code: list[str], cache: Path, folder: Path) -> subprocess.CompletedProce
     )
 
 
-def compile_all() -> bool:
+def prepare(report: Callable[[str], None]) -> None:
+    """Compile what is missing, in one process at a time; `report` says so if it takes time."""
+    if warm_up.is_warm_on_disk():
+        return
+    cache_root().mkdir(parents=True, exist_ok=True)
+    with FileLock(cache_root() / "tests.lock"):
+        if warm_up.is_warm_on_disk():
+            return  # another process has compiled while this one waited
+        report("compiling kernels; this takes some minutes, once")
+        if not _compile_all():
+            for package in PACKAGES:
+                subprocess.run([sys.executable, "-m", f"{package}.warm_up"], check=False)
+
+
+def _compile_all() -> bool:
     """Fill the empty cache of this machine, and keep copies; False if it is not empty, or if a
     warm-up failed.
     """
@@ -73,3 +90,7 @@ def compile_all() -> bool:
             return False  # another process has begun to fill it
         shutil.copytree(cache, cache_root(), dirs_exist_ok=True)
     return True
+
+
+if __name__ == "__main__":
+    prepare(print)

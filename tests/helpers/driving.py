@@ -3,7 +3,7 @@
 import numpy as np
 from qtpy.QtCore import QPoint, Qt
 
-WAIT = 20_000
+WAIT = 60_000
 """Milliseconds after which a window that does not answer has failed."""
 
 

@@ -21,6 +21,8 @@ PositiveInt = Annotated[int, Meta(ge=1)]
 NonNegativeInt = Annotated[int, Meta(ge=0)]
 PositiveFloat = Annotated[float, Meta(gt=0.0)]
 NonNegativeFloat = Annotated[float, Meta(ge=0.0)]
+AnyFloat = Annotated[float, Meta(ge=-1e6, le=1e6)]
+"""A finite number of a size that arithmetic in single precision can bear."""
 Fraction = Annotated[float, Meta(ge=0.0, le=1.0)]
 """From 0 to 1, both included."""
 

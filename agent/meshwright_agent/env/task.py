@@ -9,8 +9,10 @@ the elements at its start (section 4.1), or when no operation is permitted.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from typing import Annotated
 
 import numpy as np
+from msgspec import Meta
 
 from meshwright_agent.env.candidates import (
     Ranking,
@@ -20,12 +22,6 @@ from meshwright_agent.env.candidates import (
     masks,
     shortlist,
     template_plan,
-)
-from meshwright_agent.env.checked_settings import (
-    NonNegativeFloat,
-    NonNegativeInt,
-    PositiveFloat,
-    PositiveInt,
 )
 from meshwright_agent.env.local_patch import LARGEST, POTENTIALS, Patches, describe, list_patch
 from meshwright_agent.env.potential import field, forget, solve_potential
@@ -56,25 +52,25 @@ class Task:
     """"tri" or "quad"."""
     selection: str = "shortlist"
     """"shortlist" or "template", see :mod:`meshwright_agent.env.candidates`."""
-    candidates: PositiveInt = 32
+    candidates: Annotated[int, Meta(ge=1, le=1024)] = 32
     """Half-edges in the shortlist, K."""
-    levels: NonNegativeInt = 1
+    levels: Annotated[int, Meta(ge=0, le=5)] = 1
     """Rings of elements in the template (section 4.2.1)."""
-    noise: NonNegativeFloat = 1.0
+    noise: Annotated[float, Meta(ge=0.0, le=1e6)] = 1.0
     """Scale of the Gumbel noise in the shortlist."""
-    blocks: PositiveInt = 4
+    blocks: Annotated[int, Meta(ge=1, le=32)] = 4
     """Blocks of convolution (section 4.2), which set how far the policy sees."""
     channels: int = 4
     """How many of :data:`meshwright_agent.env.local_patch.CHANNELS` are observed; the paper: 2."""
-    degree_cap: NonNegativeInt = 0
+    degree_cap: Annotated[int, Meta(ge=0, le=100)] = 0
     """Highest degree that an operation may produce; 0 stands for 9 (triangles) or 7 (quads)."""
     extended: bool = False
     """Whether boundary edges of triangle meshes may be collapsed; the paper does not."""
-    element_floor: NonNegativeFloat = 0.0
+    element_floor: Annotated[float, Meta(ge=0.0, le=1e3)] = 0.0
     """Least number of elements in an episode, relative to its start."""
-    element_ceiling: PositiveFloat = 2.0
+    element_ceiling: Annotated[float, Meta(gt=0.0, le=1e3)] = 2.0
     """Largest number of elements in an episode, relative to its start."""
-    steps: PositiveFloat = 1.5
+    steps: Annotated[float, Meta(gt=0.0, le=1e3)] = 1.5
     """Largest number of steps of an episode, relative to the elements at its start."""
 
     def __post_init__(self) -> None:

@@ -9,34 +9,40 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Annotated
 
 import torch
+from msgspec import Meta
 from torch import Tensor, nn
 
-from meshwright_agent.env.checked_settings import PositiveInt
+from meshwright_agent.env.checked_settings import AnyFloat
 from meshwright_agent.env.task import Task
 
 SCALES = (6.0, 1.0, 1.0, 1.0, 32.0, 32.0)
 """Divisors that scale the channels of a patch to order one."""
 NEVER = -1e9
 """The logit of an operation that is not permitted."""
+_MOST = 1e8
+"""Bound on the size of all other logits."""
+Width = Annotated[int, Meta(ge=1, le=1024)]
+"""Features of a layer."""
 
 
 @dataclass(frozen=True)
 class Architecture:
     """Hyperparameters of the network; saved with the policy."""
 
-    width: PositiveInt = 32
+    width: Width = 32
     """Features per half-edge in and after each block."""
-    embedding: PositiveInt = 16
+    embedding: Width = 16
     """Features per half-edge before the first block."""
     prior: bool = True
     """Whether the exact changes of s enter the logits."""
-    prior_weight: float = 4.0
+    prior_weight: AnyFloat = 4.0
     """Initial value of beta."""
-    global_split_bias: float = -3.0
+    global_split_bias: AnyFloat = -3.0
     """Initial value of the constant that the prior adds for global splits."""
-    value_width: PositiveInt = 64
+    value_width: Width = 64
     """Hidden units of the value head."""
 
 
@@ -141,7 +147,7 @@ class PolicyNetwork(nn.Module):
         embedding = torch.zeros((*real.shape, width), device=place).masked_scatter(
             real.unsqueeze(2), convolved
         )
-        logits = self.logits_of(embedding, changes).masked_fill(~mask, NEVER)
+        logits = self.logits_of(embedding, changes).clamp(-_MOST, _MOST).masked_fill(~mask, NEVER)
         mean = embedding.sum(dim=1) / real.sum(dim=1, keepdim=True).clamp(min=1)
         value = self.value(torch.cat([mean, embedding.amax(dim=1), state], dim=1)).squeeze(1)
         return logits.flatten(1).cpu(), value.cpu()

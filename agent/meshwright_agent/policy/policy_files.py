@@ -13,6 +13,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
@@ -112,9 +113,9 @@ def load(name_or_path: str | os.PathLike[str]) -> Policy:
         with safe_open(path, framework="pt") as file:
             metadata = file.metadata() or {}
             weights = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118
-    except (SafetensorError, OSError) as error:
+    except (SafetensorError, OSError, ValueError, TypeError, RuntimeError, KeyError) as error:
         raise PolicyError(
-            f"{text}: this is not a policy file, or it is incomplete ({error})"
+            f"{text}: this is not a policy file, or it is incomplete ({_short(str(error))})"
         ) from None
     folder = path.absolute().parent.name if path.name == TRAINED else ""
     return _rebuild(text, folder or path.name.removesuffix(_ENDING), metadata, weights)
@@ -127,26 +128,70 @@ def _rebuild(
         header = json.loads(metadata["meshwright"])
         if header["format"] != FORMAT:
             raise PolicyError(
-                f"{text}: this is policy format {header['format']}, but this program reads {FORMAT}"
+                f"{text}: this is policy format {_short(str(header['format']))},"
+                f" but this program reads {FORMAT}"
             )
         task = settings_from(header["task"], Task)
         architecture = settings_from(header["architecture"], Architecture)
+        if header.get("kind", task.kind) != task.kind:
+            raise ValueError(f"it is for {header['kind']!r} and for {task.kind!r}")
+        msgspec.convert(header, _Reports)
     except PolicyError:
         raise
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
+        reason = f"there is no {error}" if isinstance(error, KeyError) else str(error)
         raise PolicyError(
-            f"{text}: its header is not that of a Meshwright policy ({error})"
+            f"{text}: its header is not that of a Meshwright policy ({_short(reason)})"
         ) from None
+    with torch.device("meta"):  # the shapes alone, before any memory is taken
+        wanted = PolicyNetwork(task, architecture).state_dict()
+    shapes = {name: (value.shape, value.dtype) for name, value in weights.items()}
+    if shapes != {name: (value.shape, value.dtype) for name, value in wanted.items()}:
+        raise PolicyError(f"{text}: its weights do not fit its header")
+    if not all(bool((value.abs() <= _LARGEST_WEIGHT).all()) for value in weights.values()):
+        raise PolicyError(f"{text}: some of its weights are not finite numbers, or too large")
     network = PolicyNetwork(task, architecture)
-    try:
-        network.load_state_dict(weights)
-    except RuntimeError:
-        raise PolicyError(f"{text}: its weights do not fit its header") from None
-    if not all(bool(torch.isfinite(value).all()) for value in weights.values()):
-        raise PolicyError(f"{text}: some of its weights are not finite numbers")
+    network.load_state_dict(weights)
     network.eval()
     return Policy(name, network, {k: v for k, v in header.items() if k not in _OWN})
 
+
+def _short(reason: str) -> str:
+    """The first line of a reason, cut where it is long."""
+    line = reason.partition("\n")[0]
+    return line if len(line) <= 100 else f"{line[:97]}..."
+
+
+class _Point(msgspec.Struct):
+    """One point of a learning curve."""
+
+    decisions: float
+    mean: float
+    std: float
+    at_optimum: float
+
+
+class _Progress(msgspec.Struct):
+    """What is read of the progress of a training."""
+
+    curve: list[_Point] = []
+
+
+class _Training(msgspec.Struct):
+    """What is read of the settings of a training."""
+
+    sides: tuple[int, int]
+
+
+class _Reports(msgspec.Struct):
+    """The parts of a header that are shown; others may be anything."""
+
+    progress: _Progress | None = None
+    training: _Training | None = None
+
+
+_LARGEST_WEIGHT = 1e6
+"""Bound on the size of weights: with it no layer overflows."""
 
 _OWN = ("format", "kind", "task", "architecture")
 

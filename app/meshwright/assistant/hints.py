@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,8 @@ from meshwright.assistant.run import HintRequest, RunnerProtocol
 from meshwright.assistant.worker import PolicyWorker
 from meshwright.document.document import Document
 from meshwright.signals import Signal
+from meshwright_core import HalfEdgeMesh, Operation
+from meshwright_core.analysis.dry_run import score_change
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import PolicyAction
@@ -28,6 +31,10 @@ class Hinting:
         self._hints: tuple[PolicyAction, ...] = ()
         self.next_step: PolicyAction | None = None
         """The hint that *Step* will apply; None if it is not known."""
+        self.guide: Callable[[HalfEdgeMesh], tuple[Operation, int] | None] | None = None
+        """What leads on in a state of the mesh, for example in a level; it is the first hint."""
+        self.guided: PolicyAction | None = None
+        """The hint that :attr:`guide` has given."""
 
     @property
     def hints(self) -> tuple[PolicyAction, ...]:
@@ -55,7 +62,7 @@ class Hinting:
 
     def forget(self) -> None:
         """Remove the hints and ignore the answer to a pending request."""
-        self._question = self.next_step = None
+        self._question = self.next_step = self.guided = None
         if self._hints:
             self._hints = ()
             self.changed.emit()
@@ -70,6 +77,22 @@ class Hinting:
     def show(
         self, choices: tuple[PolicyAction, ...], next_step: PolicyAction | None = None
     ) -> None:
-        """Set the hints, and which of them *Step* will apply."""
-        self._hints, self.next_step = choices, next_step
+        """Set the hints, and which of them *Step* applies; that of :attr:`guide` comes first."""
+        self._hints, self.next_step = self._led(choices), next_step
         self.changed.emit()
+
+    def _led(self, choices: tuple[PolicyAction, ...]) -> tuple[PolicyAction, ...]:
+        mesh = self._document.mesh
+        known = self.guide(mesh) if self.guide is not None and mesh is not None else None
+        if mesh is None or known is None:
+            return choices
+        operation, halfedge = known
+        same = [c for c in choices if (c.operation, c.halfedge) == known]
+        if same:
+            self.guided = same[0]
+        else:
+            from meshwright_agent.policy.explanation_types import PolicyAction
+
+            self.guided = PolicyAction(operation, halfedge, 0.0, score_change(mesh, *known))
+        others = tuple(choice for choice in choices if choice is not self.guided)
+        return (self.guided, *others)[: max(len(choices), 1)]

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 
 from meshwright.console import Update
 
-HELPERS = {"gmsh_peer"}
+HELPERS = {"gmsh_peer", "hostile_files"}
 """Modules that are no suites."""
 
 

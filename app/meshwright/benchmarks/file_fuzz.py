@@ -1,30 +1,36 @@
 """Damaged files: each format's readers get thousands of mutations of sound files.
 
 A reader may refuse a file in a sentence, or return a valid mesh. Anything else is a fault: another
-exception, a mesh that breaks an invariant, more than ten seconds of processor time, or more than
-512 MiB of memory.
+exception, a mesh that breaks an invariant, more than ten seconds of processor time, more than
+512 MiB of memory, or the end of the process. Files are read by a process of their own, whose
+address space is limited. Of the shapes that are read, some are meshed too.
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import resource
 import signal
 import sys
 import tempfile
 import warnings
+import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import Connection
 from pathlib import Path
 from types import FrameType
 from typing import Any
 
 import numpy as np
 
+from meshwright.benchmarks import hostile_files
+from meshwright.benchmarks.hostile_files import Kind
 from meshwright.console import Update, no_update
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.io import drawings, mesh_files
-from meshwright_core.io.formats import FORMATS, NOT_UNDERSTOOD, SHAPES
+from meshwright_core.io.formats import FORMATS, NOT_UNDERSTOOD
 
 SUMMARY = "mutated files of every format: refused in a sentence, or read as a valid mesh"
 MUTATIONS, QUICK = 2000, 12
@@ -32,6 +38,13 @@ SECONDS = 10.0
 """Processor time that reading one file may take."""
 LARGEST = 512 * 1024
 """KiB of memory by which the process may grow while it reads one file."""
+_ADDRESSES = 2 << 30
+"""Bytes of address space that reading may take beyond those in use."""
+_CHUNK = 250
+"""Files that one process reads."""
+_FORK = multiprocessing.get_context("fork")
+_MESHED = 8
+"""Of so many shapes that are read, one is meshed."""
 _NUMBERS = (
     b"-1",
     b"0",
@@ -43,6 +56,10 @@ _NUMBERS = (
     b"18446744073709551615",
 )
 _DRAWINGS = {
+    "airfoil.dat": "oval\n"
+    + "\n".join(
+        f"{0.5 + 0.5 * np.cos(t):.5f} {0.1 * np.sin(t):.5f}" for t in np.linspace(0, 2 * np.pi, 30)
+    ),
     ".svg": '<svg xmlns="http://www.w3.org/2000/svg"><style>.a,.b{fill:none}</style>'
     '<path class="a" d="M0 0h9v9h-9z"/><circle cx="4" cy="4" r="2"/></svg>',
     ".geojson": '{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, '
@@ -63,53 +80,103 @@ def run(seed: int, quick: bool, update: Update = no_update) -> dict[str, Any]:
     """Read 2,000 mutations (``quick``: 12) of each format.
 
     By ending: how many were ``refused``, how many ``read`` as valid meshes, and the ``faults``,
-    a line each.
+    a line each. Also of projects, policies and levels, all of whose states and decisions are
+    checked.
     """
     count = QUICK if quick else MUTATIONS
-    rng = np.random.default_rng(seed)
     results: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as folder:
-        for ending, sources in _sources(Path(folder)):
+        for ending, kind in kinds(Path(folder)).items():
             update(len(results), ending)
-            read = _read_drawing if ending in SHAPES else _read_mesh
-            results[ending] = fuzzed(Path(folder) / f"mutation{ending}", sources, read, count, rng)
+            results[ending] = fuzzed(Path(folder) / f"mutation{ending}", kind, count, seed)
     totals = {key: sum(row[key] for row in results.values()) for key in ("refused", "read")}
     return {**results, "all": {**totals, "faults": sum(len(r["faults"]) for r in results.values())}}
 
 
-def fuzzed(
-    path: Path,
-    sources: list[bytes],
-    read: Callable[[Path], None],
-    count: int,
-    rng: np.random.Generator,
-) -> dict[str, Any]:
-    """Read `count` mutations of sources from a path; the counts of what came of it."""
-    found: dict[str, Any] = {"refused": 0, "read": 0, "faults": []}
-    for number in range(count):
-        path.write_bytes(mutated(sources[number % len(sources)], rng))
-        _judge(lambda: read(path), found)
+def kinds(folder: Path) -> dict[str, Kind]:
+    """All kinds of files by ending, with whole files that are written in a folder."""
+    found = hostile_files.kinds(folder, mutated)
+    for ending, sources in _sources(folder):
+        read = _read_drawing if ending in _DRAWINGS else _read_mesh
+        found[ending] = Kind(sources, read, mutated)
     return found
 
 
-def _judge(work: Callable[[], None], found: dict[str, Any]) -> None:
+def fuzzed(path: Path, kind: Kind, count: int, seed: int) -> dict[str, Any]:
+    """Read `count` mutations from a path in processes of their own; the counts of what came of it.
+
+    Mutation i is the same in each run with this seed.
+    """
+    found: dict[str, Any] = {"refused": 0, "read": 0, "faults": []}
+    first = 0
+    while first < count:
+        verdicts: list[str] = []
+        receive, send = _FORK.Pipe(duplex=False)
+        numbers = range(first, min(count, first + _CHUNK))
+        child = _FORK.Process(target=_read_all, args=(path, kind, numbers, seed, send))
+        child.start()
+        send.close()
+        with suppress(EOFError):
+            while True:
+                verdicts.append(receive.recv())
+        child.join()
+        if len(verdicts) < len(numbers):
+            verdicts.append(f"the process ended with {child.exitcode}")
+        for number, verdict in zip(numbers, verdicts, strict=False):
+            if verdict in ("refused", "read"):
+                found[verdict] += 1
+            else:
+                found["faults"].append(f"{number}: {verdict}")
+        first += len(verdicts)
+    return found
+
+
+def mutation(kind: Kind, number: int, seed: int) -> bytes:
+    """The bytes of one mutation."""
+    rng = np.random.default_rng((seed, number))
+    return kind.mutated(kind.sources[number % len(kind.sources)], rng)
+
+
+def _read_all(path: Path, kind: Kind, numbers: range, seed: int, send: Connection) -> None:
+    """In a process of its own: send the verdict on each mutation."""
+    _limit_memory()
+    for number in numbers:
+        path.write_bytes(mutation(kind, number, seed))
+        send.send(verdict(lambda: kind.read(path)))
+    send.close()
+
+
+def _limit_memory() -> None:
+    """Limit the address space to what is in use and 2 GiB more."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except OSError:  # another system than Linux: the growth is measured all the same
+        return
+    limit = pages * resource.getpagesize() + _ADDRESSES
+    resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
+
+
+def verdict(work: Callable[[], None]) -> str:
+    """What came of reading a file: refused, read, or what is wrong with how it was read."""
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     try:
         with _limited():
             work()
-        found["read"] += 1
-    except MeshError as error:
-        if NOT_UNDERSTOOD in str(error) or "\n" in str(error) or not str(error):
-            found["faults"].append(str(error)[-200:])
-        else:
-            found["refused"] += 1
+        found = "read"
+    except (MeshError, ValueError) as error:
+        text = str(error)
+        found = "refused"
+        own = isinstance(error, MeshError) or type(error).__module__.startswith("meshwright")
+        if not own or NOT_UNDERSTOOD in text or "\n" in text or not text:
+            found = f"{type(error).__name__}: {text[-200:]}"
     except _TooLong:
-        found["faults"].append(f"it takes more than {SECONDS:g} s")
+        found = f"it takes more than {SECONDS:g} s"
     except Exception as error:
-        found["faults"].append(f"{type(error).__name__}: {error}"[:200])
+        found = f"{type(error).__name__}: {error}"[:200]
     grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
     if grown > LARGEST * (1024 if sys.platform == "darwin" else 1):
-        found["faults"].append(f"it takes {grown // 1024} MiB")
+        return f"it takes {grown // 1024} MiB"
+    return found
 
 
 @contextmanager
@@ -186,4 +253,6 @@ def _read_mesh(path: Path) -> None:
 
 
 def _read_drawing(path: Path) -> None:
-    drawings.read_domain(path)
+    domain = drawings.read_domain(path)
+    if zlib.crc32(path.read_bytes()) % _MESHED == 0:
+        meshing.mesh_domain(domain, "tri").validate()

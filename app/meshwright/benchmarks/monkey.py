@@ -1,8 +1,9 @@
 """Monkey test of the window: sends random mouse and key events and reports failures.
 
 Moves, clicks, drags and wheel turns at random positions, and the keys of the action table and
-others, go to the window, its dialogs and menus, while the agent may be running. The program is
-never quit and no file is chosen.
+others, go to the window, its dialogs and menus, while the agent may be running. Every step is saved
+automatically, and questions about unsaved work are asked. The program is never quit and no file is
+chosen.
 """
 
 from __future__ import annotations
@@ -28,8 +29,10 @@ EVENTS, QUICK_EVENTS = 20_000, 400
 LONGEST = 3600.0
 LARGEST = 4000
 """A mesh with more elements than this is replaced by the star."""
-STUCK = 20.0
-"""Seconds without an iteration of the event loop after which the window counts as hung."""
+STUCK, SILENT = 20.0, 300.0
+"""Seconds of CPU time, and of wall time, without an iteration of the event loop after which the
+window counts as hung.
+"""
 ENDING = 30.0
 """Time limit, in seconds, for threads to end after the window was closed."""
 
@@ -222,7 +225,7 @@ class Monkey:
             return
         place = mesh.points[self._pick(mesh.vertices())]
         x, y = canvas.viewport.to_screen(place) + self.rng.normal(0.0, 12.0, 2)
-        if not canvas.rect().contains(round(x), round(y)):
+        if not (0 <= x < canvas.width() and 0 <= y < canvas.height()):  # may be far outside
             self._press(self.window, "Home")
             return
         QTest.mouseMove(canvas.plotter, QPoint(round(x), round(y)))
@@ -271,17 +274,21 @@ def _play(seed: int, events: int) -> dict[str, Any]:
     app.setQuitOnLastWindowClosed(False)
     before = {thread.name for thread in threading.enumerate()}
     window = MainWindow(Document(_star("quad"), "star"), ready=True)
+    folder = tempfile.TemporaryDirectory()
+    window.files.watch(Path(folder.name))
     window.show()
     window.activateWindow()
     monkey = Monkey(window, seed, events)
     window.opened.connect(lambda: QTimer.singleShot(0, monkey.shoot))
-    beat = [time.monotonic()]
+    beat = [time.process_time(), time.monotonic()]
     pulse = QTimer()
-    pulse.timeout.connect(lambda: beat.__setitem__(0, time.monotonic()))
+    pulse.timeout.connect(
+        lambda: beat.__setitem__(slice(None), (time.process_time(), time.monotonic()))
+    )
     pulse.start(200)
     threading.Thread(target=_watch, args=(beat, monkey), daemon=True, name="watch").start()
     app.exec()
-    beat[0] = float("inf")
+    beat[:] = [float("inf")] * 2
     pulse.stop()
     document = window.document
     result = {
@@ -296,6 +303,7 @@ def _play(seed: int, events: int) -> dict[str, Any]:
         "exceptions": exceptions,
     }
     QApplication.processEvents()
+    folder.cleanup()
     return result
 
 
@@ -306,7 +314,7 @@ def _watch(beat: list[float], monkey: Monkey) -> None:
 
     while True:
         time.sleep(1.0)
-        if time.monotonic() - beat[0] > STUCK:
+        if time.process_time() - beat[0] > STUCK or time.monotonic() - beat[1] > SILENT:
             faulthandler.dump_traceback(all_threads=True)
             sys.stderr.write(f"\nthe event loop stood still after {monkey.sent} events\n")
             sys.stderr.flush()
@@ -317,8 +325,7 @@ def _ended(app: Any, window: Any, before: set[str]) -> dict[str, Any]:
     """Close the window without saving; threads and timers that are still there afterwards."""
     from qtpy.QtCore import QTimer
 
-    window.document.replace(None)  # nothing is unsaved, so no question appears
-    window.close()
+    window.leave()
     end = time.monotonic() + ENDING
     ours = before | {"watch", "MainThread"}
     threads = sorted(t.name for t in threading.enumerate() if t.name not in ours)

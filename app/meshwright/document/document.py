@@ -21,6 +21,7 @@ from meshwright.signals import Signal
 from meshwright_core import Edit, HalfEdgeMesh, MeshError, Operation, Verdict
 from meshwright_core.analysis.submesh import temporarily_locked
 from meshwright_core.core.construction import is_flat
+from meshwright_core.core.grid_plan import GridPlan
 from meshwright_core.core.names import clean
 from meshwright_core.core.notebook_display import Bundle, bundle
 from meshwright_core.core.score import normalised_return
@@ -29,6 +30,8 @@ from meshwright_core.operations.catalogue import CATALOGUE
 
 Result = TypeVar("Result")
 
+PLAN = "plan"
+"""The action of steps that change what is wanted of a block grid."""
 NAME = "name"
 """The action of steps that name sides or regions."""
 
@@ -375,7 +378,15 @@ class Document:
     def _do(
         self, action: str, title: str, halfedge: int, by: str, work: Callable[[], Result]
     ) -> Result:
-        result, changed = self._timeline.do(action, title, halfedge, by, work)
+        mesh = self._timeline.need_mesh()
+
+        def whole() -> Result:
+            result = work()
+            # ids of vertices that are gone are used again, and must not bring back old wishes
+            mesh.plan_grid(mesh.grid_plan.kept(mesh.joins))
+            return result
+
+        result, changed = self._timeline.do(action, title, halfedge, by, whole)
         if changed:
             self._announce("step", self.history.cursor)
         return result
@@ -550,6 +561,11 @@ class Document:
         mesh = self._need()
         title = f"Rename {old} {shown}" if (shown := clean(new)) else f"Remove name {old}"
         self._do(NAME, title, -1, YOU, lambda: mesh.rename(old, new))
+
+    def plan_grid(self, plan: GridPlan, title: str) -> None:
+        """Set what is wanted of a block grid, as one step; none if it is that already."""
+        mesh = self._need()
+        self._do(PLAN, title, -1, YOU, lambda: mesh.plan_grid(plan))
 
     def set_locked(self, vertices: int | np.ndarray, flag: bool) -> None:
         """Lock one vertex or several (n,), or unlock them, as one step."""

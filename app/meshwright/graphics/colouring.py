@@ -7,6 +7,8 @@ order, and it is none of the colours of irregular vertices.
 
 from __future__ import annotations
 
+import colorsys
+
 import numpy as np
 
 from meshwright.graphics.theme import Theme
@@ -35,6 +37,8 @@ SCALES = {
 
 HUES = ("#0f8b8d", "#c58b2a", "#7a5bb5", "#5b8c3a", "#b5577a", "#4a78b8", "#8a6f4e")
 """Hues of blocks and chords. Neighbouring blocks get different ones."""
+_GOLDEN = 0.61803398875
+"""Turns between consecutive hues of many chords: the golden section spreads them evenly."""
 BLOCK_SHARE = 0.3
 """Share of the hue in the fill of a block."""
 
@@ -111,3 +115,18 @@ def mixed(one: str, other: str, share: float) -> tuple[int, int, int]:
 def _rgb(colour: str) -> tuple[int, int, int]:
     red, green, blue = bytes.fromhex(colour.removeprefix("#"))
     return red, green, blue
+
+
+def chord_colours(count: int, theme: Theme) -> list[str]:
+    """A colour for each of so many chords: first :data:`HUES`, then further hues in turn."""
+    light = 0.42 if theme.name == "light" else 0.6
+    found = []
+    for number in range(count):
+        if number < len(HUES):
+            red, green, blue = (part / 255.0 for part in _rgb(HUES[number]))
+            hue, _, strength = colorsys.rgb_to_hls(red, green, blue)
+        else:
+            hue, strength = (number * _GOLDEN) % 1.0, 0.5
+        parts = colorsys.hls_to_rgb(hue, light, min(strength + 0.1, 0.75))
+        found.append("#" + "".join(f"{round(255 * part):02x}" for part in parts))
+    return found

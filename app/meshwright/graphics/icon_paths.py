@@ -37,3 +37,8 @@ STROKES = {
     "check": "M4 10.5l4 4 8-9",
     "close": "M5.5 5.5l9 9 M14.5 5.5l-9 9",
 }
+
+WINDOW_STROKES = {
+    "blocks": "M3 3.5h14v13H3z M3 9c5 0 9 2 14 2 M9 3.5c0 5-1 8 0 13",
+}
+"""Those that only the window has."""

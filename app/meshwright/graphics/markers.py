@@ -20,7 +20,7 @@ head there, in pixels.
 SMALLEST = 2.5
 CROWDED = 0.36
 """The largest radius of a disc, relative to the shortest edge at its vertex."""
-READABLE = 6.0
+READABLE = 7.5
 """Discs smaller than this radius in pixels carry no number."""
 
 
@@ -46,6 +46,11 @@ class Markers:
     pinned_places: np.ndarray
     loops: tuple[np.ndarray, ...]
 
+    @property
+    def sized(self) -> bool:
+        """Whether the sizes of the discs are known."""
+        return len(self.reach) == len(self.vertices)
+
     def radii(self, viewport: Viewport) -> np.ndarray:
         """Radii of the discs (n,) in pixels: larger with |delta|, smaller where edges are short."""
         wanted = np.minimum(BASE_RADIUS + GROWTH * (np.abs(self.delta) - 1), LARGEST)
@@ -53,8 +58,12 @@ class Markers:
         return np.maximum(np.minimum(wanted, room), SMALLEST)
 
 
-def markers(mesh: HalfEdgeMesh) -> Markers:
-    """The markers of ``mesh`` in its present state."""
+def markers(mesh: HalfEdgeMesh, sized: bool = True) -> Markers:
+    """The markers of ``mesh`` in its present state.
+
+    ``sized``: otherwise ``reach`` is empty, for views that draw all discs in one size; it takes
+    longer than everything else.
+    """
     delta = mesh.irregularity()
     points = mesh.points[:, :2]
     vertices = np.flatnonzero(delta)
@@ -67,7 +76,7 @@ def markers(mesh: HalfEdgeMesh) -> Markers:
         vertices=vertices,
         delta=delta[vertices],
         places=points[vertices],
-        reach=_shortest_edges(mesh.elements(), points, vertices),
+        reach=_shortest_edges(mesh.elements(), points, vertices) if sized else np.zeros(0),
         corners=np.isin(vertices, fixed[~anchors]),
         anchors=np.isin(vertices, fixed[anchors]),
         corner_places=points[fixed[~anchors]],

@@ -18,6 +18,10 @@ from meshwright.graphics.viewport import Viewport
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.arrays import TWIN
 
+CLOSE_EDGES = 2.5
+"""Pixels between the lines of coloured elements below which they are left out."""
+SAMPLE = 500
+"""Number of edges whose lengths are looked at."""
 CROWD = 1200
 """If more irregular vertices are visible, VTK draws their discs, without numbers."""
 LONG = 4000
@@ -49,6 +53,7 @@ class Scene:
         self._tinted = False
         self.markers: Markers | None = None
         self.crowd = False
+        self._edge = self._room = self._pixels = 1.0
         self.fills: np.ndarray | None = None
         """(n, 3) uint8 colours of elements by id, None for the plain fill or those of regions; seen
         at the next :meth:`update`.
@@ -103,7 +108,7 @@ class Scene:
 
     def update(self, mesh: HalfEdgeMesh, edges: TrueEdges) -> None:
         """Update the actors to the present state of the mesh that is shown."""
-        self.markers = markers(mesh)
+        self.markers = markers(mesh, sized=not self.crowd)
         drawn = self.outlined, self._curved is not None, self._tinted
         wanted = self._draws_outline(self.markers), bool(edges), self._is_tinted(mesh)
         if self._surface is None or drawn != wanted:
@@ -132,12 +137,28 @@ class Scene:
         camera.SetPosition(x, y, distance)
         camera.SetParallelScale(viewport.parallel_scale)
         camera.SetClippingRange(1e-3 * distance, 2.0 * distance)
+        self._fit_to_distance(viewport.pixels)
         camera.is_set = True  # otherwise PyVista resets it to an oblique view at the first frame
+
+    def _fit_to_distance(self, pixels: float) -> None:
+        """Seen from far, discs shrink so that none hides its neighbours, and the lines between
+        coloured elements go: otherwise their colour would be all that is seen.
+        """
+        self._pixels = pixels
+        room = self._room * pixels
+        for value, actor in self._discs.items():
+            usual = 3.0 + 2.0 * abs(value)
+            actor.GetProperty().SetPointSize(self._width * min(usual, max(1.0, room)))
+        if self._surface is not None and self._tinted:
+            shown = self._edge * pixels >= CLOSE_EDGES
+            self._surface.GetProperty().SetEdgeVisibility(shown)
 
     def show_crowd(self, mesh: HalfEdgeMesh, crowd: bool) -> None:
         """Set whether VTK draws the discs of irregular vertices (``crowd``) or the caller."""
         if crowd != self.crowd:
             self.crowd = crowd
+            if not crowd and self.markers is not None and not self.markers.sized:
+                self.markers = markers(mesh)
             self._mark_crowd(mesh)
 
     def _measure(self, mesh: HalfEdgeMesh) -> None:
@@ -166,6 +187,9 @@ class Scene:
             elif len(places) or self._discs[value].GetVisibility():
                 self._discs[value].mapper.dataset = _points(places)
             self._discs[value].SetVisibility(len(places) > 0)
+        self._edge = _usual_edge(mesh)
+        self._room = self._edge * float(np.sqrt(mesh.n_vertices / max(len(vertices), 1)))
+        self._fit_to_distance(self._pixels)
 
     def _add_discs(self, places: np.ndarray, value: int) -> Any:
         return self._add(
@@ -249,6 +273,14 @@ class Scene:
 
 
 _TINT = "tint"
+
+
+def _usual_edge(mesh: HalfEdgeMesh) -> float:
+    """The median length of some edges, spread over the mesh."""
+    elements = mesh.elements()
+    sample = elements[:: max(len(elements) // SAMPLE, 1), :2]
+    ends = mesh.points[sample]
+    return float(np.median(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)))
 
 
 def _flat(points: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from meshwright.assistant.kernel_preparation import Stage
 from meshwright.document.document import NO_MESH, Document
 from meshwright.notebook import kernel_warmup
 from meshwright.notebook.cell_events import on_cell_end
+from meshwright.notebook.export.snapshot import snapshot
 from meshwright.notebook.kernel_warmup import DONE, WAITS
 from meshwright.notebook.protocol.agent_bridge import AgentBridge
 from meshwright.notebook.protocol.broadcaster import Broadcaster, Port
@@ -38,6 +39,9 @@ NEEDS: dict[Stage, tuple[str, ...]] = {
     Stage.AGENT: ("agent",),
 }
 """Requests that are refused while a stage is compiled for the first time."""
+
+SNAPSHOT_AFTER = 1.0
+"""Seconds after a change at which the snapshot is made."""
 
 _log = logging.getLogger(__name__)
 
@@ -74,9 +78,11 @@ class Session:
         self._hovers: dict[str, tuple[Port, Hover]] = {}
         self._calling = self._ended = False
         self._cells = on_cell_end(self.catch_up)
+        self._snapshot_due = self._snapshot_late = False
         self.agent.settle()
         document.replaced.connect(self._on_replaced)
         document.changed.connect(self.broadcaster.follow)
+        document.changed.connect(self.touch_snapshot)
         document.score_changed.connect(self._on_score_changed)
         self.assistant.changed.connect(self._on_agent_changed)
         self.assistant.hinting.changed.connect(self._on_agent_changed)
@@ -128,14 +134,18 @@ class Session:
         self.assistant.close()
         self.document.replaced.disconnect(self._on_replaced)
         self.document.changed.disconnect(self.broadcaster.follow)
+        self.document.changed.disconnect(self.touch_snapshot)
         self.document.score_changed.disconnect(self._on_score_changed)
 
     # Calls from Python
 
     def catch_up(self) -> None:
-        """Record and show what a cell has changed on the mesh itself; never raises."""
+        """At the end of a cell: record and show what it has changed on the mesh itself, and keep
+        a snapshot; never raises.
+        """
         try:
             self.document.catch_up()
+            self.keep_snapshot()
         except Exception as error:  # must not reach the notebook's cell
             _log.error("changes of the mesh could not be recorded", exc_info=error)
 
@@ -191,6 +201,34 @@ class Session:
     def _require_open(self) -> None:
         if self._ended:
             raise MeshError("This widget is closed; make another one on its document.")
+
+    # The snapshot for the saved notebook
+
+    def touch_snapshot(self) -> None:
+        """The snapshot is outdated: make another one a moment after the last change."""
+        self._snapshot_late = self._snapshot_due
+        if not self._snapshot_due:
+            self._snapshot_due = True
+            self.loop.later(SNAPSHOT_AFTER, self._on_snapshot_due)
+
+    def _on_snapshot_due(self) -> None:
+        if self._snapshot_late and not self._ended:  # changed meanwhile: wait again
+            self._snapshot_late = False
+            self.loop.later(SNAPSHOT_AFTER, self._on_snapshot_due)
+        else:
+            self.keep_snapshot()
+
+    def keep_snapshot(self) -> None:
+        """Give all widgets a snapshot, if theirs is outdated."""
+        if not self._snapshot_due or self._ended or self.assistant.running:
+            return
+        self._snapshot_due = self._snapshot_late = False
+        try:
+            made = snapshot(self.document)
+            for port in self.broadcaster.ports:
+                port.keep(made)
+        except Exception as error:  # must not reach the notebook's cell
+            _log.error("the snapshot could not be made", exc_info=error)
 
     # Requests from browsers
 
@@ -285,6 +323,8 @@ class Session:
     def _on_agent_changed(self) -> None:
         self.broadcaster.touch_agent()
         self.agent_changed.emit()
+        if self._snapshot_due and not self.assistant.running:
+            self.loop.later(SNAPSHOT_AFTER, self.keep_snapshot)
 
     def _on_message(self, text: str) -> None:
         self.broadcaster.notice("info", sentence(text))

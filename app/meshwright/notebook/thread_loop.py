@@ -78,6 +78,13 @@ class ThreadLoop:
             except RuntimeError:  # that loop is closed: the calls wait for the next one
                 self._loop = None
 
+    def later(self, seconds: float, call: Call) -> bool:
+        """Queue ``call()`` in ``seconds``; False without an event loop, or in another thread."""
+        if not self.running or not self.here or self._loop is None:
+            return False
+        self._loop.call_later(seconds, self, call)
+        return True
+
     def do(self, call: Callable[[], Result]) -> Result:
         """The result of ``call()``, called in the owner's thread; what it raises is raised here."""
         if self.here:

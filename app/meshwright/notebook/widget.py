@@ -67,6 +67,9 @@ class MeshWidget(anywidget.AnyWidget):
     """Score s of the present mesh."""
     optimum = traitlets.Int(0, read_only=True).tag(sync=True)
     """Optimum s*, the lower bound of the score over all connectivities."""
+    snapshot = traitlets.Dict().tag(sync=True)
+    """What a saved notebook shows while no kernel runs: a recording of the history, or of the
+    present state; kept up to date at the end of each cell and a moment after each change."""
     seen = traitlets.Int(0).tag(sync=True)
     """Counts changes made in the browser. marimo runs the cells that use a widget again when a
     trait is changed by the page; a message alone does not cause that."""
@@ -121,6 +124,7 @@ class MeshWidget(anywidget.AnyWidget):
             raise
         session.join(self)
         self.show_score()
+        session.touch_snapshot()
 
     @traitlets.default("_esm")
     def _module(self) -> str:
@@ -389,6 +393,10 @@ class MeshWidget(anywidget.AnyWidget):
         """For the session: update score and optimum."""
         self.set_trait("score", self.document.score)
         self.set_trait("optimum", self.document.optimum)
+
+    def keep(self, snapshot: dict[str, Any]) -> None:
+        """For the session: keep a snapshot for the saved notebook."""
+        self.snapshot = snapshot
 
     def set_state(self, sync_data: Any) -> None:
         """Ignore traits set by the browser: it sends requests as messages."""

@@ -12,6 +12,7 @@ from meshwright.document.document import Document
 from meshwright.document.history import YOU, History
 from meshwright.puzzles import level as levels
 from meshwright.puzzles.agent_opponent import AgentOpponent, MakeAssistant, OpponentState
+from meshwright.puzzles.known_solution import KnownSolution
 from meshwright.puzzles.level import Level
 from meshwright.puzzles.progress import LevelProgress
 from meshwright.signals import Signal
@@ -30,6 +31,7 @@ BARRED = {
 }
 """Steps that are not allowed in levels, with the reason."""
 NAMES = {1: "one star", 2: "two stars", 3: "three stars"}
+OFF_THE_WAY = "The hints are the policy's here; undo to where they lead to par."
 SLACK = 2
 """Operations beyond par that always still win two stars."""
 
@@ -99,14 +101,16 @@ class LevelPlay:
         self.progress = progress or LevelProgress()
         self._document, self._hinting, self._make_rival = document, hinting, make_rival
         self._showing = False
+        self._known: KnownSolution | None = None
         document.bar = self.refusal
+        hinting.guide = self._lead
         document.replaced.connect(self._on_replaced)
         document.history_changed.connect(self._on_history_changed)
         hinting.changed.connect(self._on_hints_changed)
 
     def release(self) -> None:
         """Disconnect from the document, and cancel the agent's search."""
-        self._document.bar = None
+        self._document.bar = self._hinting.guide = None
         self._document.replaced.disconnect(self._on_replaced)
         self._document.history_changed.disconnect(self._on_history_changed)
         self._hinting.changed.disconnect(self._on_hints_changed)
@@ -229,7 +233,22 @@ class LevelPlay:
             return "The agent's operations win no stars. Undo them, or restart."
         if self.done:
             return self._verdict(level)
-        return "With a hint there are two stars at most." if self.hinted else ""
+        if not self.hinted:
+            return ""
+        most = "With a hint there are two stars at most."
+        return most if self.leads else f"{most} {OFF_THE_WAY}"
+
+    @property
+    def leads(self) -> bool:
+        """Whether the mesh is on the way of the known solution, so that hints follow it."""
+        mesh = self._document.mesh
+        return mesh is not None and self._lead(mesh) is not None
+
+    def _lead(self, mesh: HalfEdgeMesh) -> tuple[Operation, int] | None:
+        """The next operation of the known solution."""
+        if self.level is None or self._known is None:
+            return None
+        return self._known.next(mesh)
 
     def _verdict(self, level: Level) -> str:
         won = f"{_plural(self.used)}, par {level.par}: {NAMES[self.stars]}"
@@ -249,6 +268,8 @@ class LevelPlay:
         return self.level
 
     def _begin(self, level: Level) -> None:
+        if self.level != level:
+            self._known = KnownSolution(level)
         self.level = level
         self.done = self.hinted = False
         self.tally = StepSummary()

@@ -45,7 +45,8 @@ def make(request: Mapping[str, Any]) -> Answer:
 
     Args:
         request: ``"source"`` is one of ``{"shape": name}``, ``{"polygon": sides, "seed": n}``,
-            ``{"part": corners, "seed": n}``, ``{"domain": as in Domain.to_json}`` and
+            ``{"part": corners, "seed": n}``, ``{"domain": as in Domain.to_json, "corner_angle":
+            degrees, or left out}`` and
             ``{"file": path, "corner_angle": degrees, "curve_step": degrees, "region": choice,
             "fit": "arcs" or "splines"}``; besides there are ``"kind"``, and, each null for the
             default, ``"max_edge"``, ``"min_angle"`` (degrees) and ``"quads"`` ("catmull-clark" or
@@ -127,12 +128,12 @@ def _answer(requests: BinaryIO, answers: BinaryIO) -> None:
 
 def _domain(source: Mapping[str, Any]) -> Domain:
     from meshwright_core.domains import gallery, random_parts
-    from meshwright_core.domains.domain import Domain
+    from meshwright_core.domains.domain import CORNER_ANGLE, Domain
 
     if "shape" in source:
         return gallery.shape(source["shape"])
     if "domain" in source:
-        return Domain.from_json(source["domain"])
+        return Domain.from_json(source["domain"], source.get("corner_angle", CORNER_ANGLE))
     rng = np.random.default_rng(source["seed"])
     if "part" in source:
         return random_parts.random_part(source["part"], rng)

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwright.sources.arc_edges import Place, points_of
 from meshwright_core.errors import capitalised
 from meshwright_core.geometry.polygons import contains
-
-Place = tuple[float, float]
 
 _NEAR = 1e-9
 """Tolerance, relative to the size of the sketch, below which two points coincide."""
@@ -21,10 +20,51 @@ _NEAR = 1e-9
 
 @dataclass(frozen=True)
 class PolygonLoop:
-    """Corners in order; the first loop is the outline, the others are holes."""
+    """Corners in order; the first loop is the outline, the others are holes.
+
+    ``bulges`` are those of the edges that begin at the corners; missing ones are 0, for segments.
+    """
 
     corners: tuple[Place, ...] = ()
     closed: bool = False
+    bulges: tuple[float, ...] = ()
+
+    @property
+    def curved(self) -> bool:
+        """Whether an edge is an arc."""
+        return any(self.bulges)
+
+    @property
+    def edges(self) -> range:
+        """The corners at which an edge begins."""
+        return range(len(self.corners) if self.closed else max(len(self.corners) - 1, 0))
+
+    def bulge(self, edge: int) -> float:
+        """The bulge of an edge."""
+        return self.bulges[edge] if edge < len(self.bulges) else 0.0
+
+    def ends(self, edge: int) -> tuple[Place, Place]:
+        """Where an edge begins and ends."""
+        return self.corners[edge], self.corners[(edge + 1) % len(self.corners)]
+
+    def edge_points(self, edge: int) -> list[Place]:
+        """Points of an edge in order, both ends included."""
+        return points_of(*self.ends(edge), self.bulge(edge))
+
+    def flattened(self) -> tuple[PolygonLoop, list[int]]:
+        """The loop with its arcs as polylines, and for each of its points the edge there."""
+        if not self.curved:
+            return self, list(range(len(self.corners)))
+        places: list[Place] = []
+        owners: list[int] = []
+        for edge in self.edges:
+            points = self.edge_points(edge)[:-1]
+            places += points
+            owners += [edge] * len(points)
+        if not self.closed:
+            places.append(self.corners[-1])
+            owners.append(len(self.corners) - 1)
+        return PolygonLoop(tuple(places), self.closed), owners
 
 
 @dataclass(frozen=True)
@@ -42,7 +82,17 @@ def name_of(loop: int) -> str:
 
 
 def problem_of(loops: tuple[PolygonLoop, ...]) -> PolygonProblem:
-    """The first problem of the loops; its sentence is empty if there is none."""
+    """The first problem of the loops; its sentence is empty if there is none.
+
+    Arcs count as polylines here; the finished domain is checked with its true curves.
+    """
+    flat = [loop.flattened() for loop in loops]
+    found = _problem_of(tuple(one for one, _ in flat))
+    edges = dict.fromkeys((i, flat[i][1][j]) for i, j in found.edges)
+    return PolygonProblem(found.words, tuple(edges), found.places)
+
+
+def _problem_of(loops: tuple[PolygonLoop, ...]) -> PolygonProblem:
     crossing = _crossing(loops)
     if crossing is not None:
         return crossing

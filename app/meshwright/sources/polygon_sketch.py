@@ -1,20 +1,22 @@
-"""A polygon being drawn: loops of corners, with undo and redo, and the checks of the polygon.
+"""A shape being drawn: loops of segments and arcs, with undo and redo, and their checks.
 
 Imports no Qt: the drawing page and its table of coordinates are two views of one sketch.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from meshwright.signals import Signal
+from meshwright.sources.arc_edges import Place, bulge_through, circle_of, part_of, share_at
 from meshwright.sources.polygon_checks import (
-    Place,
     PolygonLoop,
     PolygonProblem,
     name_of,
     problem_of,
 )
+from meshwright_core.curves.curve import Curve
 from meshwright_core.errors import MeshError, capitalised
 
 _NEAR = 1e-9
@@ -22,7 +24,7 @@ _NEAR = 1e-9
 
 
 class Sketch:
-    """Loops of corners. ``changed()`` after every edit.
+    """Loops of corners with segments and arcs between them. ``changed()`` after every edit.
 
     The last loop may be open: corners are added to it. All edits can be undone; a drag is one
     edit (`begin`).
@@ -59,22 +61,56 @@ class Sketch:
         """Every corner as (loop, index in the loop, position)."""
         return [(i, j, p) for i, loop in enumerate(self._loops) for j, p in enumerate(loop.corners)]
 
+    def centres(self) -> list[Place]:
+        """The centres of all arcs."""
+        return [
+            circle_of(*loop.ends(edge), loop.bulge(edge))[0]
+            for loop in self._loops
+            for edge in loop.edges
+            if loop.bulge(edge)
+        ]
+
     # Edits
 
-    def add(self, place: Place) -> None:
-        """Add a corner to the open loop, unless it coincides with the last corner."""
+    def add(self, place: Place, bulge: float = 0.0) -> None:
+        """Add a corner to the open loop, unless it coincides with the last corner; ``bulge`` is
+        that of the edge to it.
+        """
         last = self._loops[-1]
         if last.closed or (last.corners and _same(last.corners[-1], place)):
             return
-        self._put(PolygonLoop((*last.corners, place)))
+        bulges = _with(last, len(last.corners) - 1, bulge) if last.corners else ()
+        self._put(PolygonLoop((*last.corners, place), False, bulges))
 
-    def close(self) -> bool:
-        """Close the open loop if it has three corners."""
+    def close(self, bulge: float = 0.0) -> bool:
+        """Close the open loop by an edge; it needs three corners, or two and an arc."""
         last = self._loops[-1]
-        if last.closed or len(last.corners) < 3:
+        if last.closed or not last.corners:
             return False
-        self._put(PolygonLoop(last.corners, True))
+        closed = PolygonLoop(last.corners, True, _with(last, len(last.corners) - 1, bulge))
+        if len(last.corners) < (2 if closed.curved else 3):
+            return False
+        self._put(closed)
         return True
+
+    def add_loop(self, corners: Sequence[Place], bulges: Sequence[float] = ()) -> bool:
+        """Add a closed loop, as the outline if there is none, otherwise as a hole; False while a
+        loop has been begun.
+        """
+        last = self._loops[-1]
+        if not last.closed and last.corners:
+            return False
+        made = PolygonLoop(tuple(corners), True, _trimmed(bulges))
+        self._record()
+        self._set((*(self._loops if last.closed else self._loops[:-1]), made))
+        return True
+
+    def put(self, loops: Iterable[PolygonLoop]) -> None:
+        """Replace all loops, for example by those of a drawing that was kept."""
+        made = tuple(loops) or (PolygonLoop(),)
+        if made != self._loops:
+            self._record()
+            self._set(made)
 
     def add_hole(self) -> bool:
         """Begin a hole; False while a loop is open."""
@@ -87,13 +123,38 @@ class Sketch:
     def take_back(self) -> None:
         """Open the last loop, or remove its last corner, or remove an empty hole."""
         last = self._loops[-1]
+        count = len(last.corners)
         if last.closed:
-            self._put(PolygonLoop(last.corners))
+            self._put(PolygonLoop(last.corners, False, _trimmed(last.bulges[: count - 1])))
         elif last.corners:
-            self._put(PolygonLoop(last.corners[:-1]))
+            bulges = _trimmed(last.bulges[: max(count - 2, 0)])
+            self._put(PolygonLoop(last.corners[:-1], False, bulges))
         elif len(self._loops) > 1:
             self._record()
             self._set(self._loops[:-1])
+
+    def to_json(self) -> list[dict[str, Any]]:
+        """The loops as :meth:`put_json` takes them."""
+        return [
+            {"corners": loop.corners, "closed": loop.closed, "bulges": loop.bulges}
+            for loop in self._loops
+        ]
+
+    def put_json(self, content: Any) -> None:
+        """Replace all loops by what :meth:`to_json` returned; ValueError if that is damaged."""
+        try:
+            loops = [
+                PolygonLoop(
+                    tuple((float(x), float(y)) for x, y in one["corners"]),
+                    bool(one["closed"]),
+                    tuple(float(bulge) for bulge in one["bulges"]),
+                )
+                for one in content
+            ]
+        except (TypeError, KeyError) as error:
+            raise ValueError(f"This is no drawing: {error}") from error
+        if all(loop.closed for loop in loops[:-1]):
+            self.put(loops)
 
     def begin(self) -> None:
         """Record the state before a drag, which :meth:`move` then changes."""
@@ -104,7 +165,7 @@ class Sketch:
         corners = list(self._loops[loop].corners)
         if corners[corner] != place:
             corners[corner] = place
-            self._replace(loop, corners)
+            self._replace(loop, corners, self._loops[loop].bulges)
 
     def set(self, loop: int, corner: int, place: Place) -> None:
         """Move a corner, as a separate edit."""
@@ -113,25 +174,55 @@ class Sketch:
             self.move(loop, corner, place)
 
     def insert(self, loop: int, corner: int, place: Place) -> None:
-        """Insert a corner before another one."""
+        """Insert a corner before another one, on the edge between them."""
         self._record()
-        corners = list(self._loops[loop].corners)
+        before = self._loops[loop]
+        corners, bulges = list(before.corners), _filled(before)
+        bulge = bulges[corner - 1]
+        share = share_at(*before.ends(corner - 1), bulge, place)
         corners.insert(corner, place)
-        self._replace(loop, corners)
+        bulges[corner - 1 : corner] = [part_of(bulge, share), part_of(bulge, 1.0 - share)]
+        self._replace(loop, corners, bulges)
 
     def remove(self, loop: int, corner: int) -> None:
         """Remove a corner; a loop of fewer than three becomes open, or is removed if it is not the
         last.
         """
-        corners = list(self._loops[loop].corners)
-        del corners[corner]
+        before = self._loops[loop]
+        corners, bulges = list(before.corners), _filled(before)
+        if bulges[corner - 1] and bulges[corner] and len(corners) > 2:
+            a, b = corners[corner - 1], corners[(corner + 1) % len(corners)]
+            bulges[corner - 1] = bulge_through(a, corners[corner], b)
+        else:
+            bulges[corner - 1] = 0.0
+        del corners[corner], bulges[corner]
         self._record()
         last = loop == len(self._loops) - 1
-        if len(corners) < 3 and not last:
+        least = 2 if any(bulges) else 3
+        if len(corners) < least and not last:
             self._set(tuple(one for i, one in enumerate(self._loops) if i != loop))
             return
-        kept = PolygonLoop(tuple(corners), self._loops[loop].closed and len(corners) >= 3)
+        if len(corners) < least or not before.closed:
+            kept = PolygonLoop(tuple(corners), False, _trimmed(bulges[: max(len(corners) - 1, 0)]))
+        else:
+            kept = PolygonLoop(tuple(corners), True, _trimmed(bulges))
         self._set((*self._loops[:loop], kept, *self._loops[loop + 1 :]))
+
+    def bend(self, loop: int, edge: int, bulge: float) -> None:
+        """Set the bulge of an edge, as a separate edit."""
+        before = self._loops[loop]
+        if before.bulge(edge) != bulge:
+            self._record()
+            self._replace(loop, before.corners, _with(before, edge, bulge))
+
+    def scale_circle(self, loop: int, radius: float) -> None:
+        """Set the radius of a circle, as a separate edit; the centre stays."""
+        one = self._loops[loop]
+        (x, y), present = circle_of(*one.ends(0), one.bulge(0))
+        ratio = radius / present
+        corners = [(x + ratio * (a - x), y + ratio * (b - y)) for a, b in one.corners]
+        self._record()
+        self._replace(loop, corners, one.bulges)
 
     def clear(self) -> None:
         """Remove all loops."""
@@ -181,7 +272,7 @@ class Sketch:
         if not last.corners:
             inside = " inside the outline" if len(self._loops) > 1 else ""
             return f"Click{inside} to place the first corner of {what}."
-        missing = 3 - len(last.corners)
+        missing = (2 if last.curved else 3) - len(last.corners)
         if missing > 0:
             more = "one corner" if missing == 1 else f"{missing} corners"
             return f"{capitalised(what)} needs at least {more} more."
@@ -193,6 +284,9 @@ class Sketch:
         """
         if not self.complete:
             raise MeshError(self.words)
+        if any(loop.curved for loop in self._loops):
+            rim, *inner = [_pieces(loop) for loop in self._loops]
+            return {"name": "drawing", "outline": rim, "holes": inner}
         outline, *holes = [[list(p) for p in loop.corners] for loop in self._loops]
         return {
             "name": "drawing",
@@ -202,22 +296,23 @@ class Sketch:
             "hole_corners": [[True] * len(hole) for hole in holes],
         }
 
-    def trial(self, place: Place) -> PolygonProblem | None:
+    def trial(self, place: Place, bulge: float = 0.0) -> PolygonProblem | None:
         """The problem that one more corner in the open loop would cause, None if none."""
         last = self._loops[-1]
         if last.closed or not last.corners or self.problem is not None:
             return None
         if _same(last.corners[0], place) or _same(last.corners[-1], place):
             return None
-        found = problem_of((*self._loops[:-1], PolygonLoop((*last.corners, place))))
+        bulges = _with(last, len(last.corners) - 1, bulge)
+        found = problem_of((*self._loops[:-1], PolygonLoop((*last.corners, place), False, bulges)))
         return found if found.words else None
 
     def _put(self, last: PolygonLoop) -> None:
         self._record()
         self._set((*self._loops[:-1], last))
 
-    def _replace(self, loop: int, corners: list[Place]) -> None:
-        kept = PolygonLoop(tuple(corners), self._loops[loop].closed)
+    def _replace(self, loop: int, corners: Sequence[Place], bulges: Sequence[float]) -> None:
+        kept = PolygonLoop(tuple(corners), self._loops[loop].closed, _trimmed(bulges))
         self._set((*self._loops[:loop], kept, *self._loops[loop + 1 :]))
 
     def _record(self) -> None:
@@ -228,6 +323,36 @@ class Sketch:
         self._loops = loops
         self._problem = None
         self.changed.emit()
+
+
+def _trimmed(bulges: Sequence[float]) -> tuple[float, ...]:
+    """Bulges without zeros at the end."""
+    kept = list(bulges)
+    while kept and kept[-1] == 0.0:
+        kept.pop()
+    return tuple(kept)
+
+
+def _filled(loop: PolygonLoop) -> list[float]:
+    """One bulge for each corner."""
+    return [loop.bulge(edge) for edge in range(len(loop.corners))]
+
+
+def _with(loop: PolygonLoop, edge: int, bulge: float) -> tuple[float, ...]:
+    """The bulges of a loop with another one for an edge."""
+    bulges = _filled(loop)
+    bulges[edge] = bulge
+    return _trimmed(bulges)
+
+
+def _pieces(loop: PolygonLoop) -> list[dict[str, Any]]:
+    """A loop as the pieces that a domain file holds."""
+    made = []
+    for edge in loop.edges:
+        a, b, bulge = *loop.ends(edge), loop.bulge(edge)
+        curve = Curve.arc_by_bulge(a, b, bulge) if bulge else Curve.line(a, b)
+        made.append(curve.to_json())
+    return made
 
 
 def _same(one: Place, other: Place) -> bool:

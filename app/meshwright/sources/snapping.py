@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-Place = tuple[float, float]
+from meshwright.sources.arc_edges import Place
 
 
 @dataclass(frozen=True)

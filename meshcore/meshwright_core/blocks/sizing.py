@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from meshwright_core.analysis.chord_counts import Sum, chord_counts
 from meshwright_core.blocks.structure import BlockStructure
+from meshwright_core.core.grid_plan import Grading, GridPlan
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry.turning import CurveTurning
 
@@ -21,8 +22,19 @@ ACROSS = 3.0
 """Cells across a block, at least, where no size is given."""
 MOST_CELLS = 50_000_000
 """Cells that a grid may have."""
+EVERY_SIDE = "all"
+"""In place of the name of a side: every one."""
 STEEPEST = 10.0
 """The largest ratio of growth that is taken."""
+
+
+class GridConflictError(MeshError):
+    """Wishes for numbers of cells that no grid meets."""
+
+    def __init__(self, words: str, chords: list[int]) -> None:
+        super().__init__(words)
+        self.chords = chords
+        """The chords that they are about."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +76,61 @@ class Sizing:
     """Cells on block edges, by the ids of their two vertices; they hold for the whole chord."""
     chord_counts: Mapping[int, int] = field(default_factory=dict)
     """Cells across chords."""
+    edge_gradings: Mapping[tuple[int, int], Grading] = field(default_factory=dict)
+    """Gradings of block edges, by the ids of their first and last vertex; they hold for the whole
+    chord, in place of layers at walls."""
+
+    @classmethod
+    def planned(cls, structure: BlockStructure, plan: GridPlan) -> Sizing:
+        """The wishes kept with a mesh; those for sides and edges that there are no longer are left
+        out, and where a chord has several gradings the first one counts.
+
+        Raises GridConflictError if a chord has several numbers of cells.
+        """
+        names = {patch.name for patch in structure.patches}
+        counts: dict[int, int] = {}
+        for (a, b), count in plan.counts.items():
+            edge = structure.edge_between(a, b)
+            if edge < 0:
+                continue
+            chord = int(structure.chord[edge])
+            if counts.setdefault(chord, count) != count:
+                raise GridConflictError(
+                    f"Chord {chord} has both {counts[chord]} and {count} cells since blocks were "
+                    "joined: set its number of cells again.",
+                    [chord],
+                )
+        gradings: dict[int, tuple[tuple[int, int], Grading]] = {}
+        for ends, grading in plan.gradings.items():
+            edge = structure.edge_between(*ends)
+            if edge >= 0:
+                gradings.setdefault(int(structure.chord[edge]), (ends, grading))
+        return cls(
+            size=plan.size,
+            divide=plan.divide,
+            walls=tuple(
+                WallLayer(*wall) for wall in plan.walls if wall.name in names | {EVERY_SIDE}
+            ),
+            side_counts={name: n for name, n in plan.side_counts.items() if name in names},
+            chord_counts=counts,
+            edge_gradings=dict(gradings.values()),
+        )
+
+    def over(self, other: Sizing) -> Sizing:
+        """These wishes, and others where there are none of these."""
+        sized = self.size is not None or self.divide is not None or bool(self.side_sizes)
+        amounts = self if sized else other
+        return replace(
+            self,
+            size=amounts.size,
+            divide=amounts.divide,
+            side_sizes=amounts.side_sizes,
+            walls=self.walls or other.walls,
+            side_counts={**other.side_counts, **self.side_counts},
+            edge_counts={**other.edge_counts, **self.edge_counts},
+            chord_counts={**other.chord_counts, **self.chord_counts},
+            edge_gradings={**other.edge_gradings, **self.edge_gradings},
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +155,7 @@ def division(structure: BlockStructure, sizing: Sizing) -> Division:
     """
     _require_positive(sizing)
     first, last, ratio = _layers(structure, sizing.walls)
+    _grade(structure, sizing, first, last, ratio)
     chord = structure.chord
     if sizing.divide is not None:
         wanted = np.full(len(chord), float(sizing.divide))
@@ -109,7 +177,7 @@ def division(structure: BlockStructure, sizing: Sizing) -> Division:
     try:
         counts = chord_counts(chord, wanted, fixed=fixed, sums=[one for _, one in sums])
     except MeshError as error:
-        raise MeshError(_conflict(sums, fixed, str(error))) from error
+        raise _conflict(sums, fixed, str(error)) from error
     cells = float(counts[structure.crossing].astype(float).prod(axis=1).sum())
     if cells > MOST_CELLS:
         raise MeshError(f"That makes {cells:,.0f} cells; at most {MOST_CELLS:,} are made.")
@@ -187,7 +255,7 @@ def _layers(
     heights = np.full((2, count), np.inf)
     ratio = np.full(count, np.inf)
     for wall in walls:
-        patches = structure.patches if wall.name == "all" else (structure.patch(wall.name),)
+        patches = structure.patches if wall.name == EVERY_SIDE else (structure.patch(wall.name),)
         for edge in np.concatenate([patch.edges for patch in patches]).tolist():
             block = int(structure.neighbours[edge].max())
             side = int(np.flatnonzero(structure.sides[block] == edge)[0])
@@ -201,6 +269,29 @@ def _layers(
     return first, last, np.where(np.isfinite(ratio), ratio, 1.0)
 
 
+def _grade(
+    structure: BlockStructure,
+    sizing: Sizing,
+    first: np.ndarray,
+    last: np.ndarray,
+    ratio: np.ndarray,
+) -> None:
+    """Write the gradings of edges over those of walls."""
+    for (a, b), grading in sizing.edge_gradings.items():
+        edge = structure.edge_between(a, b)
+        if edge < 0:
+            raise MeshError(f"There is no block edge between vertices {a} and {b}.")
+        if min(grading.first, grading.last) < 0.0 or not 1.0 <= grading.ratio <= STEEPEST:
+            raise MeshError(
+                f"The grading of edge {a}-{b} needs lengths above 0 and a growth of 1 to "
+                f"{STEEPEST:g}."
+            )
+        ahead = int(structure.vertices[structure.edges[edge, 0]]) == a
+        along = grading if ahead else grading.turned
+        chord = int(structure.chord[edge])
+        first[chord], last[chord], ratio[chord] = along
+
+
 def _fixed(structure: BlockStructure, sizing: Sizing) -> dict[int, int]:
     """Given numbers by chord. Raises MeshError where two of them contradict each other."""
     fixed: dict[int, int] = {}
@@ -208,9 +299,10 @@ def _fixed(structure: BlockStructure, sizing: Sizing) -> dict[int, int]:
 
     def note(chord: int, count: int, where: str) -> None:
         if fixed.setdefault(chord, count) != count:
-            raise MeshError(
+            raise GridConflictError(
                 f"{said[chord]} and {where} are on chord {chord}, and it cannot have both "
-                f"{fixed[chord]} and {count} cells."
+                f"{fixed[chord]} and {count} cells.",
+                [chord],
             )
         said.setdefault(chord, where)
 
@@ -233,25 +325,58 @@ def _sums(structure: BlockStructure, sizing: Sizing) -> list[tuple[str, Sum]]:
     for name, total in sizing.side_counts.items():
         chords = structure.chord[structure.patch(name).edges]
         if len(chords) > total:
-            raise MeshError(
+            raise GridConflictError(
                 f"The side {name} consists of {len(chords)} block edges, and cannot have "
-                f"{total} cells."
+                f"{total} cells.",
+                np.unique(chords).tolist(),
             )
         found.append((f"{total} cells on {name}", Sum(chords.tolist(), total)))
     return found
 
 
-def _conflict(sums: list[tuple[str, Sum]], fixed: dict[int, int], reason: str) -> str:
+def _conflict(sums: list[tuple[str, Sum]], fixed: dict[int, int], reason: str) -> GridConflictError:
+    """Why numbers contradict each other: one side alone where that is enough to see it."""
+    for words, one in sums:
+        chords, often = np.unique(np.array(one.chords, np.int64), return_counts=True)
+        given = np.array([chord in fixed for chord in chords.tolist()])
+        taken = sum(
+            fixed[chord] * n for chord, n in zip(chords.tolist(), often.tolist(), strict=True)
+            if chord in fixed
+        )  # fmt: skip
+        left, free = int(one.total or 0) - taken, often[~given]
+        pinned = " and ".join(
+            f"{fixed[chord]} on chord {chord}" for chord in chords[given].tolist()
+        )
+        if not len(free) and left:
+            said = f"{words} and {pinned} contradict each other: together those make {taken}."
+        elif left < int(free.sum()):
+            said = f"{words} leave too few for its other block edges beside {pinned}."
+        elif len(free) and left % int(np.gcd.reduce(free)):
+            step = int(np.gcd.reduce(free))
+            rest = f" beside {pinned}" if pinned else ""
+            what = "an even number" if step == 2 else f"a multiple of {step}"
+            said = (
+                f"{words} cannot be: each chord that ends there does so {step} times, so{rest} "
+                f"it must be {what}."
+            )
+            said = said if not taken else said.replace("it must be", "what is left must be")
+        else:
+            continue
+        return GridConflictError(said, chords.tolist())
     if not sums:
-        return reason
+        return GridConflictError(reason, sorted(fixed))
     wanted = [words for words, _ in sums]
     wanted += [f"{count} on chord {chord}" for chord, count in fixed.items()]
     shared: list[str] = []
+    about: set[int] = set()
     for i, (words, one) in enumerate(sums):
         for other, more in sums[i + 1 :]:
             both = sorted(set(one.chords) & set(more.chords))
             if both:
+                about |= set(both)
                 named = ", ".join(map(str, both))
                 shared.append(f"{words} and {other} share chords {named}")
     why = f": {'; '.join(shared)}" if shared else ""
-    return f"These numbers contradict each other: {', '.join(wanted)}{why}."
+    return GridConflictError(
+        f"These numbers contradict each other: {', '.join(wanted)}{why}.", sorted(about)
+    )

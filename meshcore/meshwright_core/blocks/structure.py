@@ -157,9 +157,12 @@ class BlockStructure:
 
     def edge_between(self, a: int, b: int) -> int:
         """The edge between two vertices of the mesh, by id; -1 if there is none."""
-        ids = self.vertices[self.edges]
-        found = np.flatnonzero(((ids == [a, b]) | (ids == [b, a])).all(axis=1))
-        return int(found[0]) if len(found) else -1
+        return self._edge_of.get((min(a, b), max(a, b)), -1)
+
+    @cached_property
+    def _edge_of(self) -> dict[tuple[int, int], int]:
+        ends = np.sort(self.vertices[self.edges], axis=1)
+        return {(a, b): edge for edge, (a, b) in enumerate(ends.tolist())}
 
     def patch(self, name: str) -> Patch:
         """The patch with this name. Raises MeshError that lists the names if there is none."""

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwright_core.core.composite_curves import SHORTEST, Curves, no_curves, polyline_curves
+from meshwright_core.core.grid_plan import GridPlan
 from meshwright_core.core.planes import Plane
 
 _STRAIGHT = 1e-12
@@ -72,6 +73,8 @@ class MeshBoundary:
     """The numbers that files give to groups, by dimension (1 sides, 2 regions) and name."""
     plane: Plane | None = None
     """The plane in space whose coordinates those of the mesh are; None for space itself."""
+    plan: GridPlan = field(default_factory=GridPlan)
+    """What is wanted of a block grid of the mesh."""
 
     @property
     def count(self) -> int:
@@ -91,14 +94,14 @@ class MeshBoundary:
 
     def renumbered(self, vertices: np.ndarray) -> MeshBoundary:
         """The same with new ids of vertices: `vertices` (slots,) maps old ones to them."""
-        if all(one.start < 0 and one.end < 0 for one in self.interfaces):
+        if self.plan.empty and all(one.start < 0 and one.end < 0 for one in self.interfaces):
             return self
 
         def new(vertex: int) -> int:
             return int(vertices[vertex]) if vertex >= 0 else -1
 
         moved = (one._replace(start=new(one.start), end=new(one.end)) for one in self.interfaces)
-        return replace(self, interfaces=tuple(moved))
+        return replace(self, interfaces=tuple(moved), plan=self.plan.renumbered(vertices))
 
 
 class Seats(NamedTuple):

@@ -31,6 +31,7 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.composite_curves import place_all
 from meshwright_core.core.curve_edges import edge_places
+from meshwright_core.core.grid_plan import GridPlan
 from meshwright_core.core.mesh_boundary import Interface, MeshBoundary
 from meshwright_core.core.planes import Plane
 from meshwright_core.core.vertex_flags import PINNED
@@ -75,6 +76,11 @@ class MeshView:
     def boundary_info(self) -> MeshBoundary:
         """The curves that boundary and interfaces run along, and the names of regions."""
         return self._boundary
+
+    @property
+    def grid_plan(self) -> GridPlan:
+        """What is wanted of a block grid of this mesh, a part of its history."""
+        return self._boundary.plan
 
     @property
     def interfaces(self) -> tuple[Interface, ...]:
@@ -324,6 +330,10 @@ class MeshView:
         if not (0 <= a < self.slots and self._arrays.vertex[a, HALF] >= 0):
             return -1
         return next((h for h in self.outgoing(a) if self.target(h) == b), -1)
+
+    def joins(self, a: int, b: int) -> bool:
+        """Whether an edge joins vertices a and b."""
+        return self.halfedge(a, b) >= 0 or self.halfedge(b, a) >= 0
 
     def validate(self) -> None:
         """Check every invariant exhaustively; MeshError names the broken one and its place."""

@@ -250,4 +250,5 @@ def renamed(boundary: MeshBoundary, old: str, new: str) -> MeshBoundary:
     )
     tags = {(d, new if name == old else name): tag for (d, name), tag in boundary.tags.items()}
     regions = tuple(other(name) for name in boundary.region_names)
-    return replace(boundary, pieces=pieces, region_names=regions, tags=tags)
+    plan = boundary.plan.with_side_renamed(old, new)
+    return replace(boundary, pieces=pieces, region_names=regions, tags=tags, plan=plan)

@@ -56,14 +56,14 @@ class Archive:
         """Move the last steps of the past to the front of the journal; there must be some."""
         piece = self.past.pop()
         rows, entries = held(m)
-        return _with(m, *_joined(piece, rows, entries), int(m.counters[STEP]) + len(piece))
+        return with_journal(m, *_joined(piece, rows, entries), int(m.counters[STEP]) + len(piece))
 
     def fetch_future(self, m: MeshArrays) -> MeshArrays:
         """Move the first steps of the future to the end of the journal; there must be some."""
         rows, entries = held(m)
         more_rows, more_entries = unpack(self.future.pop(0), len(entries))
         rows, entries = np.concatenate([rows, more_rows]), np.concatenate([entries, more_entries])
-        return _with(m, rows, entries, int(m.counters[STEP]))
+        return with_journal(m, rows, entries, int(m.counters[STEP]))
 
     def trimmed(self, m: MeshArrays) -> MeshArrays:
         """Pack the journal's steps that are far from the present; returns the shorter arrays."""
@@ -83,7 +83,7 @@ class Archive:
         start = int(kept[0, STEP_START])
         stop = int(kept[-1, STEP_STOP])
         kept[:, STEP_START : STEP_STOP + 1] -= start
-        return _with(m, kept, entries[start:stop], step - first)
+        return with_journal(m, kept, entries[start:stop], step - first)
 
     def everything(self, m: MeshArrays) -> tuple[list[Steps], list[Steps]]:
         """All done and all undone steps, those of the journal among them; nothing changes."""
@@ -115,7 +115,7 @@ def _joined(piece: Steps, rows: np.ndarray, entries: np.ndarray) -> tuple[np.nda
     return np.concatenate([before_rows, rows]), np.concatenate([before_entries, entries])
 
 
-def _with(m: MeshArrays, rows: np.ndarray, entries: np.ndarray, step: int) -> MeshArrays:
+def with_journal(m: MeshArrays, rows: np.ndarray, entries: np.ndarray, step: int) -> MeshArrays:
     """The arrays with a journal of just these rows and entries, `step` of the rows done."""
     if step > len(rows):
         raise MeshError("a history cannot have more done steps than steps")

@@ -13,7 +13,7 @@ import importlib.util
 import io
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -66,6 +66,7 @@ class Format:
         regions: whether it holds the region of each element.
         sides: whether it holds sides.
         numbers: whether sides and regions have numbers there, in place of names.
+        spelling: from names of sides and of regions to how they are written, None for as they are.
         merge: whether points at the same place are to be merged on reading.
         needs: packages that reading and writing take beyond our own dependencies.
     """
@@ -78,6 +79,7 @@ class Format:
     regions: bool = False
     sides: bool = False
     numbers: bool = False
+    spelling: Callable[[Sequence[str], Sequence[str]], dict[str, str]] | None = None
     merge: bool = False
     needs: tuple[str, ...] = ()
 
@@ -245,9 +247,20 @@ _VTU = Format(
     "VTU", _own_read(vtk_xml.read), _meshio_write("vtu"), data=True, regions=True, sides=True
 )
 _INP = Format(
-    "Abaqus", _own_read(abaqus.read), _own_write(abaqus_writer.write), regions=True, sides=True
+    "Abaqus",
+    _own_read(abaqus.read),
+    _own_write(abaqus_writer.write),
+    regions=True,
+    sides=True,
+    spelling=abaqus_writer.spelling,
 )
-_SU2 = Format("SU2", _own_read(su2.read), _own_write(su2_writer.write), sides=True)
+_SU2 = Format(
+    "SU2",
+    _own_read(su2.read),
+    _own_write(su2_writer.write),
+    sides=True,
+    spelling=su2_writer.spelling,
+)
 _BDF = Format("Nastran", _own_read(nastran.read), _own_write(nastran_writer.write), regions=True)
 _DAT = Format("Tecplot", _own_read(tecplot.read), _meshio_write("tecplot"), data=True)
 _PLY = Format("PLY", _own_read(ply.read), _meshio_write("ply"), data=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -176,17 +176,32 @@ def losses(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> tuple[str, ...]:
         lost.append(f"of the sides {_listed(sides)}")
     if regions and not form.regions:
         lost.append(f"of the regions {_listed(regions)}")
+    said = []
     if lost:
-        return (f"{form.title} files hold no such names: those {' and '.join(lost)} are lost.",)
+        said.append(f"{form.title} files hold no such names: those {' and '.join(lost)} are lost.")
     count = len(np.unique(mesh.regions()))
-    if count > 1 and not form.regions:
-        return (f"{form.title} files hold no regions: what parts the {count} of them is lost.",)
+    if not lost and count > 1 and not form.regions:
+        said.append(f"{form.title} files hold no regions: what parts the {count} of them is lost.")
+    sides, regions = sides if form.sides else [], regions if form.regions else []
     if form.numbers and (sides or regions):
-        return (
+        said.append(
             f"{form.title} files hold numbers in place of names: {_listed([*sides, *regions])} "
-            "become numbers.",
+            "become numbers."
         )
-    return ()
+    if form.spelling is not None:
+        written = form.spelling(sides, regions)
+        said += _respelled(form.title, {a: b for a, b in written.items() if a != b})
+    return tuple(said)
+
+
+def _respelled(title: str, names: Mapping[str, str]) -> list[str]:
+    """A sentence on names that a format writes in another way."""
+    if not names:
+        return []
+    shown = [f"{old!r} becomes {new!r}" for old, new in list(names.items())[:_SHOWN]]
+    more = len(names) - len(shown)
+    changes = ", ".join(shown) + (f", and {more} more change" if more else "")
+    return [f"Names in {title} files are single words: {changes}."]
 
 
 def _listed(names: Sequence[str]) -> str:
@@ -267,7 +282,7 @@ def _loaded(content: Content, corner_angle: float) -> Loaded:
     )
     mesh.left_out = content.dropped
     if plane is not None:
-        shown = ", ".join(f"{value + 0.0:.4g}" for value in plane.normal)
+        shown = ", ".join(f"{round(value, 6) + 0.0:.4g}" for value in plane.normal)
         said = f"it lies in a plane with the normal ({shown}): it is edited in that plane"
         found.warnings.append(f"{said}, and written back to it")
     elif not flat:

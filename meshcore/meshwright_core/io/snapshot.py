@@ -53,6 +53,8 @@ from meshwright_core.mesh import HalfEdgeMesh
 _COLUMNS = MARK  # columns of a vertex before its mark
 MOST = 1 << 25
 """Slots of vertices or elements: places of their writes fit 32 bits."""
+_FREE_ROOM, _MOST_ROOM = 1 << 20, 64
+"""Room for vertices and elements that a file may ask for, and for each row of its arrays."""
 _OLD_WRITE_KINDS = 4
 """WRITE_KINDS in files from before meshes had curves."""
 _PARTS = ("rows", "places", "whole", "coordinates", "parameters")
@@ -92,6 +94,9 @@ def from_arrays(arrays: Mapping[str, np.ndarray]) -> HalfEdgeMesh:
         raise MeshError("it has room for more elements than its vertices can have")
     if cap < 0:
         raise MeshError("its degree cap is negative")
+    held = sum(len(array) for name, array in arrays.items() if array.ndim and name != "irregular")
+    if max(vertices, elements) > _FREE_ROOM + _MOST_ROOM * held:
+        raise MeshError("it has room for far more than it holds")
     counters = stored(arrays, "counters", np.int64, (RESTORED,))
     points = stored(arrays, "points", np.float64, (-1, 3))
     vertex = stored(arrays, "vertex", np.int32, (len(points), _COLUMNS))

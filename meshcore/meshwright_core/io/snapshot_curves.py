@@ -11,6 +11,7 @@ import numpy as np
 
 from meshwright_core.core.arrays import END, LEFT, RIGHT, START
 from meshwright_core.core.composite_curves import Curves, polyline_curves
+from meshwright_core.core.grid_plan import GridPlan
 from meshwright_core.core.mesh_boundary import CurvePiece, Interface, MeshBoundary
 from meshwright_core.core.planes import Plane
 from meshwright_core.errors import MeshError
@@ -41,7 +42,9 @@ def boundary_arrays(namings: Mapping[int, MeshBoundary], naming: int, recorded: 
         **({"plane": boundary.plane} if boundary.plane is not None else {}),
         "naming": naming,
         "others": [
-            [number, names_record(other)] for number, other in namings.items() if number != naming
+            [number, _other_record(other, boundary)]
+            for number, other in namings.items()
+            if number != naming
         ],
     }
     text = json.dumps(known, separators=(",", ":")).encode()
@@ -53,8 +56,9 @@ def boundary_arrays(namings: Mapping[int, MeshBoundary], naming: int, recorded: 
 
 
 def names_record(boundary: MeshBoundary) -> dict[str, Any]:
-    """The names of regions and sides, as JSON can hold them."""
+    """The names of regions and sides, and the wishes for a grid, as JSON can hold them."""
     return {
+        **_plan_record(boundary),
         "regions": list(boundary.region_names),
         "pieces": [
             [[one.start, one.stop, one.kind, one.name, one.data] for one in pieces]
@@ -64,22 +68,44 @@ def names_record(boundary: MeshBoundary) -> dict[str, Any]:
     }
 
 
+def _plan_record(boundary: MeshBoundary) -> dict[str, Any]:
+    return {} if boundary.plan.empty else {"plan": boundary.plan.record()}
+
+
+def _other_record(other: MeshBoundary, boundary: MeshBoundary) -> dict[str, Any]:
+    """The names that were in force before, or only the wishes if they alone differ."""
+    same = other.pieces is boundary.pieces and other.region_names == boundary.region_names
+    if same and other.tags == boundary.tags:
+        return {"same names": True, **_plan_record(other)}
+    return names_record(other)
+
+
 def stored_names(record: Any, boundary: MeshBoundary) -> MeshBoundary:
     """The boundary with the names of a record, which may come from a damaged file.
 
     Raises MeshError unless there is a name for each of its regions, and pieces of its curves.
     """
     try:
+        plan = GridPlan.of_record(record["plan"]) if "plan" in record else GridPlan()
+        if record.get("same names"):
+            return replace(boundary, plan=plan)
         names = tuple(record["regions"])
         pieces = tuple(tuple(map(_piece, some)) for some in record["pieces"])
         tags = {(int(d), str(name)): int(tag) for d, name, tag in record.get("tags", ())}
-    except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
+    except (
+        ValueError,
+        KeyError,
+        TypeError,
+        AttributeError,
+        RecursionError,
+        OverflowError,
+    ) as error:
         raise MeshError("its curves have wrong names") from error
     regions = len(boundary.region_names) if boundary.region_names != ("",) else len(names)
     sound = len(pieces) == boundary.count and len(names) == regions > 0
     if not sound or not all(isinstance(name, str) for name in names):
         raise MeshError("its curves have wrong names")
-    return replace(boundary, region_names=names, pieces=pieces, tags=tags)
+    return replace(boundary, region_names=names, pieces=pieces, tags=tags, plan=plan)
 
 
 def stored_boundary(
@@ -89,8 +115,10 @@ def stored_boundary(
 
     That the vertices fit the curves, and the ends of interfaces are junctions, is not checked.
     """
+    # copies: arrays that are views of a file's bytes cannot be written, which is another type to
+    # numba, and so everything that takes curves would be compiled a second time
     curves = Curves(
-        *(stored(arrays, f"curves.{name}", kind, shape) for name, kind, shape in _FIELDS)
+        *(stored(arrays, f"curves.{name}", kind, shape).copy() for name, kind, shape in _FIELDS)
     )
     _require_curves(curves)
     count = len(curves.closed)

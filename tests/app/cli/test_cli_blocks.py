@@ -3,10 +3,13 @@
 import json
 
 import pytest
-from block_meshes import corner_blocks
+from block_meshes import corner_blocks, two_regions
 
 import meshwright_core
 from meshwright import cli
+from meshwright.document import block_edits
+from meshwright.document.document import Document
+from meshwright_core.blocks.structure import BlockStructure
 
 
 @pytest.fixture
@@ -81,3 +84,48 @@ def test_triangles_are_refused(capsys, tmp_path):
     meshwright_core.write(tmp_path / "t.vtk", mesh)
     assert cli.main(["blocks", str(tmp_path / "t.vtk"), "-o", str(tmp_path / "a.geo")]) == 2
     assert "triangles" in capsys.readouterr().err
+
+
+@pytest.fixture
+def named(tmp_path):
+    """Two squares, of steel and copper, between an inlet and an outlet, as a Gmsh file."""
+    mesh = two_regions()
+    for name, (a, b) in (("inlet", (3, 0)), ("outlet", (2, 5))):
+        mesh.name_sides([mesh.halfedge(a, b)], name)
+    mesh.name_regions([0], "steel")
+    mesh.name_regions([1], "copper")
+    meshwright_core.write(tmp_path / "named.msh", mesh)
+    return tmp_path / "named.msh"
+
+
+@pytest.mark.parametrize("ending", [".su2", ".inp", ".msh", ".vtu"])
+def test_names_of_sides_reach_meshes_of_quads(capsys, named, tmp_path, ending):
+    output = tmp_path / f"fine{ending}"
+    run(capsys, named, "-o", output, "--divide", "3")
+    sides = {name: ends for name, ends in meshwright_core.read(output).sides().items() if name}
+    assert {name: len(ends) for name, ends in sides.items()} == {
+        "inlet": 3, "outlet": 3, "outline": 12
+    }  # fmt: skip
+    mesh = meshwright_core.read(output)
+    assert (mesh.points[sides["inlet"], 0] == 0.0).all()
+    assert (mesh.points[sides["outlet"], 0] == 2.0).all()
+    if ending != ".su2":
+        assert sorted(mesh.region_names) == ["copper", "steel"]
+
+
+def test_names_that_a_format_cannot_hold_are_said(capsys, named, tmp_path):
+    output = tmp_path / "fine.bdf"
+    assert cli.main(["blocks", str(named), "-o", str(output), "--divide", "3"]) == 0
+    assert "Nastran" in (said := capsys.readouterr().err)
+    assert "'inlet', 'outlet' are lost" in said
+    assert sorted(meshwright_core.read(output).region_names) == ["copper", "steel"]
+
+
+def test_numbers_set_in_the_window_count_for_projects(capsys, tmp_path):
+    document = Document(corner_blocks())
+    structure = BlockStructure.of(document.mesh)
+    chord = int(structure.chord[structure.edge_between(0, 1)])
+    block_edits.set_count(document, structure, chord, 9)
+    path = document.save(tmp_path / "corner.meshwright")
+    values = run(capsys, path, "-o", tmp_path / "a.geo", "--divide", "2")
+    assert sorted(values["counts"]) == [2, 2, 2, 9]

@@ -234,26 +234,37 @@ def test_file_errors_are_reported_in_one_sentence(qtbot, open_window, star, tmp_
     assert window.document.mesh is star
 
 
-def test_a_drawing_of_separate_parts_opens_in_the_dialog(
-    qtbot, open_window, star, tmp_path, monkeypatch
-):
+def test_a_drawing_opens_in_the_dialog(qtbot, open_window, star, tmp_path):
     window = open_window(star)
-    parts = tmp_path / "parts.svg"
+    drawing = tmp_path / "parts.svg"
     shape = '<circle cx="{}" cy="5" r="5"/>'
     form = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
-    parts.write_text(form.format(shape.format(5) + shape.format(50)))
-    asked = []
-    monkeypatch.setattr(window.files, "_new", asked.append)
-    window.files.open(parts)
-    assert asked == [str(parts)]
-    assert window.document.mesh is star
-    alone = tmp_path / "alone.svg"
-    alone.write_text(form.format(shape.format(5) + '<text x="1" y="2">5 mm</text>'))
-    window.files.open(alone)
-    assert asked == [str(parts)]
-    assert window.document.name == "alone"
+    drawing.write_text(form.format(shape.format(5) + shape.format(50) + "<text>5 mm</text>"))
+    seen = {}
+
+    def accept():
+        dialog = QApplication.activeModalWidget()
+        seen["page"], seen["path"] = dialog.tabs.key, dialog.file.chosen
+        qtbot.waitUntil(lambda: dialog.made is not None, timeout=WAIT)
+        seen["rows"] = dialog.file.found.table.rowCount()
+        seen["said"] = " ".join(dialog.file.found.sentences)
+        dialog.make.click()
+
+    QTimer.singleShot(200, accept)
+    window.files.open(drawing)
+    assert (seen["page"], seen["path"], seen["rows"]) == ("file", str(drawing), 2)
+    assert "text" in seen["said"].lower()
+    assert window.document.name.startswith("parts")
     assert window.document.mesh.off_curve().max() < 1e-12
-    assert "left out" in window.status.message
+    assert window.settings.recent[0] == str(drawing)
+
+
+def test_a_drawing_without_a_shape_is_refused_without_a_dialog(open_window, star, tmp_path):
+    window = open_window(star)
+    (tmp_path / "empty.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"></svg>')
+    window.files.open(tmp_path / "empty.svg")
+    assert "empty.svg" in window.notice.text
+    assert window.document.mesh is star
 
 
 def test_recent_files(qtbot, open_window, star, tmp_path):

@@ -91,6 +91,17 @@ def pen(qtbot, dialog):
     return Pen(qtbot, dialog)
 
 
+def enter(qtbot, table, row, column, text) -> None:
+    """Type into a cell of the table."""
+    table.setFocus()
+    table.setCurrentCell(row, column)
+    qtbot.keyClicks(table.viewport(), text[0])
+    editor = QApplication.focusWidget()
+    qtbot.keyClicks(editor, text[1:])
+    key(qtbot, editor, Qt.Key.Key_Return)
+    qtbot.wait(10)
+
+
 def key(qtbot, widget, key, modifier=Qt.KeyboardModifier.NoModifier) -> None:
     qtbot.keyClick(widget, key, modifier)
 
@@ -311,28 +322,135 @@ def test_snapping_to_right_angles_shows_guides_and_can_be_switched_off(qtbot, di
 def test_coordinates_are_typed_in_the_table(qtbot, dialog, pen):
     table, sketch = dialog.draw.table, dialog.draw.sketch
 
-    def enter(row, column, text):
-        table.setFocus()
-        table.setCurrentCell(row, column)
-        qtbot.keyClicks(table.viewport(), text[0])
-        editor = QApplication.focusWidget()
-        qtbot.keyClicks(editor, text[1:])
-        key(qtbot, editor, Qt.Key.Key_Return)
-        qtbot.wait(10)
-
     for row, (x, y) in enumerate([("0", "0"), ("1,5", "0"), ("1.5", "2")]):
-        enter(row, 1, x)
-        enter(row, 2, y)
+        enter(qtbot, table, row, 1, x)
+        enter(qtbot, table, row, 2, y)
     assert sketch.loops[0].corners == ((0, 0), (1.5, 0), (1.5, 2))
     assert dialog.isVisible()
-    enter(2, 2, "-1")
+    enter(qtbot, table, 2, 2, "-1")
     assert sketch.loops[0].corners[2] == (1.5, -1)
     assert table.item(2, 2).text() == "\u22121"
-    enter(0, 1, "two")
+    enter(qtbot, table, 0, 1, "two")
     assert "'two' is not a number" in dialog.status.text()
     assert sketch.loops[0].corners[0] == (0, 0)
     pen.click(*sketch.loops[0].corners[1])
     assert table.currentRow() == 1
+
+
+def test_a_plate_with_three_holes_is_drawn_by_tools_and_numbers(qtbot, dialog, pen):
+    draw = dialog.draw
+    key(qtbot, draw.area, Qt.Key.Key_R)
+    assert draw.tools.key == "rectangle" and "opposite corners" in draw.hint.text()
+    pen.click(-0.8, -0.4)
+    pen.point(0.1, 0.1)
+    qtbot.keyClicks(draw.area, "1.65 0.8")
+    assert draw.area.typed == "1.65 0.8"
+    draw.area.grab()  # paints it
+    key(qtbot, draw.area, Qt.Key.Key_Backspace)
+    qtbot.keyClicks(draw.area, "75")
+    key(qtbot, draw.area, Qt.Key.Key_Return)
+    assert draw.sketch.loops[0].corners == ((-0.8, -0.4), (0.85, -0.4), (0.85, 0.35), (-0.8, 0.35))
+    qtbot.mouseClick(draw.tools.buttons["circle"], LEFT)
+    assert draw.area.hasFocus()
+    for x in (-0.5, 0.0, 0.5):
+        pen.click(x, 0.0)
+        qtbot.keyClicks(draw.area, "0,125")
+        key(qtbot, draw.area, Qt.Key.Key_Return)
+    pen.click(0.7, -0.3)
+    key(qtbot, draw.area, Qt.Key.Key_Escape)  # forgets the centre, and nothing else
+    assert dialog.isVisible() and not draw.area.pencil.begun
+    made = wait_for_mesh(qtbot, dialog)
+    assert len(made.sizes) == 4 and len(made.corners) == 4
+    mesh = made.mesh()
+    mesh.validate()
+    assert mesh.off_curve().max() < 1e-12
+    key(qtbot, draw.area, Qt.Key.Key_L)
+    pen.drag((0.625, 0.0), (0.6, 0.0))  # a corner of the last circle
+    assert draw.sketch.loops[3].corners[1] == (0.6, 0.0)
+    draw.undo.click()
+    table = draw.table
+    rows = [table.item(row, 0).text() for row in range(table.rowCount())]
+    row = rows.index("Hole 1.1")
+    assert [table.item(row, c).text() for c in (1, 2, 3)] == ["\u22120.625", "0", "0.125"]
+    enter(qtbot, table, row, 3, "0.1")
+    assert np.allclose(draw.sketch.loops[1].corners, [(-0.6, 0.0), (-0.4, 0.0)])
+    enter(qtbot, table, 0, 3, "1")
+    assert "only arcs have a radius" in dialog.status.text().lower()
+
+
+def test_an_arc_is_drawn_and_measured(qtbot, dialog, pen):
+    draw = dialog.draw
+    pen.click(-0.5, 0.0)
+    key(qtbot, draw.area, Qt.Key.Key_A)
+    pen.click(0.5, 0.0)
+    pen.click(0.0, -0.5)
+    assert draw.sketch.loops[0].bulges == (pytest.approx(1.0),)
+    pen.click(-0.5, 0.0)
+    pen.click(0.0, 0.5)
+    assert not draw.sketch.open
+    key(qtbot, draw.area, Qt.Key.Key_M)
+    pen.click(-0.5, 0.0)
+    pen.click(0.5, 0.0)
+    assert draw.area.pencil.draft((0, 0)).text.startswith("1 < 0\u00b0")
+    draw.area.grab()
+    key(qtbot, draw.area, Qt.Key.Key_L)
+    pen.click(0.0, 0.5)  # inserts a corner on the arc
+    assert len(draw.sketch.loops[0].corners) == 3
+    key(qtbot, draw.area, Qt.Key.Key_Delete)
+    assert draw.sketch.loops[0].bulges == pytest.approx((1.0, 1.0))
+
+
+def test_typed_dimensions_that_mean_nothing_are_told(qtbot, dialog, pen):
+    area = dialog.draw.area
+    qtbot.keyClicks(area, "3")
+    assert "x y" in dialog.draw.hint.text() and dialog.mark.isHidden()
+    key(qtbot, area, Qt.Key.Key_Return)
+    assert "is no point" in dialog.status.text() and dialog.isVisible()
+    key(qtbot, area, Qt.Key.Key_Escape)
+    assert area.typed == "" and dialog.isVisible()
+
+
+def test_the_dialog_begins_where_it_ended(qtbot, open_window, tmp_path):
+    window = open_window()
+    seen = []
+
+    def first():
+        dialog = QApplication.activeModalWidget()
+        pen = Pen(qtbot, dialog)
+        key(qtbot, dialog.draw.area, Qt.Key.Key_C)
+        pen.click(0, 0)
+        pen.click(0.5, 0)
+        dialog.options.size_of.tick.click()
+        dialog.options.size_of.field.setValue(0.125)
+        dialog.options.rule.buttons["pairing"].click()
+        seen.append(dialog.state)
+        dialog.reject()
+
+    def second():
+        dialog = QApplication.activeModalWidget()
+        seen.append(dialog.state)
+        wait_for_mesh(qtbot, dialog)
+        dialog.make.click()
+
+    for act in (first, second):
+        QTimer.singleShot(200, act)
+        window.actions_by_id["new"].trigger()
+    assert seen[0] == seen[1]
+    assert seen[1]["page"] == "draw" and seen[1]["options"]["max_edge"] == 0.125
+    assert window.document.name == "drawing"
+
+
+def test_a_damaged_state_is_left_out(qtbot):
+    state = {
+        "page": "nowhere",
+        "options": {"quads": 3},
+        "pages": {"draw": {"loops": [3]}, "gallery": {"shape": "gear"}, "file": {"path": "x"}},
+    }
+    made = NewMeshDialog("quad", theme("light"), state=state)
+    qtbot.addWidget(made)
+    assert made.tabs.key == "gallery" and made.gallery.source == {"shape": "gear"}
+    assert made.draw.sketch.empty
+    made.reject()
 
 
 # Files

@@ -169,7 +169,8 @@ def test_folded_sections_are_remembered(qtbot, open_window, star):
 
 
 @pytest.mark.parametrize(
-    ("number", "text"), [(0, "0"), (9876, "9,876"), (12_345, "12k"), (3_400_000, "3.4M")]
+    ("number", "text"),
+    [(0, "0"), (9876, "9.9k"), (9960, "10k"), (12_345, "12k"), (3_400_000, "3.4M")],
 )
 def test_large_counts_are_short(number, text):
     assert short(number) == text

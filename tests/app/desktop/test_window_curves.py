@@ -120,7 +120,7 @@ def test_a_preview_shows_new_vertices_on_the_curve(qtbot, open_window):
         ghost = window.hover.layer.ghost
         if ghost is not None and ghost.operation == "global_split":
             break
-        qtbot.keyClick(window.canvas.plotter, Qt.Key.Key_Tab)
+        qtbot.keyClick(window.canvas.plotter, Qt.Key.Key_T)
     assert ghost is not None
     assert ghost.operation == "global_split"
     assert np.abs(np.hypot(*ghost.fresh.T) - 2.0).max() < 1e-14

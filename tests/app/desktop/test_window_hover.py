@@ -45,16 +45,16 @@ def test_hover_shows_what_each_operation_would_change(qtbot, open_window, kind, 
     assert {row.change for row in window.hover.panel.rows} == {""}
 
 
-def test_tab_cycles_allowed_operations_and_return_applies_one(qtbot, open_window, star):
+def test_key_t_cycles_allowed_operations_and_return_applies_one(qtbot, open_window, star):
     window = open_window(star)
     halfedge = next(h for h in range(96) if sum(c.allowed for c in choices(star, h)) > 3)
     point_at(qtbot, window, halfedge)
     met = [window.hover.layer.ghost.operation]
     for _ in range(2):
-        press(qtbot, window, Qt.Key.Key_Tab)
+        press(qtbot, window, Qt.Key.Key_T)
         met.append(window.hover.layer.ghost.operation)
     assert len(set(met)) == 3
-    press(qtbot, window, Qt.Key.Key_Backtab, Qt.KeyboardModifier.ShiftModifier)
+    press(qtbot, window, Qt.Key.Key_T, Qt.KeyboardModifier.ShiftModifier)
     assert window.hover.layer.ghost.operation == met[1]
     change = window.hover.layer.ghost.change
     press(qtbot, window, Qt.Key.Key_Return)
@@ -62,12 +62,12 @@ def test_tab_cycles_allowed_operations_and_return_applies_one(qtbot, open_window
     assert (row.action, row.change, row.halfedge) == (met[1].value, change, halfedge)
 
 
-def test_choice_by_tab_is_for_one_half_edge_only(qtbot, open_window, star):
+def test_choice_by_key_is_for_one_half_edge_only(qtbot, open_window, star):
     window = open_window(star)
     first = find(star, "collapse")
     second = next(h for h in range(first + 1, 96) if best(choices(star, h)))
     point_at(qtbot, window, first)
-    press(qtbot, window, Qt.Key.Key_Tab)
+    press(qtbot, window, Qt.Key.Key_T)
     point_at(qtbot, window, second)
     meant = window.hover.current.operation
     assert meant == best(choices(star, second)).operation

@@ -161,9 +161,42 @@ def array_of(name: str, array: np.ndarray):
         (array_of("points", np.array(["text"])), "not a whole one"),
         (array_of("points", np.zeros((3, 3))), "should"),
         (array_of("sizes", np.array([4, 1 << 60, 1 << 60, 0])), "sizes"),
+        (array_of("sizes", np.array([4, 1 << 25, 1 << 25, 0])), "room|irregular"),
+        (array_of("irregular", np.zeros(1 << 25, np.int32)), "too large|irregular"),
     ],
 )
 def test_invalid_projects_are_refused_with_a_reason(document, tmp_path, change, words):
+    path = tmp_path / "a.meshwright"
+    document.save(path)
+    rewritten(path, change)
+    with pytest.raises(MeshError, match=words):
+        project_file.read(path)
+
+
+def changed(name: str, row: int, column: int, by: int):
+    """The project with another number in an array of two dimensions."""
+
+    def change(members) -> None:
+        array = np.load(io.BytesIO(members[name + ".npy"])).copy()
+        array = array.reshape(-1, column + 1) if array.ndim == 1 else array
+        array[row, column] += by
+        array_of(name, array if column else array.ravel())(members)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (changed("done.rows", 0, 10, 2), "other scores"),  # s
+        (changed("undone.rows", -1, 11, 4), "other scores"),  # the sum of Delta
+        (changed("done.rows", 0, 5, 1), "leads to a broken mesh"),  # the number of vertices
+        (changed("undone.whole", 0, 0, 1), "leads to a broken mesh|beyond"),
+        (changed("branch0.whole", -1, 0, 1), "leads to a broken mesh|beyond"),
+        (changed("branch0.0.whole", 2, 0, 1), "leads to a broken mesh|beyond"),
+    ],
+)
+def test_steps_that_lead_to_a_broken_mesh_are_refused(document, tmp_path, change, words):
     path = tmp_path / "a.meshwright"
     document.save(path)
     rewritten(path, change)

@@ -129,6 +129,40 @@ def test_the_agents_operations_win_no_stars(playing):
     assert play.remark == ""
 
 
+@pytest.mark.parametrize("name", ["two-turns", "ell"])
+def test_hints_lead_to_par(playing, desk, name):
+    """Taking the first hint again and again solves the level with as few operations as known."""
+    play, hinting, document = playing.play, playing.assistant.hinting, playing.document
+    play.open(name)
+    while not play.done:
+        assert play.leads
+        playing.assistant.hint()
+        desk.until(lambda: bool(hinting.hints))
+        first = hinting.hints[0]
+        assert first is hinting.guided
+        before = document.score
+        document.submit(first.operation, first.halfedge)
+        assert document.score - before == first.change
+    assert play.used == play.level.par
+
+
+def test_off_the_known_way_the_hints_are_those_of_the_policy(playing, desk):
+    play, hinting, document = playing.play, playing.assistant.hinting, playing.document
+    play.open("two-turns")
+    mesh = document.mesh
+    wrong = next(
+        h for h in range(mesh.k * mesh.n_elements)
+        if mesh.check("split", h) and (play.level.solution[0][0] != "split")
+    )  # fmt: skip
+    document.submit("split", wrong)
+    playing.assistant.hint()
+    desk.until(lambda: bool(hinting.hints))
+    assert hinting.guided is None and not play.leads
+    assert play.remark.endswith("undo to where they lead to par.")
+    document.undo()
+    assert play.leads
+
+
 def test_a_hint_costs_a_star(playing, desk):
     play = playing.play
     play.open("two-turns")

@@ -2,8 +2,10 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 from typing import NamedTuple
 
 import numba
@@ -63,21 +65,26 @@ print(json.dumps([value, misses, parts]))
 """
 
 
-@pytest.fixture
-def tiny(tmp_path):
-    """Runs a script over three kernels in a fresh process; prints value, misses, parts."""
-    package = tmp_path / "code" / "tiny_kernels"
-    package.mkdir(parents=True)
+class Tiny:
+    """Three kernels in a package of their own, and a script that calls them in fresh processes."""
 
-    def write(factor: int) -> None:
-        (package / "__init__.py").write_text(KERNELS + f"\n\nFACTOR = {factor}\n")
+    def __init__(self, folder: Path) -> None:
+        self.package = folder / "code" / "tiny_kernels"
+        self.package.mkdir(parents=True)
+        self.cache = folder / "cache"
+        self.write(2)
 
-    def run(cache=tmp_path / "cache", **options):
-        paths = os.pathsep.join([str(package.parent), *sys.path])
-        environment = {**os.environ, "MESHWRIGHT_CACHE_DIR": str(cache), "PYTHONPATH": paths}
+    def write(self, factor: int) -> None:
+        """Edit the package."""
+        (self.package / "__init__.py").write_text(KERNELS + f"\n\nFACTOR = {factor}\n")
+
+    def run(self, cache: Path | None = None, **options):
+        """Value, misses, parts."""
+        paths = os.pathsep.join([str(self.package.parent), *sys.path])
+        chosen = str(cache or self.cache)
         done = subprocess.run(
             [sys.executable, "-c", SCRIPT],
-            env=environment,
+            env={**os.environ, "MESHWRIGHT_CACHE_DIR": chosen, "PYTHONPATH": paths},
             capture_output=True,
             text=True,
             **options,
@@ -85,61 +92,66 @@ def tiny(tmp_path):
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)
 
-    write(2)
-    run.write = write
-    return run
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    """With a filled cache, which tests copy and do not change."""
+    made = Tiny(tmp_path_factory.mktemp("tiny"))
+    assert made.run() == [EXPECTED, 2, 3]  # two entry points of three parts: both, what is shared
+    return made
+
+
+@pytest.fixture
+def cache(tiny, tmp_path):
+    """A copy of the filled cache."""
+    return shutil.copytree(tiny.cache, tmp_path / "cache")
 
 
 EXPECTED = (2 * 3 + 7) + 1000 * (2 * 7 + 3)
 
 
 def test_a_filled_cache_compiles_nothing(tiny):
-    assert tiny() == [EXPECTED, 2, 3]  # two entry points of three parts: both, and what is shared
-    assert tiny() == [EXPECTED, 0, 0]
+    assert tiny.run() == [EXPECTED, 0, 0]
 
 
-def test_an_edit_means_a_fresh_cache(tiny):
-    tiny()
+def test_an_edit_means_a_fresh_cache(tmp_path):
+    tiny = Tiny(tmp_path)
+    assert tiny.run() == [EXPECTED, 2, 3]
     tiny.write(3)
-    value, misses, _ = tiny()
+    value, misses, _ = tiny.run()
     assert value == (3 * 3 + 7) + 1000 * (3 * 7 + 3)
     assert misses == 2
 
 
 def test_a_folder_that_cannot_be_written_leaves_the_cache_in_memory(tiny, tmp_path):
     (tmp_path / "file").write_text("")
-    assert tiny(tmp_path / "file" / "below") == [EXPECTED, 2, 3]
+    assert tiny.run(tmp_path / "file" / "below") == [EXPECTED, 2, 3]
+    assert not list(tiny.package.parent.rglob("*.nb?"))  # nor beside the sources
 
 
-def test_a_shared_kernel_that_is_gone_from_the_cache_is_compiled_again(tiny, tmp_path):
-    tiny()
-    for path in (tmp_path / "cache").rglob("*shared_sum*"):
+def test_a_shared_kernel_that_is_gone_from_the_cache_is_compiled_again(tiny, cache):
+    for path in cache.rglob("*shared_sum*"):
         path.unlink()
-    assert tiny() == [EXPECTED, 1, 2]
+    assert tiny.run(cache) == [EXPECTED, 1, 2]
 
 
 @pytest.mark.parametrize("ending", [".nbi", ".nbc"])
 @pytest.mark.parametrize("kept", [0, 20])
-def test_a_damaged_file_of_the_cache_is_replaced(tiny, tmp_path, ending, kept):
-    tiny()
-    for path in (tmp_path / "cache").rglob(f"*both*{ending}"):
+def test_a_damaged_file_of_the_cache_is_replaced(tiny, cache, ending, kept):
+    damaged = list(cache.rglob(f"*both*{ending}"))
+    assert damaged
+    for path in damaged:
         path.write_bytes(path.read_bytes()[:kept])
-    assert tiny()[:2] == [EXPECTED, 1]
-    assert tiny() == [EXPECTED, 0, 0]
-
-
-def test_no_file_is_written_beside_the_sources(tiny, tmp_path):
-    (tmp_path / "file").write_text("")
-    tiny(tmp_path / "file")
-    assert not list((tmp_path / "code").rglob("*.nb?"))
+    assert tiny.run(cache)[:2] == [EXPECTED, 1]
+    assert tiny.run(cache) == [EXPECTED, 0, 0]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no such limit")
-def test_a_full_disk_costs_only_the_cache(tiny):
+def test_a_full_disk_costs_only_the_cache(tiny, tmp_path):
     import resource
 
     limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))  # noqa: E731
-    assert tiny(preexec_fn=limit)[0] == EXPECTED
+    assert tiny.run(tmp_path / "full", preexec_fn=limit)[0] == EXPECTED
 
 
 def test_integers_have_one_type_between_kernels():

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 from mesh_edits import state, wander
@@ -53,6 +54,15 @@ def test_round_trip_of_mesh_and_history(mesh):
     for array, other_array in zip(mesh.arrays[:4], other.arrays[:4], strict=True):
         assert np.array_equal(array, other_array)
     assert wander(mesh, 5, 3) == wander(other, 5, 3)
+
+
+def test_arrays_that_are_views_of_a_file_give_a_mesh_of_the_same_compiled_types(mesh):
+    arrays = snapshot.to_arrays(mesh)
+    views = {
+        name: np.frombuffer(array.tobytes(), array.dtype).reshape(array.shape)
+        for name, array in arrays.items()
+    }
+    assert numba.typeof(snapshot.from_arrays(views).arrays) == numba.typeof(mesh.arrays)
 
 
 def test_a_missing_or_misshapen_array_is_refused(mesh):

@@ -12,7 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-MOMENT = 20_000
+MOMENT = 60_000
 """Timeout, in milliseconds, of anything that should happen at once."""
 
 

@@ -22,8 +22,9 @@ DESCRIPTION = (
     "equal numbers of cells along every chord, with layers at walls, on the true curves; and write "
     "the grid: for OpenFOAM (a file called blockMeshDict), Gmsh (.geo, .msh), Plot3D (.xyz as "
     "text, .p3d binary, with a neutral map .nmf), CGNS (.cgns), VTK (.vtm), or as a mesh of quads "
-    "in any format of meshes. Sides and regions keep their names. Where cells stay inverted the "
-    "exit code is 3."
+    "in any format of meshes. Sides and regions keep their names. "
+    "For a project, numbers of cells and layers count that were set in the window. Where cells "
+    "stay inverted the exit code is 3."
 )
 
 SECONDS = 10.0
@@ -67,8 +68,9 @@ def add_own_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, report: Report) -> int | None:
     """Check the inputs, search, make the grid, write it."""
     from meshwright_core.blocks.grid import BlockStructure, block_grid
-    from meshwright_core.blocks.sizing import division
+    from meshwright_core.blocks.sizing import Sizing, division
     from meshwright_core.errors import MeshError
+    from meshwright_core.io.grids.block_files import losses, write_blocks
 
     output = _checked(arguments)
     sizing, extrusion = grid_options.sizing(arguments), grid_options.extrusion(arguments)
@@ -80,13 +82,15 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
     began = time.perf_counter()
     with inputs.bad_input(arguments.input):
         # sides that do not exist are noticed before the search
-        division(BlockStructure.of(start), sizing)
+        blocks = BlockStructure.of(start)
+        division(blocks, sizing)
     mesh, searched = _decomposed(arguments, report, start)
+    with inputs.bad_input(arguments.input):
+        if mesh is start:
+            sizing = sizing.over(Sizing.planned(blocks, start.grid_plan))
     with inputs.bad_input(arguments.input), report.progress("dividing"):
         grid = block_grid(mesh, sizing)
     made = time.perf_counter()
-    from meshwright_core.io.grids.block_files import write_blocks
-
     try:
         walls = tuple(wall.name for wall in sizing.walls)
         files = write_blocks(output, grid, arguments.order, extrusion, walls)
@@ -104,6 +108,8 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
         "seconds": round(time.perf_counter() - began, 3),
     }
     report.result(values, _text(values))
+    for sentence in losses(output, grid):
+        report.note(f"meshwright blocks: {output}: {sentence}")
     if not values["inverted_elements"]:
         return None
     report.note(f"meshwright blocks: {output}: {values['inverted_elements']:,} cells are inverted")

@@ -158,10 +158,11 @@ def draw(policy: Policy, found: Sequence[RowResult], wanted: Any, folder: Path) 
         written.append(folder / f"{kind}-{name}.png")
         return written[-1]
 
-    curve = policy.header.get("progress", {}).get("curve", [])
-    if len(curve) > 1:
+    training = policy.header.get("training")
+    curve = (policy.header.get("progress") or {}).get("curve", [])
+    if training and len(curve) > 1:
         noun = KIND_NOUN[kind].capitalize()
-        low, high = policy.header["training"]["sides"]
+        low, high = training["sides"]
         title = f"{noun}, polygons of {low} to {high} sides"
         figures.learning_curve(curve, kind, title, path("learning"))
     titles = [evaluation_table.sides(row.sides) for row in found]

@@ -11,6 +11,8 @@ from meshwright.desktop.agent.hints_controller import HintsController
 from meshwright.desktop.application.preferences_controller import PreferencesController
 from meshwright.desktop.application.readiness import Readiness
 from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.blocks.blocks_controller import BlocksController
+from meshwright.desktop.blocks.export_blocks_controller import ExportBlocksController
 from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.editing.cleanable_lines_controller import CleanableLinesController
 from meshwright.desktop.editing.edit_controller import EditController
@@ -30,7 +32,9 @@ from meshwright.document.document import Document
 
 @dataclass(frozen=True)
 class ActionContext:
-    """Document, assistant and controllers of one window; ``close()`` closes the window."""
+    """Document, assistant and controllers of one window; ``open_menus()`` opens the first of its
+    menus, ``close()`` closes it.
+    """
 
     document: Document
     assistant: Assistant
@@ -47,10 +51,13 @@ class ActionContext:
     colours: ColourController
     selection_tools: SelectionController
     names: NamesController
+    blocks: BlocksController
+    block_export: ExportBlocksController
     navigation: KeyboardNavigation
     vertices: VertexCommands
     hints: HintsController
     agent: AgentController
     preferences: PreferencesController
     help: HelpController
+    open_menus: Callable[[], None]
     close: Callable[[], bool]

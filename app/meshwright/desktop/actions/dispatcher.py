@@ -33,6 +33,7 @@ class ActionDispatcher(Controller):
             context.readiness.changed,
             context.levels.play.changed,
             context.selection_tools.tool_changed,
+            context.blocks.changed,
         ):
             self._connections.add(signal, self.refresh)
         context.quality.monitor.measured.connect(self.refresh)

@@ -25,6 +25,14 @@ ACTIONS: tuple[Action, ...] = (
         icon="help",
     ),
     Action(
+        "menu_bar",
+        "Menu bar",
+        "Open the first menu; Alt and an underlined letter opens one of them",
+        run=lambda context: context.open_menus(),
+        shortcuts=("F10",),
+        menu="Help",
+    ),
+    Action(
         "tour",
         "Show the tour",
         "Five steps around the window",

@@ -22,6 +22,7 @@ def _operation(info: OperationInfo) -> Action:
         enabled=lambda context: context.document.kind == info.kind,
         menu="Mesh",
         kind=info.kind,
+        needs=f"Needs a {'quad' if info.kind == 'quad' else 'triangle'} mesh.",
     )
 
 

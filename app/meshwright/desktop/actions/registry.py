@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from meshwright.desktop.actions import (
     agent,
+    blocks,
     edit,
     files,
     help,
@@ -26,6 +27,7 @@ ACTIONS: tuple[Action, ...] = (
     *names.ACTIONS,
     *vertex.ACTIONS,
     *view.ACTIONS,
+    *blocks.ACTIONS,
     *navigate.ACTIONS,
     *history.ACTIONS,
     *agent.ACTIONS,
@@ -33,10 +35,23 @@ ACTIONS: tuple[Action, ...] = (
     *help.ACTIONS,
 )
 
-MENUS = ("File", "Edit", "Select", "Mesh", "View", "Go", "History", "Agent", "Levels", "Help")
+MENUS = (
+    "File",
+    "Edit",
+    "Select",
+    "Mesh",
+    "Blocks",
+    "View",
+    "Go",
+    "History",
+    "Agent",
+    "Levels",
+    "Help",
+)
 DIVIDERS = frozenset(
     (
-        "save", "recover", "quit", "auto_smooth", "select.all", "select.irregular", "clean_all",
+        "save", "blocks.export", "blocks.next", "blocks.count", "blocks.grading", "blocks.insert",
+        "recover", "quit", "auto_smooth", "select.all", "select.irregular", "clean_all",
         "smooth", "zoom_selection", "ghosts", "colour.block", "theme", "walk.operation",
         "walk.turn", "walk.left", "history.back", "history.export", "history.list",
         "agent.complete", "agent.watch", "agent.stop", "agent.take_1", "level.again",
@@ -48,7 +63,7 @@ TOOLBAR = (
     ("new", "open", "save"),
     ("undo", "redo"),
     ("tool.edit", "tool.box", "tool.lasso"),
-    ("lines", "clean_all", "smooth", "fit"),
+    ("lines", "clean_all", "smooth", "blocks.view", "fit"),
     (),  # the groups after this one are aligned to the right
     ("palette", "theme", "help"),
 )

@@ -116,11 +116,17 @@ class HintsController(Controller):
 
     def _on_changed(self) -> None:
         mesh = self._document.mesh
-        choices = self._assistant.hinting.hints
+        hinting = self._assistant.hinting
+        choices = hinting.hints
         pairs = [(c, shown) for c in choices if mesh and (shown := self._hint(mesh, c))]
         self._choices = tuple(choice for choice, _ in pairs)
         self.shown = tuple(
-            replace(hint, number=number, is_next=choice is self._assistant.hinting.next_step)
+            replace(
+                hint,
+                number=number,
+                is_next=choice is hinting.next_step,
+                is_known=choice is hinting.guided,
+            )
             for number, (choice, hint) in enumerate(pairs, 1)
         )
         marks = None

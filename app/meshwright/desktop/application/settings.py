@@ -4,6 +4,10 @@ Settings that several modules use are properties; a panel stores its own by :met
 and the like, under a key that begins with the panel's name.
 """
 
+import json
+from collections.abc import Mapping
+from typing import Any
+
 from qtpy.QtCore import QByteArray, QSettings
 
 from meshwright.graphics.theme import COLOURS, THEMES
@@ -139,6 +143,18 @@ class Settings:
         found = self._store.value(key, [])
         found = [found] if isinstance(found, str) else found
         return [str(one) for one in found] if isinstance(found, list) else []
+
+    def record(self, key: str) -> dict[str, Any]:
+        """What :meth:`put_record` stored; empty if there is nothing, or it is damaged."""
+        try:
+            found = json.loads(self.text(key, "{}"))
+        except ValueError:
+            return {}
+        return found if isinstance(found, dict) else {}
+
+    def put_record(self, key: str, value: Mapping[str, Any]) -> None:
+        """Store what JSON can hold."""
+        self.put(key, json.dumps(value))
 
     def raw(self, key: str) -> QByteArray:
         """Bytes, such as a window's geometry; empty if there are none."""

@@ -33,6 +33,7 @@ class Canvas(QWidget):
     because the import of VTK takes longer than everything else. ``clicked(click)`` carries a
     :class:`~meshwright.desktop.canvas.mouse.Click`; ``hovered(at)`` the position of the mouse in
     pixels, None when it has left; ``escaped()``: Escape was pressed while no drag was under way;
+    ``unused(event)``: a key without effect was pressed.
     ``drawn()`` follows every update of the mesh. :attr:`gesture_at` returns what a drag with the
     left button does; where it returns None the drag moves the camera.
     """
@@ -40,6 +41,7 @@ class Canvas(QWidget):
     clicked = Signal(object)
     hovered = Signal(object)
     escaped = Signal()
+    unused = Signal(object)
     drawn = Signal()
     _refresh = Signal()
 
@@ -110,6 +112,7 @@ class Canvas(QWidget):
         self.view = VtkView(self, self._theme, self)
         self._layout.addWidget(self.plotter)
         self.plotter.show()  # at once, so that it can take the keyboard focus
+        self.plotter.setAccessibleName("Mesh")
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())
         self.view.fill(None, None, self._fills)
@@ -173,6 +176,7 @@ class Canvas(QWidget):
         edges = self.edges
         if mesh is not None and edges is not None and edges.look(self.viewport):
             view.update_edges(mesh, edges)
+        marks = view.markers  # with their sizes, if they are no longer a crowd
         self.overlay.show_markers(marks, edges, self.viewport, view.crowd, view.outlined)
         self._show_hover()
         self.plotter.update()
@@ -247,6 +251,11 @@ class Canvas(QWidget):
         ends = [mesh.origin(halfedge), mesh.target(halfedge)]
         away = self.viewport.to_screen(mesh.points[ends]) - (self._at.x(), self._at.y())
         return ends[int(np.argmin((away**2).sum(axis=1)))]
+
+    @property
+    def by_keyboard(self) -> bool:
+        """Whether the hovered half-edge has been chosen by keyboard."""
+        return self._at is None and self.document.hover >= 0
 
     def pin(self, halfedge: int) -> None:
         """Hover ``halfedge`` until the mouse moves, for navigation by keyboard; -1 for none."""

@@ -79,6 +79,8 @@ class MouseInput:
         elif isinstance(event, QWheelEvent):
             self._wheel(event)
         elif isinstance(event, QKeyEvent) and kind == QEvent.Type.KeyPress:
+            if event.key() in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab):
+                return False  # the focus moves on
             self._key(event)
         elif kind == QEvent.Type.Leave:
             self._canvas.leave()
@@ -142,5 +144,7 @@ class MouseInput:
             self._canvas.point_at(at)
 
     def _key(self, event: QKeyEvent) -> None:
-        if event.key() == Qt.Key.Key_Escape and not self.cancel():
+        if event.key() != Qt.Key.Key_Escape:
+            self._canvas.unused.emit(event)
+        elif not self.cancel():
             self._canvas.escaped.emit()

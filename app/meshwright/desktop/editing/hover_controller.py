@@ -18,6 +18,7 @@ from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.document.operation_preview import OperationOffer, best, choices, following, ghost
 from meshwright.graphics.theme import Theme
+from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, Operation
 
 GHOSTS = "editing/ghosts"
@@ -40,7 +41,7 @@ class HoverController(Controller):
     """Determines the current operation, previews it, and owns the panel of operations.
 
     The current operation is, in this order: the one of the hovered row of a menu, the one chosen
-    with Tab at this half-edge, the armed one, the best of the local ones (see
+    with T at this half-edge, the armed one, the best of the local ones (see
     :func:`meshwright.document.operation_preview.best`).
     """
 
@@ -60,6 +61,8 @@ class HoverController(Controller):
         self.panel = OperationsPanel(document, theme)
         self.choices: tuple[OperationOffer, ...] = ()
         self.armed: Operation | None = None
+        self.offered = Signal()
+        """Emitted when the choices or the current operation have changed."""
         self._at = (-1, -1)  # revision and half-edge that the choices are of
         self._picked: Operation | None = None
         self._previewed: Operation | None = None
@@ -70,6 +73,7 @@ class HoverController(Controller):
         self._rest.setInterval(REST)
         self._rest.timeout.connect(self._draw_ghost)
         self._open = True
+        self._suspended = False
         self._measuring = QTimer(canvas)
         self._measuring.setSingleShot(True)
         self._measuring.setInterval(MEASURED_AFTER)
@@ -98,6 +102,14 @@ class HoverController(Controller):
         self._measuring.stop()
         self._rest.stop()
         self.panel.release()
+
+    def suspend(self, suspended: bool) -> None:
+        """Offer no operations at the hovered half-edge while another view uses the mouse."""
+        self._suspended = suspended
+        if suspended:
+            self.disarm()
+        self._clear()
+        self.refresh()
 
     # The current operation
 
@@ -162,7 +174,8 @@ class HoverController(Controller):
         """Update choices and preview; returns at once if nothing has changed."""
         mesh = self._document.mesh
         halfedge = self._document.hover
-        if mesh is None or not self._readiness.editing or halfedge < 0 or not mesh.live(halfedge):
+        missing = mesh is None or halfedge < 0 or not mesh.live(halfedge)
+        if mesh is None or missing or self._suspended or not self._readiness.editing:
             self._clear()
             return
         at = (self._document.revision, halfedge)
@@ -178,6 +191,7 @@ class HoverController(Controller):
             if self._open:
                 self._measuring.start()
             self._show_ghost(mesh, meant, halfedge)
+            self.offered.emit()
 
     def _show_ghost(self, mesh: HalfEdgeMesh, meant: OperationOffer | None, halfedge: int) -> None:
         self._rest.stop()
@@ -225,6 +239,7 @@ class HoverController(Controller):
             self._measuring.stop()
             self._rest.stop()
             self.layer.show(None)
+            self.offered.emit()
 
     def _on_hover_changed(self, halfedge: int) -> None:
         if halfedge < 0:

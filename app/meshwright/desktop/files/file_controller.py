@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QApplication, QFileDialog, QWidget
@@ -25,23 +25,22 @@ from meshwright.desktop.files.unsaved_work import Guard, NoGuard, UnsavedWorkGua
 from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
-from meshwright.desktop.widgets.wording import plural
 from meshwright.document.document import Document
 from meshwright.document.storage.document_file import is_drawing
 from meshwright.document.storage.project_file import ENDING, is_project
 from meshwright.graphics.theme import Theme
 from meshwright.graphics.viewport import FARTHEST, NEAREST
+from meshwright.sources.resolve import resolve
 from meshwright_core.errors import FileWarning, MeshError, MixedElementsError, sentence
 from meshwright_core.io import formats, mesh_files
-
-if TYPE_CHECKING:
-    from meshwright_core.io.drawings import DrawingReport
 
 MESHES, PROJECTS, SHAPES = "Meshes", "Meshwright projects", "Shapes"
 FLAT = 0.005
 """Distance of straight edges from their curves, as a fraction of the mesh's size, below which a
 mesh file is written without a word.
 """
+NEW_MESH = "new_mesh/state"
+"""The setting that keeps what the dialog for new meshes showed last."""
 USUAL = ".vtk"
 """The suffix of a mesh file whose name is typed without one."""
 
@@ -137,13 +136,17 @@ class FileController(Controller):
     def _new(self, file: str) -> None:
         from meshwright.desktop.files.new_mesh import NewMeshDialog
 
-        dialog = NewMeshDialog(self._document.kind, self._theme, self._window, file)
-        if dialog.exec() and dialog.made is not None:
+        state = self._settings.record(NEW_MESH)
+        dialog = NewMeshDialog(self._document.kind, self._theme, self._window, file, state)
+        accepted = dialog.exec()
+        self._settings.put_record(NEW_MESH, dialog.state)  # also after Cancel: nothing is lost
+        if accepted and dialog.made is not None:
             made = dialog.made
             with waiting():
                 self._document.replace(made.mesh(), made.name, made.path or None)
-            if made.path:
-                self._remember(Path(made.path))
+            source = made.path or (dialog.file.chosen if dialog.page is dialog.file else "")
+            if source:
+                self._remember(Path(source))
         dialog.deleteLater()
 
     def make(self, shape: str, kind: str) -> None:
@@ -167,10 +170,8 @@ class FileController(Controller):
             self.open(chosen)
 
     def open(self, path: str | Path) -> None:
-        """Open a mesh file, a project, or the shape in a drawing.
-
-        Of a drawing whose regions lie apart, some have to be chosen: the dialog for new meshes
-        shows them.
+        """Open a mesh file or a project. For a drawing the dialog for new meshes shows the shapes
+        that were found in it, the settings and the mesh that they lead to.
         """
         place = Path(path).absolute()
         if not self.may_drop():
@@ -178,25 +179,23 @@ class FileController(Controller):
         said: list[str] = []
         try:
             with waiting(), file_warnings(said):
-                report = self._report(place)
-                if report is None or len(report.groups()) == 1:
+                if is_drawing(place):
+                    _refuse_unreadable(place)
+                else:
                     self._document.open(place)
         except MixedElementsError as error:
             if not self._open_as_quads(place, one_line(error), said):
                 return
-            report = None
         except (ValueError, OSError) as error:
             if not place.exists():
                 self._forget(place)
             self._notice.show_message(one_line(error))
             return
-        if report is not None and len(report.groups()) > 1:
+        if is_drawing(place):
             self._new(str(place))
             return
         self._remember(place)
         self.show_all()
-        if report is not None:
-            self._status.show_message(_found(report))
         if said:
             self._notice.show_message(" ".join(said))
 
@@ -218,15 +217,6 @@ class FileController(Controller):
             self._notice.show_message(one_line(error))
             return False
         return True
-
-    def _report(self, place: Path) -> DrawingReport | None:
-        """What is in a drawing; None for other files, and for domains, which need no search."""
-        if not is_drawing(place):
-            return None
-        from meshwright_core.io import drawings
-
-        report = drawings.read_regions(place)
-        return report if report.regions else None
 
     def show_all(self) -> None:
         """Restore view and policy saved in a project; else fit the view to the mesh."""
@@ -436,15 +426,12 @@ def unsaved_history(document: Document, path: Path) -> str:
     return f" {formats.of(path).title} files store no history ({counted(document)}); projects do."
 
 
-def _found(report: DrawingReport) -> str:
-    """What was found in a drawing, in a line."""
-    count = len(report.regions)
-    words = [f"{plural(count, 'region')} in the drawing."] if count > 1 else []
-    words += [sentence(text) for text in (*report.repairs[:1], *report.ignored[:1])]
-    more = len(report.repairs) + len(report.ignored) + (count > 1) - len(words)
-    if more > 0:
-        words.append(f"The dialog New mesh lists {more:,} more.")
-    return " ".join(words)
+def _refuse_unreadable(drawing: Path) -> None:
+    """MeshError if a drawing cannot be read, or if there is no shape in it."""
+    from meshwright_core.io import drawings
+
+    if not drawings.read_regions(drawing).regions:
+        resolve(drawing)  # a domain, which is read without a search for its regions
 
 
 def _is_length(value: Any) -> bool:

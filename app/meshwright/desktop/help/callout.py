@@ -7,6 +7,7 @@ from qtpy.QtGui import QColor, QPainter, QPainterPath, QPaintEvent, QPen
 from qtpy.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.event_filters import PanelInput
 from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 320
@@ -41,9 +42,9 @@ class Callout(QWidget):
         self.text.setWordWrap(True)
         self.done = named("", "CalloutDone")
         self.done.setWordWrap(True)
-        self.skip = self._button("Skip", "Chip", "End the tour; Help shows it again")
-        self.back = self._button("Back", "", "The previous step")
-        self.next = self._button("Next", "Primary", "The next step")
+        self.skip = self._button("Sk&ip", "Chip", "End the tour (Alt+I); Help shows it again")
+        self.back = self._button("Bac&k", "", "The previous step (Alt+K)")
+        self.next = self._button("&Next", "Primary", "The next step (Alt+N)")
         self.skip.clicked.connect(lambda checked=False: self.ended.emit())
         self.back.clicked.connect(lambda checked=False: self.step_requested.emit(-1))
         self.next.clicked.connect(lambda checked=False: self.step_requested.emit(1))
@@ -66,6 +67,7 @@ class Callout(QWidget):
         buttons.addWidget(self.back)
         buttons.addWidget(self.next)
         layout.addLayout(buttons)
+        self._keys = PanelInput(self)
         self.hide()
 
     def _button(self, text: str, name: str, tooltip: str) -> QPushButton:
@@ -74,6 +76,11 @@ class Callout(QWidget):
         made.setToolTip(tooltip)
         made.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the focus with the canvas
         return made
+
+    @property
+    def buttons(self) -> tuple[QPushButton, ...]:
+        """Its buttons in the order of Tab."""
+        return self.next, self.back, self.skip
 
     def set_theme(self, theme: Theme) -> None:
         """Draw in the colours of ``theme``."""
@@ -88,7 +95,7 @@ class Callout(QWidget):
         self.done.setText(f"\u2713 {done}" if done else "")
         self.done.setVisible(bool(done))
         self.back.setEnabled(number > 1)
-        self.next.setText("Done" if number == total else "Next")
+        self.next.setText("Do&ne" if number == total else "&Next")
         self.setAccessibleName(heading)
         self.setAccessibleDescription(text)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from qtpy.QtCore import QEvent, QObject, QPoint, QRect, Signal
@@ -149,6 +150,9 @@ class Tour(QObject):
         self._connections.add(document.hover_changed, self._on_hover_changed)
         self._connections.add(document.history_changed, self._on_history_changed)
         self._connections.add(document.replaced, self._on_replaced)
+        order = (places.canvas.plotter, *self.callout.buttons)
+        for before, after in pairwise(order):
+            QWidget.setTabOrder(before, after)
         self._show()
 
     @property

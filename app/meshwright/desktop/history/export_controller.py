@@ -9,18 +9,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from qtpy.QtCore import Signal
-from qtpy.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QProgressBar, QPushButton, QWidget
+from qtpy.QtWidgets import QFileDialog, QWidget
 
 from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.controller import Controller
-from meshwright.desktop.widgets.basic import NoticeBar, named
+from meshwright.desktop.widgets.basic import NoticeBar
+from meshwright.desktop.widgets.export_bar import ExportBar
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.colouring import COLOUR_BY, MEASURES
 from meshwright.graphics.export.export_job import ExportOptions, write_export
-from meshwright.graphics.theme import GRID, Theme
+from meshwright.graphics.theme import Theme
 from meshwright_core.errors import MeshError
 
 if TYPE_CHECKING:
@@ -32,43 +32,6 @@ _log = logging.getLogger(__name__)
 
 class ExportCancelled(Exception):
     """Raised in the thread when the export was cancelled."""
-
-
-class ExportBar(QFrame):
-    """One line between canvas and timeline while a file is written; ``cancelled()``."""
-
-    cancelled = Signal()
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.setObjectName("ExportBar")
-        self._words = named("", "Label")
-        self.progress = QProgressBar()
-        self.progress.setTextVisible(False)
-        self.progress.setFixedHeight(6)
-        self.progress.setAccessibleName("Progress of the export")
-        self.cancel = QPushButton("Cancel")
-        self.cancel.clicked.connect(self.cancelled)
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(2 * GRID, GRID // 2, 2 * GRID, GRID // 2)
-        layout.setSpacing(2 * GRID)
-        layout.addWidget(self._words)
-        layout.addWidget(self.progress, 1)
-        layout.addWidget(self.cancel)
-        self.hide()
-
-    @property
-    def words(self) -> str:
-        """The text of the bar."""
-        return str(self._words.text())
-
-    def show_progress(self, name: str, done: int, total: int) -> None:
-        """Show how many frames of the file ``name`` are written."""
-        count = f", frame {done:,} of {total:,}" if total > 1 else ""
-        self._words.setText(f"Writing {name}{count}")
-        self.progress.setMaximum(total)
-        self.progress.setValue(done)
-        self.show()
 
 
 class ExportController(Controller):

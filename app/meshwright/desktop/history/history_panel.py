@@ -32,6 +32,7 @@ from qtpy.QtWidgets import (
     QStyleOptionViewItem,
     QTableView,
     QVBoxLayout,
+    QWidget,
 )
 
 from meshwright.desktop.history.history_model import HistoryLine, HistoryModel
@@ -195,7 +196,8 @@ class HistoryList(QTableView):
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
+        # by lines: a line that is cut at the top cannot be read
+        self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerItem)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setAccessibleName("History")
         OwnKeys(self, WALKING)
@@ -220,6 +222,19 @@ class HistoryList(QTableView):
 
     def _on_clicked(self, index: QModelIndex) -> None:
         self.activated_at.emit(index.row())
+
+
+class _WholeLines(QWidget):
+    """Holds ``view`` as high as its lines fill: none is cut at either end."""
+
+    def __init__(self, view: QWidget) -> None:
+        super().__init__()
+        self._view = view
+        view.setParent(self)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Resize the view."""
+        self._view.setGeometry(0, 0, self.width(), self.height() // ROW * ROW)
 
 
 class HistoryPanel(QFrame):
@@ -254,7 +269,7 @@ class HistoryPanel(QFrame):
         layout.addLayout(head)
         body = QHBoxLayout()
         body.setContentsMargins(GRID, 0, GRID // 2, 0)
-        body.addWidget(self.list)
+        body.addWidget(_WholeLines(self.list))
         layout.addLayout(body, 1)
 
     def set_theme(self, theme: Theme) -> None:

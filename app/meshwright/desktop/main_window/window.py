@@ -1,7 +1,7 @@
 """The main window: constructs the controllers and lays out their widgets."""
 
 from qtpy.QtCore import QSize, Qt, QTimer, Signal
-from qtpy.QtGui import QCloseEvent, QShowEvent
+from qtpy.QtGui import QCloseEvent, QKeyEvent, QResizeEvent, QShowEvent
 from qtpy.QtWidgets import (
     QApplication,
     QHBoxLayout,
@@ -28,6 +28,8 @@ from meshwright.desktop.application.main_thread import Dispatcher
 from meshwright.desktop.application.preferences_controller import PreferencesController, theme_name
 from meshwright.desktop.application.readiness import Readiness
 from meshwright.desktop.application.settings import Settings
+from meshwright.desktop.blocks.blocks_controller import BlocksController
+from meshwright.desktop.blocks.export_blocks_controller import ExportBlocksController
 from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.controller import Connections, Controller
 from meshwright.desktop.editing.cleanable_lines_controller import CleanableLinesController
@@ -38,6 +40,8 @@ from meshwright.desktop.editing.inverted_controller import InvertedController
 from meshwright.desktop.editing.keyboard_navigation import KeyboardNavigation
 from meshwright.desktop.editing.names_controller import NamesController
 from meshwright.desktop.editing.selection_controller import SelectionController
+from meshwright.desktop.editing.spoken_halfedge import SpokenHalfedge
+from meshwright.desktop.editing.unused_keys import UnusedKeys
 from meshwright.desktop.editing.vertex_commands import VertexCommands
 from meshwright.desktop.files.file_controller import FileController
 from meshwright.desktop.help.help_controller import HelpController
@@ -50,12 +54,16 @@ from meshwright.desktop.main_window.left_column import LeftColumn
 from meshwright.desktop.main_window.sidebar import Section, Sidebar
 from meshwright.desktop.quality.colour_controller import ColourController
 from meshwright.desktop.quality.quality_controller import QualityController
-from meshwright.desktop.widgets.action_set import ActionSet
+from meshwright.desktop.widgets.action_set import ActionSet, with_mnemonics
 from meshwright.desktop.widgets.basic import NoticeBar
+from meshwright.desktop.widgets.event_filters import PanelInput
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import style_sheet, theme
 from meshwright.puzzles.level import Level
+
+WORDS_FROM = 1040
+"""Width of the window in pixels from which the toolbar has words beside icons."""
 
 
 class MainWindow(QMainWindow):
@@ -134,10 +142,16 @@ class MainWindow(QMainWindow):
             document, canvas, self.levels, readiness, actions, status, self, colours
         )
         self.names = NamesController(document, canvas, status, self, colours)
+        self.blocks = BlocksController(
+            document, canvas, self.hover, actions, status, notice, colours
+        )
+        self.block_export = ExportBlocksController(document, status, notice, self, colours)
         self.navigation = KeyboardNavigation(
             document, canvas, self.quality.highlight, status, colours
         )
         self.vertices = VertexCommands(document, canvas, self.levels, readiness, status, colours)
+        self.spoken = SpokenHalfedge(document, canvas, self.hover, colours)
+        self.unused_keys = UnusedKeys(document, canvas, actions, status, colours)
         self.errors = ErrorNotice(document, notice, colours)
         self.agent_panel = AgentPanel(document, assistant, settings, actions, colours)
         self.hints = HintsController(
@@ -159,12 +173,13 @@ class MainWindow(QMainWindow):
             canvas,
             (
                 self.hints.click,
+                self.blocks.click,
                 self.selection_tools.click,
                 self.editing.click_armed,
                 self.lines.click,
                 self.editing.click_menu,
             ),
-            (self.hover.put_down, self.selection_tools.put_down),
+            (self.hover.put_down, self.blocks.put_down, self.selection_tools.put_down),
             colours,
         )
         self.preferences = PreferencesController(
@@ -183,8 +198,12 @@ class MainWindow(QMainWindow):
             self.lines,
             self.selection_tools,
             self.names,
+            self.blocks,
+            self.block_export,
             self.navigation,
             self.vertices,
+            self.spoken,
+            self.unused_keys,
             self.errors,
             self.hints,
             self.agent,
@@ -236,12 +255,15 @@ class MainWindow(QMainWindow):
             colours=self.colours,
             selection_tools=self.selection_tools,
             names=self.names,
+            blocks=self.blocks,
+            block_export=self.block_export,
             navigation=self.navigation,
             vertices=self.vertices,
             hints=self.hints,
             agent=self.agent,
             preferences=self.preferences,
             help=self.help,
+            open_menus=self._open_menus,
             close=self.close,
         )
 
@@ -264,11 +286,19 @@ class MainWindow(QMainWindow):
         self.pages.addWidget(self.empty)
         middle = QWidget()
         _column(
-            middle, self.notice, self.pages, self.playback.exporting.bar, self.playback.timeline
+            middle,
+            self.notice,
+            self.pages,
+            self.block_export.bar,
+            self.playback.exporting.bar,
+            self.playback.timeline,
         ).setStretchFactor(self.pages, 1)
         self.left = LeftColumn(
-            Section("Operations", self.hover.panel, self.settings, self.theme), self.playback.panel
+            Section("Operations", self.hover.panel, self.settings, self.theme),
+            Section("Blocks", self.blocks.panel, self.settings, self.theme),
+            self.playback.panel,
         )
+        self._connections.add(self.blocks.changed, lambda: self.left.show_other(self.blocks.shown))
         self.sidebar = self._make_sidebar()
         below, whole = QWidget(), QWidget()
         row = QHBoxLayout(below)
@@ -279,6 +309,7 @@ class MainWindow(QMainWindow):
         row.addWidget(self.sidebar)
         _column(whole, self.levels.bar, below).setStretchFactor(below, 1)
         self.setCentralWidget(whole)
+        PanelInput(whole, self.canvas.focus)
 
     def _make_sidebar(self) -> Sidebar:
         settings, quality = self.settings, self.quality.quality
@@ -291,6 +322,7 @@ class MainWindow(QMainWindow):
         )
 
     def _make_toolbar(self) -> QToolBar:
+        self._worded: list[QToolButton] = []
         bar = QToolBar("Tools")
         bar.setMovable(False)
         bar.setIconSize(QSize(20, 20))
@@ -307,18 +339,34 @@ class MainWindow(QMainWindow):
                 button = bar.widgetForAction(self.actions_by_id[action_id])
                 button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
                 if self.actions_by_id.entry(action_id).word and isinstance(button, QToolButton):
-                    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+                    self._worded.append(button)
         return bar
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Show words in the toolbar where there is room for all of it."""
+        super().resizeEvent(event)
+        style = Qt.ToolButtonStyle
+        shown = self.width() >= WORDS_FROM
+        for button in self._worded:
+            button.setToolButtonStyle(
+                style.ToolButtonTextBesideIcon if shown else style.ToolButtonIconOnly
+            )
 
     def _fill_menus(self) -> None:
         bar = self.menuBar()
         bar.clear()
-        for title, members in self.actions_by_id.menus(self.document.kind):
+        listed = self.actions_by_id.menus(self.document.kind)
+        titles = with_mnemonics([title for title, _ in listed])
+        for title, (_, members) in zip(titles, listed, strict=True):
             menu = bar.addMenu(title)
             for entry in members:
                 if entry.id in registry.DIVIDERS:
                     menu.addSeparator()
                 menu.addAction(self.actions_by_id[entry.id])
+
+    def _open_menus(self) -> None:
+        bar = self.menuBar()
+        bar.setActiveAction(bar.actions()[0])
 
     # Session
 
@@ -365,6 +413,15 @@ class MainWindow(QMainWindow):
         self.opened.emit()
         if not self.readiness.editing:
             QTimer.singleShot(0, self.warmup.start)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Escape gives the keyboard focus to the canvas; other keys that nothing has used are
+        explained.
+        """
+        if event.key() == Qt.Key.Key_Escape and not self.canvas.plotter.hasFocus():
+            self.canvas.focus()
+        else:
+            self.unused_keys.explain(event)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
         """Ask about unsaved work; then end runs and threads, and free VTK's resources."""

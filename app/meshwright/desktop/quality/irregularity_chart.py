@@ -140,9 +140,11 @@ class IrregularityChart(QWidget):
 
 
 def short(number: int) -> str:
-    """``number`` in at most five characters: 9,876, 12k, 3.4M."""
-    if number < 10_000:
-        return f"{number:,}"
+    """``number`` in at most four characters: 876, 9.8k, 12k, 3.4M."""
+    if number < 1000:
+        return f"{number}"
+    if number < 9950:
+        return f"{number / 1000:.1f}k"
     if number < 1_000_000:
         return f"{number / 1000:.0f}k"
     return f"{number / 1_000_000:.1f}M"

@@ -27,6 +27,10 @@ from meshwright_core import HalfEdgeMesh
 
 _NONE = "\u2013"
 _STALE = "\u2026"
+SCORE_SIZES = ((5, 40), (7, 30), (99, 18))
+"""Up to how many characters the score has which size in pixels, so that it fits the panel."""
+LONGEST = 24
+"""Characters of the line *Elements*; a longer one leaves out the noun."""
 
 
 class ScorePanel(QWidget):
@@ -132,7 +136,10 @@ class ScorePanel(QWidget):
             self.tally.clear()
             self.bar.share = 0.0
             return
-        self.score.setText(f"{mesh.score:,}")
+        text = f"{mesh.score:,}"
+        self.score.setText(text)
+        size = next(pixels for digits, pixels in SCORE_SIZES if len(text) <= digits)
+        self.score.setStyleSheet(f"font-size: {size}px")
         self.score.setAccessibleName(f"Score {mesh.score}, optimum {mesh.optimum}")
         self.goal.setText(f"Optimum {mesh.optimum:,}")
         gap = mesh.score - mesh.optimum
@@ -176,4 +183,5 @@ def _counted(mesh: HalfEdgeMesh, summary: QualitySummary | None) -> str:
         return f"{mesh.n_elements:,} triangles"
     if summary is None or summary.blocks is None:
         return f"{mesh.n_elements:,} quads in {_STALE} blocks"
-    return f"{mesh.n_elements:,} quads in {plural(summary.blocks, 'block')}"
+    text = f"{mesh.n_elements:,} quads in {plural(summary.blocks, 'block')}"
+    return text if len(text) <= LONGEST else text.replace(" quads", "")

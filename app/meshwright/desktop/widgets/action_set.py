@@ -75,6 +75,11 @@ class ActionSet(QObject):
         """How an action is listed; KeyError for an unknown id."""
         return next(entry for entry in self._entries if entry.id == action_id)
 
+    @property
+    def entries(self) -> tuple[ActionEntry, ...]:
+        """All entries, in the table's order."""
+        return self._entries
+
     def menus(self, kind: str) -> list[tuple[str, list[ActionEntry]]]:
         """The menus that are not empty, with the entries for meshes of ``kind`` ("" counts as
         "quad"), in the table's order.
@@ -110,6 +115,22 @@ class ActionSet(QObject):
 
     def _on_triggered(self, action_id: str, checked: bool = False) -> None:
         self.triggered.emit(action_id)
+
+
+def with_mnemonics(titles: Sequence[str]) -> list[str]:
+    """The titles with ``&`` before one letter each, no letter twice: Alt and that letter opens the
+    menu of this title. A title whose letters are all taken has none.
+    """
+    taken: set[str] = set()
+    made = []
+    for title in titles:
+        at = next((i for i, c in enumerate(title) if c.isalpha() and c.lower() not in taken), -1)
+        if at >= 0:
+            taken.add(title[at].lower())
+            made.append(f"{title[:at]}&{title[at:]}")
+        else:
+            made.append(title)
+    return made
 
 
 def tooltip(entry: ActionEntry) -> str:

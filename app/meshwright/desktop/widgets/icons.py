@@ -4,10 +4,11 @@ from qtpy.QtCore import QByteArray, QSize, Qt
 from qtpy.QtGui import QIcon, QPainter, QPixmap
 from qtpy.QtSvg import QSvgRenderer
 
-from meshwright.graphics.icon_paths import STROKES
+from meshwright.graphics.icon_paths import STROKES, WINDOW_STROKES
 from meshwright.graphics.theme import Theme
 
 SIZE = 20
+_STROKES = {**STROKES, **WINDOW_STROKES}
 
 
 def pixmap(name: str, colour: str, size: int = SIZE, ratio: float = 1.0) -> QPixmap:
@@ -15,7 +16,7 @@ def pixmap(name: str, colour: str, size: int = SIZE, ratio: float = 1.0) -> QPix
     svg = (
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20" fill="none" '
         f'stroke="{colour}" stroke-width="1.5" stroke-linecap="round" stroke-linejoin="round">'
-        f'<path d="{STROKES[name]}"/></svg>'
+        f'<path d="{_STROKES[name]}"/></svg>'
     )
     drawn = QPixmap(QSize(size, size) * ratio)
     drawn.fill(Qt.GlobalColor.transparent)

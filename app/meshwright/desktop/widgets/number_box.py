@@ -8,18 +8,15 @@ _INSET = 6
 
 
 class IntegerBox(QSpinBox):
-    """A whole number. The wheel changes it only while it has the keyboard focus."""
+    """A whole number. The wheel never changes it: it scrolls the page that the field is on."""
 
     def __init__(self) -> None:
         super().__init__()
         self.lineEdit().setTextMargins(_INSET, 0, 0, 0)
 
     def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
-        """Let the page scroll unless the field has the keyboard focus."""
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
+        """Let the page scroll."""
+        event.ignore()
 
 
 class DecimalBox(QDoubleSpinBox):
@@ -30,8 +27,5 @@ class DecimalBox(QDoubleSpinBox):
         self.lineEdit().setTextMargins(_INSET, 0, 0, 0)
 
     def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
-        """Let the page scroll unless the field has the keyboard focus."""
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
+        """Let the page scroll."""
+        event.ignore()

@@ -2,6 +2,8 @@
 
 from qtpy.QtWidgets import QLabel, QStatusBar
 
+from meshwright.desktop.widgets.announcements import announce
+
 
 class StatusBar(QStatusBar):
     """Three texts: the message at the left, preparation and half-edge at the right."""
@@ -34,6 +36,7 @@ class StatusBar(QStatusBar):
     def show_message(self, sentence: str) -> None:
         """Replace the message."""
         self._message.setText(sentence)
+        announce(self._message, sentence)
 
     def show_preparation(self, text: str) -> None:
         """Show what is being compiled or loaded."""

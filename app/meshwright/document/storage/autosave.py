@@ -16,7 +16,7 @@ from typing import Any
 import platformdirs
 from msgspec import to_builtins
 
-from meshwright.document.document import NAME, Document
+from meshwright.document.document import Document
 from meshwright.document.storage import document_state, file_lock
 from meshwright.document.storage.autosave_log import encoded
 from meshwright.signals import Signal
@@ -59,6 +59,7 @@ class Autosave:
         self._waiting: list[Buffers] = []
         self._failing = False
         self._not_before = 0.0
+        self._namings: set[int] = set()  # the numbers of names that the file holds
         document.recorded.connect(self._on_recorded)
         document.replaced.connect(self._remove)
 
@@ -115,7 +116,8 @@ class Autosave:
             return header, {}
         header["row"] = to_builtins(row)
         header["room"] = [len(mesh.arrays.vertex), len(mesh.arrays.element_mark)]
-        if row.action == NAME:
+        if mesh.naming not in self._namings:
+            self._namings.add(mesh.naming)
             header["names"] = [mesh.naming, names_record(mesh.boundary_info)]
         return header, snapshot.steps_arrays([mesh.last_step()], "step")
 
@@ -137,7 +139,9 @@ class Autosave:
         begun = time.monotonic()
         if begun < self._not_before:
             return False
-        header, arrays = document_state.packed(self._document.state())
+        state = self._document.state()
+        self._namings = set(state.mesh.namings)
+        header, arrays = document_state.packed(state)
         path = self._folder / f"{os.getpid()}-{secrets.token_hex(6)}{ENDING}"
         try:
             self._folder.mkdir(parents=True, exist_ok=True)

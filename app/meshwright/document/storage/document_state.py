@@ -6,6 +6,7 @@ hold anything: :func:`unpacked` checks all of it.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,10 @@ from meshwright.document.history import History, HistoryStep
 from meshwright.document.json_records import Count, converted
 from meshwright.document.storage.file_stamp import Stamp
 from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.core.arrays import DELTA_SUM, SCORE
+from meshwright_core.history.packed_steps import COUNTERS, Steps
 from meshwright_core.io import snapshot
+from meshwright_core.io.history_checks import require_history
 from meshwright_core.io.snapshot import Arrays
 
 VERSION = 1
@@ -108,6 +112,8 @@ def unpacked(header: Any, arrays: Mapping[str, Any]) -> DocumentState:
     if (record.cursor, len(record.rows) - record.cursor) != steps:
         raise MeshError("its history has other rows than steps")
     branches = _branches(record.branches, arrays, mesh, (0, len(record.rows)), 0)
+    _require_scores(record.rows, _scores(mesh), branches)
+    require_history(mesh, branches)
     serials = [row.serial for row in _every_row(record.rows, branches)]
     if len(set(serials)) != len(serials) or max(serials, default=0) > record.given[0]:
         raise MeshError("its history counts its rows wrong")
@@ -151,6 +157,41 @@ def _branches(
         inner = _branches(record.branches, arrays, mesh, (at + 1, at + len(rows)), depth + 1)
         made.append(Branch(at, rows, steps, inner, record.made))
     return tuple(made)
+
+
+def _scores(mesh: HalfEdgeMesh) -> list[tuple[int, int]]:
+    """s and s* of every state of the mesh's history, as its steps state them."""
+    done, undone = mesh.packed_steps()
+    return [*_stated(done), (mesh.score, mesh.optimum), *_stated(undone)]
+
+
+def _stated(pieces: Iterable[Steps]) -> list[tuple[int, int]]:
+    """s and s* in the counters of steps: before done ones, after undone ones."""
+    found: list[tuple[int, int]] = []
+    for piece in pieces:
+        counters = piece.rows[:, COUNTERS:].astype(int)
+        sums = abs(counters[:, DELTA_SUM])
+        found += zip(counters[:, SCORE].tolist(), sums.tolist(), strict=True)
+    return found
+
+
+def _require_scores(
+    rows: Iterable[HistoryStep],
+    states: list[tuple[int, int]],
+    branches: Branches,
+    first: int = 0,
+) -> None:
+    """Raise MeshError unless rows hold the scores of the states that they lead from and to.
+
+    ``states`` are s and s* of all states from the start of the history on; ``rows`` lead on from
+    state ``first``.
+    """
+    for row, (before, after) in zip(rows, pairwise(states[first:]), strict=True):
+        if (row.before, row.after, row.optimum) != (before[0], *after):
+            raise MeshError("its history states other scores than its mesh has")
+    for branch in branches:
+        along = [*states[: branch.at + 1], *_stated(branch.steps)]
+        _require_scores(branch.rows, along, branch.branches, branch.at)
 
 
 def _every_row(rows: Iterable[HistoryStep], branches: Branches) -> Iterator[HistoryStep]:

@@ -26,6 +26,10 @@ ENDING = ".meshwright"
 _HEADER = "project.json"
 _FORMAT = "Meshwright project"
 _MOST_BYTES = 8 << 30
+_SPARE_BYTES, _MOST_RATIO = 16 << 20, 100
+"""A project that takes more bytes than these, and more than so many times its file, is none of
+ours: the arrays of a mesh are not compressed to a hundredth.
+"""
 _SWIFT = 1  # compression level: higher ones take twice as long for files a tenth smaller
 _BROKEN = (
     zipfile.BadZipFile,
@@ -96,7 +100,8 @@ def read(path: str | os.PathLike[str]) -> DocumentState:
 def _members(place: Path) -> tuple[object, Arrays]:
     with zipfile.ZipFile(place) as archive:
         members = {info.filename: info for info in archive.infolist()}
-        if sum(info.file_size for info in members.values()) > _MOST_BYTES:
+        size, packed = sum(info.file_size for info in members.values()), place.stat().st_size
+        if size > min(_MOST_BYTES, _SPARE_BYTES + _MOST_RATIO * packed):
             raise MeshError("it is too large")
         header = json.loads(archive.read(_HEADER))
         arrays = {

@@ -11,6 +11,7 @@
 
 import { mount } from "./card.js";
 import { KernelLink } from "./link/kernel_link.js";
+import { RestoredLink } from "./link/restored_link.js";
 
 export { showRecording } from "./recording_page.js";
 
@@ -21,7 +22,9 @@ function canvasHeight(height) {
 
 /** Show one view of an anywidget model in `el`; returns the function that removes it. */
 export function render({ model, el }) {
-  const link = new KernelLink(model);
+  const kernel = new KernelLink(model);
+  const snapshot = model.get("snapshot");
+  const link = snapshot && snapshot.state ? new RestoredLink(kernel, snapshot) : kernel;
   const options = () => ({ height: canvasHeight(model.get("height")), theme: model.get("theme") });
   const card = mount(el, link, options());
   const onChange = () => card.configure(options());

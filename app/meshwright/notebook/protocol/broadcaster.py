@@ -43,6 +43,10 @@ class Port(Protocol):
         """Update score and optimum after a change."""
         ...
 
+    def keep(self, snapshot: dict[str, Any]) -> None:
+        """Keep what a saved notebook shows while no kernel runs."""
+        ...
+
     def close(self) -> None:
         """Release the widget: its connection was closed."""
         ...

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from meshwright_core.blocks.grid import BlockGrid
 from meshwright_core.errors import MeshError
-from meshwright_core.io import formats
+from meshwright_core.io import formats, mesh_files
 from meshwright_core.io.atomic_write import replacing
 from meshwright_core.io.grids import cgns, fine_mesh, gmsh_geo, gmsh_msh, openfoam, plot3d, vtk_xml
 from meshwright_core.io.grids.openfoam import Extrusion
@@ -39,6 +39,13 @@ def check_format(path: str | os.PathLike[str], order: int = 1, extruded: bool = 
         raise MeshError(f"only a {BLOCK_MESH_DICT} is extruded, and not {kind}")
     if kind == ".cgns":
         cgns.require_h5py()
+
+
+def losses(path: str | os.PathLike[str], grid: BlockGrid) -> tuple[str, ...]:
+    """What a file of this name cannot hold of the names of the mesh: a sentence each."""
+    if _kind(Path(path)) in STRUCTURED:
+        return ()
+    return mesh_files.losses(path, grid.structure.mesh)
 
 
 def write_blocks(

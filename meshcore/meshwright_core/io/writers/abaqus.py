@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from meshwright_core.core.names import groups
 from meshwright_core.io.content import Content
 from meshwright_core.io.named_groups import group_edges, group_rows
 from meshwright_core.io.writers import lines as form
 
 _A_LINE = 16
+
+
+def spelling(sides: Sequence[str], regions: Sequence[str]) -> dict[str, str]:
+    """The label of each group of regions and sides."""
+    return form.words(dict.fromkeys(group for name in (*regions, *sides) for group in groups(name)))
 
 
 def write(content: Content) -> str:
@@ -23,7 +31,7 @@ def write(content: Content) -> str:
     lines += [f"*ELEMENT, TYPE=S{elements.shape[1]}"]
     lines += [f"{i}, {', '.join(map(str, nodes))}" for i, nodes in form.numbered(elements + 1)]
     rows, sides = group_rows(names, kind), group_edges(names)
-    label = form.words([*rows, *(name for name in sides if name not in rows)])
+    label = form.words(dict.fromkeys([*rows, *sides]))
     for name, members in rows.items():
         lines += [f"*ELSET, ELSET={label[name]}", *_listed(members + 1)]
     for name, edges in sides.items():

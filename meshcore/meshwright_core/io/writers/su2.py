@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from meshwright_core.core.names import SEPARATOR
 from meshwright_core.errors import MeshError
 from meshwright_core.io.content import Content
 from meshwright_core.io.named_groups import UNNAMED
 from meshwright_core.io.writers import lines as form
+
+
+def spelling(sides: Sequence[str], regions: Sequence[str]) -> dict[str, str]:
+    """The marker of each name of sides; regions have none."""
+    joined = {name: name.replace(SEPARATOR + " ", "&") for name in sides}
+    marker = form.words(dict.fromkeys(joined.values()))
+    return {name: marker[one] for name, one in joined.items()}
 
 
 def write(content: Content) -> str:
@@ -19,8 +29,8 @@ def write(content: Content) -> str:
     kind, elements = form.block(content)
     code = {"triangle": 5, "quad": 9}[kind]
     names = form.names(content)
-    marker = form.words(name.replace("; ", "&") for name in names.sides)
-    spelled = [marker[name.replace("; ", "&")] for name in names.sides]
+    marker = spelling(names.sides, ())
+    spelled = [marker[name] for name in names.sides]
     key = {tuple(sorted(ends)): spelled[side] for ends, side in zip(
         names.edges.tolist(), names.edge_sides.tolist(), strict=True
     )}  # fmt: skip

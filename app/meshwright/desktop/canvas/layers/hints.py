@@ -39,6 +39,8 @@ class Hint:
     """(2,) the middle of its half-edge."""
     is_next: bool = False
     """Whether *Step* applies it."""
+    is_known: bool = False
+    """Whether it is the next operation of a level's known solution."""
 
     @cached_property
     def strokes(self) -> tuple[EdgeStrokes, EdgeStrokes]:
@@ -47,8 +49,8 @@ class Hint:
 
     @property
     def chance(self) -> str:
-        """``63 %``."""
-        return percent(self.probability)
+        """``63 %``, or ``par`` for the known solution."""
+        return "par" if self.is_known else percent(self.probability)
 
 
 class HintsLayer(Layer):

@@ -26,6 +26,7 @@ class MarkersLayer(Layer):
         # x, y, radius, delta, corner?, anchor? of visible irregular vertices
         self._discs = np.empty((0, 6))
         self._numbers = True
+        self._strokes = True
         self._corners = np.empty((0, 2))
         self._anchors = np.empty((0, 2))
         self._rings = np.empty((0, 2))
@@ -42,6 +43,17 @@ class MarkersLayer(Layer):
     def numbers(self, shown: bool) -> None:
         if shown != self._numbers:
             self._numbers = shown
+            self.changed()
+
+    @property
+    def strokes(self) -> bool:
+        """Whether boundary and interfaces are drawn; another layer may do so in its own colours."""
+        return self._strokes
+
+    @strokes.setter
+    def strokes(self, shown: bool) -> None:
+        if shown != self._strokes:
+            self._strokes = shown
             self.changed()
 
     def show(
@@ -87,10 +99,11 @@ class MarkersLayer(Layer):
     def paint(self, painter: QPainter, rect: QRect) -> None:
         """Paint the boundary, then the marks on vertices."""
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(pen(self.theme.boundary, 1.5))
-        painter.drawPath(self._interfaces)
-        painter.setPen(pen(self.theme.boundary, 1.75))
-        painter.drawPath(self._outline)
+        if self._strokes:
+            painter.setPen(pen(self.theme.boundary, 1.5))
+            painter.drawPath(self._interfaces)
+            painter.setPen(pen(self.theme.boundary, 1.75))
+            painter.drawPath(self._outline)
         near = QRectF(rect).adjusted(-24, -24, 24, 24)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(self.theme.corner))
@@ -137,7 +150,7 @@ class MarkersLayer(Layer):
             painter.setBrush(plus if delta > 0 else minus)
             painter.drawEllipse(QPointF(x, y), r, r)
             if self._numbers and r >= READABLE:
-                font.setPixelSize(max(8, round(1.2 * r)))
+                font.setPixelSize(max(8, round(1.1 * r)))
                 painter.setFont(font)
                 painter.setPen(QColor(self.theme.marker_text))
                 box = QRectF(x - 2 * r, y - 2 * r, 4 * r, 4 * r)

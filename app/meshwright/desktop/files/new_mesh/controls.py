@@ -123,6 +123,15 @@ class OptionalNumber(QWidget):
         """The number, None while the box is unchecked."""
         return float(self.field.value()) if self.tick.isChecked() else None
 
+    @value.setter
+    def value(self, number: float | None) -> None:
+        self.tick.setChecked(number is not None)
+        if number is not None:
+            if self._geometric:
+                self.field.setDecimals(9)
+                self.field.setRange(_SMALLEST, _LARGEST)
+            self.field.setValue(number)
+
     def set_range(self, low: float, high: float, value: float) -> None:
         """Set the bounds of the slider, and a default that replaces a value outside of them."""
         self._low, self._high = low, high

@@ -1,4 +1,4 @@
-"""The table of a sketch's coordinates, which can be edited and follows the drawing."""
+"""The table of a sketch's coordinates and radii, which can be edited and follows the drawing."""
 
 from __future__ import annotations
 
@@ -7,17 +7,22 @@ from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableW
 
 from meshwright.desktop.widgets.basic import tabular
 from meshwright.graphics.theme import GRID
-from meshwright.sources.polygon_checks import Place
+from meshwright.sources.arc_edges import Place, bulge_of_radius, circle_of
+from meshwright.sources.drawing_tools import short
 from meshwright.sources.polygon_sketch import Sketch
+from meshwright_core.errors import sentence
 
-WIDTH = 29 * GRID
+WIDTH, RADIUS_WIDTH = 30 * GRID, 7 * GRID
 NEW = "New"
+RADIUS = 3
+"""The column of the radii."""
 NOT_A_NUMBER = "{text!r} is not a number."
 
 
 class CoordinateTable(QTableWidget):
     """The corners of a :class:`meshwright.sources.polygon_sketch.Sketch`, one per row, and an empty
-    row for the next corner while a loop is open.
+    row for the next corner while a loop is open. A fourth column is shown while there are arcs: the
+    radius of the edge that begins at the corner.
 
     ``picked(loop, corner)`` when a row is selected; ``message(sentence)`` for the status line.
     """
@@ -26,19 +31,19 @@ class CoordinateTable(QTableWidget):
     message = Signal(str)
 
     def __init__(self, sketch: Sketch, parent: QWidget | None = None) -> None:
-        super().__init__(0, 3, parent)
+        super().__init__(0, 4, parent)
         self.setObjectName("Table")
         self.setAccessibleName("Coordinates of the corners")
-        self.setFixedWidth(WIDTH)
         self.verticalHeader().hide()
         self.verticalHeader().setDefaultSectionSize(28)
         header = self.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
-        header.resizeSection(0, 11 * GRID)
+        header.resizeSection(0, 12 * GRID)
         header.setHighlightSections(False)
         left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
-        for column, (title, side) in enumerate((("Corner", left), ("x", right), ("y", right))):
+        titles = (("Corner", left), ("x", right), ("y", right), ("R", right))
+        for column, (title, side) in enumerate(titles):
             item = QTableWidgetItem(title)
             item.setTextAlignment(side | Qt.AlignmentFlag.AlignVCenter)
             self.setHorizontalHeaderItem(column, item)
@@ -74,13 +79,16 @@ class CoordinateTable(QTableWidget):
     def _fill(self) -> None:
         corners = self.sketch.corners()
         self._rows = [(i, j) for i, j, _ in corners]
+        curved = any(loop.curved for loop in self.sketch.loops)
+        self.setColumnHidden(RADIUS, not curved)
+        self.setFixedWidth(WIDTH + (RADIUS_WIDTH if curved else 0))
         with QSignalBlocker(self):
             self.setRowCount(len(corners) + (1 if self.sketch.open else 0))
             for row, (i, j, place) in enumerate(corners):
-                self._put(row, _title(i, j), [_text(n) for n in place])
+                self._put(row, _title(i, j), [*(_text(n) for n in place), self._radius(i, j)])
             if self.sketch.open:
                 began = ["" if n is None else _text(n) for n in self._began]
-                self._put(len(corners), NEW, began)
+                self._put(len(corners), NEW, [*began, ""])
         if self.currentRow() < 0:
             self.scrollToBottom()
 
@@ -110,7 +118,13 @@ class CoordinateTable(QTableWidget):
         self.message.emit("")
         if row < len(self._rows):
             loop, corner = self._rows[row]
+            if column == RADIUS:
+                self._bend(loop, corner, number)
+                return
             self.sketch.set(loop, corner, _with(self._place(loop, corner), axis, number))
+            return
+        if column == RADIUS:
+            self._fill()
             return
         self._began[axis] = number
         x, y = self._began
@@ -121,6 +135,30 @@ class CoordinateTable(QTableWidget):
                 self.setCurrentCell(self.rowCount() - 1, 1)
         else:
             self._fill()
+
+    def _radius(self, loop: int, corner: int) -> str:
+        """The radius of the edge that begins at a corner; empty for a segment."""
+        one = self.sketch.loops[loop]
+        if corner not in one.edges or not one.bulge(corner):
+            return ""
+        return short(circle_of(*one.ends(corner), one.bulge(corner))[1])
+
+    def _bend(self, loop: int, corner: int, radius: float) -> None:
+        """Give the edge at a corner another radius; a circle keeps its centre."""
+        one = self.sketch.loops[loop]
+        bulge = one.bulge(corner) if corner in one.edges else 0.0
+        try:
+            if radius <= 0.0 or not bulge:
+                raise ValueError("only arcs have a radius, and it is positive")
+            if one.bulges == (1.0, 1.0):
+                self.sketch.scale_circle(loop, radius)
+            else:
+                ends = one.ends(corner)
+                bent = bulge_of_radius(*ends, radius, left=bulge < 0.0, large=abs(bulge) > 1.0)
+                self.sketch.bend(loop, corner, bent)
+        except ValueError as error:
+            self.message.emit(sentence(str(error)))
+        self._fill()
 
     def _place(self, loop: int, corner: int) -> Place:
         return self.sketch.loops[loop].corners[corner]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import (
@@ -29,6 +29,7 @@ from meshwright.desktop.files.new_mesh.page_base import Page
 from meshwright.desktop.files.new_mesh.random_page import RandomPage
 from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named
+from meshwright.desktop.widgets.event_filters import PanelInput
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.sources.new_mesh import DrawingContents, NewMesh
 from meshwright_core.errors import sentence
@@ -41,6 +42,10 @@ NO_MESH = "There is no mesh to show: see below."
 MAKE, OPEN = "Make mesh", "Open mesh"
 
 
+class _Restorable(Protocol):
+    def restore(self, state: Mapping[str, Any]) -> None: ...
+
+
 class NewMeshDialog(QDialog):
     """Accepted, it has a mesh in ``made``.
 
@@ -49,10 +54,16 @@ class NewMeshDialog(QDialog):
         theme: its colours.
         parent: the window over which it opens.
         file: a file to begin with, on its page.
+        state: what :attr:`state` of an earlier dialog was, which is shown again.
     """
 
     def __init__(
-        self, kind: str, theme: Theme, parent: QWidget | None = None, file: str = ""
+        self,
+        kind: str,
+        theme: Theme,
+        parent: QWidget | None = None,
+        file: str = "",
+        state: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle("New mesh")
@@ -76,7 +87,9 @@ class NewMeshDialog(QDialog):
         self.setStyleSheet(_style(theme))
         self._arrange()
         self._connect()
-        self.show_page("file" if file else "gallery")
+        PanelInput(self)
+        first = self._restored(state or {}, with_file=not file)
+        self.show_page("file" if file else first)
         if file:
             self.file.take(file)
 
@@ -129,6 +142,33 @@ class NewMeshDialog(QDialog):
         self.maker.failed.connect(self._on_failed)
         self.cancel.clicked.connect(self.reject)
         self.make.clicked.connect(self.accept)
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The page and what is chosen on each of them, as JSON has it."""
+        pages = {key: page.state for key, page in self._pages.items()}
+        return {"page": self.tabs.key, "options": self.options.state, "pages": pages}
+
+    def _restored(self, state: Mapping[str, Any], with_file: bool) -> str:
+        """Restore a state as far as it can be read, and return its page.
+
+        with_file: otherwise the file page stays empty.
+        """
+        pages = state.get("pages", {})
+        parts: list[tuple[_Restorable, Any]] = [(self.options, state.get("options"))]
+        parts += [
+            (page, pages.get(key))
+            for key, page in self._pages.items()
+            if key != "file" or with_file
+        ]
+        for part, kept in parts:
+            try:
+                if kept:
+                    part.restore(kept)
+            except (KeyError, TypeError, ValueError):
+                continue  # written by another version: this part begins anew
+        page = state.get("page")
+        return page if page in self._pages else "gallery"
 
     @property
     def page(self) -> Page:

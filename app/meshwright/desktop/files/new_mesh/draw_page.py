@@ -1,13 +1,15 @@
-"""The page on which a polygon is drawn."""
+"""The page on which a shape is drawn."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QKeySequence, QShortcut
 from qtpy.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QVBoxLayout
 
+from meshwright.desktop.files.new_mesh.controls import SegmentedButtons
 from meshwright.desktop.files.new_mesh.coordinate_table import CoordinateTable
 from meshwright.desktop.files.new_mesh.drawing_area import DrawingArea
 from meshwright.desktop.files.new_mesh.page_base import Page
@@ -18,6 +20,28 @@ from meshwright.graphics.theme import GRID, Theme
 from meshwright.sources.polygon_sketch import Sketch
 from meshwright.sources.snapping import Snapper
 
+CORNER_ANGLE = 1.0
+"""Degrees by which the boundary turns at a corner where a side is an arc."""
+TOOLS = (
+    ("line", "Line"),
+    ("arc", "Arc"),
+    ("rectangle", "Rectangle"),
+    ("circle", "Circle"),
+    ("measure", "Measure"),
+)
+HINTS = {
+    "line": "Click to add a corner, or type its distance or \u201cx y\u201d. Drag a corner to move "
+    "it, click an edge to insert one. Right click or Backspace undoes.",
+    "arc": "Click where the arc ends, then a point on it, or type its radius. Right click or "
+    "Backspace undoes.",
+    "rectangle": "Click two opposite corners, or type \u201cwidth height\u201d after the first. "
+    "Inside the outline it is a hole.",
+    "circle": "Click the centre, then a point on the circle, or type its radius. Inside the "
+    "outline it is a hole.",
+    "measure": "Click two points: the distance between them is shown.",
+}
+"""How each tool works."""
+
 
 class DrawPage(Page):
     """A drawing area with its tools, and the table of coordinates beside it."""
@@ -27,6 +51,11 @@ class DrawPage(Page):
         self.sketch = Sketch()
         self.area = DrawingArea(self.sketch, theme)
         self.table = CoordinateTable(self.sketch)
+        self.tools = SegmentedButtons(TOOLS, "Tool")
+        for (name, title), key in zip(TOOLS, "LARCM", strict=True):
+            self.tools.buttons[name].setToolTip(f"{title}  ({key}): {HINTS[name]}")
+        self.hint = named("", "Hint")
+        self.hint.setWordWrap(True)
         self.hole = _button("Add hole", "Start a hole: click its corners inside the outline")
         self.undo = _button("", "Undo the last change (Ctrl+Z)")
         self.redo = _button("", "Redo the change that was undone last (Ctrl+Shift+Z)")
@@ -43,40 +72,43 @@ class DrawPage(Page):
         self.step.setAccessibleName("Grid spacing")
         self.to_points = _tick("Points", "The mouse snaps to existing corners")
         self.to_angles = _tick("Right angles", "Edges snap to the axes and to right angles")
+        self._ticks = (self.to_grid, self.to_points, self.to_angles)
         self._arrange()
         self._connect()
         self.set_theme(theme)
         self._on_snapping()
+        self._on_tool_picked("line")
         self._refresh()
 
     def _arrange(self) -> None:
         tools = QHBoxLayout()
         tools.setSpacing(GRID)
+        tools.addWidget(self.tools)
+        tools.addStretch(1)
         for button in (self.hole, self.undo, self.redo, self.clear, self.fit):
             tools.addWidget(button)
-        tools.addStretch(1)
-        tools.addWidget(named("Snap to", "Label"))
+        snapping = QHBoxLayout()
+        snapping.setSpacing(GRID)
+        snapping.addWidget(self.hint, 1)
+        snapping.addWidget(named("Snap to", "Label"))
         for part in (self.to_grid, self.step, self.to_points, self.to_angles):
-            tools.addWidget(part)
+            snapping.addWidget(part)
         both = QHBoxLayout()
         both.setSpacing(GRID)
         both.addWidget(self.area, 1)
         both.addWidget(self.table)
-        hint = named(
-            "Click to add a corner, or type it in the table. Drag a corner to move it, click an "
-            "edge to insert one. Right click or Backspace undoes.",
-            "Hint",
-        )
-        hint.setWordWrap(True)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(GRID)
         layout.addLayout(tools)
         layout.addLayout(both, 1)
-        layout.addWidget(hint)
+        layout.addLayout(snapping)
 
     def _connect(self) -> None:
         self.sketch.changed.connect(self._on_sketch_changed)
+        self.tools.changed.connect(self._on_tool)
+        self.area.tool_picked.connect(self._on_tool_picked)
+        self.area.hinted.connect(self._on_hinted)
         self.area.message.connect(self.message.emit)
         self.table.message.connect(self.message.emit)
         self.area.picked.connect(self.table.select)
@@ -86,7 +118,7 @@ class DrawPage(Page):
         self.redo.clicked.connect(self.sketch.redo)
         self.clear.clicked.connect(self.sketch.clear)
         self.fit.clicked.connect(self.area.fit)
-        for tick in (self.to_grid, self.to_points, self.to_angles):
+        for tick in self._ticks:
             tick.toggled.connect(self._on_snapping)
         self.step.valueChanged.connect(self._on_snapping)
         self._shortcuts = []
@@ -100,12 +132,31 @@ class DrawPage(Page):
 
     @property
     def source(self) -> dict[str, Any] | None:
-        """The polygon, once it is closed and nothing is wrong with it."""
-        return {"domain": self.sketch.domain()} if self.sketch.complete else None
+        """The shape, once it is closed and nothing is wrong with it."""
+        if not self.sketch.complete:
+            return None
+        return {"domain": self.sketch.domain(), "corner_angle": CORNER_ANGLE}
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The drawing and how it snaps, for :meth:`restore`."""
+        return {
+            "loops": self.sketch.to_json(),
+            "grid": self.step.value(),
+            "snaps": [tick.isChecked() for tick in self._ticks],
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Show a drawing again."""
+        self.sketch.put_json(state["loops"])
+        self.step.setValue(float(state["grid"]))
+        for tick, on in zip(self._ticks, state["snaps"], strict=True):
+            tick.setChecked(bool(on))
+        self.area.fit()
 
     @property
     def words(self) -> str:
-        """What is wrong with the polygon, or what to do next."""
+        """What is wrong with the shape, or what to do next."""
         return self.sketch.words
 
     @property
@@ -142,6 +193,17 @@ class DrawPage(Page):
     def _on_hole(self) -> None:
         self.sketch.add_hole()
         self.area.setFocus()
+
+    def _on_tool(self, name: str) -> None:
+        self.area.use(name)
+        self.area.setFocus()
+
+    def _on_tool_picked(self, name: str) -> None:
+        self.tools.key = name
+        self._on_hinted("")
+
+    def _on_hinted(self, words: str) -> None:
+        self.hint.setText(words or HINTS[self.tools.key])
 
     def _on_row_picked(self, loop: int, corner: int) -> None:
         self.area.select((loop, corner))

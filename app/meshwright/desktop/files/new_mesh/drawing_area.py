@@ -1,4 +1,4 @@
-"""The drawing area: polygons drawn with the mouse, with grid, snapping and guide lines."""
+"""The drawing area: shapes drawn with the mouse and typed dimensions, with grid and snapping."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ import numpy as np
 from qtpy.QtCore import QPointF, QRectF, Qt, Signal
 from qtpy.QtGui import (
     QColor,
-    QFont,
-    QFontMetricsF,
     QKeyEvent,
     QMouseEvent,
     QPainter,
@@ -21,34 +19,39 @@ from qtpy.QtGui import (
 )
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
-from meshwright.desktop.files.new_mesh.painting import polygon
-from meshwright.desktop.widgets.basic import tabular
+from meshwright.desktop.files.new_mesh.sketch_painting import SketchPainting
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.graphics.viewport import Viewport
-from meshwright.sources.polygon_checks import Place
+from meshwright.sources.arc_edges import Place, circle_of
+from meshwright.sources.drawing_tools import ARC, LINE, MEASURE, RECTANGLE, Pencil
+from meshwright.sources.polygon_checks import PolygonProblem
 from meshwright.sources.polygon_sketch import Sketch
 from meshwright.sources.snapping import Snap, Snapper
+from meshwright_core.errors import MeshError
 
 REACH = 9.0
 """Distance in pixels at which the mouse snaps to corners and lines."""
-CORNER = 8.0
-CLOSED = "All loops are closed: click an edge to insert a corner, or press Add hole."
-_CLOSEST_GRID = 7.0
-"""Pixels between grid lines below which only every fifth or tenth is drawn."""
 _DRAG = 4.0
 """Pixels that the mouse must move before a press becomes a drag."""
+_BEGIN, _CONTINUE = "0123456789.,-+\u2212", "<;x\u00d7 eE\u00b0"
+"""Characters that typed dimensions begin with, and those that they hold besides."""
+TOOL_KEYS = {"l": "line", "a": "arc", "r": "rectangle", "c": "circle", "m": "measure"}
 
 
 class DrawingArea(QWidget):
-    """Draws and edits a :class:`meshwright.sources.polygon_sketch.Sketch`.
+    """Draws and edits a :class:`meshwright.sources.polygon_sketch.Sketch` with the tools of
+    :class:`meshwright.sources.drawing_tools.Pencil`.
 
     ``hovered(x, y)``: the snapped position of the mouse; ``message(sentence)``: why a click would
-    be refused; ``picked(loop, corner)`` when a corner is selected.
+    be refused; ``picked(loop, corner)`` when a corner is selected; ``tool_picked(name)`` when a
+    key has chosen a tool; ``hinted(sentence)``: what can be typed, empty while nothing is.
     """
 
     hovered = Signal(float, float)
     message = Signal(str)
     picked = Signal(int, int)
+    tool_picked = Signal(str)
+    hinted = Signal(str)
 
     def __init__(self, sketch: Sketch, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -59,6 +62,8 @@ class DrawingArea(QWidget):
         self.setMinimumSize(320, 240)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.sketch = sketch
+        self.pencil = Pencil(sketch)
+        self._typed = ""
         self.snapper = Snapper(grid=0.1)
         self.grid = 0.1
         self.view = Viewport(pixels=200.0)
@@ -92,9 +97,21 @@ class DrawingArea(QWidget):
         self.selected = corner
         self.update()
 
+    @property
+    def typed(self) -> str:
+        """The dimensions that are being typed."""
+        return self._typed
+
+    def use(self, tool: str) -> None:
+        """Draw with this tool."""
+        self.pencil.tool = tool
+        self._typed = ""
+        self.select(None)
+        self.hinted.emit("")
+
     def fit(self) -> None:
         """Fit the view to the drawing, or the square from -1 to 1."""
-        places = [place for _, _, place in self.sketch.corners()]
+        places = [p for loop in self.sketch.loops for p in loop.flattened()[0].corners]
         points = np.array(places if len(places) > 1 else [(-1.0, -1.0), (1.0, 1.0)])
         self.view = self.view.resized(self.width(), self.height()).fitted(points, 6 * GRID)
         self.update()
@@ -119,9 +136,11 @@ class DrawingArea(QWidget):
             self.take_back()
         elif event.button() == Qt.MouseButton.LeftButton:
             self._pressed, self._recorded = place, False
-            self._moving = self._corner_at(place)
-            if self._moving is None and not self.sketch.open:
-                self._moving = self._insert_at(place)
+            self._moving = None
+            if self.pencil.moves_corners and not self.pencil.begun:
+                self._moving = self._corner_at(place)
+                if self._moving is None and not self.sketch.open:
+                    self._moving = self._insert_at(place)
             self.select(self._moving)
             if self._moving is not None:
                 self.picked.emit(*self._moving)
@@ -151,14 +170,12 @@ class DrawingArea(QWidget):
         if event.button() != Qt.MouseButton.LeftButton or self._pressed is None:
             return
         moved, held = self._recorded, self._moving
-        was_open = self.sketch.open
         self._pressed = self._moving = None
-        if not moved:
-            self._clicked(event.position(), held)
+        words = "" if moved else self._clicked(event.position(), held)
         self._snap = self._snapped(event.position())
         self._tell()
-        if held is None and not was_open:
-            self.message.emit(CLOSED)
+        if words:
+            self.message.emit(words)
         self.update()
 
     def leaveEvent(self, event: object) -> None:  # noqa: N802
@@ -174,31 +191,44 @@ class DrawingArea(QWidget):
         self.view = self.view.zoomed(1.0015 ** event.angleDelta().y(), place.x(), place.y())
         self.update()
 
-    def _clicked(self, place: QPointF, held: tuple[int, int] | None) -> None:
-        last = len(self.sketch.loops) - 1
-        if held == (last, 0) and self.sketch.open and self.sketch.close():
-            return
-        if held is None and self.sketch.open:
-            self.sketch.add(self._snapped(place).place)
+    def _clicked(self, place: QPointF, held: tuple[int, int] | None) -> str:
+        """Give the tool the place of a click; returns why it could not be used."""
+        if held is not None:
+            last = len(self.sketch.loops) - 1
+            if held == (last, 0) and self.sketch.open:
+                self.sketch.close()
+            return ""
+        self._typed = ""
+        return self.pencil.click(self._snapped(place).place)
 
     def _insert_at(self, place: QPointF) -> tuple[int, int] | None:
         """Insert a corner on the edge under the mouse, if there is one, and grab it."""
+        mouse = np.array([place.x(), place.y()])
         for i, loop in enumerate(self.sketch.loops):
-            p = self.view.to_screen(np.array(loop.corners))
-            q = np.roll(p, -1, axis=0)
-            mouse, along = np.array([place.x(), place.y()]), q - p
+            flat, owners = loop.flattened()
+            p = self.view.to_screen(np.array(flat.corners))
+            along = np.roll(p, -1, axis=0) - p
             share = np.clip(
                 ((mouse - p) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1
             )
             apart = np.hypot(*(p + share[:, None] * along - mouse).T)
-            j = int(np.argmin(apart))
-            if apart[j] <= 0.6 * REACH:
-                a, b = np.array(loop.corners[j]), np.array(loop.corners[(j + 1) % len(p)])
-                x, y = (a + share[j] * (b - a)).tolist()
-                self.sketch.insert(i, j + 1, self._rounded((x, y)))
+            row = int(np.argmin(apart))
+            if apart[row] <= 0.6 * REACH:
+                a, b = (np.array(flat.corners[k]) for k in (row, (row + 1) % len(p)))
+                x, y = (a + share[row] * (b - a)).tolist()
+                edge = owners[row]
+                at = self._on_edge(i, edge, (x, y)) if loop.bulge(edge) else self._rounded((x, y))
+                self.sketch.insert(i, edge + 1, at)
                 self._recorded = True  # insertion and drag are one edit
-                return i, j + 1
+                return i, edge + 1
         return None
+
+    def _on_edge(self, loop: int, edge: int, place: Place) -> Place:
+        """The point of an arc nearest to a place close to it."""
+        one = self.sketch.loops[loop]
+        (x, y), radius = circle_of(*one.ends(edge), one.bulge(edge))
+        away = math.dist(place, (x, y)) or 1.0
+        return x + radius * (place[0] - x) / away, y + radius * (place[1] - y) / away
 
     def _drag(self, place: QPointF) -> None:
         assert self._moving is not None
@@ -220,19 +250,20 @@ class DrawingArea(QWidget):
     def _snapped(self, place: QPointF) -> Snap:
         where = self._plane(place)
         reach = REACH / self.view.pixels
-        corners = [p for _, _, p in self.sketch.corners()]
-        if not self.sketch.open:
-            return self.snapper.snap(where, reach, corners)
-        row = self.sketch.loops[-1].corners
-        before = row[-1] if row else None
-        snap = self.snapper.snap(
-            where,
-            reach,
-            corners,
-            before,
-            row[0] if len(row) > 1 else None,
-            row[-2] if len(row) > 1 else None,
-        )
+        points = [p for _, _, p in self.sketch.corners()] + self.sketch.centres()
+        pencil = self.pencil
+        free = self.snapper.snap(where, reach, points)
+        if free.met == "point" or pencil.tool == RECTANGLE or (pencil.tool == ARC and pencil.begun):
+            return Snap(self._rounded(free.place), free.met) if free.met != "point" else free
+        if pencil.tool not in (LINE, ARC):
+            snap = self.snapper.snap(where, reach, points, pencil.start)
+        elif not self.sketch.open:
+            return free
+        else:
+            row = self.sketch.loops[-1].corners
+            first = row[0] if len(row) > 1 else None
+            behind = row[-2] if len(row) > 1 else None
+            snap = self.snapper.snap(where, reach, points, row[-1] if row else None, first, behind)
         return Snap(self._rounded(snap.place), snap.met, snap.guides)
 
     def _rounded(self, place: Place) -> Place:
@@ -254,28 +285,84 @@ class DrawingArea(QWidget):
         return found
 
     def _tell(self) -> None:
-        words = ""
-        if self._snap is not None and self._moving is None and self.sketch.open:
-            trial = self.sketch.trial(self._snap.place)
-            words = trial.words if trial is not None else ""
-        self.message.emit(words)
+        trial = self._trial()
+        self.message.emit(trial.words if trial is not None else "")
+
+    def _trial(self) -> PolygonProblem | None:
+        """The problem that a click would cause, None if none."""
+        draws = self.sketch.open and self.pencil.tool in (LINE, ARC)
+        if self._snap is None or self._moving is not None or not draws:
+            return None
+        place = self._snap.place
+        return self.sketch.trial(self.pencil.end_at(place), self.pencil.bulge_to(place))
 
     # Keys
 
     def take_back(self) -> None:
-        """Remove the last corner, or reopen the last loop."""
-        self.sketch.take_back()
+        """Forget what the tool was given, remove the last corner, or reopen the last loop."""
+        if not self.pencil.cancel():
+            self.sketch.take_back()
+        self.update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Backspace undoes, Return closes the loop, Delete removes the selected corner."""
-        if event.key() == Qt.Key.Key_Backspace:
+        """Digits type dimensions; Return applies them, or closes the loop; Backspace undoes;
+        Delete removes the selected corner; Escape cancels; letters choose tools.
+        """
+        key, text = event.key(), event.text()
+        if self._typed:
+            if self._edit_typed(key, text):
+                return
+        elif text and text in _BEGIN and self.pencil.hint:
+            self._type(text)
+            return
+        if key == Qt.Key.Key_Backspace:
             self.take_back()
-        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.sketch.close():
+        elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.sketch.close():
             event.accept()
-        elif event.key() == Qt.Key.Key_Delete and self.selected is not None:
+        elif key == Qt.Key.Key_Delete and self.selected is not None:
             self.sketch.remove(*self.selected)
+        elif key == Qt.Key.Key_Escape and self.pencil.cancel():
+            self.update()
+        elif text.lower() in TOOL_KEYS and not event.modifiers() & Qt.KeyboardModifier.AltModifier:
+            self.use(TOOL_KEYS[text.lower()])
+            self.tool_picked.emit(self.pencil.tool)
         else:
             super().keyPressEvent(event)
+
+    def _edit_typed(self, key: int, text: str) -> bool:
+        """Handle a key while dimensions are typed; False if it is for something else."""
+        if key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self._apply_typed()
+        elif key == Qt.Key.Key_Escape:
+            self._type("", self._typed)
+        elif key == Qt.Key.Key_Backspace:
+            self._typed = self._typed[:-1]
+            self._type("")
+        elif text and text in _BEGIN + _CONTINUE:
+            self._type(text)
+        else:
+            return False
+        return True
+
+    def _type(self, text: str, drop: str = "") -> None:
+        self._typed = "" if drop else self._typed + text
+        self.hinted.emit(self.pencil.hint if self._typed else "")
+        self.message.emit("")
+        self.update()
+
+    def _apply_typed(self) -> None:
+        mouse = self._snap.place if self._snap is not None else None
+        try:
+            words = self.pencil.click(self.pencil.place_of(self._typed, mouse))
+        except MeshError as error:
+            self.message.emit(str(error))
+            return
+        self._typed = ""
+        self.hinted.emit("")
+        if self._mouse is not None:
+            self._snap = self._snapped(self._mouse)
+        self.message.emit(words)
+        self.update()
 
     # Drawing
 
@@ -287,159 +374,48 @@ class DrawingArea(QWidget):
             self.fit()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Paint grid, polygon, errors, guide lines and the next corner."""
+        """Paint grid, sketch, errors, guide lines and what would be drawn next."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         frame = QPainterPath()
         frame.addRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 8, 8)
         painter.fillPath(frame, QColor(self._theme.background))
         painter.setClipPath(frame)
-        self._paint_grid(painter)
-        self._paint_loops(painter)
-        self._paint_next(painter)
-        self._paint_corners(painter)
-        self._paint_problem(painter)
+        self._paint(SketchPainting(painter, self.view, self._theme, self.font()))
         painter.setClipping(False)
         painter.setPen(QPen(QColor(self._theme.accent if self.hasFocus() else self._theme.line), 1))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawPath(frame)
         painter.end()
 
-    def _paint_grid(self, painter: QPainter) -> None:
-        step = self.grid or 10.0 ** math.floor(math.log10(60.0 / self.view.pixels))
-        for factor in (1, 5, 10, 50, 100, 500, 1000, 10_000, 100_000):
-            if step * factor * self.view.pixels >= _CLOSEST_GRID:
-                step *= factor
-                break
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
-        low = self.view.to_plane(0, self.height())
-        high = self.view.to_plane(self.width(), 0)
-        for axis in (0, 1):
-            for k in range(math.floor(low[axis] / step), math.ceil(high[axis] / step) + 1):
-                self._paint_grid_line(painter, axis, k, step)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    def _paint(self, painting: SketchPainting) -> None:
+        sketch, pencil, snap = self.sketch, self.pencil, self._snap
+        painting.grid(self.grid)
+        painting.loops(sketch.loops)
+        measures = pencil.tool == MEASURE
+        place = self._target()
+        draft = pencil.draft(place)
+        shown = snap is not None or bool(self._typed) or (measures and len(pencil.places) == 2)
+        if snap is not None:
+            painting.guides(snap)
+        if shown and self._moving is None:
+            painting.draft(draft, measures, self._trial() is not None)
+        draws = sketch.open or pencil.tool not in (LINE, ARC)
+        if snap is not None and self._moving is None and draws:
+            painting.target(place)
+        last = len(sketch.loops) - 1
+        painting.corners(sketch.corners(), (last, 0) if sketch.open else None, self.selected)
+        if sketch.problem is not None:
+            painting.problem(sketch.problem, sketch.loops)
+        if shown and (draws or self._moving is not None):
+            where = f"{place[0]:.5g}, {place[1]:.5g}".replace("-", "\u2212")
+            lines = (where,) if self._moving is not None else (draft.text, where)
+            if measures and len(pencil.places) == 2:
+                place, lines = pencil.places[1], (draft.text,)
+            painting.label(place, lines, self._typed)
 
-    def _paint_grid_line(self, painter: QPainter, axis: int, k: int, step: float) -> None:
-        strong = k % 5 == 0 or step * self.view.pixels > 60
-        colour = QColor(self._theme.edge if k == 0 else self._theme.line)
-        colour.setAlphaF(0.55 if k == 0 else 0.9 if strong else 0.4)
-        painter.setPen(QPen(colour, 1))
-        place = (k * step, 0.0) if axis == 0 else (0.0, k * step)
-        x, y = self.view.to_screen(np.array(place)).tolist()
-        if axis == 0:
-            painter.drawLine(round(x), 0, round(x), self.height())
-        else:
-            painter.drawLine(0, round(y), self.width(), round(y))
-        if strong and k % 5 == 0 and step * self.view.pixels * 5 > 40:
-            painter.setPen(QColor(self._theme.faint))
-            painter.setFont(self._small())
-            text = f"{k * step:.6g}".replace("-", "\u2212")
-            if axis == 0:
-                painter.drawText(QPointF(x + 3, self.height() - 5), text)
-            elif k != 0:
-                painter.drawText(QPointF(6, y - 3), text)
-
-    def _paint_loops(self, painter: QPainter) -> None:
-        area = QPainterPath()
-        for loop in self.sketch.loops:
-            if loop.closed:
-                area.addPolygon(polygon(self.view.to_screen(np.array(loop.corners))))
-                area.closeSubpath()
-        fill = QColor(self._theme.accent_soft)
-        fill.setAlphaF(0.55)
-        painter.fillPath(area, fill)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(QPen(QColor(self._theme.boundary), 1.75))
-        for loop in self.sketch.loops:
-            if len(loop.corners) > 1:
-                places = polygon(self.view.to_screen(np.array(loop.corners)))
-                if loop.closed:
-                    painter.drawPolygon(places)
-                else:
-                    painter.drawPolyline(places)
-
-    def _paint_corners(self, painter: QPainter) -> None:
-        last = len(self.sketch.loops) - 1
-        for i, j, p in self.sketch.corners():
-            x, y = self.view.to_screen(np.array(p)).tolist()
-            first = self.sketch.open and (i, j) == (last, 0)
-            side = CORNER + (4 if first else 0)
-            box = QRectF(x - side / 2, y - side / 2, side, side)
-            painter.setPen(QPen(QColor(self._theme.background), 1.5))
-            painter.setBrush(QColor(self._theme.accent if first else self._theme.corner))
-            painter.drawRect(box)
-            if (i, j) == self.selected:
-                painter.setPen(QPen(QColor(self._theme.accent), 2))
-                painter.setBrush(Qt.BrushStyle.NoBrush)
-                painter.drawRect(box.adjusted(-3.5, -3.5, 3.5, 3.5))
-
-    def _paint_next(self, painter: QPainter) -> None:
-        snap = self._snap
-        if snap is None or self._mouse is None:
-            return
-        painter.setPen(QPen(QColor(self._theme.accent), 1, Qt.PenStyle.DotLine))
-        for start, end in snap.guides:
-            self._paint_guide(painter, start, end)
-        place = QPointF(*self.view.to_screen(np.array(snap.place)).tolist())
-        row = self.sketch.loops[-1].corners
-        if self.sketch.open and self._moving is None:
-            if row:
-                wrong = self.sketch.trial(snap.place) is not None
-                colour = self._theme.warning if wrong else self._theme.accent
-                painter.setPen(QPen(QColor(colour), 1.75, Qt.PenStyle.DashLine))
-                before = self.view.to_screen(np.array(row[-1])).tolist()
-                painter.drawLine(QPointF(*before), place)
-            painter.setPen(QPen(QColor(self._theme.accent), 1.75))
-            painter.setBrush(QColor(self._theme.background))
-            painter.drawEllipse(place, 5, 5)
-        if self.sketch.open or self._moving is not None:
-            self._paint_label(painter, place, snap.place)
-
-    def _paint_guide(self, painter: QPainter, start: Place, end: Place) -> None:
-        """Paint a line through both places, across the whole area."""
-        p, q = self.view.to_screen(np.array([start, end]))
-        along = q - p
-        length = float(np.hypot(*along))
-        if length > 0:
-            reach = (self.width() + self.height()) * along / length
-            painter.drawLine(QPointF(*(p - reach).tolist()), QPointF(*(p + reach).tolist()))
-
-    def _paint_label(self, painter: QPainter, place: QPointF, where: Place) -> None:
-        text = f"{where[0]:.4g}, {where[1]:.4g}".replace("-", "\u2212")
-        font = self._small()
-        metrics = QFontMetricsF(font)
-        box = QRectF(0, 0, metrics.horizontalAdvance(text) + 12, metrics.height() + 4)
-        box.moveTopLeft(place + QPointF(12, 12))
-        if box.right() > self.width() - 4:
-            box.moveRight(place.x() - 12)
-        if box.bottom() > self.height() - 4:
-            box.moveBottom(place.y() - 12)
-        painter.setPen(QPen(QColor(self._theme.line), 1))
-        painter.setBrush(QColor(self._theme.raised))
-        painter.drawRoundedRect(box, 4, 4)
-        painter.setFont(font)
-        painter.setPen(QColor(self._theme.text))
-        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
-
-    def _paint_problem(self, painter: QPainter) -> None:
-        problem = self.sketch.problem
-        if problem is None:
-            return
-        colour = QColor(self._theme.warning)
-        painter.setPen(QPen(colour, 3, Qt.PenStyle.DashLine))
-        for i, j in problem.edges:
-            loop = self.sketch.loops[i]
-            if j + 1 < len(loop.corners) or loop.closed:
-                ends = np.array([loop.corners[j], loop.corners[(j + 1) % len(loop.corners)]])
-                p, q = self.view.to_screen(ends).tolist()
-                painter.drawLine(QPointF(*p), QPointF(*q))
-        painter.setPen(QPen(colour, 2.5))
-        for spot in problem.places:
-            x, y = self.view.to_screen(np.array(spot)).tolist()
-            painter.drawLine(QPointF(x - 7, y - 7), QPointF(x + 7, y + 7))
-            painter.drawLine(QPointF(x - 7, y + 7), QPointF(x + 7, y - 7))
-
-    def _small(self) -> QFont:
-        font = tabular(QFont(self.font()))
-        font.setPixelSize(11)
-        return font
+    def _target(self) -> Place:
+        """Where the next click would be; while the mouse is elsewhere, where the drawing ends."""
+        if self._snap is not None:
+            return self._snap.place
+        return self.pencil.start or self.view.centre

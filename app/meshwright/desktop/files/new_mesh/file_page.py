@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -124,6 +125,11 @@ class FilePage(Page):
         return readings
 
     @property
+    def chosen(self) -> str:
+        """The path of the file; empty if there is none."""
+        return self._asked
+
+    @property
     def source(self) -> dict[str, Any] | None:
         """The file and the options for reading it."""
         if not self._asked or self.found.choice == "":
@@ -135,6 +141,24 @@ class FilePage(Page):
             "fit": self.fit.key or None,
             "region": self.found.choice,
         }
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The file, and the options for reading it."""
+        return {
+            "path": self._asked,
+            "corner_angle": self.corner_angle.value(),
+            "curve_step": self.curve_step.value(),
+            "fit": self.fit.key,
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Read the same file again, if it is still there."""
+        self.corner_angle.setValue(state["corner_angle"])
+        self.curve_step.setValue(state["curve_step"])
+        self.fit.key = state["fit"]
+        if state["path"] and Path(state["path"]).is_file():
+            self.take(state["path"])
 
     @property
     def words(self) -> str:

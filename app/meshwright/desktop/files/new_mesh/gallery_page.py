@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
+from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QVBoxLayout
 
 from meshwright.desktop.files.new_mesh.page_base import Page, Pictures, words_of
@@ -28,6 +30,16 @@ class GalleryPage(Page):
         """The chosen shape."""
         return {"shape": self.shapes.key} if self.shapes.key else None
 
+    @property
+    def state(self) -> dict[str, Any]:
+        """The chosen shape."""
+        return {"shape": self.shapes.key}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Choose the same shape again."""
+        if state["shape"]:
+            self.choose(state["shape"])
+
     def fill(self) -> None:
         """Draw the pictures."""
         if self.shapes.count() == 0:
@@ -40,7 +52,7 @@ class GalleryPage(Page):
         """Choose a shape by its name."""
         self.fill()
         for row in range(self.shapes.count()):
-            if self.shapes.item(row).text() == words_of(name):
+            if self.shapes.item(row).data(Qt.ItemDataRole.UserRole) == name:
                 self.shapes.setCurrentRow(row)
 
     def _on_chosen(self) -> None:

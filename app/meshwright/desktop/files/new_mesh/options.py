@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from qtpy.QtCore import Qt, Signal
@@ -116,6 +117,18 @@ class Options(QWidget):
     def numbers(self) -> dict[str, str]:
         """The counts that are shown: elements, vertices, score, optimum."""
         return {key: str(label.text()) for key, label in self._values.items()}
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The options, for :meth:`restore`."""
+        return {**self.request, "quads": self.rule.key}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Choose the same options again, except for the kind of elements."""
+        self.rule.key = state["quads"]
+        self.size_of.value = state["max_edge"]
+        self.quality.value = state["min_angle"]
+        self._on_kind_changed()
 
     def show_made(self, made: NewMesh) -> None:
         """Show the mesh and its counts."""

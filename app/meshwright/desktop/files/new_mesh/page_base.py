@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from qtpy.QtCore import QSize, Qt, Signal
@@ -38,6 +39,16 @@ class Page(QWidget):
         mesh.
         """
         raise NotImplementedError
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What :meth:`restore` needs to show the same again, as JSON has it."""
+        return {}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Show what was shown when ``state`` was read; ValueError, KeyError or TypeError if that is
+        damaged.
+        """
 
     @property
     def words(self) -> str:

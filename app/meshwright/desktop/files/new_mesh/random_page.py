@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -82,6 +83,18 @@ class RandomPage(Page):
     def source(self) -> dict[str, Any] | None:
         """The kind, the sides and the seed."""
         return {self.kind.key: self.sides.value(), "seed": self.seed.value()}
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The kind, the sides and the seed."""
+        return {"kind": self.kind.key, "sides": self.sides.value(), "seed": self.seed.value()}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Choose the same shape again."""
+        self.kind.key = state["kind"]
+        self._on_kind_changed()
+        self.sides.setValue(state["sides"])
+        self.seed.setValue(state["seed"])
 
     def fill(self) -> None:
         """Draw the pictures."""

@@ -1,0 +1,49 @@
+"""The window in several sizes: toolbar, history and score panel show all of their content."""
+
+import pytest
+from driving import WAIT
+from qtpy.QtWidgets import QScrollArea
+
+from meshwright.desktop.actions import registry
+from meshwright.desktop.history.history_panel import ROW
+
+
+@pytest.mark.parametrize("size", [(880, 560), (1280, 800)])
+def test_the_toolbar_shows_every_button(qtbot, open_window, star, size):
+    window = open_window(star)
+    window.resize(*size)
+    qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
+    bar = window.toolbar
+    for action_id in (name for group in registry.TOOLBAR for name in group):
+        button = bar.widgetForAction(window.actions_by_id[action_id])
+        assert button.isVisible(), action_id
+        assert bar.rect().contains(button.geometry()), action_id
+
+
+def test_the_history_shows_whole_lines_only(qtbot, open_window, star):
+    window = open_window(star)
+    for _ in range(30):
+        mesh = window.document.mesh
+        halfedge = next(h for h in range(4 * mesh.n_elements) if mesh.check("flip_left", h))
+        window.document.submit("flip_left", halfedge)
+    panel = window.playback.panel
+    for height in (560, 613, 700):
+        window.resize(1000, height)
+        qtbot.waitUntil(lambda high=height: window.height() == high, timeout=WAIT)
+        shown = panel.list
+        assert shown.viewport().height() % ROW == 0
+        assert shown.rowViewportPosition(shown.rowAt(0)) == 0
+        assert shown.visualRect(panel.model.index(30)).bottom() < shown.viewport().height()
+
+
+def test_large_numbers_fit_the_score_panel(qtbot, open_window, star, monkeypatch):
+    window = open_window(star)
+    panel = window.quality.score
+    area = window.sidebar.findChild(QScrollArea)
+    for numbers in ("12", "65,980", "1,234,567"):
+        monkeypatch.setattr(type(star), "score", int(numbers.replace(",", "")))
+        window.document.score_changed.emit()
+        qtbot.wait(20)
+        assert panel.score.text() == numbers
+        assert area.widget().minimumSizeHint().width() <= area.viewport().width()
+    monkeypatch.undo()
