@@ -233,6 +233,17 @@ def test_hovered_state_that_disappears_is_no_longer_marked(qtbot, walked, triang
     curve.grab()  # an error while painting would end the process
 
 
+def test_mouse_that_moves_before_a_shorter_history_is_painted(qtbot, walked, triangles):
+    window = walked
+    curve = window.playback.timeline.curve
+    end = QPoint(curve.width() - 4, curve.height() // 2)
+    window.document.replace(triangles, "triangles")
+    qtbot.mouseMove(curve, end - QPoint(9, 0))
+    curve.hovered = 6  # of the frame that was painted last
+    curve.grab()
+    assert curve.hovered < len(curve._track.scores)
+
+
 def test_ten_thousand_steps_are_listed_and_hovered_cheaply(qtbot, open_window, star):
     window = open_window(star)
     document, film = window.document, window.playback

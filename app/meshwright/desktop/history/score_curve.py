@@ -197,6 +197,9 @@ class ScoreCurve(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(self._font)
         states = len(self._track.scores)
+        # the mouse may have moved after the history has become shorter, and before this frame
+        self.hovered = min(self.hovered, states - 1)
+        self._fork = min(self._fork, len(self._forks) - 1)
         here = min(self.cursor_state, states - 1)
         x = float(self._frame.x(here))
         if here < states - 1:
