@@ -50,6 +50,8 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.layout_positions import layout_bound, position, rails_of
+from meshwright_core.geometry.local_positions import LocalEffort, local_effort, settle
+from meshwright_core.geometry.turning import has_bends
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
@@ -68,6 +70,8 @@ from meshwright_core.operations.refusals import ALLOWED
 
 ALIKE = 2e-3
 """Difference of worst sines below which two layouts count as equally good."""
+RINGS = 3
+"""Rings of elements around a change that are positioned with it where sides bend."""
 STEPS = 25
 """Steps of each stage of the max-min positions of a candidate."""
 ROUGH, FINE = 0.5, 0.25
@@ -110,6 +114,10 @@ class Guard(NamedTuple):
     """Least number of elements."""
     angle: np.ndarray
     """(slots,) inner angles, as in :class:`meshwright_core.geometry.layout_positions.Rails`."""
+    bends: bool
+    """Whether sides bend: positions take long there, so a change is positioned locally first."""
+    local: LocalEffort
+    """How."""
 
 
 @by_reference
@@ -201,7 +209,7 @@ def coarsen_layout(m, trial, rails, guard, record, key, most, rng):
     kept up to date. Returns whether it came to an end.
     """
     found = np.zeros((8 * m.counters[ELEMENT_SLOTS], 2), np.int64)
-    other = np.zeros(4)
+    other, active = np.zeros(4), np.zeros(len(m.points), np.bool_)
     state = record.state
     stop = state[EVALUATED] + most
     improved = True
@@ -225,8 +233,10 @@ def coarsen_layout(m, trial, rails, guard, record, key, most, rng):
             other[3] = trial.counters[ELEMENTS]
             if not is_better(other, key, guard.aims):
                 continue
-            other[1] = max(0.0, position(trial, rails, guard.aims.comfort, STEPS))
             state[EVALUATED] += 1
+            if guard.bends and settle(m, trial, rails, guard.local, active) <= 0.0:
+                continue
+            other[1] = max(0.0, position(trial, rails, guard.aims.comfort, STEPS))
             if not is_better(other, key, guard.aims):
                 continue
             copy_mesh(trial, m)
@@ -406,7 +416,9 @@ class Coarsener:
         self.start = with_room(mesh, ceiling)
         self.rails = rails_of(mesh, len(self.start.vertex))
         self.aims = aims
-        self.guard = Guard(aims, task.cap, floor, self.rails.angle)
+        self.bends = has_bends(mesh)
+        self._local = local_effort(rings=RINGS, thorough=False)
+        self.guard = Guard(aims, task.cap, floor, self.rails.angle, self.bends, self._local)
         self._rules = task.rules(floor, ceiling)
         self._weights = np.array(WEIGHTS["quad"][:5])
         self._weights /= self._weights.sum()
@@ -456,10 +468,14 @@ class Coarsener:
         ids = np.flatnonzero(free).astype(np.int64)
         return ids, m.points[ids].copy(), m.parameter[ids].copy()
 
-    def coarsen(self, layout: Layout, most: int = 1 << 40) -> bool:
-        """Coarsen in place until no candidate is accepted (then true), or `most` were tried."""
+    def coarsen(self, layout: Layout, most: int = 1 << 40, aims: Aims | None = None) -> bool:
+        """Coarsen in place until no candidate is accepted (then true), or `most` were tried.
+
+        aims: in place of its own.
+        """
+        guard = self.guard if aims is None else self.guard._replace(aims=aims)
         ended = coarsen_layout(
-            layout.arrays, self._spare, self.rails, self.guard, layout.record, layout.key, most,
+            layout.arrays, self._spare, self.rails, guard, layout.record, layout.key, most,
             self.rng,
         )  # fmt: skip
         return bool(ended)
@@ -474,7 +490,8 @@ class Coarsener:
         at_worst: bool = False,
     ) -> Layout | None:
         """A copy after a kick of so many random operations, positioned; None where s does not come
-        down to `score`, with degrees that permit a worst sine of `bound`, by so many `proposals`.
+        down to `score`, with degrees that permit a worst sine of `bound`, by so many `proposals`,
+        or, where sides bend, something stays folded around what has changed.
 
         at_worst: the operations begin near the worst corner.
         """
@@ -485,6 +502,10 @@ class Coarsener:
         )  # fmt: skip
         if not kick(other.arrays, other.record, plan, self._rules, self.rng):
             return None
+        if self.bends and layout.key[1] > 0.0:
+            active = np.zeros(len(other.arrays.points), np.bool_)
+            if settle(layout.arrays, other.arrays, self.rails, self._local, active) <= 0.0:
+                return None
         self.judge(other)
         return other
 

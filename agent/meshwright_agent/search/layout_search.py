@@ -80,6 +80,10 @@ class Preference:
         return Aims(target, comfort, price, self.prefer != "blocks")
 
 
+FEW = Aims(0.1, 0.1, 0.0, False)
+"""Aims for few blocks, whatever their shape."""
+
+
 class LayoutSearch:
     """The pool of one thread.
 
@@ -145,8 +149,21 @@ class LayoutSearch:
             # raising the corners has folded a quad along a curve: keep what is valid
             self.coarsener.place(layout, placed)
             layout.key[1] = max(float(scaled_jacobian(placed).min()), 1e-3)
-        if coarsen and layout.key[1]:
-            self._coarsen(layout, stop)
+        if not (coarsen and layout.key[1]):
+            self._insert(layout)
+            return
+        if self.coarsener.bends:
+            # below the target nothing is coarsened that has good corners, but positions take long
+            # where sides bend: a layout of few blocks is improved much faster
+            few = layout.copy()
+            self._coarsen(few, stop, FEW)
+            self.coarsener.judge(few)
+            self._insert(few)
+        self._coarsen(layout, stop)
+        self._insert(layout)
+
+    def _insert(self, layout: Layout) -> None:
+        """Put a layout into the pool, the best first."""
         self._note(layout)
         place = 0
         while place < len(self.pool) and not self.coarsener.better(layout, self.pool[place]):
@@ -158,9 +175,9 @@ class LayoutSearch:
         if self.best is None or self.coarsener.better(layout, self.best):
             self.best, self.idle, self._served = layout, 0, 0
 
-    def _coarsen(self, layout: Layout, stop: Callable[[], bool]) -> None:
+    def _coarsen(self, layout: Layout, stop: Callable[[], bool], aims: Aims | None = None) -> None:
         while not stop():
-            if self.coarsener.coarsen(layout, max(1, SLICE // int(layout.key[3]))):
+            if self.coarsener.coarsen(layout, max(1, SLICE // int(layout.key[3])), aims):
                 break
 
     def kick(self, stop: Callable[[], bool]) -> None:
