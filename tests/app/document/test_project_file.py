@@ -191,7 +191,7 @@ def changed(name: str, row: int, column: int, by: int):
         (changed("done.rows", 0, 10, 2), "other scores"),  # s
         (changed("undone.rows", -1, 11, 4), "other scores"),  # the sum of Delta
         (changed("done.rows", 0, 5, 1), "leads to a broken mesh"),  # the number of vertices
-        (changed("undone.whole", 0, 0, 1), "leads to a broken mesh|beyond"),
+        (changed("undone.whole", 1, 0, 1), "leads to a broken mesh|beyond"),
         (changed("branch0.whole", -1, 0, 1), "leads to a broken mesh|beyond"),
         (changed("branch0.0.whole", 2, 0, 1), "leads to a broken mesh|beyond"),
     ],

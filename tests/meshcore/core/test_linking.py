@@ -161,9 +161,8 @@ def test_integers_have_one_type_between_kernels():
         assert canonical(kind) == kind
 
 
-def test_entry_points_are_counted(tiny, tmp_path, monkeypatch):
-    tiny()
-    monkeypatch.setattr(compilation, "cache_folder", lambda package: tmp_path / "cache")
+def test_entry_points_are_counted(cache, monkeypatch):
+    monkeypatch.setattr(compilation, "cache_folder", lambda package: cache)
     assert compilation.entry_points_on_disk() == 2
 
 
