@@ -45,8 +45,8 @@ def leap(
 
     mesh: of quads, without inverted elements; not changed.
     """
-    rails = rails_of(mesh, len(mesh.arrays.vertex) + 4 * LONGEST * mesh.n_elements)
     before = with_room(mesh, 3 * mesh.n_elements)
+    rails = rails_of(mesh, len(before.vertex))
     local = local_effort(rings=RINGS)
     active = np.zeros(len(before.points), np.bool_)
     cleaned, touched = np.zeros(MOST_CLEANUPS, np.int64), np.zeros(16, np.int64)
