@@ -38,6 +38,7 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.compilation import kernel
 from meshwright_core.geometry.layout_positions import layout_bound, rails_of
 from meshwright_core.geometry.local_positions import local_effort, settle
+from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrite
@@ -124,6 +125,12 @@ class DrawnState:
     elements: int
     arrays: MeshArrays
     """Connectivity and positions."""
+
+    @classmethod
+    def of(cls, operations: Operations, arrays: MeshArrays) -> DrawnState:
+        """The state in `arrays`, which are kept."""
+        score, elements = int(arrays.counters[SCORE]), int(arrays.counters[ELEMENTS])
+        return cls(operations, score, elements, arrays)
 
     @property
     def rank(self) -> tuple[int, int]:
@@ -212,9 +219,7 @@ class GuardedRollouts:
                 self.found[b] = state
 
     def _state(self, b: int) -> DrawnState:
-        arrays = copied(member_of(self._batch.meshes, b))
-        score, elements = int(arrays.counters[SCORE]), int(arrays.counters[ELEMENTS])
-        return DrawnState(list(self._done[b]), score, elements, arrays)
+        return DrawnState.of(list(self._done[b]), copied(member_of(self._batch.meshes, b)))
 
     def _step(self) -> None:
         """One decision of each rollout."""
@@ -338,8 +343,7 @@ class GuardedDescent:
         if found is None:
             return False
         operations, arrays = found
-        score, elements = int(arrays.counters[SCORE]), int(arrays.counters[ELEMENTS])
-        self.states = [DrawnState(best.operations + operations, score, elements, arrays)]
+        self.states = [DrawnState.of(best.operations + operations, arrays)]
         return True
 
     def _free(self, count: int, stop: Callable[[], bool]) -> None:
@@ -348,16 +352,14 @@ class GuardedDescent:
         batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
         Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
         self.rollouts += count
+        angle = corner_angles(mesh)  # no vertex that operations add is a corner
         for candidate in sorted(batch.found, key=lambda found: len(found.operations)):
             if stop():
                 break
             reached = replayed(mesh, candidate.operations)
-            angle = rails_of(mesh, len(reached.arrays.vertex)).angle
             if layout_bound(reached.arrays, angle) <= THIN_LEAST or len(relax(reached)):
                 continue
-            elements = reached.n_elements
-            state = DrawnState(candidate.operations, reached.score, elements, reached.arrays)
-            self.states = [state]
+            self.states = [DrawnState.of(candidate.operations, reached.arrays)]
             break
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:

@@ -129,11 +129,13 @@ def settle(before, after, rails, local, active):
     mark_changed(before, after, local.rings, active)
     places = np.zeros((after.counters[VERTEX_SLOTS], 4))
     _copy_places(after, places, False)
-    first = worst_around(after, rails.turning, rails.gauge, active, local.least)
     worst = _raised(after, rails, local, active, local.effort)
     if worst <= 0.0:
         _copy_places(after, places, True)
-        worst = first if first > local.least else 0.0
-        if first <= local.least and local.thorough.rounds > 0:
-            worst = _raised(after, rails, local, active, local.thorough)
+        # it may be valid where it was
+        worst = worst_around(after, rails.turning, rails.gauge, active, local.least)
+        if worst <= local.least:
+            worst = 0.0
+            if local.thorough.rounds > 0:
+                worst = _raised(after, rails, local, active, local.thorough)
     return worst
