@@ -176,7 +176,14 @@ def _remedy(
         ends = corners[i][[start, (start + 1) % 3]]
         on_wall = np.isin(edge_keys(ends[None], len(shape.points)), walls)[0]
         points.append(shape.points[ends if flat[i] and not on_wall else corners[i]].mean(axis=0))
-    return np.array(points).reshape(-1, 2), np.array(sorted(cuts), int)
+    return _distinct(np.array(points).reshape(-1, 2)), np.array(sorted(cuts), int)
+
+
+def _distinct(points: Points) -> Points:
+    """The points (n, 2) without repetitions: two triangles may ask for the same one."""
+    grain = 1e-12 * np.abs(points).max(initial=1e-300)
+    first = np.unique(np.round(points / grain), axis=0, return_index=True)[1]
+    return points[np.sort(first)]
 
 
 def _near(points: Points, distances: Reals) -> list[Ids]:
