@@ -85,7 +85,7 @@ def loop_length(m, h):
     """Edges of the boundary loop, or of the closed interface, of h; 0 if h is on none."""
     outer = m.edge[h, TWIN] < 0
     g = h
-    for count in range(1, 2 * m.counters[ELEMENTS] + 1):
+    for count in range(1, 4 * m.counters[ELEMENTS] + 1):
         g = _onward(m, g, outer)
         if g == h:
             return count
@@ -134,7 +134,8 @@ def check_insert_ring(m, h, cap):
         count, interfaces, _ = _fan(m, g, outer)
         if interfaces > 1:
             return INTERFACES_AT_LOOP
-        if cap > 0 and count + 2 > cap:
+        kept = m.vertex[m.edge[g, ORIGIN], DEGREE] + 2 - count
+        if cap > 0 and max(count + 2, kept) > cap:
             return DEGREE_CAP
         elements += count
         g = _onward(m, g, outer)
