@@ -156,7 +156,10 @@ class HalfEdgeMesh(MeshView):
             boundary = side_names.give_names(arrays, boundary, names)
         if plane is not None:
             boundary = replace(boundary, plane=plane)
-        return cls(arrays, replace(boundary, bound_excess=bound_excess_of(arrays)))
+        excess = bound_excess_of(arrays)
+        if excess != boundary.bound_excess:
+            boundary = replace(boundary, bound_excess=excess)
+        return cls(arrays, boundary)
 
     def check(self, operation: Operation | str, h: int) -> Verdict:
         """Whether the operation may be applied to half-edge h, and if not, why. No side effect."""
