@@ -261,10 +261,13 @@ class _Rewrite:
             loop.append((v, fan[-1]))
         fans = fans[-1:] + fans[:-1]
         if not outer:
-            curves = {mesh.ranges.get(edge, mesh.ranges.get(edge[::-1]))[0] for edge in loop}
+            directed = [edge if edge in mesh.ranges else edge[::-1] for edge in loop]
+            curves = {mesh.ranges[edge][0] for edge in directed}
             if len(curves) > 1 or any(len(mesh.ranges_at(v)) > 2 for v, _ in loop):
                 raise Refused("the interface does not close")
-        old, crossing, copy = {}, [], {}
+        old: dict[Face, None] = {}
+        crossing: list[tuple[int, int]] = []
+        copy: dict[int, int] = {}
         for (v, _), fan in zip(loop, fans, strict=True):
             inner = [u for u in fan[1:-1] if (u, v) in mesh.ranges or (v, u) in mesh.ranges]
             if len(inner) > 1:
