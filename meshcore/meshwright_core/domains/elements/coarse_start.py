@@ -8,12 +8,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.domains.elements import chord_conflicts
 from meshwright_core.domains.elements.curved_quads import CurvedTriangles
 from meshwright_core.domains.elements.labelled_triangles import edge_keys, neighbours, regions_of
 from meshwright_core.domains.elements.side_edges import SideEdges
 from meshwright_core.domains.elements.sided_elements import SidedElements
 from meshwright_core.domains.elements.triangulation import Bounds, triangle_areas, triangulated
+from meshwright_core.domains.loops.near_pairs import pairs_near
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]
@@ -53,6 +55,7 @@ def coarse(edges: SideEdges, size: float, seed: int) -> SidedElements:
     for insert in (True, False):
         trial, inner, settled = copy(edges), np.empty((0, 2)), 0
         for _ in range(_ROUNDS):
+            check_time()
             chord_conflicts.settle(trial, settled)
             settled = len(trial.side)
             points, triangles, regions = _triangulation(trial, inner, size, seed)
@@ -93,6 +96,7 @@ def _flipped(shape: CurvedTriangles, triangles: Ids, walls: Ids) -> Reals:
     quality = shape.shapes(triangles)
     count = len(shape.points)
     for _ in range(_SWEEPS):
+        check_time()
         bad = quality < GOOD
         if not bad.any():
             break
@@ -182,7 +186,7 @@ def _remedy(
 def _near(points: Points, distances: Reals) -> list[Ids]:
     """Which of the points (n, 2) lie within the distance (n,) of each."""
     places = shapely.points(points)
-    one, other = shapely.STRtree(places).query(places, predicate="dwithin", distance=distances)
+    one, other = pairs_near(places, "dwithin", distances)
     order = np.argsort(one, kind="stable")
     return np.split(other[order], np.searchsorted(one[order], np.arange(1, len(points))))
 
