@@ -25,7 +25,6 @@ from meshwright_agent.search.annealing import Operations, copy_mesh
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import candidates
 from meshwright_agent.search.leaps import leap
-from meshwright_agent.search.search_worker import RolloutBatch, Worker
 from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ELEMENTS,
@@ -36,10 +35,8 @@ from meshwright_core.core.arrays import (
     copied,
 )
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry.layout_positions import layout_bound, rails_of
+from meshwright_core.geometry.layout_positions import rails_of
 from meshwright_core.geometry.local_positions import local_effort, settle
-from meshwright_core.geometry.shape_bound import corner_angles
-from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
@@ -55,8 +52,9 @@ FORGET = 12
 """Steps after which an operation that could not be drawn may be tried again."""
 STUCK = 20
 """Decisions in a row without an operation that can be drawn after which a rollout ends."""
-FREE = 8
-"""Free rollouts between two rounds of guarded ones."""
+GOAL = 0.1
+"""Sine of the worst corner up to which what an operation changes is raised: more takes most of the
+time, and what can be drawn remains the same."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1
@@ -186,8 +184,8 @@ class GuardedRollouts:
         self._steps = task.step_limit(mesh.n_elements) if max_steps is None else max_steps
         self._optimum = mesh.optimum
         self._rails = rails_of(mesh, batch.meshes.vertex.shape[1])
-        self._local = local_effort(thorough=False)
-        self._thin = local_effort(least=THIN_LEAST, thorough=False)
+        self._local = local_effort(GOAL, thorough=False)
+        self._thin = local_effort(GOAL, THIN_LEAST, rounds=0, thorough=False)
         self._trial = copied(member_of(batch.meshes, 0))
         active = np.zeros(len(self._trial.points), np.bool_)
         self._scratch = batch.scratch.touched, batch.scratch.cleaned, active
@@ -293,8 +291,7 @@ class GuardedRollouts:
 class GuardedDescent:
     """Rounds of guarded rollouts, from the start and from the best state in turn.
 
-    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), and free rollouts
-    from the start: few of these reach s*, and few of what does can be drawn, but they are fast.
+    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`).
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -331,10 +328,8 @@ class GuardedDescent:
 
         while self.score > optimum and not stop() and (count := granted(together)) > 0:
             self._round(count, stop)
-            while self.states and self.score > optimum and self._leap(stop):
+            while self.states and self.score > optimum and not stop() and self._leap(stop):
                 pass
-            if self.score > optimum and not stop() and (count := granted(FREE)) > 0:
-                self._free(count, stop)
 
     def _leap(self, stop: Callable[[], bool]) -> bool:
         """Leap from the best state; returns whether that has led to lower s."""
@@ -345,22 +340,6 @@ class GuardedDescent:
         operations, arrays = found
         self.states = [DrawnState.of(best.operations + operations, arrays)]
         return True
-
-    def _free(self, count: int, stop: Callable[[], bool]) -> None:
-        """So many free rollouts from the start; what is at s* and can be drawn becomes the best."""
-        mesh = self._mesh
-        batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
-        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
-        self.rollouts += count
-        angle = corner_angles(mesh)  # no vertex that operations add is a corner
-        for candidate in sorted(batch.found, key=lambda found: len(found.operations)):
-            if stop():
-                break
-            reached = replayed(mesh, candidate.operations)
-            if layout_bound(reached.arrays, angle) <= THIN_LEAST or len(relax(reached)):
-                continue
-            self.states = [DrawnState.of(candidate.operations, reached.arrays)]
-            break
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""

@@ -161,10 +161,11 @@ def _best_positions(reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:
     """Move the vertices of `reached`."""
     before, parameters = reached.points.copy(), reached.parameters()
     valid = not len(inverted(reached))
+    worst = scaled_jacobian(reached).min(initial=1.0)
     if reached.kind == "quad" and not reached.points[reached.vertices(), 2].any():
         _raise_worst(reached)
         left = len(inverted(reached))
-        if left and valid:
+        if valid and (left or scaled_jacobian(reached).min(initial=1.0) < worst):
             ids = reached.vertices()
             reached.move(ids, before[ids], parameters[ids])
         elif left and not stop():

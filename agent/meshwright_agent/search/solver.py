@@ -25,7 +25,9 @@ from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
 from meshwright_agent.search.coarsening import replayed, undrawable
+from meshwright_agent.search.guarded_coarsening import Layout
 from meshwright_agent.search.guarded_rollouts import THIN_EVERY, GuardedDescent
+from meshwright_agent.search.layout_matching import matched_vertices
 from meshwright_agent.search.layout_search import LayoutSearch, Preference
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import (
@@ -235,10 +237,26 @@ def _search_layouts(
         operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
         method=method if operations else "none", aims=first.aims,
     )  # fmt: skip
+    return _placed(answer, mesh, layout)
+
+
+def _placed(answer: Solution, mesh: HalfEdgeMesh, layout: Layout) -> Solution:
+    """The answer, whose operations lead to `layout`, with positions that begin at those of it.
+
+    Positions found afresh are often worse, or folded. Where the vertices cannot be matched, since
+    no corner has the same id, the better one of the two counts: the answer with positions found
+    afresh, or the operations of the layout itself.
+    """
+    reached = replayed(mesh, answer.operations)
+    matched = matched_vertices(layout.arrays, reached.arrays)
+    if matched is not None:
+        own, ids = matched
+        reached.move(ids, layout.arrays.points[own], layout.arrays.parameter[own])
+        return judged(answer, mesh, placed=reached.arrays)
     found = judged(answer, mesh)
-    if found.inverted and layout.key[1]:
-        # valid only at the positions that the search has come by
-        found = judged(replace(answer, operations=layout.operations()), mesh, placed=layout.arrays)
+    if layout.key[1]:
+        longer = replace(answer, operations=layout.operations())
+        found = min(found, judged(longer, mesh, placed=layout.arrays), key=lambda one: one.rank)
     return found
 
 

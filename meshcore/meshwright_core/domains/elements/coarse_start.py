@@ -180,7 +180,18 @@ def _remedy(
         ends = corners[i][[start, (start + 1) % 3]]
         on_wall = np.isin(edge_keys(ends[None], len(shape.points)), walls)[0]
         points.append(shape.points[ends if flat[i] and not on_wall else corners[i]].mean(axis=0))
-    return np.array(points).reshape(-1, 2), np.array(sorted(cuts), int)
+    return _new_points(points, shape.points), np.array(sorted(cuts), int)
+
+
+def _new_points(points: list[Points], known: Points) -> Points:
+    """The points as rows (n, 2), each once, without those that are among `known` already: the
+    vertex of a flat triangle may lie in the middle of the side opposite.
+    """
+    grain = 1e-9 * np.ptp(known, axis=0).max()
+    rows = np.array(points).reshape(-1, 2)
+    first = np.unique(np.round(rows / grain), axis=0, return_index=True)[1]
+    rows = rows[np.sort(first)]
+    return rows[_distances(rows, known) > grain] if len(rows) else rows
 
 
 def _near(points: Points, distances: Reals) -> list[Ids]:
