@@ -14,6 +14,7 @@ import { ColourChoice } from "./panels/colour_choice.js";
 import { canvasLabel, described, meshName, placed } from "./panels/labels.js";
 import { LevelBar } from "./panels/level_bar.js";
 import { Menus } from "./panels/menus.js";
+import { NamesLegend } from "./panels/names_legend.js";
 import { Notice } from "./panels/notice.js";
 import { OperationsPanel } from "./panels/operations_panel.js";
 import { ScorePanel } from "./panels/score_panel.js";
@@ -66,6 +67,7 @@ class Card {
     this.zoomButtons = new ZoomButtons(this, place);
     this.notice = new Notice(place);
     this.colourChoice = new ColourChoice(this, this.stage);
+    this.names = new NamesLegend(this, place);
     this.score = new ScorePanel(this);
     this.operations = new OperationsPanel(this);
     this.agent = new AgentPanel(this);
@@ -202,6 +204,7 @@ class Card {
     const { head } = this.replica;
     this.score.update(head);
     this.colourChoice.update(head);
+    this.names.update(head);
     this.timeline.update(head);
     this.blocks.update(head);
     this.root.setAttribute("aria-label", meshName(head));
