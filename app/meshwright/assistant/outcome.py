@@ -6,6 +6,7 @@ from meshwright.assistant.run import AgentRun
 from meshwright.assistant.search_runner import Effort, ShapeGoal
 from meshwright.document.document import Document
 from meshwright.document.quality_summary import decimal
+from meshwright.document.verdict import gap_words
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.geometry.quality import inverted
 
@@ -59,7 +60,7 @@ def result_of(
             " is in the history.",
             True,
         )
-    standing = f"{document.score - document.optimum:,} above the optimum"
+    standing = gap_words(document.score, document.optimum, "the optimum")
     if document.at_optimum:
         goal = ShapeGoal.of(mesh, effort) if effort is not None else None
         folded = len(inverted(mesh))
@@ -71,6 +72,8 @@ def result_of(
     if run.held is not None:
         more = f"; {reason}" if reason else ""
         return f"The region is finished: s {document.score}{more}.", False
+    if document.score < document.optimum:
+        return f"{standing}.", True
     if stopped:
         why = "Stopped"
     elif effort is not None and effort.rollouts:

@@ -355,7 +355,7 @@ def activity(assistant: Assistant) -> str:
         done = (
             f", {progress.rollouts} of {effort.rollouts} runs" if effort and effort.rollouts else ""
         )
-        above = f", {progress.gap:,} above the optimum" if progress.gap else ""
+        above = f", {progress.gap:,} above the optimum" if (progress.gap or 0) > 0 else ""
         shape = f", {shape_wanted(progress.shape)}" if progress.shape else ""
         return f"Searching: {progress.elapsed:.1f} s{done}{best}{above}{shape}"
     if assistant.state is State.PAUSED:

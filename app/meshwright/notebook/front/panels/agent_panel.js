@@ -155,7 +155,7 @@ export class AgentPanel {
     if (asking) return "Computing hints\u2026";
     if (way) return `Going there: ${way[0].toLocaleString("en")} of ${way[1].toLocaleString("en")}`;
     if (state === "searching") {
-      const above = gap ? `, ${gap} above the optimum` : "";
+      const above = gap > 0 ? `, ${gap} above the optimum` : "";
       const worst = shape ? `, ${shape}` : "";
       return `Searching: ${seconds.toFixed(0)} s${lowest}${above}${worst}`;
     }
