@@ -22,6 +22,7 @@ from meshwright.assistant.run import AgentRun, Decision, HintRequest, RunnerProt
 from meshwright.assistant.search_runner import Effort, SearchRunner
 from meshwright.assistant.worker import Ask, Dispatch, Load, MakeRunner, MakeSearch, PolicyWorker
 from meshwright.document.document import Document
+from meshwright.document.verdict import gap_words
 from meshwright.signals import Signal
 from meshwright_core import MeshError
 from meshwright_core.analysis.submesh import enclose
@@ -534,7 +535,9 @@ class Assistant:
         if run.held is not None:
             more = f"; {reason}" if reason else ""
             return f"The region is finished: s {document.score}{more}.", False
-        gap = f"{document.score - document.optimum:,} above the optimum: go on?"
+        if document.score < document.optimum:
+            return f"{gap_words(document.score, document.optimum, 'the optimum')}.", True
+        gap = f"{gap_words(document.score, document.optimum, 'the optimum')}: go on?"
         if stopped:
             return f"Stopped, {gap}", True
         if effort is not None and effort.rollouts:

@@ -354,7 +354,7 @@ def activity(assistant: Assistant) -> str:
         done = (
             f", {progress.rollouts} of {effort.rollouts} runs" if effort and effort.rollouts else ""
         )
-        above = f", {progress.gap:,} above the optimum" if progress.gap else ""
+        above = f", {progress.gap:,} above the optimum" if (progress.gap or 0) > 0 else ""
         return f"Searching: {progress.elapsed:.1f} s{done}{best}{above}"
     if assistant.state is State.PAUSED:
         return f"Paused after {decisions}{best}"

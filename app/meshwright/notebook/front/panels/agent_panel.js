@@ -155,7 +155,7 @@ export class AgentPanel {
     if (asking) return "Computing hints\u2026";
     if (way) return `Going there: ${way[0].toLocaleString("en")} of ${way[1].toLocaleString("en")}`;
     if (state === "searching") {
-      return `Searching: ${seconds.toFixed(0)} s${lowest}${gap ? `, ${gap} above the optimum` : ""}`;
+      return `Searching: ${seconds.toFixed(0)} s${lowest}${gap > 0 ? `, ${gap} above the optimum` : ""}`;
     }
     if (state === "playing") return `Playing: ${counted(decisions, "decision")}${lowest}`;
     if (state === "paused") return `Paused after ${counted(decisions, "decision")}${lowest}`;
