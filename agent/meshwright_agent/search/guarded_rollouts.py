@@ -25,6 +25,7 @@ from meshwright_agent.search.annealing import Operations, copy_mesh
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import candidates
 from meshwright_agent.search.leaps import leap
+from meshwright_agent.search.search_worker import RolloutBatch, Worker
 from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ELEMENTS,
@@ -35,8 +36,10 @@ from meshwright_core.core.arrays import (
     copied,
 )
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry.layout_positions import rails_of
+from meshwright_core.geometry.layout_positions import layout_bound, rails_of
 from meshwright_core.geometry.local_positions import local_effort, settle
+from meshwright_core.geometry.shape_bound import corner_angles
+from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
@@ -55,6 +58,9 @@ STUCK = 20
 GOAL = 0.1
 """Sine of the worst corner up to which what an operation changes is raised: more takes most of the
 time, and what can be drawn remains the same."""
+FREE, FREE_ELEMENTS, FREE_DRAWN = 8, 110, 2
+"""Free rollouts between two rounds of guarded ones, elements of the start up to which they are
+made, and how many results are given positions."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1
@@ -291,7 +297,9 @@ class GuardedRollouts:
 class GuardedDescent:
     """Rounds of guarded rollouts, from the start and from the best state in turn.
 
-    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`).
+    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), and, on small
+    meshes, free rollouts from the start: few of these reach s*, and few of what does can be drawn,
+    but they are fast.
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -330,6 +338,10 @@ class GuardedDescent:
             self._round(count, stop)
             while self.states and self.score > optimum and not stop() and self._leap(stop):
                 pass
+            if self._mesh.n_elements > FREE_ELEMENTS or self.score <= optimum or stop():
+                continue
+            if (count := granted(FREE)) > 0:
+                self._free(count, stop)
 
     def _leap(self, stop: Callable[[], bool]) -> bool:
         """Leap from the best state; returns whether that has led to lower s."""
@@ -340,6 +352,28 @@ class GuardedDescent:
         operations, arrays = found
         self.states = [DrawnState.of(best.operations + operations, arrays)]
         return True
+
+    def _free(self, count: int, stop: Callable[[], bool]) -> None:
+        """So many free rollouts from the start; what is at s* and can be drawn becomes the best.
+
+        Positions take long: only the shortest few are tried.
+        """
+        mesh = self._mesh
+        batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
+        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
+        self.rollouts += count
+        angle = corner_angles(mesh)  # no vertex that operations add is a corner
+        tried = 0
+        for candidate in sorted(batch.found, key=lambda found: len(found.operations)):
+            if stop() or tried == FREE_DRAWN:
+                break
+            reached = replayed(mesh, candidate.operations)
+            if layout_bound(reached.arrays, angle) <= THIN_LEAST:
+                continue
+            tried += 1
+            if not len(relax(reached)):
+                self.states = [DrawnState.of(candidate.operations, reached.arrays)]
+                break
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""
