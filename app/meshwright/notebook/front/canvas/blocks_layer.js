@@ -23,7 +23,8 @@ export class BlocksLayer {
 
   /** Paint {lines, chord, counts, set, wrong, colours}; edges of the chord `selected` are stronger. */
   paint(pen, view, blocks, selected) {
-    const colours = blocks.colours[this._colours.theme] || blocks.colours.light;
+    const byTheme = blocks.colours;
+    const colours = byTheme[this._colours.theme] || byTheme.light;
     const lines = blocks.lines.map((line) => this._onScreen(view, line));
     pen.lineCap = "round";
     for (const strong of [false, true]) {
