@@ -78,6 +78,8 @@ def patch(info: OperationInfo) -> HalfEdgeMesh:
         return triangles(2)
     if info.operation is Operation.CLEANUP:
         return quads(4, 2)
+    if info.operation is Operation.INSERT_RING:
+        return mesh_domain(gallery.shape("plate-with-round-hole"), "quad")
     return quads(4, 3)
 
 

@@ -34,6 +34,8 @@ from meshwright_agent.search.patchwise import improve_large
 from meshwright_agent.search.region_search import solve_within
 from meshwright_agent.search.solver import solve
 from meshwright_core import write
+from meshwright_core.blocks.grid import block_grid
+from meshwright_core.blocks.sizing import Sizing, WallLayer
 from meshwright_core.domains.meshing import benchmark_mesh
 
 for kind in ("quad", "tri"):
@@ -50,6 +52,8 @@ for kind in ("quad", "tri"):
     solve_within(large, policy, large.element_ids()[:20], seconds=0.5)
     improve_large(large, policy, max_steps=60)
     meshwright.solve(mesh, seconds=0.5)
+    if kind == "quad":
+        block_grid(mesh, Sizing(divide=11, walls=(WallLayer("all", 1e-3),)))
 print_compiled()
 """
 

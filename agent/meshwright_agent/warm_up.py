@@ -1,4 +1,5 @@
-"""Compiles the kernels that runs and searches need, or loads them from the cache on disk.
+"""Compiles the kernels that runs, searches and fine grids of blocks need, or loads them from the
+cache on disk.
 
 `python -m meshwright_agent.warm_up` does so in a process of its own. The kernels are divided into
 two sets with little in common, and a second process compiles one of them. Heavy modules are
@@ -16,7 +17,7 @@ from contextlib import contextmanager
 
 from meshwright_core.core.compilation import cache_folder, entry_points_on_disk
 
-ENTRY_POINTS = 59
+ENTRY_POINTS = 71
 """Kernels of both packages that :func:`warm` stores on disk, for progress messages; tested."""
 
 _MARK = "warm"
@@ -40,15 +41,20 @@ def progress() -> tuple[int, int]:
 
 
 def warm(report: ProgressCallback | None = None) -> None:
-    """Compile, or load from the cache, what runs and searches need, for both kinds of mesh.
+    """Compile, or load from the cache, what runs and searches need, for both kinds of mesh, and
+    fine grids.
 
     ``report(done, total)`` is called from another thread now and then while kernels are compiled.
     """
+    from meshwright_core.warm_up import exercise_grids
+
     if not is_warm_on_disk():
         with _reporting(report), _second_process():
             _exercise_observing()
+            exercise_grids()
     _exercise_observing()
     _exercise_changing()
+    exercise_grids()
     try:
         cache_folder("meshwright_agent").mkdir(parents=True, exist_ok=True)
         (cache_folder("meshwright_agent") / _MARK).touch()

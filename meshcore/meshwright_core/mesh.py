@@ -45,6 +45,7 @@ from meshwright_core.core.mesh_view import MeshView
 from meshwright_core.core.names import clean
 from meshwright_core.core.planes import Plane
 from meshwright_core.core.projected_seats import take_projected_seats
+from meshwright_core.core.score_bound import bound_excess_of
 from meshwright_core.core.side_names import Names
 from meshwright_core.core.vertex_flags import PINNED
 from meshwright_core.errors import MeshError, OperationRefused
@@ -155,6 +156,9 @@ class HalfEdgeMesh(MeshView):
             boundary = side_names.give_names(arrays, boundary, names)
         if plane is not None:
             boundary = replace(boundary, plane=plane)
+        excess = bound_excess_of(arrays)
+        if excess != boundary.bound_excess:
+            boundary = replace(boundary, bound_excess=excess)
         return cls(arrays, boundary)
 
     def check(self, operation: Operation | str, h: int) -> Verdict:
@@ -294,7 +298,19 @@ class HalfEdgeMesh(MeshView):
         self._require_live(vertex)
         if degree < 1:
             raise MeshError(f"the desired degree of vertex {vertex} must be positive, not {degree}")
-        self._set_vertex(vertex, DESIRED, int(degree))
+        if not self._boundary.interfaces:
+            self._set_vertex(vertex, DESIRED, int(degree))
+            return
+        with self.transaction():
+            self._set_vertex(vertex, DESIRED, int(degree))
+            excess = bound_excess_of(self._arrays)
+            if excess != self._boundary.bound_excess:
+                self._name(replace(self._boundary, bound_excess=excess))
+
+    def renew_bound(self) -> None:
+        """Compute s* anew, for a mesh from a file that states none: no step of the history."""
+        excess = bound_excess_of(self._arrays)
+        self._namings[self.naming] = replace(self._boundary, bound_excess=excess)
 
     def set_geometric(self, vertex: int, flag: bool = True) -> None:
         """Mark a vertex as geometric, or remove the mark: one undoable step.

@@ -53,6 +53,25 @@ def exercise() -> None:
     quads.clean_all()
 
 
+def exercise_grids() -> None:
+    """Make a small fine grid of four blocks with layers at walls, which compiles all its kernels.
+
+    Not a part of :func:`exercise`: editing needs none of them.
+    """
+    # imported here: the window asks at its start whether this module has run
+    from meshwright_core.blocks.grid import EVEN_CELLS, block_grid
+    from meshwright_core.blocks.sizing import Sizing, WallLayer
+
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(3.0), np.arange(3.0)))
+    corners = np.array([0, 1, 3, 4])
+    elements = np.column_stack([corners, corners + 1, corners + 4, corners + 3])
+    quads = HalfEdgeMesh.from_elements(np.column_stack([x, y]), elements)
+    cells = 2 + EVEN_CELLS  # more than the coarse grid has, which is smoothed first
+    grid = block_grid(quads, Sizing(divide=cells, walls=(WallLayer("all", 0.02),)))
+    if not grid.quality.worst_scaled_jacobian > 0.0:
+        raise RuntimeError("the fine grid of four squares is not valid")
+
+
 def is_warm_on_disk() -> bool:
     """Whether :func:`warm` has run to its end for these very sources on this machine."""
     return (cache_folder() / _WARM_MARK).exists()

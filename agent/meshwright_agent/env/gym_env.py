@@ -187,6 +187,6 @@ class MeshEnvironment(gymnasium.Env[dict[str, np.ndarray], np.int64]):
             )  # fmt: skip
         self._steps += 1
         observation = self._observe()
-        terminated = self.mesh.score == self.mesh.optimum
+        terminated = self.mesh.score <= self.mesh.optimum
         truncated = not terminated and (self._steps >= self._limit or not self._mask.any())
         return observation, float(before - self.mesh.score), terminated, truncated, self._info()

@@ -23,7 +23,6 @@ from meshwright_agent.env.task import (
 )
 from meshwright_core.core.arrays import (
     CURVE,
-    DELTA_SUM,
     ELEMENT_SLOTS,
     ELEMENTS,
     JOURNALLING,
@@ -296,7 +295,7 @@ class Batch:
         self.task, self.rng, self.endless = task, rng, endless
         self.pool = stack(meshes, task)
         self.start_scores = self.pool.counters[:, SCORE].astype(int)
-        self.optima = np.abs(self.pool.counters[:, DELTA_SUM]).astype(int)
+        self.optima = np.array([mesh.optimum for mesh in meshes])
         self.start_elements = self.pool.counters[:, ELEMENTS].astype(int)
         # an episode that starts at the optimum has no steps
         self.useful = np.flatnonzero(self.start_scores > self.optima)

@@ -198,10 +198,10 @@ def summary(rolled: Rollouts) -> dict[str, float | int]:
     return {
         "single_mean": float(single.mean()),
         "single_std": float(single.std()),
-        "single_at_optimum": float((rolled.gaps[:, 0] == 0).mean()),
+        "single_at_optimum": float((rolled.gaps[:, 0] <= 0).mean()),
         "best_mean": float(best.mean()),
         "best_std": float(best.std()),
-        "at_optimum": float((rolled.gaps.min(axis=1) == 0).mean()),
+        "at_optimum": float((rolled.gaps.min(axis=1) <= 0).mean()),
         "operations_median": float(np.median(rolled.operations[chosen])),
         "elements_mean": float(rolled.elements[chosen].mean()),
     }

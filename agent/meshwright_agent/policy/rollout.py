@@ -104,7 +104,7 @@ class Runner:
         return seen, int(decide(self.policy.network, seen, self._generator)[0][0])
 
     def _ended(self) -> bool:
-        if not self.reason and self.mesh.score == self.mesh.optimum:
+        if not self.reason and self.mesh.score <= self.mesh.optimum:
             self.reason = "at the optimum"
         if not self.reason and self.steps >= self.max_steps:
             self.reason = f"all {self.max_steps} steps are used"

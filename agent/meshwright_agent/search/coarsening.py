@@ -24,6 +24,7 @@ from meshwright_agent.search.annealing import (
 from meshwright_core.analysis.drawability import Obstacles
 from meshwright_core.core.arrays import ELEMENT_SLOTS, ELEMENTS, copied
 from meshwright_core.geometry import smoothing
+from meshwright_core.geometry.quality import inverted
 from meshwright_core.mesh import HalfEdgeMesh
 
 DRAWN = 20_000
@@ -40,6 +41,8 @@ AFRESH = 0.2
 """Probability of starting a new sweep with another least number of elements after a state."""
 SWEEP = 300
 """Proposals in a sweep, relative to the number of elements."""
+UNTANGLED = 2_000
+"""Elements up to which a mesh is untangled for it too; that may take ten seconds for 5,000."""
 OBSTACLE = DRAWN
 """Flaws of a mesh with obstacles, which are more than elements can be inverted."""
 PATIENCE = 1000
@@ -54,7 +57,17 @@ def undrawable(mesh: HalfEdgeMesh, operations: Operations) -> int:
     """
     if mesh.n_elements > DRAWN:
         return 0
-    return len(smoothing.relax(replayed(mesh, operations)))
+    return _folded(replayed(mesh, operations))
+
+
+def _folded(mesh: HalfEdgeMesh) -> int:
+    """Number of elements that stay inverted when a mesh is smoothed, which it is."""
+    if mesh.n_elements <= UNTANGLED:
+        return len(smoothing.relax(mesh))
+    moved = smoothing.smooth(mesh)
+    if len(moved[0]):
+        mesh.move(*moved)
+    return len(inverted(mesh))
 
 
 def replayed(mesh: HalfEdgeMesh, operations: Operations) -> HalfEdgeMesh:
@@ -123,7 +136,7 @@ class _Coarser:
             return 0
         reached = replayed(self._mesh, operations)
         obstacles = self._obstacles.count(reached)
-        return OBSTACLE + obstacles if obstacles else len(smoothing.relax(reached))
+        return OBSTACLE + obstacles if obstacles else _folded(reached)
 
     def _keep(self) -> None:
         self._kept = copied(self._annealer.best)

@@ -55,8 +55,12 @@ FORGET = 12
 """Steps after which an operation that could not be drawn may be tried again."""
 STUCK = 20
 """Decisions in a row without an operation that can be drawn after which a rollout ends."""
-FREE = 8
-"""Free rollouts between two rounds of guarded ones."""
+GOAL = 0.1
+"""Sine of the worst corner up to which what an operation changes is raised: more takes most of the
+time, and what can be drawn remains the same."""
+FREE, FREE_ELEMENTS, FREE_DRAWN = 8, 110, 2
+"""Free rollouts between two rounds of guarded ones, elements of the start up to which they are
+made, and how many results are given positions."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1
@@ -186,8 +190,8 @@ class GuardedRollouts:
         self._steps = task.step_limit(mesh.n_elements) if max_steps is None else max_steps
         self._optimum = mesh.optimum
         self._rails = rails_of(mesh, batch.meshes.vertex.shape[1])
-        self._local = local_effort(thorough=False)
-        self._thin = local_effort(least=THIN_LEAST, thorough=False)
+        self._local = local_effort(GOAL, thorough=False)
+        self._thin = local_effort(GOAL, THIN_LEAST, rounds=0, thorough=False)
         self._trial = copied(member_of(batch.meshes, 0))
         active = np.zeros(len(self._trial.points), np.bool_)
         self._scratch = batch.scratch.touched, batch.scratch.cleaned, active
@@ -293,8 +297,9 @@ class GuardedRollouts:
 class GuardedDescent:
     """Rounds of guarded rollouts, from the start and from the best state in turn.
 
-    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), and free rollouts
-    from the start: few of these reach s*, and few of what does can be drawn, but they are fast.
+    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), and, on small
+    meshes, free rollouts from the start: few of these reach s*, and few of what does can be drawn,
+    but they are fast.
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -331,9 +336,11 @@ class GuardedDescent:
 
         while self.score > optimum and not stop() and (count := granted(together)) > 0:
             self._round(count, stop)
-            while self.states and self.score > optimum and self._leap(stop):
+            while self.states and self.score > optimum and not stop() and self._leap(stop):
                 pass
-            if self.score > optimum and not stop() and (count := granted(FREE)) > 0:
+            if self._mesh.n_elements > FREE_ELEMENTS or self.score <= optimum or stop():
+                continue
+            if (count := granted(FREE)) > 0:
                 self._free(count, stop)
 
     def _leap(self, stop: Callable[[], bool]) -> bool:
@@ -347,20 +354,26 @@ class GuardedDescent:
         return True
 
     def _free(self, count: int, stop: Callable[[], bool]) -> None:
-        """So many free rollouts from the start; what is at s* and can be drawn becomes the best."""
+        """So many free rollouts from the start; what is at s* and can be drawn becomes the best.
+
+        Positions take long: only the shortest few are tried.
+        """
         mesh = self._mesh
         batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
         Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
         self.rollouts += count
         angle = corner_angles(mesh)  # no vertex that operations add is a corner
+        tried = 0
         for candidate in sorted(batch.found, key=lambda found: len(found.operations)):
-            if stop():
+            if stop() or tried == FREE_DRAWN:
                 break
             reached = replayed(mesh, candidate.operations)
-            if layout_bound(reached.arrays, angle) <= THIN_LEAST or len(relax(reached)):
+            if layout_bound(reached.arrays, angle) <= THIN_LEAST:
                 continue
-            self.states = [DrawnState.of(candidate.operations, reached.arrays)]
-            break
+            tried += 1
+            if not len(relax(reached)):
+                self.states = [DrawnState.of(candidate.operations, reached.arrays)]
+                break
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""

@@ -19,6 +19,8 @@ from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 
+LAYOUTS = 800
+"""Elements up to which the layouts of a mesh are searched; positioning more takes too long."""
 PREFERENCES = ("blocks", "balanced", "shape")
 USABLE = 0.5
 """Worst scaled Jacobian that a balanced answer has before the number of blocks counts..."""
@@ -78,6 +80,12 @@ class Preference:
             target = comfort = LEAST if self.prefer == "blocks" else most
         price = PRICE / max(bound, LEAST) if self.prefer == "balanced" else 0.0
         return Aims(target, comfort, price, self.prefer != "blocks")
+
+
+def has_layouts(mesh: HalfEdgeMesh) -> bool:
+    """Whether the layouts of a mesh are searched: quads in the plane z = 0, not too many."""
+    plane = mesh.kind == "quad" and not mesh.points[mesh.vertices(), 2].any()
+    return plane and mesh.n_elements <= LAYOUTS
 
 
 FEW = Aims(0.1, 0.1, 0.0, False)

@@ -47,7 +47,7 @@ def leap(
     """
     before = with_room(mesh, 3 * mesh.n_elements)
     rails = rails_of(mesh, len(before.vertex))
-    local = local_effort(rings=RINGS)
+    local = local_effort(rings=RINGS, thorough=False)
     active = np.zeros(len(before.points), np.bool_)
     cleaned, touched = np.zeros(MOST_CLEANUPS, np.int64), np.zeros(16, np.int64)
     for decisions in _shortest(mesh, policy, rng, stop):

@@ -161,7 +161,7 @@ def improve_large(
         work.confine(within)
 
     def stop() -> str:
-        if work.mesh.score == work.mesh.optimum:
+        if work.mesh.score <= work.mesh.optimum:
             return "at the optimum"
         if cancelled is not None and cancelled():
             return "cancelled"

@@ -197,7 +197,7 @@ class Worker:
         is offered.
         """
         search, start = self._search, replayed(self._mesh, before)
-        if start.score == start.optimum:
+        if start.score <= start.optimum:
             return
         task = self._task
         if search.max_steps is not None:

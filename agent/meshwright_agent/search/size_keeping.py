@@ -16,25 +16,24 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.layout_search import Preference
-from meshwright_agent.search.patchwise import improve_large, is_large
+from meshwright_agent.search.drawn_patches import improve_within, near
+from meshwright_agent.search.layout_search import LAYOUTS, Preference
+from meshwright_agent.search.patchwise import is_large
 from meshwright_agent.search.solution import Solution
 from meshwright_core.analysis.chord_counts import counts_for_total
 from meshwright_core.analysis.element_division import chords, divided, wanted_pieces
-from meshwright_core.analysis.submesh import temporarily_locked
 from meshwright_core.domains.coarse_remesh import coarse_mesh, on_curves_of
 from meshwright_core.domains.meshing import grid
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
-from meshwright_core.geometry.size_field import SizeField, element_sizes
+from meshwright_core.geometry.size_field import SizeField
 from meshwright_core.mesh import HalfEdgeMesh
 
 MOST_OFF = 0.25
@@ -54,8 +53,6 @@ DIVIDED, AFTER_SEARCH, SMOOTHED, UNITS_A_SWEEP = 15.0, 6.0, 20.0, 1.0
 sweeps of smoothing; measuring what a search has found; smoothing and untangling; a sweep."""
 FIRST_RUN, ATTEMPTS = 0.4, 6
 """Share of the time that is left for each run on a large mesh in place, and the most of them."""
-BARRED = 4.0
-"""Distance from a bad element, in sizes of elements, within which nothing is changed next time."""
 FEW = 4
 """Bad elements that are untangled together."""
 PARTS = 12
@@ -293,13 +290,13 @@ def _by_blocks(
 ) -> tuple[HalfEdgeMesh | None, Solution | None]:
     """The blocks of the domain divided to size, if there are any, and the search for them."""
     start = coarse_mesh(mesh)
-    if (start is None and mesh.n_elements > solver.LAYOUTS) or clock.over(DIVIDED):
+    if (start is None and mesh.n_elements > LAYOUTS) or clock.over(DIVIDED):
         return None, None
     begin = mesh if start is None else start
     left = clock.left(DIVIDED)
     found = search(begin, policy, seconds=None if left is None else LAYOUT_SHARE * left)
     layout = begin.copy()
-    if not found.carry_out(layout) or (clock.cancelled and mesh.n_elements > solver.LAYOUTS):
+    if not found.carry_out(layout) or (clock.cancelled and mesh.n_elements > LAYOUTS):
         return None, found
     best = None
     for total in _totals(fit.elements):
@@ -373,7 +370,7 @@ def _patches_that_fit(
             obstacle = last = faults[0]
             if not len(bad):
                 break
-            barred = np.union1d(barred, _near(best, reached, bad))
+            barred = np.union1d(barred, near(best, reached, bad))
         elif reached.score < best.score:
             best, last = reached, ""
             chosen, barred = chosen + more, np.zeros(0, np.int64)
@@ -383,30 +380,13 @@ def _patches_that_fit(
         late = clock.over(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
         if best.score == best.optimum or not len(allowed) or late:
             break
-        reached, more = _patched(best, policy, allowed, clock, seed + attempt)
-    return best, chosen, last or (obstacle if best.score == mesh.score else "")
-
-
-def _patched(
-    mesh: HalfEdgeMesh, policy: Policy, allowed: np.ndarray, clock: _Clock, seed: int
-) -> tuple[HalfEdgeMesh, Operations]:
-    """The mesh improved patch by patch in the elements `allowed` (n,), and the operations."""
-    trial = mesh.copy()
-    rim = np.zeros(0, np.int64)
-    within = None
-    if len(allowed) < mesh.n_elements:
-        barred = np.setdiff1d(mesh.element_ids(), allowed)
-        rim, within = np.intersect1d(mesh.corners(allowed), mesh.corners(barred)), allowed
-    free = rim[~mesh.locked()[rim]]
-    left = clock.left(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
-    with temporarily_locked(trial, rim):
-        run = improve_large(
-            trial, policy, seconds=None if left is None else FIRST_RUN * left, seed=seed,
-            within=within, cancelled=lambda: clock.cancelled,
+        left = clock.left(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
+        run = improve_within(
+            best, policy, allowed, seconds=None if left is None else FIRST_RUN * left,
+            seed=seed + attempt, cancelled=lambda: clock.cancelled,
         )  # fmt: skip
-    for vertex in free.tolist():
-        run.mesh.set_locked(vertex, False)
-    return run.mesh.copy(), run.steps()
+        reached, more = run.mesh.copy(), run.steps()
+    return best, chosen, last or (obstacle if best.score == mesh.score else "")
 
 
 def _mend(mesh: HalfEdgeMesh, fit: Fit, clock: _Clock) -> None:
@@ -422,15 +402,6 @@ def _mend(mesh: HalfEdgeMesh, fit: Fit, clock: _Clock) -> None:
             break
         corners = np.unique(mesh.corners(bad[start : start + FEW]))
         smoothing.relax(mesh, corners.tolist(), thorough=False)
-
-
-def _near(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, bad: np.ndarray) -> np.ndarray:
-    """Ids of the elements of a mesh near the elements `bad` of what has become of it."""
-    centres = reached.points[reached.corners(bad)].mean(axis=1)
-    own = mesh.points[mesh.elements()].mean(axis=1)
-    away, _ = cKDTree(centres).query(own)
-    found: np.ndarray = mesh.element_ids()[away < BARRED * element_sizes(mesh)]
-    return found
 
 
 def _in_place(

@@ -23,6 +23,10 @@ FINE_STEPS = 150
 """Steps of each stage of the max-min positions of an answer."""
 NEAR = 40
 """Vertices of a larger mesh that are smoothed at a time."""
+AVERAGED, SWEEPS = 4, 5
+"""How often the changed vertices of a larger mesh are averaged, by so many sweeps each time."""
+FEW = 4
+"""Inverted elements of it that are untangled together."""
 
 
 NO_AIMS = Aims(0.0, 0.0, 0.0, False)
@@ -135,7 +139,7 @@ def judged(
         reached.move(ids, placed.points[ids], placed.parameter[ids])
     if reached.n_elements > RELAXED:
         relax_changed(mesh, reached, stop)
-    elif solution.operations or len(inverted(reached)):
+    elif solution.operations or len(inverted(reached)) or _is_short(reached, solution.aims):
         _best_positions(reached, stop)
     live = reached.vertices()
     vertices = live[(reached.points[live] != unplaced[live]).any(axis=1)]
@@ -157,14 +161,20 @@ def judged(
     )
 
 
+def _is_short(mesh: HalfEdgeMesh, aims: Aims) -> bool:
+    """Whether the worst corner is below the target, if there is one."""
+    return float(scaled_jacobian(mesh).min(initial=1.0)) < aims.target
+
+
 def _best_positions(reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:
     """Move the vertices of `reached`."""
     before, parameters = reached.points.copy(), reached.parameters()
     valid = not len(inverted(reached))
+    worst = scaled_jacobian(reached).min(initial=1.0)
     if reached.kind == "quad" and not reached.points[reached.vertices(), 2].any():
         _raise_worst(reached)
         left = len(inverted(reached))
-        if left and valid:
+        if valid and (left or scaled_jacobian(reached).min(initial=1.0) < worst):
             ids = reached.vertices()
             reached.move(ids, before[ids], parameters[ids])
         elif left and not stop():
@@ -197,14 +207,47 @@ def relax_changed(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, stop: Callable[[], 
     """Smooth around all vertices that are new or have another degree, as long as `stop` is false,
     those of inverted elements first.
     """
+    unfold_changed(mesh, reached, stop)
+    _relax_near(reached, _changed(mesh, reached), NEAR, stop)
+
+
+def unfold_changed(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:
+    """Average all vertices that are new or have another degree, which unfolds most of what is
+    folded, then untangle what is left, as long as `stop` is false.
+    """
+    changed = _changed(mesh, reached)
+    if not len(inverted(reached)) or not len(changed):
+        return
+    for _ in range(AVERAGED):
+        if stop():
+            return
+        moved = smoothing.smooth(reached, changed.tolist(), iterations=SWEEPS)
+        if not len(moved[0]):
+            break
+        reached.move(*moved)
+    folded = inverted(reached)
+    for at in range(0, len(folded), FEW):
+        _relax_near(reached, np.unique(reached.corners(folded[at : at + FEW])), NEAR, stop)
+
+
+def _changed(mesh: HalfEdgeMesh, reached: HalfEdgeMesh) -> np.ndarray:
+    """Ids (n,) of the vertices of `reached` that `mesh` has not, or elsewhere or of another degree;
+    those of inverted elements first.
+    """
     live = reached.vertices()
     known = live[live < mesh.slots]
     before = mesh.degree()
     same = (before[known] == reached.degree()[known]) & (before[known] > 0)
     same &= (mesh.points[known] == reached.points[known]).all(axis=1)
     folded = np.unique(reached.corners(inverted(reached)))
-    pending = np.concatenate([folded, np.setdiff1d(live, np.union1d(known[same], folded))])
-    for at in range(0, len(pending), NEAR):
+    return np.concatenate([folded, np.setdiff1d(live, np.union1d(known[same], folded))])
+
+
+def _relax_near(
+    mesh: HalfEdgeMesh, vertices: np.ndarray, number: int, stop: Callable[[], bool]
+) -> None:
+    """Smooth around vertices, so many at a time, until `stop`."""
+    for at in range(0, len(vertices), number):
         if stop():
             break
-        smoothing.relax(reached, pending[at : at + NEAR].tolist(), thorough=False)
+        smoothing.relax(mesh, vertices[at : at + number].tolist(), thorough=False)

@@ -8,13 +8,13 @@ given mesh, and positions for the vertices after them.
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
-from math import ceil
 
 import numpy as np
 
@@ -25,8 +25,11 @@ from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
 from meshwright_agent.search.coarsening import replayed, undrawable
+from meshwright_agent.search.drawn_patches import improve_drawn
+from meshwright_agent.search.guarded_coarsening import Layout
 from meshwright_agent.search.guarded_rollouts import THIN_EVERY, GuardedDescent
-from meshwright_agent.search.layout_search import LayoutSearch, Preference
+from meshwright_agent.search.layout_matching import matched_vertices
+from meshwright_agent.search.layout_search import LayoutSearch, Preference, has_layouts
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import (
     KEPT,
@@ -49,8 +52,6 @@ POLISHED = 0.5
 """Largest share of the time that shortening and coarsening may take."""
 OPENING = 0.5
 """Share of the time after which a search for s* gives way to one among the layouts found."""
-LAYOUTS = 800
-"""Elements up to which the layouts of a mesh are searched; positioning more takes too long."""
 SLICES, PROPOSALS_EACH = 60, 3000
 """Slices of shortening, and proposals of coarsening relative to the number of elements, if only a
 number of rollouts is given."""
@@ -73,6 +74,8 @@ DRAWN = 2
 PATCHING, SMOOTHING = 0.75, 0.9
 """Shares of the time after which no more patches are improved, and none smoothed, on a large
 mesh: what follows takes the longer the more was done."""
+PATCH_SLICE = 0.15
+"""Share of the time after which the patches improved so far are smoothed."""
 PER_IRREGULAR = 50
 """Steps of a rollout per irregular vertex that is left on a large mesh after the patches."""
 
@@ -97,10 +100,11 @@ def solve(
 
     A mesh with many irregular vertices is first improved patch by patch
     (:mod:`meshwright_agent.search.patchwise`); the remaining time is used for the whole mesh. Plane
-    quad meshes of up to :data:`LAYOUTS` elements are then searched for layouts of good shape with
-    few blocks (:mod:`meshwright_agent.search.layout_search`). Ends early where nothing more can be
-    won. A mesh without inverted elements never becomes one with them. With a number of rollouts and
-    no time limit the result depends on the arguments alone, not on the machine or its load.
+    quad meshes of up to :data:`.layout_search.LAYOUTS` elements are then searched for layouts of
+    good shape with few blocks (:mod:`meshwright_agent.search.layout_search`). Ends early where
+    nothing more can be won. A mesh without inverted elements never becomes one with them. With a
+    number of rollouts and no time limit the result depends on the arguments alone, not on the
+    machine or its load.
 
     Args:
         mesh: the start.
@@ -133,7 +137,7 @@ def solve(
         return _patch_by_patch(mesh, policy, seconds, max_steps, seed, progress, cancelled, go_on)
     search = _Search(mesh, policy, rollouts, seconds, max_steps, seed, progress, cancelled)
     best = search.nothing(coarsen)
-    if _has_layouts(mesh):
+    if has_layouts(mesh):
         found = _search_layouts(search, preference, workers, coarsen, shorten)
     else:
         found = _search_states(search, best, workers, coarsen, shorten)
@@ -144,12 +148,6 @@ def solve(
     best.rollouts, best.seconds = search.done, time.perf_counter() - search.began
     best.reason = best.reason or search.reason(best)
     return best
-
-
-def _has_layouts(mesh: HalfEdgeMesh) -> bool:
-    """Whether the layouts of a mesh are searched: quads in the plane z = 0, not too many."""
-    plane = mesh.kind == "quad" and not mesh.points[mesh.vertices(), 2].any()
-    return plane and mesh.n_elements <= LAYOUTS
 
 
 def _search_layouts(
@@ -235,10 +233,26 @@ def _search_layouts(
         operations, mesh.score, mesh.optimum, 0, coarse=coarsen,
         method=method if operations else "none", aims=first.aims,
     )  # fmt: skip
+    return _placed(answer, mesh, layout)
+
+
+def _placed(answer: Solution, mesh: HalfEdgeMesh, layout: Layout) -> Solution:
+    """The answer, whose operations lead to `layout`, with positions that begin at those of it.
+
+    Positions found afresh are often worse, or folded. Where the vertices cannot be matched, since
+    no corner has the same id, the better one of the two counts: the answer with positions found
+    afresh, or the operations of the layout itself.
+    """
+    reached = replayed(mesh, answer.operations)
+    matched = matched_vertices(layout.arrays, reached.arrays)
+    if matched is not None:
+        own, ids = matched
+        reached.move(ids, layout.arrays.points[own], layout.arrays.parameter[own])
+        return judged(answer, mesh, placed=reached.arrays)
     found = judged(answer, mesh)
-    if found.inverted and layout.key[1]:
-        # valid only at the positions that the search has come by
-        found = judged(replace(answer, operations=layout.operations()), mesh, placed=layout.arrays)
+    if layout.key[1]:
+        longer = replace(answer, operations=layout.operations())
+        found = min(found, judged(longer, mesh, placed=layout.arrays), key=lambda one: one.rank)
     return found
 
 
@@ -256,7 +270,7 @@ def _descend(search: _Search, descent: GuardedDescent, most: float | None) -> No
     time.
     """
     before = descent.rollouts
-    descent.run(lambda: search.over(DESCENT), None if most is None else ceil(most))
+    descent.run(lambda: search.over(DESCENT), None if most is None else math.ceil(most))
     search.count(descent.rollouts - before)
 
 
@@ -337,32 +351,49 @@ def _patch_by_patch(
 ) -> Solution:
     """Improve a large mesh patch by patch; with few irregular vertices left continue by `go_on`."""
     began = time.perf_counter()
-    run = improve_large(
-        mesh, policy, seconds=None if seconds is None else PATCHING * seconds,
-        max_steps=max_steps, seed=seed, cancelled=cancelled,
-        progress=None if progress is None else lambda _, score: progress(0, score),
-    )  # fmt: skip
-    reached, operations = run.mesh, run.steps()
 
-    def late() -> bool:
-        over = seconds is not None and time.perf_counter() - began > SMOOTHING * seconds
+    def past(share: float) -> bool:
+        over = seconds is not None and time.perf_counter() - began > share * seconds
         return over or (cancelled is not None and cancelled())
 
-    timed_out = seconds is not None and time.perf_counter() - began > PATCHING * seconds
+    def left() -> float:
+        if cancelled is not None and cancelled():
+            return 0.0
+        used = time.perf_counter() - began
+        return math.inf if seconds is None else PATCHING * seconds - used
+
+    if len(inverted(mesh)):
+        run = improve_large(
+            mesh, policy, seconds=None if seconds is None else PATCHING * seconds,
+            max_steps=max_steps, seed=seed, cancelled=cancelled,
+            progress=None if progress is None else lambda _, score: progress(0, score),
+        )  # fmt: skip
+        operations, why, placed = run.steps(), run.reason, run.mesh
+    else:
+        drawn = improve_drawn(
+            mesh, policy, slice_seconds=None if seconds is None else PATCH_SLICE * seconds,
+            left=left, max_steps=max_steps, seed=seed, cancelled=cancelled,
+            progress=None if progress is None else lambda score: progress(0, score),
+        )  # fmt: skip
+        operations, why, placed = drawn.operations, drawn.reason, drawn.mesh
+        why = why or f"all {seconds or 0:g} seconds are used"
+    reached = replayed(mesh, operations)
+    if seconds is not None and past(PATCHING):
+        why = f"all {seconds:g} seconds are used"
     best = judged(
         Solution(
-            operations, run.score, run.optimum, 0, rollouts=1,
-            method="patches" if operations else "none",
-            reason=f"all {seconds:g} seconds are used" if timed_out else run.reason,
+            operations, reached.score, mesh.optimum, 0, rollouts=1,
+            method="patches" if operations else "none", reason=why,
         ),
-        mesh, late, reached=reached.copy(),
+        mesh, lambda: past(SMOOTHING), placed=placed.arrays,
     )  # fmt: skip
-    left = None if seconds is None else max(0.0, seconds - (time.perf_counter() - began))
-    if not is_large(reached) and left != 0.0 and not (cancelled is not None and cancelled()):
+    remaining = None if seconds is None else seconds - (time.perf_counter() - began)
+    over = (remaining is not None and remaining <= 0.0) or (cancelled is not None and cancelled())
+    if not is_large(reached) and not over:
         if max_steps is None and reached.n_elements > LARGE:
             max_steps = PER_IRREGULAR * (reached.irregular_count + 1)
         rest = go_on(
-            reached, policy, seconds=left, max_steps=max_steps, seed=seed, progress=progress,
+            reached, policy, seconds=remaining, max_steps=max_steps, seed=seed, progress=progress,
             cancelled=cancelled,
         )  # fmt: skip
         if rest.operations:

@@ -141,7 +141,7 @@ class Trainer:
             numbers = {
                 "mean": float(rolled.returns.mean()),
                 "std": float(rolled.returns.std()),
-                "at_optimum": float((rolled.gaps == 0).mean()),
+                "at_optimum": float((rolled.gaps <= 0).mean()),
             }
         else:
             numbers = {}

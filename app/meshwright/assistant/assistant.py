@@ -15,6 +15,7 @@ import numpy as np
 
 from meshwright.assistant.hints import Hinting
 from meshwright.assistant.insight import InsightStore
+from meshwright.assistant.outcome import nothing_left, result_of
 from meshwright.assistant.policy_catalogue import label
 from meshwright.assistant.progress import RunProgress
 from meshwright.assistant.result_walk import ResultWalk
@@ -76,7 +77,7 @@ class Assistant:
         self.outcome = ""
         """What the last run came to, in a sentence, as long as nothing has changed since."""
         self.unfinished = False
-        """Whether that was a search that ended above s*."""
+        """Whether that was a search that may go on: above s*, or below the wanted shape."""
         self._sight = InsightStore(document)
         self.insight_changed = self._sight.changed
         self.progress = RunProgress()
@@ -180,7 +181,7 @@ class Assistant:
         if self._run is not None:
             self._end(State.PAUSED if self._state is State.PLAYING else self._run.after)
         mesh = self._document.mesh
-        if not self._can_work() or mesh is None:
+        if not self._can_work(None) or mesh is None:
             return
         self._loading = not self._worker.has(self._policy)
         runner = self._runner
@@ -210,7 +211,7 @@ class Assistant:
 
     def search(self, effort: Effort | None = None) -> None:
         """Search for the best state within `effort` and apply the operations that lead there; by
-        default until s* is reached or nothing more is won.
+        default until s* and the wanted shape are reached or nothing more is won.
         """
         self._begin(State.SEARCHING, effort or Effort(until_done=True))
 
@@ -273,17 +274,21 @@ class Assistant:
 
     # Start and end of runs
 
-    def _can_work(self) -> bool:
-        """Whether there are a mesh that can improve and a policy; emits a message if not."""
-        if self._document.mesh is None:
-            self.message.emit("There is no mesh to work on.")
+    def _can_work(self, effort: Effort | None) -> bool:
+        """Whether there are a mesh that can improve and a policy; emits a message if not.
+
+        At the optimum a search (``effort``) can still improve the shape.
+        """
+        mesh = self._document.mesh
+        if mesh is None:
+            sentence = "There is no mesh to work on."
         elif not self._policy:
-            self.message.emit("Choose a policy.")
-        elif self._document.at_optimum:
-            self.message.emit("Already at the optimum: nothing is left to improve.")
+            sentence = "Choose a policy."
         else:
-            return True
-        return False
+            sentence = nothing_left(mesh, effort)
+        if sentence:
+            self.message.emit(sentence)
+        return not sentence
 
     def _begin(self, state: State, effort: Effort | None = None) -> None:
         if self._run is not None:
@@ -293,7 +298,7 @@ class Assistant:
             looks = self._run.state is State.LOOKING
             self._end(self._run.after if looks else State.PAUSED)
         mesh = self._document.mesh
-        if not self._can_work() or mesh is None:
+        if not self._can_work(effort) or mesh is None:
             self._finish_state(State.IDLE)
             return
         try:
@@ -415,7 +420,7 @@ class Assistant:
 
     def progressed(self, run: AgentRun, done: int, best: int) -> None:
         """A search has done ``done`` rollouts, and its lowest score is ``best``."""
-        if run is self._run and self.progress.found(done, best):
+        if run is self._run and self.progress.found(done, best, getattr(run.runner, "shape", None)):
             self.changed.emit()
 
     def answered(self, question: HintRequest, choices: tuple[PolicyAction, ...]) -> None:
@@ -473,7 +478,9 @@ class Assistant:
         if walk is None:
             target = getattr(run.runner, "target", None)  # of a SearchRunner
             operations = list(decided.operations)
-            walk = ResultWalk(self._document, label(run.policy), operations, run.held, target)
+            shown = run.effort.shown if run.effort is not None else 0.0
+            author = label(run.policy)
+            walk = ResultWalk(self._document, author, operations, run.held, target, shown)
             self._walk, self._state = walk, State.GOING
             with run.lock:
                 run.in_step = False
@@ -506,42 +513,18 @@ class Assistant:
             return
         self._applying = True
         try:
-            fine = not walk.total or walk.settle()
+            fine = walk.settle()
         finally:
             self._applying = False
         stopped = run.enough.is_set()
         self._end(State.IDLE)
         self._runner_at = -1
-        self._set_outcome(*self._result_of(run, fine, stopped))
+        self._set_outcome(*result_of(self._document, run, self.progress.counted, fine, stopped))
         self.message.emit(self.outcome)
         self.changed.emit()
 
     def _set_outcome(self, sentence: str, unfinished: bool = False) -> None:
         self.outcome, self.unfinished = sentence, unfinished
-
-    def _result_of(self, run: AgentRun, fine: bool, stopped: bool) -> tuple[str, bool]:
-        """What a search has come to, in a sentence, and whether it may go on."""
-        document, effort = self._document, run.effort
-        reason = run.runner.reason if run.runner is not None else ""
-        if not fine:
-            return (
-                "The result has inverted elements that were not so before: it was taken back, and"
-                " is in the history.",
-                True,
-            )
-        if document.at_optimum:
-            return f"At the optimum after {self.progress.counted}.", False
-        if run.held is not None:
-            more = f"; {reason}" if reason else ""
-            return f"The region is finished: s {document.score}{more}.", False
-        gap = f"{document.score - document.optimum:,} above the optimum: go on?"
-        if stopped:
-            return f"Stopped, {gap}", True
-        if effort is not None and effort.rollouts:
-            return f"{effort.rollouts} runs are done, {gap}", True
-        if reason:
-            return f"{reason[:1].upper()}{reason[1:]}, {gap}", True
-        return f"Time is up, {gap}", True
 
     def _finish(self, run: AgentRun) -> None:
         """The end of a run that is no search."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 from meshwright.assistant.run import AgentRun
-from meshwright.assistant.search_runner import Effort
+from meshwright.assistant.search_runner import Effort, ShapeGoal
 
 
 class RunProgress:
@@ -18,6 +18,8 @@ class RunProgress:
         """Rollouts that a search has done."""
         self.best: int | None = None
         """The lowest s found; None before anything is."""
+        self.shape: ShapeGoal | None = None
+        """Shape of the best mesh that a search has found, and what it aims at."""
         self.way: tuple[int, int] | None = None
         """Operations applied, and all, on the way to the result of a search; None elsewhere."""
         self._start = self._optimum = 0
@@ -27,14 +29,14 @@ class RunProgress:
     def forget(self) -> None:
         """Another mesh: nothing has been done on it."""
         self.decisions = self.rollouts = 0
-        self.best, self._spent = None, 0.0
+        self.best, self.shape, self._spent = None, None, 0.0
 
     def begin(self, run: AgentRun, afresh: bool, score: int = 0, optimum: int = 0) -> None:
         """Start counting; `afresh` unless the run continues a paused one. s and s* of the mesh."""
         self._start, self._optimum, self.way = score, optimum, None
         if afresh:
             self.decisions = self.rollouts = 0
-            self.best, self._spent = None, 0.0
+            self.best, self.shape, self._spent = None, None, 0.0
         self._run = run
 
     def end(self) -> None:
@@ -48,10 +50,10 @@ class RunProgress:
         if self.effort is None:
             self.best = score if self.best is None else min(self.best, score)
 
-    def found(self, rollouts: int, best: int) -> bool:
+    def found(self, rollouts: int, best: int, shape: ShapeGoal | None = None) -> bool:
         """Set the progress of a search; False if nothing has changed."""
-        news = (rollouts, best) != (self.rollouts, self.best)
-        self.rollouts, self.best = rollouts, best
+        news = (rollouts, best, shape) != (self.rollouts, self.best, self.shape)
+        self.rollouts, self.best, self.shape = rollouts, best, shape
         return news
 
     @property
@@ -85,8 +87,18 @@ class RunProgress:
         if self.way is not None:
             return self.way[0] / max(1, self.way[1])
         if effort.until_done:
-            gap, best = self._start - self._optimum, self.best
-            return 0.0 if best is None else min(1.0, (self._start - best) / max(1, gap))
+            return self._share_reached
         if effort.rollouts:
             return min(1.0, self.rollouts / effort.rollouts)
         return min(1.0, self.elapsed / effort.seconds) if effort.seconds else None
+
+    @property
+    def _share_reached(self) -> float:
+        """The fraction of the way to s*, and half of it to the wanted shape where there is one."""
+        if self.best is None:
+            return 0.0
+        gap = self._start - self._optimum
+        share = min(1.0, (self._start - self.best) / gap) if gap else 1.0
+        if self.shape is not None:
+            share = (share + min(1.0, max(self.shape.worst, 0.0) / self.shape.aim)) / 2.0
+        return share

@@ -10,8 +10,6 @@ from meshwright.document.document import Document
 from meshwright_core import HalfEdgeMesh, Operation
 from meshwright_core.geometry.quality import inverted
 
-SHOWN = 2.0
-"""Seconds that going to a result takes at most, unless the operations alone take longer."""
 SLICE = 0.02
 """Seconds of applying operations after which a frame is drawn."""
 LONGEST = 0.2
@@ -33,10 +31,13 @@ class ResultWalk:
         operations: list[tuple[Operation, int]],
         held: np.ndarray | None,
         target: HalfEdgeMesh | None,
+        shown: float = 2.0,
     ) -> None:
         """`held` (n,): vertices that keep their positions; `target`: the mesh that the operations
-        lead to, with its positions; None: it is smoothed.
+        lead to, with its positions; None: it is smoothed. shown: seconds that the way takes at
+        most, unless the operations alone take longer.
         """
+        self._shown = shown
         self._document, self._author = document, author
         self._operations, self._held, self._target = operations, held, target
         self._start = document.history.cursor
@@ -78,6 +79,8 @@ class ResultWalk:
         """
         document = self._document
         mesh = document.need_mesh()
+        if not self.total and self._target is None:
+            return True
         if not (document.plane or document.smooth_surfaces):
             return True  # vertices of such a surface stay where they are
         with document.together():
@@ -102,7 +105,7 @@ class ResultWalk:
         return fine
 
     def _behind(self) -> bool:
-        return self.done < self.total * (time.monotonic() - self._began) / (0.75 * SHOWN)
+        return self.done < self.total * (time.monotonic() - self._began) / (0.75 * self._shown)
 
     def _apply(self, smooth: bool) -> None:
         operation, halfedge = self._operations[self.done]

@@ -16,6 +16,7 @@ import numpy as np
 
 from meshwright_core import HalfEdgeMesh, Operation
 from meshwright_core.core.arrays import FLAGS, LOCKED
+from meshwright_core.geometry.quality import inverted, scaled_jacobian
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.explanation_types import Insight
@@ -23,12 +24,47 @@ if TYPE_CHECKING:
 
 COMPLETE_SECONDS = 3.0
 """Time of a round of *Complete*; after one that has won nothing the next gets twice as much."""
+LAYOUT_SECONDS = 12.0
+"""The same from the second round on where layouts are searched for shape: with less time for each
+round less comes of all together."""
 SIZE_SECONDS = 10.0
 """Time of *Complete* where the elements keep their size."""
 PATIENCE = 2
 """Rounds without success after which *Complete* ends."""
+NOTHING_BETTER = "nothing better was found in {:.0f} s"
 PREFERENCES = ("blocks", "balanced", "shape")
 """What counts at s*: few blocks, a good worst corner, or both."""
+NEAR = 1e-3
+"""How far below the aim a shape may be and still count as reached."""
+
+
+@dataclass(frozen=True)
+class ShapeGoal:
+    """The worst scaled Jacobian of a quad mesh, and the one that a search aims at."""
+
+    worst: float
+    aim: float
+
+    @property
+    def reached(self) -> bool:
+        """Whether the aim is reached, up to rounding."""
+        return self.worst >= self.aim - NEAR
+
+    @classmethod
+    def of(cls, mesh: HalfEdgeMesh, effort: Effort) -> ShapeGoal | None:
+        """That of ``mesh``; None where a search only looks for a lower s.
+
+        This is so for triangles, for surfaces in space, in a region, and for more quads than the
+        solver searches for shape.
+        """
+        from meshwright_agent.search.layout_search import Preference
+        from meshwright_agent.search.solver import has_layouts
+        from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
+
+        if effort.elements is not None or not (effort.keep_size or has_layouts(mesh)):
+            return None
+        aims = Preference(effort.prefer).aims(attainable_bound(mesh), shape_bound(mesh))
+        return cls(float(scaled_jacobian(mesh).min(initial=1.0)), aims.target)
 
 
 @dataclass(frozen=True)
@@ -46,8 +82,12 @@ class Effort:
     keep_size: bool = False
     """Whether the elements keep the size that they have; otherwise quads become blocks."""
     until_done: bool = False
-    """Whether to search again, for longer, until s* and the wanted shape are reached or a round has
+    """Whether to search again, for longer, until s* and the wanted shape are reached or rounds have
     won nothing."""
+    beyond: bool = False
+    """Whether to search even where both are reached, for fewer blocks."""
+    shown: float = 2.0
+    """Seconds that going to the result takes at most, unless the operations alone take longer."""
 
 
 class SearchRunner:
@@ -65,7 +105,7 @@ class SearchRunner:
         progress: Callable[[int, int], None],
     ) -> None:
         """`mesh` is the runner's own; `enough` ends the search early, with the best so far;
-        `progress(done, best score)` is called during the search.
+        `progress(done, best score)` is called during the search and when :attr:`shape` changes.
         """
         self._mesh, self._policy, self._seed, self._effort = mesh, policy, seed, effort
         self._enough, self._progress = enough, progress
@@ -74,6 +114,8 @@ class SearchRunner:
         self.finished = False
         """Whether the operations have been returned."""
         self.reason = ""
+        self.shape: ShapeGoal | None = None
+        """Shape of the best mesh found so far, and what is aimed at."""
         self.target: HalfEdgeMesh | None = None
         """The mesh that the operations lead to, with its positions; None where a region alone was
         searched."""
@@ -98,7 +140,7 @@ class SearchRunner:
         else:
             found = self._search()
         if not found and not self.reason:
-            self.reason = f"nothing better was found in {self._seconds:.0f} s"
+            self.reason = NOTHING_BETTER.format(self._seconds)
         self.finished = True
         return found
 
@@ -107,8 +149,12 @@ class SearchRunner:
         return time.monotonic() - self._began
 
     def _search(self) -> list[tuple[Operation, int]]:
-        """Rounds of the solver, each from the best state so far, as long as s can fall."""
+        """Rounds of the solver, each from the best state so far, until s* and the wanted shape are
+        reached or nothing more is won.
+        """
         effort, start = self._effort, self._mesh
+        if self._is_done(start):
+            return []
         operations: list[tuple[Operation, int]] = []
         before: list[tuple[Operation, int]] = []  # those that lead to the start of the round
         best: Solution | None = None
@@ -121,19 +167,37 @@ class SearchRunner:
                 operations = before + list(found.operations)
                 best, self.target = found, start.copy()
                 found.carry_out(self.target)
+                self.shape = ShapeGoal.of(self.target, effort)
+                self._progress(done, best.score)
             assert best is not None
             assert self.target is not None
             lost = 0 if won and found.operations else lost + 1
             if self._enough.is_set() or not effort.until_done or seconds is None:
                 break
-            if _is_done(best) or lost >= PATIENCE:
+            if lost >= PATIENCE or self._is_done(self.target):
                 break
-            if best.perfect:  # others of the same s are found from the start
+            if best.perfect and lost:  # others of the same s are found from the start
                 start, before = self._mesh, []
             else:
                 start, before = self.target, operations
-            seconds = (effort.seconds or 0.0) * 2.0**lost
+            usual = effort.seconds or 0.0
+            seconds = (usual if self.shape is None else max(usual, LAYOUT_SECONDS)) * 2.0**lost
+        self._note_end(lost)
         return operations
+
+    def _is_done(self, mesh: HalfEdgeMesh) -> bool:
+        """Whether s = s*, nothing is inverted and the wanted shape is reached, and nothing beyond
+        that is asked for.
+        """
+        if self._effort.beyond or mesh.score != mesh.optimum or len(inverted(mesh)):
+            return False
+        self.shape = ShapeGoal.of(mesh, self._effort)
+        return self.shape is None or self.shape.reached
+
+    def _note_end(self, lost: int) -> None:
+        """Say why a search in rounds has ended, where it was not stopped and more is wanted."""
+        if lost >= PATIENCE and not self._enough.is_set():
+            self.reason = NOTHING_BETTER.format(self._seconds)
 
     def _search_in_size(self) -> list[tuple[Operation, int]]:
         """One search in which the elements keep their size, by operations alone."""
@@ -152,6 +216,7 @@ class SearchRunner:
             cancelled=self._enough.is_set,
         )
         self.target = found.mesh
+        self.shape = ShapeGoal.of(found.mesh, effort)
         return list(found.operations)
 
     def _round(self, start: HalfEdgeMesh, seconds: float | None, done: int) -> Solution:
@@ -192,8 +257,3 @@ class SearchRunner:
 def _workers() -> int:
     """Threads of a search; one core is left for the window."""
     return max(1, (os.cpu_count() or 2) - 1)
-
-
-def _is_done(best: Solution) -> bool:
-    """Whether s = s*, nothing is inverted and the worst corner is as good as was asked for."""
-    return best.perfect and best.worst_scaled_jacobian >= best.aims.target - 1e-3

@@ -76,21 +76,24 @@ def read_domain(
     region: str | None = None,
     gap: float | None = None,
     fit: str | None = None,
+    seconds: float | None = None,
 ) -> Domain:
     """Return the domain with this name in the gallery, or in this drawing.
 
     ``corner_angle`` in degrees: a point where the boundary turns by more is a corner.
     ``curve_step``, ``region``, ``gap`` and ``fit`` as for
-    :func:`meshwright.sources.resolve.resolve`; they are for drawings.
+    :func:`meshwright.sources.resolve.resolve`; they are for drawings. ``seconds`` of processor time
+    are allowed; None for the default.
     """
     from meshwright.sources import resolve
+    from meshwright_core.core.time_limit import SECONDS, time_limit
 
     if resolve.names_file(shape):
         _require_file(shape)
     for option, value in (("--region", region), ("--fit-arcs", fit)):
         if value is not None and not resolve.names_file(shape):
             raise UserError(f"{option}: this is for drawings, and {shape} is a name in the gallery")
-    with bad_input(shape):
+    with bad_input(shape), time_limit(seconds or SECONDS):
         return resolve.domain(
             shape,
             corner_angle=corner_angle,
@@ -102,13 +105,20 @@ def read_domain(
 
 
 def make_mesh(
-    domain: Domain, kind: str, max_edge: float | None = None, seed: int = 0
+    domain: Domain,
+    kind: str,
+    max_edge: float | None = None,
+    seed: int = 0,
+    seconds: float | None = None,
 ) -> HalfEdgeMesh:
-    """Return a mesh of the domain, or raise UserError if it cannot be meshed as requested."""
+    """Return a mesh of the domain, or raise UserError if it cannot be meshed as requested.
+
+    ``seconds`` of processor time are allowed; None for the default.
+    """
     from meshwright_core.domains import meshing
 
     with bad_input(domain.name or "the domain"):
-        return meshing.mesh_domain(domain, kind, max_edge=max_edge, seed=seed)
+        return meshing.mesh_domain(domain, kind, max_edge=max_edge, seed=seed, seconds=seconds)
 
 
 def prepare_agent(report: Report) -> None:

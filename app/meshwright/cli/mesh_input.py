@@ -85,6 +85,12 @@ def add_tracing_arguments(parser: argparse.ArgumentParser) -> None:
         help="a boundary vertex is a corner where the boundary turns by more (0.01, or 1 beside a "
         "curve); raise it where curved sides are drawn as short straight pieces",
     )
+    parser.add_argument(
+        "--time-limit",
+        metavar="SECONDS",
+        type=inputs.positive_float,
+        help="processor time that reading a drawing may take, and that meshing it may take (30)",
+    )
 
 
 def is_mesh(word: str) -> bool:
@@ -109,9 +115,10 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
                 name = option.replace("_", "-")
                 raise UserError(f"--{name}: this is for mesh files, and {word} is a shape")
         domain, kind = read_domain(word, arguments), arguments.kind or "quad"
-        return inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed)
-    for option in ("kind", "max_edge", "region", "gap", "curve_step"):
-        drawn = option in ("region", "gap") and arguments.geometry is not None
+        seconds = arguments.time_limit
+        return inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed, seconds)
+    for option in ("kind", "max_edge", "region", "gap", "curve_step", "time_limit"):
+        drawn = option in ("region", "gap", "time_limit") and arguments.geometry is not None
         if getattr(arguments, option) is not None and not drawn:
             name = option.replace("_", "-")
             raise UserError(f"--{name}: this is for drawings, and {word} is a mesh")
@@ -132,6 +139,7 @@ def read_domain(word: str, arguments: argparse.Namespace) -> Domain:
         arguments.region,
         arguments.gap,
         "arcs" if arguments.fit_arcs else None,
+        arguments.time_limit,
     )
 
 

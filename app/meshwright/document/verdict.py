@@ -25,6 +25,15 @@ def largest_delta(mesh: HalfEdgeMesh) -> int:
     return int(abs(mesh.irregularity()[irregular]).max())
 
 
+def gap_words(score: int, optimum: int, name: str = "it") -> str:
+    """How far s is from s*, as ``4 above it``.
+
+    Below s* nothing can be drawn: operations, which do not look at shapes, may lead there.
+    """
+    gap = score - optimum
+    return f"{gap:,} above {name}" if gap >= 0 else f"{-gap:,} below {name}: no valid mesh is"
+
+
 def findings(
     mesh: HalfEdgeMesh, worst: float, bound: float, inverted: int
 ) -> tuple[Finding, Finding, Finding]:

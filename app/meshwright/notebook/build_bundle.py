@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 
 from meshwright.graphics.colouring import SCALES, STOPS
 from meshwright.graphics.icon_paths import STROKES
-from meshwright.graphics.theme import REGION_HUES, REGION_SHARE, Theme
+from meshwright.graphics.theme import NAME_HUES, REGION_HUES, REGION_SHARE, SWATCH_SHARE, Theme
 from meshwright.notebook.bundle import BUNDLE, FOLDER, GLOBAL
 
 COMMAND = "python -m meshwright.notebook.build_bundle"
@@ -45,6 +45,9 @@ def constants() -> str:
         "/** Hues of regions, and their share in a fill, of the same module. */\n"
         f"export const REGION_HUES = {json.dumps(REGION_HUES, indent=2)};\n"
         f"export const REGION_SHARE = {REGION_SHARE};\n"
+        f"export const SWATCH_SHARE = {SWATCH_SHARE};\n"
+        "/** Colours of named sides, in turn, of the same module. */\n"
+        f"export const NAME_HUES = {json.dumps(NAME_HUES, indent=2)};\n"
         "/** The scale of measures of meshwright.graphics.colouring; empty: the plain fill. */\n"
         f"export const QUALITY_STOPS = {json.dumps(STOPS)};\n"
         f"export const QUALITY_SCALES = {json.dumps(SCALES, indent=2)};\n"

@@ -47,6 +47,14 @@ def circle_of(a: Place, b: Place, bulge: float) -> tuple[Place, float]:
     return (x, y), math.dist((x, y), a)
 
 
+def middle_of(a: Place, b: Place, bulge: float) -> Place:
+    """The point halfway along an edge."""
+    # the arc is bulge / 2 chords away from the middle of its chord, to the right
+    x = (a[0] + b[0]) / 2.0 + bulge / 2.0 * (b[1] - a[1])
+    y = (a[1] + b[1]) / 2.0 - bulge / 2.0 * (b[0] - a[0])
+    return x, y
+
+
 def points_of(a: Place, b: Place, bulge: float, step: float = STEP) -> list[Place]:
     """Points of an edge in order, `a` and `b` included; a segment has these two only."""
     if bulge == 0.0 or a == b:

@@ -9,7 +9,14 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from meshwright.signals import Signal
-from meshwright.sources.arc_edges import Place, bulge_through, circle_of, part_of, share_at
+from meshwright.sources.arc_edges import (
+    Place,
+    bulge_through,
+    circle_of,
+    middle_of,
+    part_of,
+    share_at,
+)
 from meshwright.sources.polygon_checks import (
     PolygonLoop,
     PolygonProblem,
@@ -69,6 +76,16 @@ class Sketch:
             for edge in loop.edges
             if loop.bulge(edge)
         ]
+
+    def middles(self, apart_from: tuple[int, int] | None = None) -> list[Place]:
+        """The middles of all edges, but not of those at the corner `apart_from` (loop, corner)."""
+        found = []
+        for i, loop in enumerate(self._loops):
+            for edge in loop.edges:
+                ends = edge, (edge + 1) % len(loop.corners)
+                if apart_from is None or apart_from[0] != i or apart_from[1] not in ends:
+                    found.append(middle_of(*loop.ends(edge), loop.bulge(edge)))
+        return found
 
     # Edits
 

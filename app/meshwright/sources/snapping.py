@@ -1,4 +1,4 @@
-"""Snapping of new corners to points, directions and a grid, with guide lines."""
+"""Snapping of new corners to points, middles of edges, directions and a grid, with guide lines."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from meshwright.sources.arc_edges import Place
 
 @dataclass(frozen=True)
 class Snap:
-    """The snapped position, what it snapped to (``"point"``, ``"angle"``, ``"grid"`` or empty), and
-    guides: lines to show, each from one point to another.
+    """The snapped position, what it snapped to (``"point"``, ``"middle"``, ``"angle"``, ``"grid"``
+    or empty), and guides: lines to show, each from one point to another.
     """
 
     place: Place
@@ -23,11 +23,12 @@ class Snap:
 
 @dataclass(frozen=True)
 class Snapper:
-    """Settings: snap to existing points, to right angles, to a grid; each may be off."""
+    """Settings: snap to points, middles of edges, right angles and a grid; each may be off."""
 
     grid: float = 0.0
     points: bool = True
     angles: bool = True
+    middles: bool = True
 
     def snap(
         self,
@@ -37,6 +38,7 @@ class Snapper:
         before: Place | None = None,
         first: Place | None = None,
         behind: Place | None = None,
+        middles: Sequence[Place] = (),
     ) -> Snap:
         """Return the snapped position of a corner set at `place`.
 
@@ -48,13 +50,14 @@ class Snapper:
                 axes, and to right angles with the edge before it.
             first: the first corner of the loop; the new corner snaps to its row and column.
             behind: the corner before `before`.
+            middles: those of all edges; a corner within reach goes first.
         """
-        if self.points and corners:
-            near = np.asarray(corners, float) - place
-            apart = np.hypot(near[:, 0], near[:, 1])
-            i = int(np.argmin(apart))
-            if apart[i] <= reach:
-                return Snap(corners[i], "point")
+        for wanted, places, met in (
+            (self.points, corners, "point"),
+            (self.middles, middles, "middle"),
+        ):
+            if wanted and (found := _nearest(place, reach, places)) is not None:
+                return Snap(found, met)
         lines = self._lines(before, first, behind) if self.angles else []
         hits = sorted(
             (distance, k)
@@ -100,6 +103,16 @@ class Snapper:
         # rounded to 12 digits, so that steps of 0.1 give short decimals
         x, y = (float(f"{round(n / self.grid) * self.grid:.12g}") for n in place)
         return x, y
+
+
+def _nearest(place: Place, reach: float, places: Sequence[Place]) -> Place | None:
+    """The nearest of the places that lie within reach."""
+    if not places:
+        return None
+    near = np.asarray(places, float) - place
+    apart = np.hypot(near[:, 0], near[:, 1])
+    i = int(np.argmin(apart))
+    return places[i] if apart[i] <= reach else None
 
 
 def _distance(place: Place, start: Place, along: Place) -> float:

@@ -33,6 +33,8 @@ class Sectors(NamedTuple):
     """(n,) degrees in (0, 360]; outside of the domain there are none."""
     boundary: np.ndarray
     """(n,) whether the vertex lies on the boundary."""
+    halfedge: np.ndarray
+    """(n,) the half-edge that leaves the vertex where the sector begins, counter-clockwise."""
 
 
 def sectors(m: MeshArrays) -> Sectors:
@@ -41,7 +43,8 @@ def sectors(m: MeshArrays) -> Sectors:
     halfedges = np.flatnonzero(m.edge[: int(m.counters[ELEMENT_SLOTS]) * k, ORIGIN] >= 0)
     curve, span = edge_places(m, halfedges, k)
     if not (curve >= 0).any():
-        return Sectors(np.zeros(0, np.int64), np.zeros(0), np.zeros(0, bool))
+        none = np.zeros(0, np.int64)
+        return Sectors(none, np.zeros(0), np.zeros(0, bool), none)
     halfedges, span, curve = halfedges[curve >= 0], span[curve >= 0], curve[curve >= 0]
     start = m.edge[halfedges, ORIGIN].astype(np.int64)
     end = m.edge[halfedges - halfedges % k + (halfedges + 1) % k, ORIGIN].astype(np.int64)
@@ -68,7 +71,9 @@ def sectors(m: MeshArrays) -> Sectors:
     around = np.flatnonzero(begins)[np.cumsum(begins) - 1]
     width = np.where(ahead, width, turn[around] + 360.0 - turn)
     kept = ahead | ~on_boundary[vertex]
-    return Sectors(vertex[kept], width[kept], on_boundary[vertex[kept]])
+    # the last edge at a boundary vertex begins no sector, so what is kept has a half-edge
+    begun_by = np.concatenate([halfedges, np.full(len(back), -1)])[order]
+    return Sectors(vertex[kept], width[kept], on_boundary[vertex[kept]], begun_by[kept])
 
 
 def _directions(m: MeshArrays, curve: np.ndarray, span: np.ndarray) -> np.ndarray:

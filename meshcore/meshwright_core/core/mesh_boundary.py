@@ -75,6 +75,9 @@ class MeshBoundary:
     """The plane in space whose coordinates those of the mesh are; None for space itself."""
     plan: GridPlan = field(default_factory=GridPlan)
     """What is wanted of a block grid of the mesh."""
+    bound_excess: int = 0
+    """By how much s* exceeds the absolute value of the sum of Delta, which irregularities of
+    different regions lower; see :mod:`meshwright_core.core.score_bound`."""
 
     @property
     def count(self) -> int:

@@ -196,8 +196,12 @@ class MeshView:
 
     @property
     def optimum(self) -> int:
-        """s* = |sum of Delta|, which no operation changes and s never falls below (equation 6)."""
-        return abs(int(self._arrays.counters[DELTA_SUM]))
+        """s*, which no operation changes and s of no valid mesh falls below.
+
+        |sum of Delta| (equation 6), and more where the irregularities of two regions cannot cancel
+        (:mod:`meshwright_core.core.score_bound`).
+        """
+        return abs(int(self._arrays.counters[DELTA_SUM])) + self._boundary.bound_excess
 
     @property
     def irregular_count(self) -> int:

@@ -16,7 +16,8 @@ def normalised_return(
 ) -> float | np.ndarray:
     """The undiscounted normalised return (equation 6), (s - s_best) / (s - s*).
 
-    1 at the optimum, 0 without progress; 1 too where the start is at the optimum already.
+    1 at the optimum, 0 without progress; 1 too where the start is at the optimum already, and below
+    it, where no mesh is valid.
 
     Args:
         start: s at the start, a number or an array.
@@ -25,6 +26,9 @@ def normalised_return(
     """
     if isinstance(start, np.ndarray):
         # the maximum only matters where both differences are zero
-        result: np.ndarray = 1.0 - (best - optimum) / np.maximum(start - optimum, 1)
+        left = np.maximum(best - optimum, 0)
+        result: np.ndarray = 1.0 - left / np.maximum(start - optimum, 1)
         return result
-    return 1.0 if start == optimum else float(1.0 - (best - optimum) / (start - optimum))
+    if min(start, best) <= optimum:
+        return 1.0
+    return float(1.0 - (best - optimum) / (start - optimum))

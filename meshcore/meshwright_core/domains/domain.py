@@ -30,6 +30,7 @@ from meshwright_core.domains.loops.ring_checks import (
     signed_area,
     turning_angles,
 )
+from meshwright_core.domains.loops.side_bound import bound_excess_of_sides
 from meshwright_core.errors import MeshError
 
 __all__ = ["CORNER_ANGLE", "Domain", "Flags", "Points", "load_json", "turning_angles"]
@@ -336,7 +337,8 @@ class Domain:
         The degrees of a mesh of k-sided elements add up to 2 E. With Euler's formula, V - E + F =
         chi, and k F = 2 E - B, for B boundary edges, the sum of the irregularities is the sum of
         usual less desired degree over the geometric vertices, less 4 chi (quads) or 6 chi
-        (triangles).
+        (triangles). Where several regions meet, s* may be larger than its absolute value
+        (:mod:`meshwright_core.core.score_bound`).
 
         Args:
             kind: "tri" or "quad".
@@ -346,7 +348,8 @@ class Domain:
         excess = 0
         for boundary, angles in self._angles_at_points():
             excess += usual_desired_degree(k, boundary) - desired_between(angles, k, boundary)
-        return abs(excess - (6 if k == 3 else 4) * euler)
+        total = excess - (6 if k == 3 else 4) * euler
+        return abs(total) + (0 if self.sides is None else bound_excess_of_sides(self.sides, k))
 
     def _angles_at_points(self) -> list[tuple[bool, list[float]]]:
         """Whether each geometric point is on the boundary, and the angles of regions there."""

@@ -16,6 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.irregularity import QUAD_STRAIGHT, TRIANGLE_STRAIGHT
+from meshwright_core.core.time_limit import SECONDS, time_limit
 from meshwright_core.domains.domain import Domain, Flags, Points
 from meshwright_core.domains.elements import quadrangulation, triangulation
 from meshwright_core.domains.elements.coarse_start import coarse
@@ -52,6 +53,9 @@ above what a fan of twenty triangles in a circle has, which makes a centre of de
 _HALVES = 0.99
 """Share of twice the longest edge that an edge on a curve has, so that its halves are shorter."""
 
+_SECONDS_EACH = 1e-5
+"""Seconds more for each triangle that the bounds ask for."""
+
 _EDGE_SHARE = 0.2
 """The longest edge by default, as a share of the diameter; 0.4 for the benchmark's 2."""
 
@@ -64,6 +68,7 @@ def mesh_domain(
     max_area: float | None = None,
     seed: int = 0,
     quads: Quads = "catmull-clark",
+    seconds: float | None = None,
 ) -> HalfEdgeMesh:
     """Mesh a domain.
 
@@ -86,14 +91,24 @@ def mesh_domain(
             domain with straight sides have no points but its corners, as in the benchmark.
             "pairing" joins triangles in pairs, and cuts everything once more
             if some triangle stays alone.
+        seconds: processor time that it may take. Left out: 30, and 10 more for each million
+            triangles that the bounds ask for. A limit that holds already
+            (:func:`meshwright_core.core.time_limit.time_limit`) stays.
 
     Raises:
-        MeshError: an argument out of range, or a mesh that would need too many triangles.
+        MeshError: an argument out of range, a mesh that would need too many triangles, or more
+            time than it may take.
     """
+    bounds = _bounds(domain, kind, max_edge, min_angle, max_area, quads)
+    limit = SECONDS + _SECONDS_EACH * _expected(domain, bounds) if seconds is None else seconds
+    with time_limit(limit):
+        return _mesh(domain, kind, bounds, seed, quads)
+
+
+def _mesh(domain: Domain, kind: str, bounds: Bounds, seed: int, quads: Quads) -> HalfEdgeMesh:
     if domain.sides is not None:
-        found = _sided(domain, kind, max_edge, min_angle, max_area, seed, quads)
-        return found.mesh(domain.sides)
-    arrays = mesh_arrays(domain, kind, max_edge, min_angle, max_area, seed, quads)
+        return _sided(domain, kind, bounds, seed, quads).mesh(domain.sides)
+    arrays = _polygon_arrays(domain, kind, bounds, seed, quads)
     mesh = HalfEdgeMesh.from_elements(*arrays)
     desired = mesh.desired()
     straight = TRIANGLE_STRAIGHT if kind == "tri" else QUAD_STRAIGHT
@@ -113,10 +128,15 @@ def mesh_arrays(
     quads: Quads = "catmull-clark",
 ) -> Arrays:
     """Return the arrays of `mesh_domain`."""
-    if domain.sides is not None:
-        found = _sided(domain, kind, max_edge, min_angle, max_area, seed, quads)
-        return found.points, found.elements, found.node >= 0
     bounds = _bounds(domain, kind, max_edge, min_angle, max_area, quads)
+    if domain.sides is not None:
+        found = _sided(domain, kind, bounds, seed, quads)
+        return found.points, found.elements, found.node >= 0
+    return _polygon_arrays(domain, kind, bounds, seed, quads)
+
+
+def _polygon_arrays(domain: Domain, kind: str, bounds: Bounds, seed: int, quads: Quads) -> Arrays:
+    """The arrays of a mesh of a polygon."""
     points, triangles, geometric = triangle_arrays(domain, *bounds, seed)
     if kind == "tri":
         return points, triangles, geometric
@@ -131,19 +151,10 @@ def mesh_arrays(
     return quadrangulation.without_doublets(*arrays)
 
 
-def _sided(
-    domain: Domain,
-    kind: str,
-    max_edge: float | None,
-    min_angle: float | None,
-    max_area: float | None,
-    seed: int,
-    quads: Quads,
-) -> SidedElements:
+def _sided(domain: Domain, kind: str, bounds: Bounds, seed: int, quads: Quads) -> SidedElements:
     """The elements of a domain of curves."""
     sides = domain.sides
     assert sides is not None
-    bounds = _bounds(domain, kind, max_edge, min_angle, max_area, quads)
     edges = SideEdges(sides)
     if bounds == Bounds():
         found = coarse(edges, domain.diameter, seed)
@@ -203,15 +214,24 @@ def _check(domain: Domain, bounds: Bounds) -> None:
         _positive(bounds.max_area, "largest area")
     if not 0 <= bounds.min_angle <= MAX_ANGLE:
         raise MeshError(f"The smallest angle must lie between 0 and {MAX_ANGLE:g} degrees.")
+    expected = _expected(domain, bounds)
+    if expected > triangulation.MAX_TRIANGLES:
+        raise MeshError(
+            f"Elements this small would take about {expected:.2g} triangles; "
+            f"no more than {triangulation.MAX_TRIANGLES:,} are made."
+        )
+
+
+def _expected(domain: Domain, bounds: Bounds) -> float:
+    """About how many triangles the bounds ask for, by the area and by the length of the sides."""
     target = min(
         math.inf if bounds.max_edge is None else math.sqrt(3) / 4 * bounds.max_edge**2,
         math.inf if bounds.max_area is None else bounds.max_area,
     )
-    if domain.area > target * triangulation.MAX_TRIANGLES:
-        raise MeshError(
-            f"Elements this small would take about {domain.area / target:.2g} triangles; "
-            f"no more than {triangulation.MAX_TRIANGLES:,} are made."
-        )
+    # even where it is thin, a triangle lies on each edge of the sides
+    length = sum(float(np.hypot(*np.diff(loop, axis=0).T).sum()) for loop in domain.loops)
+    along = 0.0 if bounds.max_edge is None else length / bounds.max_edge
+    return max(domain.area / target if target > 0.0 else math.inf, along)
 
 
 def triangle_arrays(

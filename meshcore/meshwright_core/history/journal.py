@@ -223,25 +223,44 @@ def on_edge(m, h, degree, desired, k):
     Its parameter is the mean of those of the ends; its distance from the curve too, where the ends
     have been moved off it.
     """
-    a, b = m.edge[h, ORIGIN], m.edge[following(h, k), ORIGIN]
     if not along_curve(m, h, k):
-        return midway(m, a, b, degree, desired)
+        return midway(m, m.edge[h, ORIGIN], m.edge[following(h, k), ORIGIN], degree, desired)
+    return on_edge_at(m, h, 0.5, degree, desired, k)
+
+
+@bare_kernel
+def on_edge_at(m, h, share, degree, desired, k):
+    """A new vertex on an edge along a curve, that share of the way from the origin of h.
+
+    The share is one of the parameter, and of the distance from the curve where the ends have been
+    moved off it.
+    """
+    a, b = m.edge[h, ORIGIN], m.edge[following(h, k), ORIGIN]
+    keep = 1.0 - share
     c = edge_curve(m, h, k)
     if c < 0:
-        v = midway(m, a, b, degree, desired)
+        p = m.points
+        v = new_vertex(
+            m,
+            degree,
+            desired,
+            keep * p[a, 0] + share * p[b, 0],
+            keep * p[a, 1] + share * p[b, 1],
+            keep * p[a, 2] + share * p[b, 2],
+        )
         put_vertex(m, v, CURVE, m.vertex[a, CURVE])
         return v
     t_a, t_b = edge_range(m, h, c, k)
-    t = 0.5 * (t_a + t_b)
+    t = keep * t_a + share * t_b
     length = curve_length(m.curves, c)
     if m.curves.closed[c] and t >= length:
         t -= length
     span_a, u_a = span_and_share(m.curves, c, t_a)
     span_b, u_b = span_and_share(m.curves, c, t_b)
     span, u = span_and_share(m.curves, c, t)
-    x = _mean_offset(m, a, span_a, u_a, b, span_b, u_b, 0)
-    y = _mean_offset(m, a, span_a, u_a, b, span_b, u_b, 1)
-    z = _mean_offset(m, a, span_a, u_a, b, span_b, u_b, 2)
+    x = keep * _offset(m, a, span_a, u_a, 0) + share * _offset(m, b, span_b, u_b, 0)
+    y = keep * _offset(m, a, span_a, u_a, 1) + share * _offset(m, b, span_b, u_b, 1)
+    z = keep * _offset(m, a, span_a, u_a, 2) + share * _offset(m, b, span_b, u_b, 2)
     slack = _NEAR * length
     x = x if abs(x) > slack else 0.0
     y = y if abs(y) > slack else 0.0
@@ -260,10 +279,9 @@ def on_edge(m, h, degree, desired, k):
 
 
 @bare_kernel
-def _mean_offset(m, a, span_a, u_a, b, span_b, u_b, axis):
-    """Coordinate `axis` of the mean way from the curve's points to the vertices a and b."""
-    off = m.points[a, axis] - coordinate_in_span(m.curves, span_a, u_a, axis)
-    return 0.5 * (off + m.points[b, axis] - coordinate_in_span(m.curves, span_b, u_b, axis))
+def _offset(m, v, span, u, axis):
+    """Coordinate `axis` of the way from the curve's point to the vertex v."""
+    return m.points[v, axis] - coordinate_in_span(m.curves, span, u, axis)
 
 
 @bare_kernel

@@ -27,8 +27,10 @@ from meshwright_core.io.readers import (
     abaqus,
     avs,
     dolfin,
+    exodus,
     gmsh,
     legacy_vtk,
+    med,
     medit,
     nastran,
     netgen,
@@ -42,7 +44,9 @@ from meshwright_core.io.readers import (
 from meshwright_core.io.readers.binary_scenes import require_bounded
 from meshwright_core.io.writers import abaqus as abaqus_writer
 from meshwright_core.io.writers import cell_arrays
+from meshwright_core.io.writers import exodus as exodus_writer
 from meshwright_core.io.writers import gmsh as gmsh_writer
+from meshwright_core.io.writers import med as med_writer
 from meshwright_core.io.writers import nastran as nastran_writer
 from meshwright_core.io.writers import su2 as su2_writer
 from meshwright_core.io.writers import xdmf as xdmf_writer
@@ -100,7 +104,8 @@ def of(path: str | os.PathLike[str]) -> Format:
     for package in form.needs:
         if importlib.util.find_spec(package) is None:
             raise MeshError(
-                f"{form.title} files need the package {package}, which is not installed"
+                f"{form.title} files need the package {package}, which is not installed "
+                f"(pip install {package}, or meshwright[files])"
             )
     return form
 
@@ -281,6 +286,15 @@ _XDMF = Format(
     sides=True,
 )
 
+_EXODUS = Format(
+    "Exodus",
+    _own_path(exodus.read),
+    exodus_writer.write,
+    regions=True,
+    sides=True,
+    needs=("netCDF4",),
+)
+
 FORMATS: dict[str, Format] = {
     ".msh": _MSH,
     ".vtk": _VTK,
@@ -305,9 +319,19 @@ FORMATS: dict[str, Format] = {
     ".3mf": Format("3MF", *_trimesh("3mf"), kinds=_TRIANGLES, merge=True, needs=("lxml",)),
     ".xdmf": _XDMF,
     ".xmf": _XDMF,
+    ".med": Format(
+        "MED",
+        _own_path(med.read),
+        med_writer.write,
+        regions=True,
+        sides=True,
+        needs=("h5py",),
+    ),
+    ".exo": _EXODUS,
+    ".e": _EXODUS,
 }
 """Every ending that is read and written.
 
-MED, Exodus, CGNS and the like are left out: their HDF5 library kills the process when the disk
-is full. XDMF is written as plain XML.
+XDMF is written as plain XML, MED and Exodus in memory first: the HDF5 library kills the process
+when the disk is full.
 """

@@ -41,6 +41,7 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.curve_checks import require_seats
 from meshwright_core.core.projected_seats import take_projected_seats
+from meshwright_core.core.score_bound import bound_excess_of
 from meshwright_core.errors import MeshError
 from meshwright_core.history import step_archive
 from meshwright_core.history.journal import WRITE_KINDS
@@ -133,6 +134,8 @@ def from_arrays(arrays: Mapping[str, np.ndarray]) -> HalfEdgeMesh:
         m.parameter[: len(points)] = stored(arrays, "parameter", np.float64, (len(points),))
         m.region[: len(edge) // k] = stored(arrays, "region", np.int32, (len(edge) // k,))
         require_seats(m, boundary)
+        if boundary.bound_excess not in (0, bound_excess_of(m)):
+            raise MeshError("its lower bound of s is not that of its regions")
     done, undone = (restored_steps(arrays, name, mesh) for name in ("done", "undone"))
     mesh.adopt_steps(done, undone)
     return mesh

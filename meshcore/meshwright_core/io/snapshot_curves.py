@@ -69,7 +69,8 @@ def names_record(boundary: MeshBoundary) -> dict[str, Any]:
 
 
 def _plan_record(boundary: MeshBoundary) -> dict[str, Any]:
-    return {} if boundary.plan.empty else {"plan": boundary.plan.record()}
+    record: dict[str, Any] = {} if boundary.plan.empty else {"plan": boundary.plan.record()}
+    return record | ({"bound excess": boundary.bound_excess} if boundary.bound_excess else {})
 
 
 def _other_record(other: MeshBoundary, boundary: MeshBoundary) -> dict[str, Any]:
@@ -87,8 +88,12 @@ def stored_names(record: Any, boundary: MeshBoundary) -> MeshBoundary:
     """
     try:
         plan = GridPlan.of_record(record["plan"]) if "plan" in record else GridPlan()
+        excess = int(record.get("bound excess", 0))
+        if not 0 <= excess < 2**31 or excess % 2:
+            raise ValueError("no bound exceeds another by that")
+        boundary = replace(boundary, plan=plan, bound_excess=excess)
         if record.get("same names"):
-            return replace(boundary, plan=plan)
+            return boundary
         names = tuple(record["regions"])
         pieces = tuple(tuple(map(_piece, some)) for some in record["pieces"])
         tags = {(int(d), str(name)): int(tag) for d, name, tag in record.get("tags", ())}
@@ -105,7 +110,7 @@ def stored_names(record: Any, boundary: MeshBoundary) -> MeshBoundary:
     sound = len(pieces) == boundary.count and len(names) == regions > 0
     if not sound or not all(isinstance(name, str) for name in names):
         raise MeshError("its curves have wrong names")
-    return replace(boundary, region_names=names, pieces=pieces, tags=tags, plan=plan)
+    return replace(boundary, region_names=names, pieces=pieces, tags=tags)
 
 
 def stored_boundary(

@@ -34,6 +34,7 @@ from meshwright_core.operations import (
     global_lines,
     global_split,
     quad_edits,
+    ring_insertion,
     triangle_edits,
 )
 from meshwright_core.operations.refusals import ALLOWED, DEAD_HALFEDGE
@@ -50,12 +51,13 @@ class Operation(StrEnum):
     GLOBAL_SPLIT = "global_split"
     CLEANUP = "cleanup"
     CHORD_COLLAPSE = "chord_collapse"
+    INSERT_RING = "insert_ring"
 
 
 # codes for compiled kernels; triangles and quads do not share codes
 TRI_FLIP, TRI_SPLIT, TRI_COLLAPSE = 0, 1, 2
 FLIP_LEFT, FLIP_RIGHT, QUAD_SPLIT, QUAD_COLLAPSE = 3, 4, 5, 6
-GLOBAL_SPLIT, CLEANUP, CHORD_COLLAPSE = 7, 8, 9
+GLOBAL_SPLIT, CLEANUP, CHORD_COLLAPSE, INSERT_RING = 7, 8, 9, 10
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,6 +195,18 @@ CATALOGUE = (
         score_formula=False,
         beyond_paper=True,
     ),
+    OperationInfo(
+        operation=Operation.INSERT_RING,
+        kind="quad",
+        code=INSERT_RING,
+        title="Insert ring",
+        summary="puts a layer of quads along the closed boundary loop or interface of the edge",
+        key="I",
+        growth=None,
+        needs_twin=False,
+        policy=False,
+        beyond_paper=True,
+    ),
 )
 
 
@@ -241,7 +255,9 @@ def check(m, operation, h, cap):
         return global_split.check_global_split(m, h, cap)
     if operation == CLEANUP:
         return global_lines.check_cleanup(m, h, cap)
-    return chord_collapse.check_chord_collapse(m, h, cap)
+    if operation == CHORD_COLLAPSE:
+        return chord_collapse.check_chord_collapse(m, h, cap)
+    return ring_insertion.check_insert_ring(m, h, cap)
 
 
 @bare_shared_kernel
@@ -266,8 +282,10 @@ def rewrite(m, operation, h):
         global_split.global_split(m, h)
     elif operation == CLEANUP:
         global_lines.cleanup(m, h)
-    else:
+    elif operation == CHORD_COLLAPSE:
         chord_collapse.chord_collapse(m, h)
+    else:
+        ring_insertion.insert_ring(m, h)
     end_step(m)
 
 
@@ -279,8 +297,9 @@ def provide_rewrite(arrays: MeshArrays) -> None:
 
 @bare_kernel
 def score_change(m, operation, h):
-    """The exact change of s that an allowed operation makes, without applying it, in O(1).
+    """The exact change of s that an allowed operation makes, without applying it.
 
+    In O(1), and for a ring in the length of its loop.
     0 for the collapse of a chord, which has no formula: a dry run gives its change.
     """
     if operation == TRI_FLIP:
@@ -301,6 +320,8 @@ def score_change(m, operation, h):
         return global_split.score_change_global_split(m, h)
     if operation == CLEANUP:
         return global_lines.score_change_cleanup(m, h)
+    if operation == INSERT_RING:
+        return ring_insertion.score_change_insert_ring(m, h)
     return 0
 
 

@@ -29,6 +29,9 @@ BOTH_ON_CURVE = 25
 INTERFACE_PULLED = 26
 INTERFACE_GONE = 27
 LINE_ON_INTERFACE = 28
+NO_LOOP = 29
+LOOP_NOT_CLOSED = 30
+INTERFACES_AT_LOOP = 31
 
 # not a refusal: the caller enlarges the arrays and checks again
 NEED_ROOM = 99
@@ -64,5 +67,9 @@ SENTENCES = {
     INTERFACE_PULLED: "an interface of two regions would be pulled to a geometric vertex beside it",
     INTERFACE_GONE: "an edge on the interface of two regions would be deleted",
     LINE_ON_INTERFACE: "a part of the line lies on the interface of two regions",
+    NO_LOOP: "the edge {a}-{b} lies within a region: a ring goes along the boundary or along an"
+    " interface that closes",
+    LOOP_NOT_CLOSED: "the interface there does not close in a loop of its own",
+    INTERFACES_AT_LOOP: "two interfaces end in the same vertex of the boundary there",
     OTHER_KIND: "{operation} is not an operation of {kind} meshes",
 }

@@ -71,10 +71,14 @@ class _Rewrite:
 
     def _halve(self, a: int, b: int, v: int) -> None:
         """Put v in the middle of the range of the edge a-b, if it has one."""
-        for x, y in ((a, b), (b, a)):
+        self._cut(a, b, v, 0.5)
+
+    def _cut(self, a: int, b: int, v: int, share: float) -> None:
+        """Put v that share of the way from a to b in the range of the edge, if it has one."""
+        for x, y, part in ((a, b, share), (b, a, 1.0 - share)):
             if (x, y) in self.mesh.ranges:
                 curve, start, stop = self.mesh.drop_range((x, y))
-                middle = 0.5 * (start + stop)
+                middle = (1.0 - part) * start + part * stop
                 self.mesh.put_range((x, v), (curve, start, middle))
                 self.mesh.put_range((v, y), (curve, middle, stop))
 
@@ -228,6 +232,66 @@ class _Rewrite:
                 x, v, y = w, far, z
                 if len(made) > most:
                     raise Refused("it does not end")
+
+    def insert_ring(self, a: int, b: int) -> None:
+        mesh = self.mesh
+        self._left(a, b)
+        outer = (b, a) not in mesh.left
+        if not outer and (a, b) not in mesh.ranges and (b, a) not in mesh.ranges:
+            raise Refused("the edge lies within a region")
+
+        def ends(u: int, v: int) -> bool:
+            """Whether the edge belongs to such a loop."""
+            if outer:
+                return (v, u) not in mesh.left
+            return (u, v) in mesh.ranges or (v, u) in mesh.ranges
+
+        # at each vertex: the corners of its elements on this side, from one loop edge to the next
+        loop, fans = [(a, b)], []
+        while True:
+            u, v = loop[-1]
+            fan = [u]
+            while True:
+                fan.append(self._left(fan[-1], v)[2])
+                if ends(v, fan[-1]):
+                    break
+            fans.append(fan)
+            if (v, fan[-1]) == (a, b):
+                break
+            loop.append((v, fan[-1]))
+        fans = fans[-1:] + fans[:-1]
+        if not outer:
+            directed = [edge if edge in mesh.ranges else edge[::-1] for edge in loop]
+            curves = {mesh.ranges[edge][0] for edge in directed}
+            if len(curves) > 1 or any(len(mesh.ranges_at(v)) > 2 for v, _ in loop):
+                raise Refused("the interface does not close")
+        old: dict[Face, None] = {}
+        crossing: list[tuple[int, int]] = []
+        copy: dict[int, int] = {}
+        for (v, _), fan in zip(loop, fans, strict=True):
+            inner = [u for u in fan[1:-1] if (u, v) in mesh.ranges or (v, u) in mesh.ranges]
+            if len(inner) > 1:
+                raise Refused("two interfaces meet the loop in a vertex")
+            copy[v] = self._new(boundary=False)
+            old.update({turned(self._left(u, v)): None for u in fan[:-1]})
+            crossing += [(v, u) for u in inner]
+        for v, u in crossing:
+            if (u, v) in crossing and copy[u] < copy[v]:
+                continue
+            self._cut(v, u, copy[v], 1.0 / 3.0)
+            if (u, v) in crossing:
+                self._cut(u, copy[v], copy[u], 0.5)
+        inside = {
+            (v, turned(self._left(u, v)))
+            for (v, _), fan in zip(loop, fans, strict=True)
+            for u in fan[:-1]
+        }
+        faces = list(old)
+        new = [tuple(copy[v] if (v, f) in inside else v for v in f) for f in faces]
+        new += [(u, v, copy[v], copy[u]) for u, v in loop]
+        regions = [mesh.regions[f] for f in faces]
+        regions += [mesh.regions[turned(self._left(u, v))] for u, v in loop]
+        self._swap(faces, new, regions)
 
     def cleanup(self, a: int, b: int) -> None:
         self._right(a, b)

@@ -3,12 +3,16 @@
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 
 import pytest
 
 from meshwright.assistant import result_walk
 from meshwright.assistant.assistant import Assistant, State
-from meshwright.assistant.search_runner import Effort
+from meshwright.assistant.outcome import shape_wanted
+from meshwright.assistant.progress import RunProgress
+from meshwright.assistant.run import AgentRun
+from meshwright.assistant.search_runner import Effort, ShapeGoal
 from meshwright.document.document import Document
 
 
@@ -116,6 +120,49 @@ def test_a_search_reaches_the_optimum(make, desk, star):
     assert document.normalised_return == 1.0
     assert "At the optimum after" in assistant.heard[-1]
     star.validate()
+
+
+def test_an_end_at_the_optimum_tells_what_is_wanting(make, desk, star, monkeypatch):
+    goal = ShapeGoal(0.1, 0.5)
+    monkeypatch.setattr(ShapeGoal, "of", lambda mesh, effort: goal)
+    document = Document(star)
+    assistant = make(document)
+    assistant.search(Effort(seconds=1.0, prefer="shape"))
+    desk.until(lambda: not assistant.running)
+    assert document.at_optimum and assistant.unfinished
+    assert shape_wanted(goal) == "shape .10 of the .50 wanted"
+    assert assistant.outcome.endswith(", at the optimum, but shape .10 of the .50 wanted: go on?")
+    # the policy has nothing left to do there, but a search goes on
+    assistant.play()
+    assert assistant.heard[-1].startswith("Already at the optimum") and not assistant.running
+    assistant.search(Effort(seconds=1.0, prefer="shape", until_done=True))
+    assert assistant.running
+    desk.until(lambda: not assistant.running)
+
+
+def test_nothing_is_searched_where_the_optimum_and_the_shape_are_reached(make, desk, star):
+    document = Document(star)
+    assistant = make(document)
+    assistant.search()
+    desk.until(lambda: not assistant.running)
+    effort = Effort(prefer="blocks", until_done=True)
+    assistant.search(effort)
+    assert not assistant.running
+    assert "is as good as was asked for" in assistant.heard[-1]
+    assistant.search(replace(effort, beyond=True))
+    assert assistant.running
+    desk.until(lambda: not assistant.running)
+
+
+def test_the_shape_that_a_search_has_reached_is_part_of_its_progress(star):
+    progress = RunProgress()
+    run = AgentRun(State.SEARCHING, "p", 0, None, 1.0, False, effort=Effort(until_done=True))
+    progress.begin(run, True, score=20, optimum=12)
+    assert progress.share == 0.0
+    assert progress.found(3, 16) and progress.share == 0.5
+    assert progress.found(3, 12, ShapeGoal(0.25, 0.5)) and progress.share == 0.75
+    assert not progress.found(3, 12, ShapeGoal(0.25, 0.5))
+    assert progress.found(3, 12, ShapeGoal(0.5, 0.5)) and progress.share == 1.0
 
 
 def test_a_search_reports_its_best_and_applies_it_when_stopped(make, desk, star):

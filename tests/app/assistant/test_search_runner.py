@@ -3,11 +3,24 @@
 from threading import Event
 
 import numpy as np
+import pytest
 
-from meshwright.assistant.search_runner import PREFERENCES, Effort, SearchRunner
+from meshwright.assistant.search_runner import PREFERENCES, Effort, SearchRunner, ShapeGoal
 from meshwright_agent.policy.policy_files import load
 from meshwright_agent.search import layout_search
+from meshwright_agent.search.layout_search import Preference
 from meshwright_agent.search.solution import Solution, judged
+from meshwright_core.domains import meshing
+from meshwright_core.geometry.quality import scaled_jacobian
+
+
+@pytest.fixture
+def dented():
+    """A grid of 3 x 3 quads, at s*, with an inner vertex close to a corner of the grid."""
+    mesh = meshing.grid("quad", 9)
+    inner = mesh.vertices()[~mesh.boundary()[mesh.vertices()]][:1]
+    mesh.move(inner, 0.46 * mesh.points[mesh.vertices()].min(axis=0) + 0.54 * mesh.points[inner])
+    return mesh
 
 
 def _all_steps(runner):
@@ -69,12 +82,67 @@ def test_complete_goes_on_from_the_best_state_until_nothing_is_won(star, monkeyp
     operations = runner.step()
     scores, seconds, found = zip(*asked, strict=True)
     assert runner.finished and len(operations) == sum(found)
-    # two rounds that win, then two without success, the second with twice the time
-    assert seconds == (3.0, 3.0, 3.0, 6.0)
+    # two rounds that win, then two without success; longer ones once layouts are searched, and
+    # after one that has won nothing twice as long
+    assert seconds == (3.0, 12.0, 12.0, 24.0)
+    assert "nothing better was found" in runner.reason
     assert scores[0] > scores[1] > scores[2] == scores[3]
     for operation, halfedge in operations:
         start.apply(operation, halfedge)
     assert np.array_equal(start.elements(), runner.target.elements())
+
+
+def test_complete_goes_on_at_the_optimum_until_the_shape_is_reached(dented, monkeypatch):
+    """At s* from the first round on, the worst corner is raised a little in each round."""
+    assert dented.score == dented.optimum
+    aim = ShapeGoal.of(dented, Effort()).aim
+    told, starts = [], []
+
+    def one(self, start, seconds, done):
+        starts.append(scaled_jacobian(start).min())
+        found = judged(Solution([], 0, start.optimum, 0, aims=Preference().aims(1.0, 1.0)), start)
+        share = 0.04  # of the way to the good positions
+        here = start.points[found.vertices]
+        found.positions = here + share * (found.positions - here)
+        placed = start.copy()
+        found.place(placed)
+        found.worst_scaled_jacobian = float(scaled_jacobian(placed).min())
+        found.operations = [("flip_left", 0)]  # counts as something done
+        return found
+
+    monkeypatch.setattr(SearchRunner, "_round", one)
+    monkeypatch.setattr(Solution, "replay", lambda self, mesh: None)
+    runner = SearchRunner(
+        dented, None, 0, Effort(until_done=True), Event(), lambda *a: told.append(runner.shape)
+    )
+    runner.step()
+    shapes = [goal.worst for goal in told]
+    assert len(starts) > 2 and starts == sorted(starts) and shapes == sorted(shapes)
+    assert shapes[-2] < aim <= shapes[-1] == runner.shape.worst and runner.shape.reached
+    assert runner.reason == ""
+
+
+def test_the_solver_mends_a_bad_shape_at_the_optimum(dented):
+    effort = Effort(seconds=0.5, until_done=True)
+    before = ShapeGoal.of(dented, effort)
+    runner = SearchRunner(dented.copy(), load("quad"), 0, effort, Event(), lambda *a: None)
+    runner.step()
+    assert not before.reached and runner.shape.reached
+    assert runner.target.score == runner.target.optimum
+    # where both are reached nothing is searched, unless fewer blocks are asked for
+    again = SearchRunner(runner.target, None, 0, effort, Event(), print)
+    assert again.step() == [] and "nothing better" in again.reason
+
+
+def test_a_shape_is_wanted_of_plane_quads_that_are_not_too_many(star):
+    assert ShapeGoal.of(star, Effort()).aim == ShapeGoal.of(star, Effort(keep_size=True)).aim
+    assert ShapeGoal.of(star, Effort(prefer="blocks")).aim < ShapeGoal.of(star, Effort()).aim
+    assert ShapeGoal.of(star, Effort(elements=star.element_ids()[:3])) is None
+    triangles = meshing.grid("tri", 18)
+    assert ShapeGoal.of(triangles, Effort()) is None
+    assert ShapeGoal.of(meshing.grid("quad", 900), Effort()) is None
+    star.points[star.vertices()[0], 2] = 0.1
+    assert ShapeGoal.of(star, Effort()) is None
 
 
 def test_the_words_of_preferences_are_those_of_the_solver():

@@ -95,3 +95,14 @@ def test_gaps_are_closed_as_wide_as_one_asks(run, tmp_path):
 def test_wrong_use(run, words, reason):
     code, _, err = run(*words)
     assert code == 2 and err.count("\n") == 1 and reason in err
+
+
+def test_a_drawing_that_takes_too_long_is_refused_in_a_line(run, tmp_path):
+    circles = "".join(f'<circle cx="9" cy="9" r="{1 + i / 3000}"/>' for i in range(1500))
+    (tmp_path / "rings.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{circles}</svg>')
+    for words in (["shapes", "rings.svg"], ["mesh", "rings.svg", "-o", "m.vtk"]):
+        code, out, err = run(*words, "--time-limit", "0.2")
+        assert (code, out) == (2, "")
+        assert "more than 0.2 s of processor time" in err
+        assert err.count("\n") == 1
+    assert not (tmp_path / "m.vtk").exists()

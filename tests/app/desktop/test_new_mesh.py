@@ -319,6 +319,43 @@ def test_snapping_to_right_angles_shows_guides_and_can_be_switched_off(qtbot, di
     assert draw.sketch.loops[0].corners[2][0] != draw.sketch.loops[0].corners[1][0]
 
 
+def test_snapping_to_middles_of_edges_and_arcs(qtbot, dialog, pen):
+    draw = dialog.draw
+    draw.to_grid.click()
+    draw.to_angles.click()
+    pen.loop([(-0.5, -0.5), (0.63, -0.5), (0.63, 0.71), (-0.5, 0.71)])
+    corners = draw.sketch.loops[0].corners
+    halfway = tuple(np.mean(corners[1:3], axis=0).tolist())
+    # an edge is grabbed in its middle, a few pixels beside it
+    pen.drag((halfway[0] + 0.01, halfway[1] + 0.02), (0.9, 0.1))
+    draw.undo.click()
+    pen.click(halfway[0] + 0.01, halfway[1] + 0.02)
+    assert draw.sketch.loops[0].corners[2] == halfway
+    draw.undo.click()
+    # a hole begins there, and the picture shows a triangle
+    draw.hole.click()
+    pen.point(halfway[0] - 0.02, halfway[1] + 0.01)
+    assert draw.area._snap.met == "middle" and draw.area._snap.place == halfway
+    draw.area.grab()
+    # a corner goes first, and the tick switches it off
+    pen.point(corners[2][0] + 0.01, corners[2][1])
+    assert draw.area._snap.met == "point"
+    draw.to_middles.click()
+    pen.point(halfway[0] - 0.02, halfway[1] + 0.01)
+    assert draw.area._snap.met == ""
+
+
+def test_a_corner_is_dragged_to_the_middle_of_an_edge(qtbot, dialog, pen):
+    draw = dialog.draw
+    draw.to_grid.click()
+    pen.loop(SQUARE)
+    draw.hole.click()
+    pen.loop([(-0.2, -0.2), (0.13, -0.2), (0.13, 0.17)])
+    bottom = tuple(np.mean(draw.sketch.loops[0].corners[:2], axis=0).tolist())
+    pen.drag(draw.sketch.loops[1].corners[0], (bottom[0] + 0.02, bottom[1] + 0.01))
+    assert draw.sketch.loops[1].corners[0] == bottom
+
+
 def test_coordinates_are_typed_in_the_table(qtbot, dialog, pen):
     table, sketch = dialog.draw.table, dialog.draw.sketch
 

@@ -221,7 +221,7 @@ def test_the_dialog_exports_in_the_background_and_says_the_result(
     window = shown(annulus())
     path = tmp_path / "ring.geo"
     monkeypatch.setattr(
-        "meshwright.desktop.blocks.export_blocks_controller.QFileDialog.getSaveFileName",
+        "meshwright.desktop.exporting.export_task.QFileDialog.getSaveFileName",
         lambda *words: (str(path), ""),
     )
 

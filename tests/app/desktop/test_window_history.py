@@ -269,7 +269,7 @@ def test_ten_thousand_steps_are_listed_and_hovered_cheaply(qtbot, open_window, s
 def ask(qtbot, window, choose, monkeypatch, path) -> None:
     """Open the export dialog by its key, call ``choose(dialog)``, and enter ``path``."""
     monkeypatch.setattr(
-        "meshwright.desktop.history.export_controller.QFileDialog.getSaveFileName",
+        "meshwright.desktop.exporting.export_task.QFileDialog.getSaveFileName",
         lambda *arguments: (str(path), ""),
     )
 

@@ -160,6 +160,20 @@ def test_grid_places_are_short_decimals():
 PLACES = st.tuples(st.integers(0, 5), st.integers(0, 5))
 
 
+def test_middles_of_segments_and_arcs():
+    sketch = Sketch()
+    for place, bulge in [((0.0, 0.0), 0.0), ((2.0, 0.0), 0.0), ((2.0, 2.0), 1.0)]:
+        sketch.add(place, bulge)
+    sketch.close()
+    assert sketch.middles() == [(1.0, 0.0), (3.0, 1.0), (1.0, 1.0)]
+    assert sketch.middles((0, 0)) == [(3.0, 1.0)]  # without the edges at the first corner
+    snapper = Snapper()
+    near = snapper.snap((2.98, 1.01), 0.05, [(2.0, 2.0)], middles=sketch.middles())
+    assert (near.place, near.met) == ((3.0, 1.0), "middle")
+    both = snapper.snap((1.0, 0.01), 0.05, [(1.0, 0.03)], middles=sketch.middles())
+    assert both.met == "point"
+
+
 @settings(max_examples=400)
 @given(
     st.lists(PLACES, min_size=3, max_size=7, unique=True),

@@ -10,7 +10,7 @@ from meshwright_core import MeshError
 from meshwright_core.core.arrays import CURVE
 from meshwright_core.core.composite_curves import place_all
 from meshwright_core.domains import curved_shapes, gallery, meshing
-from meshwright_core.domains.curved_parts import curved_suite
+from meshwright_core.domains.curved_parts import curved_part, curved_suite
 from meshwright_core.domains.domain import Domain
 from meshwright_core.geometry.edge_curves import element_areas
 
@@ -153,6 +153,14 @@ def test_suite_of_curved_parts_is_reproducible_and_varied():
         mesh = meshing.mesh_domain(domain, "quad")
         assert_meshes(domain, mesh)
         assert mesh.n_elements < 300
+
+
+def test_a_point_of_a_flat_triangle_is_not_inserted_twice():
+    part = curved_part(np.random.default_rng([555002]))
+    mesh = meshing.mesh_domain(part, "quad")
+    mesh.validate()
+    assert mesh.optimum == part.optimum("quad")
+    assert element_areas(mesh).sum() == pytest.approx(part.area, rel=1e-12)
 
 
 def test_flattened_domain_has_the_corners():

@@ -12,7 +12,14 @@ from meshwright_core.io.formats import FORMATS
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "formats.md"
 COLUMNS = ("title", "triangles", "quads", "regions", "sides", "quadratic", "parts", "binary")
-ALIKE = {".nas": ".bdf", ".fem": ".bdf", ".tec": ".dat", ".gltf": ".glb", ".xmf": ".xdmf"}
+ALIKE = {
+    ".nas": ".bdf",
+    ".fem": ".bdf",
+    ".tec": ".dat",
+    ".gltf": ".glb",
+    ".xmf": ".xdmf",
+    ".e": ".exo",
+}
 POINTS = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 .5 0 0\n5 .5 .5 0\n6 0 .5 0\n"
 PLAIN = "0 0 0\n1 0 0\n0 1 0\n.5 0 0\n.5 .5 0\n0 .5 0\n"
 ZONE = 'ZONE T="{0}", N=3, E=1, F=FEPOINT, ET=TRIANGLE\n{1} 0\n{2} 0\n{1} 1\n1 2 3\n'

@@ -130,7 +130,9 @@ def test_an_element_that_is_there_twice_is_read_once():
 
 
 # those that trimesh reads are not text
-TEXTS = [ending for ending in FORMATS if ending not in (".glb", ".gltf", ".3mf")]
+TEXTS = [
+    ending for ending in FORMATS if ending not in (".glb", ".gltf", ".3mf", ".med", ".exo", ".e")
+]
 
 
 @pytest.mark.parametrize("ending", TEXTS)

@@ -491,3 +491,18 @@ def test_positions_are_written_with_all_their_digits(ending, tmp_path):
     mesh = HalfEdgeMesh.from_elements(points, [[0, 1, 2], [0, 2, 3]])
     meshwright_core.write(tmp_path / f"mesh{ending}", mesh)
     assert np.array_equal(meshwright_core.read(tmp_path / f"mesh{ending}").points, mesh.points)
+
+
+def test_a_point_number_that_is_too_large_is_said(tmp_path):
+    vertices = "".join(f'<vertex index="{i}" x="{i % 2}" y="{i // 2}" z="0"/>' for i in range(4))
+    cells = "".join(
+        f'<triangle index="{i}" v0="{a}" v1="{b}" v2="{c}"/>'
+        for i, (a, b, c) in enumerate([(0, 1, 3), (0, 3518446744073709551615, 2)])
+    )
+    path = tmp_path / "a.xml"
+    path.write_text(
+        f'<dolfin><mesh celltype="triangle" dim="2"><vertices size="4">{vertices}</vertices>'
+        f'<cells size="2">{cells}</cells></mesh></dolfin>'
+    )
+    with pytest.raises(MeshError, match="where a whole number belongs"):
+        meshwright_core.io.mesh_files.load(path)

@@ -85,7 +85,9 @@ def test_names_that_are_written_in_another_way_are_said():
     assert line.endswith("single words: 'hot inlet, left' becomes 'hot_inlet_left'.")
 
 
-@pytest.mark.parametrize("ending", [e for e in FORMATS if e not in (*NAMED, ".xmf", ".3mf")])
+@pytest.mark.parametrize(
+    "ending", [e for e in FORMATS if e not in (*NAMED, ".xmf", ".3mf", ".med", ".exo", ".e")]
+)
 def test_what_a_format_loses_is_said(ending, tmp_path):
     form = FORMATS[ending]
     mesh = plate("quad" if "quad" in form.kinds else "tri")
@@ -151,3 +153,14 @@ def test_fields_that_are_dropped_are_named(tmp_path):
 
     kept = meshio.read(tmp_path / "again.vtk")
     assert kept.cell_data["material"][0].tolist() == [4, 7, 4, 7]
+
+
+def test_physical_groups_without_elements_are_said(tmp_path):
+    path = tmp_path / "a.msh"
+    path.write_text(
+        '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 "left"\n2 2 "right"\n'
+        "$EndPhysicalNames\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n"
+        "1 2 2 1 1 1 2 3\n$EndElements\n"
+    )
+    found = mesh_files.load(path)
+    assert any("no element is in the physical groups 'right'" in note for note in found.notes)

@@ -50,7 +50,9 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     domain = mesh_input.read_domain(arguments.shape, arguments)
     start = time.perf_counter()
     with report.progress(f"meshing {domain.name or arguments.shape}"):
-        mesh = inputs.make_mesh(domain, arguments.kind, arguments.max_edge, arguments.seed)
+        mesh = inputs.make_mesh(
+            domain, arguments.kind, arguments.max_edge, arguments.seed, arguments.time_limit
+        )
         small = mesh.n_elements <= SMOOTHED
         inverted = settle(mesh) if small or len(quality.inverted(mesh)) else []
     mesh_output.write_mesh(output, mesh)

@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
     if arguments.file is not None:
         _regions(arguments, report)
         return
-    for option in ("layer", "gap", "corner_angle"):
+    for option in ("layer", "gap", "corner_angle", "time_limit"):
         if getattr(arguments, option) is not None:
             raise UserError(f"--{option.replace('_', '-')}: this is for a drawing; name its file")
     from meshwright_core.domains import gallery
@@ -55,6 +55,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
 def _regions(arguments: argparse.Namespace, report: Report) -> None:
     from meshwright.document.storage.document_file import is_drawing
     from meshwright_core.core.irregularity import CORNER_ANGLE
+    from meshwright_core.core.time_limit import SECONDS
     from meshwright_core.io import drawings
 
     path = arguments.file
@@ -63,8 +64,9 @@ def _regions(arguments: argparse.Namespace, report: Report) -> None:
     if not is_drawing(path):
         raise UserError(f"{path}: a file of a shape ends in one of {' '.join(drawings.endings())}")
     angle = CORNER_ANGLE if arguments.corner_angle is None else arguments.corner_angle
+    seconds = arguments.time_limit or SECONDS
     with inputs.bad_input(path):
-        found = drawings.read_regions(path, angle, arguments.gap, arguments.layer)
+        found = drawings.read_regions(path, angle, arguments.gap, arguments.layer, seconds)
     report.result({"command": "shapes", "file": path, **found.to_json()}, _text(path, found))
 
 

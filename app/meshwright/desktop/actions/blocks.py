@@ -112,6 +112,10 @@ ACTIONS: tuple[Action, ...] = (
         partial(_apply, Operation.GLOBAL_SPLIT),
     ),
     _tool(
+        "ring", "Insert ring", "Put a layer of blocks along the boundary loop, or the closed "
+        "interface, of the selected edge", "Ctrl+Shift+R", partial(_apply, Operation.INSERT_RING),
+    ),
+    _tool(
         "collapse", "Collapse chord", "Remove the selected strip of blocks", "Ctrl+Shift+V",
         partial(_apply, Operation.CHORD_COLLAPSE),
     ),

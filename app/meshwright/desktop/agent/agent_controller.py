@@ -125,19 +125,19 @@ class AgentController(Controller):
         return replace(effort, prefer=panel.preference, keep_size=panel.keep_size.isChecked())
 
     def complete(self) -> None:
-        """Search until s* is reached or nothing more is won."""
+        """Search until s* and the wanted shape are reached or nothing more is won."""
         self._assistant.search(self._wished(Effort(until_done=True)))
 
     def best_of(self) -> None:
         """Run the policy as often as set in the panel, and apply the best result."""
         rollouts = self._panel.rollouts
         self._assistant.search(
-            Effort(rollouts=rollouts, seconds=None, prefer=self._panel.preference)
+            Effort(rollouts=rollouts, seconds=None, prefer=self._panel.preference, beyond=True)
         )
 
     def search(self) -> None:
         """Search for the time set in the panel."""
-        self._assistant.search(self._wished(Effort(seconds=self._panel.seconds)))
+        self._assistant.search(self._wished(Effort(seconds=self._panel.seconds, beyond=True)))
 
     def finish_region(self) -> None:
         """Search in the selected region for the time set in the panel; the rest of the mesh is

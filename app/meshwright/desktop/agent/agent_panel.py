@@ -19,6 +19,7 @@ from qtpy.QtWidgets import (
 )
 
 from meshwright.assistant.assistant import Assistant, State
+from meshwright.assistant.outcome import shape_wanted
 from meshwright.assistant.policy_catalogue import kind_of, label, shipped
 from meshwright.assistant.search_runner import PREFERENCES
 from meshwright.desktop.agent.hint_list import HintList
@@ -354,8 +355,9 @@ def activity(assistant: Assistant) -> str:
         done = (
             f", {progress.rollouts} of {effort.rollouts} runs" if effort and effort.rollouts else ""
         )
-        above = f", {progress.gap:,} above the optimum" if progress.gap else ""
-        return f"Searching: {progress.elapsed:.1f} s{done}{best}{above}"
+        above = f", {progress.gap:,} above the optimum" if (progress.gap or 0) > 0 else ""
+        shape = f", {shape_wanted(progress.shape)}" if progress.shape else ""
+        return f"Searching: {progress.elapsed:.1f} s{done}{best}{above}{shape}"
     if assistant.state is State.PAUSED:
         return f"Paused after {decisions}{best}"
     if assistant.state is State.PLAYING:

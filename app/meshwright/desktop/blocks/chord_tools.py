@@ -56,8 +56,8 @@ class ChordTools:
         self._try(lambda: block_edits.change_plan(self._document, wanted, title))
 
     def apply(self, operation: Operation) -> None:
-        """Apply an operation to the selected edge: the global split that inserts a chord, or the
-        collapse of the chord.
+        """Apply an operation to the selected edge: the global split that inserts a chord, a ring
+        along its loop, or the collapse of the chord.
         """
         if self._need_chord():
             halfedge = self._view.halfedge

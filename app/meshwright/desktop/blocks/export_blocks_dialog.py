@@ -9,16 +9,15 @@ from qtpy.QtCore import Qt
 from qtpy.QtWidgets import (
     QButtonGroup,
     QComboBox,
-    QDialog,
     QGridLayout,
     QHBoxLayout,
     QPushButton,
     QScrollArea,
     QStackedWidget,
-    QVBoxLayout,
     QWidget,
 )
 
+from meshwright.desktop.exporting.export_frame import ExportFrame
 from meshwright.desktop.widgets.basic import named, segment
 from meshwright.desktop.widgets.number_box import DecimalBox, IntegerBox
 from meshwright.desktop.widgets.wording import plural
@@ -103,7 +102,7 @@ class SideRow:
             box.valueChanged.connect(changed)
 
 
-class ExportBlocksDialog(QDialog):
+class ExportBlocksDialog(ExportFrame):
     """Edits a :class:`GridPlan` and a :class:`BlockExport`; says at once what comes of them."""
 
     def __init__(
@@ -113,8 +112,7 @@ class ExportBlocksDialog(QDialog):
         order: BlockExport,
         parent: QWidget | None = None,
     ) -> None:
-        super().__init__(parent)
-        self.setWindowTitle("Export blocks")
+        super().__init__("Export blocks", parent)
         self._structure = structure
         self.plan, self.order = plan, order
         self._usual = float(structure.lengths.mean()) / 8.0
@@ -130,9 +128,7 @@ class ExportBlocksDialog(QDialog):
         self.sides = {
             patch.name: SideRow(patch.name, self._on_changed) for patch in structure.patches
         }
-        self.note = named("", "Hint")
         self.note.setWordWrap(True)
-        self.cancel, self.export = QPushButton("Cancel"), QPushButton("Export\u2026")
         self._filled = False
         self._fill()
         self._arrange()
@@ -215,22 +211,10 @@ class ExportBlocksDialog(QDialog):
         form.addWidget(self._volume, 1, 1)
         form.addWidget(named("Cells", "Label"), 2, 0)
         form.addLayout(modes, 2, 1)
-        self.export.setObjectName("Primary")
-        self.export.setDefault(True)
-        self.cancel.clicked.connect(self.reject)
-        self.export.clicked.connect(self.accept)
-        buttons = QHBoxLayout()
-        buttons.setSpacing(GRID)
-        buttons.addWidget(self.note, 1)
-        buttons.addWidget(self.cancel)
-        buttons.addWidget(self.export)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
-        layout.setSpacing(2 * GRID)
-        layout.addLayout(form)
-        layout.addWidget(named("SIDES", "Heading"))
-        layout.addWidget(self._side_table(), 1)
-        layout.addLayout(buttons)
+        fields = self._framed()
+        fields.addLayout(form)
+        fields.addWidget(named("SIDES", "Heading"))
+        fields.addWidget(self._side_table(), 1)
         self.resize(640, min(300 + 44 * len(self.sides), 620))
 
     def _side_table(self) -> QWidget:

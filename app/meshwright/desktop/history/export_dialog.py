@@ -8,7 +8,6 @@ from qtpy.QtWidgets import (
     QButtonGroup,
     QCheckBox,
     QComboBox,
-    QDialog,
     QGridLayout,
     QHBoxLayout,
     QLabel,
@@ -17,6 +16,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from meshwright.desktop.exporting.export_frame import ExportFrame
 from meshwright.desktop.widgets.basic import named, segment
 from meshwright.desktop.widgets.number_box import DecimalBox, IntegerBox
 from meshwright.graphics.drawing import raster
@@ -44,14 +44,13 @@ LATER = 80
 """Milliseconds between a change and the update of the preview."""
 
 
-class ExportDialog(QDialog):
+class ExportDialog(ExportFrame):
     """Edits :class:`meshwright.graphics.export.export_job.ExportOptions`, with a preview of the
     state where ``film`` stands.
     """
 
     def __init__(self, film: Film, order: ExportOptions, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setWindowTitle("Export video or image")
+        super().__init__("Export video or image", parent)
         self._film = film
         self._state = film.state
         self._moment = film.moment(film.state)
@@ -66,7 +65,6 @@ class ExportDialog(QDialog):
         self.every = IntegerBox()
         self.parts: dict[str, QCheckBox] = {}
         self.length = named("", "Hint")
-        self.note = named("", "Hint")
         self.preview = QLabel()
         self._later = QTimer(self, singleShot=True, interval=LATER)
         self._later.timeout.connect(self._draw)
@@ -146,22 +144,9 @@ class ExportDialog(QDialog):
         middle.setSpacing(3 * GRID)
         middle.addWidget(self.preview)
         middle.addLayout(fields, 1)
-        self.cancel, self.export = QPushButton("Cancel"), QPushButton("Export\u2026")
-        self.export.setObjectName("Primary")
-        self.export.setDefault(True)
-        self.cancel.clicked.connect(self.reject)
-        self.export.clicked.connect(self.accept)
-        buttons = QHBoxLayout()
-        buttons.setSpacing(GRID)
-        buttons.addWidget(self.note, 1)
-        buttons.addWidget(self.cancel)
-        buttons.addWidget(self.export)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(3 * GRID, 3 * GRID, 3 * GRID, 2 * GRID)
-        layout.setSpacing(2 * GRID)
-        layout.addLayout(formats)
-        layout.addLayout(middle, 1)
-        layout.addLayout(buttons)
+        framed = self._framed()
+        framed.addLayout(formats)
+        framed.addLayout(middle, 1)
 
     def _on_changed(self) -> None:
         """Update the order from the fields."""

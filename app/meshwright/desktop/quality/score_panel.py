@@ -21,7 +21,7 @@ from meshwright.document.quality_summary import (
     decimal,
     shape_words,
 )
-from meshwright.document.verdict import findings
+from meshwright.document.verdict import findings, gap_words
 from meshwright.graphics.theme import GRID, Theme
 from meshwright_core import HalfEdgeMesh
 
@@ -142,8 +142,7 @@ class ScorePanel(QWidget):
         self.score.setStyleSheet(f"font-size: {size}px")
         self.score.setAccessibleName(f"Score {mesh.score}, optimum {mesh.optimum}")
         self.goal.setText(f"Optimum {mesh.optimum:,}")
-        gap = mesh.score - mesh.optimum
-        self.gap.setText(f"{gap:,} above it")
+        self.gap.setText(gap_words(mesh.score, mesh.optimum))
         self.bar.share = document.normalised_return
         self.gained.text = f"{document.normalised_return:.2f}"
         self.way.text = f"{document.start_score:,} \u2192 {document.best_score:,}"

@@ -9,10 +9,12 @@ import { Pointer } from "./input/pointer.js";
 import { Shortcuts } from "./input/shortcuts.js";
 import { hostTheme, watchHost } from "./link/host_theme.js";
 import { AgentPanel } from "./panels/agent_panel.js";
+import { BlocksPanel } from "./panels/blocks_panel.js";
 import { ColourChoice } from "./panels/colour_choice.js";
 import { canvasLabel, described, meshName, placed } from "./panels/labels.js";
 import { LevelBar } from "./panels/level_bar.js";
 import { Menus } from "./panels/menus.js";
+import { NamesLegend } from "./panels/names_legend.js";
 import { Notice } from "./panels/notice.js";
 import { OperationsPanel } from "./panels/operations_panel.js";
 import { ScorePanel } from "./panels/score_panel.js";
@@ -24,7 +26,10 @@ const WHEEL_HINT = /Mac|iPhone|iPad/.test(navigator.platform)
   : "Hold Ctrl and scroll to zoom, or click the mesh first.";
 const MOST_TOUCH_HINTS = 2;
 const TOUCH_HINT = "Two fingers move the mesh.";
-const ANSWERED = ["hello", "operate", "undo", "redo", "smooth", "untangle", "clean_all", "take_hint"];
+const ANSWERED = [
+  "hello", "operate", "undo", "redo", "smooth", "untangle", "clean_all", "take_hint", "chord_count",
+  "export_blocks",
+];
 
 class Card {
   constructor(link, options) {
@@ -62,11 +67,14 @@ class Card {
     this.zoomButtons = new ZoomButtons(this, place);
     this.notice = new Notice(place);
     this.colourChoice = new ColourChoice(this, this.stage);
+    this.names = new NamesLegend(this, place);
     this.score = new ScorePanel(this);
     this.operations = new OperationsPanel(this);
     this.agent = new AgentPanel(this);
+    this.blocks = new BlocksPanel(this);
     this.navigation = new KeyboardNavigation(this);
-    this.panel = node("div", "mw-panel", {}, this.score.root, this.operations.root, this.agent.root);
+    this.panel = node("div", "mw-panel", {},
+      this.score.root, this.operations.root, this.agent.root, this.blocks.root);
     this.root.append(
       above,
       node("div", "mw-body", {},
@@ -166,6 +174,8 @@ class Card {
       agent: () => this._onAgent(content),
       notice: () => this._onNotice(content),
       level: () => this.levelBar.update(content),
+      blocks: () => this.blocks.receive(content, buffers),
+      file: () => this.blocks.keep(content, buffers),
     };
     if (receivers[content.type]) receivers[content.type]();
   }
@@ -194,7 +204,9 @@ class Card {
     const { head } = this.replica;
     this.score.update(head);
     this.colourChoice.update(head);
+    this.names.update(head);
     this.timeline.update(head);
+    this.blocks.update(head);
     this.root.setAttribute("aria-label", meshName(head));
     this.stage.surface.setAttribute("aria-label", canvasLabel(head));
     if (this.pointer.place && !this.hoverState.pinned && !this.menus.open) {
@@ -244,7 +256,8 @@ class Card {
 
   hover(halfedge, at) {
     const badge = this.stage.overlay.badges.at(...at);
-    this.stage.surface.style.cursor = badge >= 0 ? "pointer" : "";
+    const number = this.stage.overlay.blocks.at(...at);
+    this.stage.surface.style.cursor = badge >= 0 || number >= 0 ? "pointer" : "";
     if (badge >= 0) this.showHint(badge);
     else if (!this.menus.open) {
       this.hoverState.preview(null);
@@ -268,6 +281,11 @@ class Card {
     const badge = this.stage.overlay.badges.at(...at);
     if (badge >= 0) {
       this.agent.take(badge);
+      return;
+    }
+    const number = this.stage.overlay.blocks.at(...at);
+    if (number >= 0) {
+      this.blocks.select(number, true);
       return;
     }
     this.hoverState.preview(null);

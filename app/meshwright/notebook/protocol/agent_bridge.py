@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshwright.assistant.assistant import FASTEST, Assistant
+from meshwright.assistant.outcome import shape_wanted
 from meshwright.assistant.policy_catalogue import kind_of, label, shipped
 from meshwright.assistant.search_runner import Effort
 from meshwright.document.document import NO_MESH, Document, title_of
@@ -132,6 +133,7 @@ class AgentBridge:
             "rollouts": progress.rollouts,
             "best": progress.best,
             "gap": progress.gap,
+            "shape": shape_wanted(progress.shape) if progress.shape else "",
             "way": list(progress.way) if progress.way else None,
             "share": progress.share,
             "seconds": round(progress.elapsed, 2),

@@ -12,6 +12,8 @@ from meshwright.document.quality_summary import decimal, shape_words
 from meshwright.document.score_series import ScoreSeries
 from meshwright.document.verdict import findings
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.core.side_names import side_edges
+from meshwright_core.geometry.edge_curves import ends_of
 from meshwright_core.geometry.shape_bound import shape_bound
 
 BLOCKS_UP_TO = 20_000
@@ -64,6 +66,7 @@ class DocumentStatus:
             "auto_smooth": document.auto_smooth,
             "at_optimum": document.at_optimum,
             "blocks": _blocks(mesh),
+            "sides": _sides(mesh),
             "row": self._row(),
             "track": {
                 "from": first,
@@ -139,6 +142,19 @@ class DocumentStatus:
             "halfedge": row.halfedge,
             "operation": row.action,
         }
+
+
+def _sides(mesh: HalfEdgeMesh | None) -> list[list[Any]]:
+    """Name and half-edges of each named side, in the order in which the window colours them."""
+    if mesh is None:
+        return []
+    named = {name: ends for name, ends in mesh.sides().items() if name}
+    if not named:
+        return []
+    halfedges = side_edges(mesh.arrays).halfedges
+    ends = ends_of(mesh, halfedges)
+    of = dict(zip(map(tuple, ends.tolist()), halfedges.tolist(), strict=True))
+    return [[name, [of[a, b] for a, b in edges.tolist()]] for name, edges in sorted(named.items())]
 
 
 def _blocks(mesh: HalfEdgeMesh | None) -> int | None:

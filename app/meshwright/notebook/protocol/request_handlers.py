@@ -9,7 +9,7 @@ import numpy as np
 from msgspec import UNSET
 
 from meshwright.document.history import HistoryStep
-from meshwright.notebook.protocol import requests
+from meshwright.notebook.protocol import blocks_messages, requests
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.operations.catalogue import of_kind
 
@@ -162,5 +162,8 @@ HANDLERS: dict[type[requests.Request], Handler] = {
     requests.Speed: _speed,
     requests.ChoosePolicy: _policy,
     requests.TakeHint: _take_hint,
+    requests.ShowBlocks: blocks_messages.show_blocks,
+    requests.ChordCount: blocks_messages.set_chord_count,
+    requests.ExportBlocks: blocks_messages.export_blocks,
 }
 """By type of request; that of a level is added by the level bridge."""

@@ -162,6 +162,26 @@ class TakeHint(Request, frozen=True, tag="take_hint"):
     index: Annotated[int, Meta(ge=0, le=1000)]
 
 
+class ShowBlocks(Request, frozen=True, tag="blocks"):
+    """Send the blocks of the present state with their numbers of cells."""
+
+
+class ChordCount(Request, frozen=True, tag="chord_count"):
+    """Set the number of cells across the chord of a block edge, None: by size and evenness.
+
+    ``ends`` are the vertices of the edge.
+    """
+
+    ends: tuple[Id, Id]
+    count: Annotated[int, Meta(ge=1, le=100_000)] | None
+
+
+class ExportBlocks(Request, frozen=True, tag="export_blocks"):
+    """Make the fine grid, and send it as a file with this ending."""
+
+    ending: Text
+
+
 class ChangeLevel(Request, frozen=True, tag="level"):
     """Restart a level, go to another one, or let the agent solve it."""
 
@@ -188,6 +208,9 @@ AnyRequest: TypeAlias = (
     | Speed
     | ChoosePolicy
     | TakeHint
+    | ShowBlocks
+    | ChordCount
+    | ExportBlocks
     | ChangeLevel
 )
 

@@ -6,12 +6,16 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.domains.elements.side_edges import SAMPLES, STRAIGHT, SideEdges
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.errors import MeshError
 
 Ids = NDArray[np.int64]
 
 _ROUNDS = 60
+_GROWTH, _FREE = 16, 50_000
+"""Times that there may be more edges than before, and so many more, before it is given up."""
 _CLEAR = 0.5
 """Room that an arc leaves to all other sides on both sides of it, in sagittas."""
 _REST = 5
@@ -32,7 +36,9 @@ def settle(edges: SideEdges, settled: int = 0) -> None:
         settled: the first so many edges have been settled before.
     """
     looked_at = settled
+    most = _GROWTH * len(edges.side) + _FREE
     for _ in range(_ROUNDS):
+        check_time()
         bad = _repeated(edges)
         if not len(bad):
             bad = np.union1d(_wrong_angles(edges), _hit_lenses(edges, looked_at))
@@ -41,6 +47,8 @@ def settle(edges: SideEdges, settled: int = 0) -> None:
             looked_at = min(looked_at, int(bad.min()))
         if not len(bad):
             return
+        if len(edges.side) + len(bad) > most:
+            break
         edges.cut(bad)
     raise MeshError("The sides of the domain come too near to each other to be meshed.")
 
@@ -117,7 +125,7 @@ def _hit_lenses(edges: SideEdges, first: int) -> Ids:
     lenses = shapely.buffer(
         shapely.convex_hull(lines[fresh]), _CLEAR * sagitta, quad_segs=2, join_style="mitre"
     )
-    lens, line = shapely.STRtree(lines).query(lenses, predicate="intersects")
+    lens, line = pairs_near(lenses, "intersects", others=lines)
     shared = edges.ends[fresh[lens]][:, :, None] == edges.ends[line][:, None, :]
     joined = shared.any(axis=(1, 2))
     # a side that begins at an end of the edge must not come back to it

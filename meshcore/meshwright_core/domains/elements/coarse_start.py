@@ -8,12 +8,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.domains.elements import chord_conflicts
 from meshwright_core.domains.elements.curved_quads import CurvedTriangles
 from meshwright_core.domains.elements.labelled_triangles import edge_keys, neighbours, regions_of
 from meshwright_core.domains.elements.side_edges import SideEdges
 from meshwright_core.domains.elements.sided_elements import SidedElements
 from meshwright_core.domains.elements.triangulation import Bounds, triangle_areas, triangulated
+from meshwright_core.domains.loops.near_pairs import pairs_near
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]
@@ -53,6 +55,7 @@ def coarse(edges: SideEdges, size: float, seed: int) -> SidedElements:
     for insert in (True, False):
         trial, inner, settled = copy(edges), np.empty((0, 2)), 0
         for _ in range(_ROUNDS):
+            check_time()
             chord_conflicts.settle(trial, settled)
             settled = len(trial.side)
             points, triangles, regions = _triangulation(trial, inner, size, seed)
@@ -93,6 +96,7 @@ def _flipped(shape: CurvedTriangles, triangles: Ids, walls: Ids) -> Reals:
     quality = shape.shapes(triangles)
     count = len(shape.points)
     for _ in range(_SWEEPS):
+        check_time()
         bad = quality < GOOD
         if not bad.any():
             break
@@ -176,13 +180,24 @@ def _remedy(
         ends = corners[i][[start, (start + 1) % 3]]
         on_wall = np.isin(edge_keys(ends[None], len(shape.points)), walls)[0]
         points.append(shape.points[ends if flat[i] and not on_wall else corners[i]].mean(axis=0))
-    return np.array(points).reshape(-1, 2), np.array(sorted(cuts), int)
+    return _new_points(points, shape.points), np.array(sorted(cuts), int)
+
+
+def _new_points(points: list[Points], known: Points) -> Points:
+    """The points as rows (n, 2), each once, without those that are among `known` already: the
+    vertex of a flat triangle may lie in the middle of the side opposite.
+    """
+    grain = 1e-9 * np.ptp(known, axis=0).max()
+    rows = np.array(points).reshape(-1, 2)
+    first = np.unique(np.round(rows / grain), axis=0, return_index=True)[1]
+    rows = rows[np.sort(first)]
+    return rows[_distances(rows, known) > grain] if len(rows) else rows
 
 
 def _near(points: Points, distances: Reals) -> list[Ids]:
     """Which of the points (n, 2) lie within the distance (n,) of each."""
     places = shapely.points(points)
-    one, other = shapely.STRtree(places).query(places, predicate="dwithin", distance=distances)
+    one, other = pairs_near(places, "dwithin", distances)
     order = np.argsort(one, kind="stable")
     return np.split(other[order], np.searchsorted(one[order], np.arange(1, len(points))))
 

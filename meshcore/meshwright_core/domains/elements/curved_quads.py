@@ -12,6 +12,7 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import place_all
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.domains.elements.side_edges import SAMPLES, STRAIGHT, SideEdges
 from meshwright_core.domains.elements.triangulation import triangle_areas
 from meshwright_core.geometry.coons import SAMPLES as COONS_SAMPLES
@@ -139,6 +140,7 @@ class CurvedTriangles:
         # points of sides that have been found too near once rule out most of the larger circles
         known = np.full((len(rows), len(SAMPLES), 2), np.inf)
         for _ in range(_HALVINGS):
+            check_time()
             middle = 0.5 * (low + high)
             spots = places[:, half] + middle[:, None] * normal
             reach = (1.0 - _TOUCH) * middle

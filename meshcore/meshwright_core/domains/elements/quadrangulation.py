@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.domains.domain import Flags, Points
 
 Elements = NDArray[np.int64]
@@ -115,6 +116,7 @@ def merged_doublets(quads: Elements, kept: Flags) -> tuple[Elements, Elements]:
     quads = quads.copy()
     rows = np.arange(len(quads))
     while True:
+        check_time()
         doublet = _first_doublets(quads, len(kept))
         doublet = doublet[~kept[doublet]]
         if len(doublet) == 0:

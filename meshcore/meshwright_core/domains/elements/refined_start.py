@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwright_core.core.composite_curves import place_all
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.domains.elements import chord_conflicts
 from meshwright_core.domains.elements.labelled_triangles import regions_of, seeds
 from meshwright_core.domains.elements.side_edges import SideEdges
@@ -40,6 +41,7 @@ def refined(edges: SideEdges, size: float, bounds: Bounds, seed: int) -> SidedEl
         longest = 2.0 * math.sqrt(bounds.max_area)
     inner = bounds
     for _ in range(_ATTEMPTS):
+        check_time()
         _cut(edges, turn, longest)
         chord_conflicts.settle(edges)
         found = _triangles(edges, size, inner, seed)

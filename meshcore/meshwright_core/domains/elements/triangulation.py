@@ -6,9 +6,12 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 import triangle
 from numpy.typing import NDArray
 
+from meshwright_core.core.time_limit import SECONDS, check_time, refuse_longer, time_left
+from meshwright_core.domains.elements import triangle_process
 from meshwright_core.errors import MeshError
 
 Points = NDArray[np.float64]
@@ -20,6 +23,11 @@ MAX_TRIANGLES = 4_000_000
 _ROUNDS = 200
 _FIRST_MARKER = 2
 """Triangle gives 0 and 1 a meaning of their own."""
+_FEW, _NEAR = 3000, 1e-5
+"""Points, and their distance from each other and from sides as a share of the size: with more, or
+less, Triangle runs in a process of its own."""
+_PER_SECOND, _LEAST = 40_000, 1000
+"""Points that Triangle inserts in a second at least, and what it may always insert."""
 _NOTHING = 1e-30
 """Coordinates below this share of the largest one are zero: squares of smaller distances
 underflow, on which Triangle crashes."""
@@ -76,6 +84,7 @@ def triangulated(
             None if bounds.max_edge is None else scale * bounds.max_edge,
             None if bounds.max_area is None else scale**2 * bounds.max_area,
         ),
+        not _is_tame(points, segments, size),
     )
     triangles = raw.triangles
     if np.linalg.det(turn) < 0:
@@ -93,11 +102,15 @@ def plain_triangles(points: Points, segments: Elements, bounds: Bounds) -> tuple
     return found.points, found.triangles
 
 
-def _triangle(points: Points, segments: Elements, holes: Points, bounds: Bounds) -> Triangulation:
+def _triangle(
+    points: Points, segments: Elements, holes: Points, bounds: Bounds, apart: bool = False
+) -> Triangulation:
     """Call Triangle, and again while an edge is too long; input points keep their numbers.
 
     A triangle with a long edge that is far above the area of the equilateral one is brought down
     to that; any other loses at least a tenth, so that Triangle must cut it.
+
+    apart: in a process of its own, which can be ended.
     """
     markers = np.arange(len(segments))[:, None] + _FIRST_MARKER
     mesh: dict[str, Any] = {"vertices": points, "segments": segments, "segment_markers": markers}
@@ -105,11 +118,12 @@ def _triangle(points: Points, segments: Elements, holes: Points, bounds: Bounds)
         mesh["holes"] = holes
     quality = f"q{bounds.min_angle:.6f}" if bounds.min_angle > 0 else ""
     area = "" if bounds.max_area is None else f"a{bounds.max_area:.30f}"
-    mesh = _call(mesh, f"p{quality}{area}")
+    mesh = _call(mesh, f"p{quality}{area}", apart)
     if bounds.max_edge is None:
         return _result(mesh)
     target = math.sqrt(3) / 4 * bounds.max_edge**2
     for _ in range(_ROUNDS):
+        check_time()
         found = _result(mesh)
         ends = found.points[found.triangles]
         sides = ends - ends[:, [1, 2, 0]]
@@ -121,7 +135,7 @@ def _triangle(points: Points, segments: Elements, holes: Points, bounds: Bounds)
         kept = ("vertices", "triangles", "segments", "segment_markers")
         mesh = {name: mesh[name] for name in kept}
         mesh["triangle_max_area"] = np.where(long, limit, -1.0)[:, None]
-        mesh = _call(mesh, f"rp{quality}a")
+        mesh = _call(mesh, f"rp{quality}a", apart)
     raise MeshError("Triangle did not bring all edges below the requested longest edge.")
 
 
@@ -142,10 +156,42 @@ def _fit(points: Points) -> Points:
     return kept
 
 
-def _call(mesh: dict[str, Any], switches: str) -> dict[str, Any]:
+def _is_tame(points: Points, segments: Elements, size: float) -> bool:
+    """Whether a call of Triangle is sure to end soon: a few points, none near another or a side."""
+    if len(points) > _FEW:
+        return False
+    margin = _NEAR * size
+    spots = shapely.points(points)
+    tree = shapely.STRtree(spots)
+    if len(tree.query(spots, predicate="dwithin", distance=margin)[0]) > len(points):
+        return False
+    sides = shapely.linestrings(points[segments])
+    # each side is near its own two ends
+    return len(tree.query(sides, predicate="dwithin", distance=margin)[0]) <= 2 * len(segments)
+
+
+def _call(mesh: dict[str, Any], switches: str, apart: bool) -> dict[str, Any]:
     allowed = MAX_TRIANGLES // 2
-    result: dict[str, Any] = triangle.triangulate(mesh, f"{switches}S{allowed}")
-    if len(result["vertices"]) - len(mesh["vertices"]) >= allowed:
+    # Triangle cannot be interrupted, but it can be held to what it makes in the time that is left
+    in_time = int(min(allowed, max(_LEAST, _PER_SECOND * time_left())))
+    switches = f"{switches}S{in_time}"
+    result: dict[str, Any]
+    if apart:
+        seconds = min(time_left(), SECONDS)
+        try:
+            result = triangle_process.triangulate(mesh, switches, max(seconds, 1.0))
+        except triangle_process.TriangleStopped as error:
+            raise MeshError(
+                "The domain could not be triangulated within the time limit: some of its points "
+                "or sides all but touch, or there are too many."
+            ) from error
+    else:
+        result = triangle.triangulate(mesh, switches)
+    inserted = len(result["vertices"]) - len(mesh["vertices"])
+    # points that Triangle has deleted again count among those it makes
+    if in_time < allowed and inserted >= 0.9 * in_time:
+        refuse_longer()
+    if inserted >= allowed:
         raise MeshError(
             f"The mesh would need more than {MAX_TRIANGLES:,} triangles: "
             "ask for longer edges or smaller angles, or widen the thin parts of the domain."

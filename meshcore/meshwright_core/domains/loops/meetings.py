@@ -8,8 +8,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.curves.curve import Curve
 from meshwright_core.curves.many_curves import points_at
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.domains.loops.side_pieces import sample_parameters
 from meshwright_core.errors import MeshError, capitalised
 
@@ -40,7 +42,7 @@ def refuse_meetings(
     edges = _Edges(curves, ends)
     lines = shapely.linestrings(edges.points)
     reach = 4.0 * edges.sagitta + TOUCH * size
-    one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=reach)
+    one, other = pairs_near(lines, "dwithin", reach)
     pairs = np.unique(np.sort(np.column_stack([one, other])[one != other], axis=1), axis=0)
     a, b = pairs.T
     neighbours = (edges.curve[a] == edges.curve[b]) & (b - a == 1)
@@ -49,11 +51,13 @@ def refuse_meetings(
     )
     joined = corner.any(axis=(1, 2)) & ~neighbours
     for i, j in zip(a[joined].tolist(), b[joined].tolist(), strict=True):
+        check_time()
         spot = _overlap(edges, i, j)
         if spot is not None:
             _refuse(labels, edges, (i, j), spot)
     apart = ~neighbours & ~joined
     for i, j in zip(a[apart].tolist(), b[apart].tolist(), strict=True):
+        check_time()
         distance, spot = _distance(curves, edges, (i, j), size)
         if distance <= TOUCH * size:
             _refuse(labels, edges, (i, j), spot)

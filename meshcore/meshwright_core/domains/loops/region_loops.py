@@ -15,6 +15,7 @@ from meshwright_core.core.irregularity import CORNER_ANGLE
 from meshwright_core.curves.curve import Curve, polygon_area
 from meshwright_core.domains.domain_json import chain_json
 from meshwright_core.domains.loops.meetings import refuse_meetings
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.domains.loops.planar_graph import ANCHOR, PlanarGraph, Side
 from meshwright_core.domains.loops.shared_pieces import cut_at_ends, merged
 from meshwright_core.domains.loops.side_pieces import (
@@ -228,7 +229,7 @@ class RegionLoops:
         lines = sampled_chains([loop for region in self.regions for loop in region.loops])
         rings = shapely.make_valid(shapely.polygons(_rings(lines)))
         spots = shapely.points([region.inside for region in self.regions])
-        inner, outer = shapely.STRtree(rings).query(spots, predicate="within")
+        inner, outer = pairs_near(spots, "within", others=rings)
         around = Counter(zip(inner.tolist(), [owner[k] for k in outer.tolist()], strict=True))
         for (i, j), times in sorted(around.items()):
             if i != j and times % 2:
@@ -335,7 +336,7 @@ def _depths(loops: Sequence[Sequence[Curve]]) -> list[int]:
     lines = sampled_chains(loops, 2.0)
     polygons = shapely.make_valid(shapely.polygons(_rings(lines)))
     spots = shapely.points([line[0] for line in lines])
-    inner, outer = shapely.STRtree(polygons).query(spots, predicate="within")
+    inner, outer = pairs_near(spots, "within", others=polygons)
     depths = np.bincount(inner[inner != outer], minlength=len(loops))
     found: list[int] = depths.tolist()
     return found

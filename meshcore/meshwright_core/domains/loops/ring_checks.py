@@ -6,6 +6,8 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from meshwright_core.core.time_limit import check_time
+from meshwright_core.domains.loops.near_pairs import chunks_of_pairs, pairs_near
 from meshwright_core.errors import MeshError, capitalised
 
 Points = NDArray[np.float64]
@@ -114,11 +116,28 @@ def refuse_crossings(loops: list[Points], names: list[str]) -> None:
     ring = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
     index = np.concatenate([np.arange(len(loop)) for loop in loops])
     edges = shapely.linestrings(np.stack([starts, ends], axis=1))
-    one, other = shapely.STRtree(edges).query(edges, predicate="intersects")
-    later = one < other
-    one, other = one[later], other[later]
-    order = np.lexsort((other, one))
-    for i, j in zip(one[order].tolist(), other[order].tolist(), strict=True):
+    for one, other in chunks_of_pairs(edges, "intersects"):
+        later = one < other
+        one, other = one[later], other[later]
+        order = np.lexsort((other, one))
+        _refuse_meetings(edges, ends, (one[order], other[order]), (loops, ring, index), names)
+
+
+def _refuse_meetings(
+    edges: NDArray[np.object_],
+    ends: Points,
+    pairs: tuple[NDArray[np.int64], NDArray[np.int64]],
+    place: tuple[list[Points], NDArray[np.int64], NDArray[np.int64]],
+    names: list[str],
+) -> None:
+    """Raise MeshError for the first of the pairs of edges that meet elsewhere.
+
+    place: all loops, and of each edge the loop that it is of and its number there.
+    """
+    loops, ring, index = place
+    for number, (i, j) in enumerate(zip(pairs[0].tolist(), pairs[1].tolist(), strict=True)):
+        if number % 1000 == 0:
+            check_time()
         meeting = shapely.intersection(edges[i], edges[j])
         count = len(loops[ring[i]])
         neighbours = ring[i] == ring[j] and (index[j] - index[i]) % count in (1, count - 1)
@@ -140,18 +159,22 @@ def refuse_crossings(loops: list[Points], names: list[str]) -> None:
 
 def refuse_strays(loops: list[Points], names: list[str]) -> None:
     """Raise MeshError if a hole lies outside the outline or in another hole; no rings meet."""
-    polygons = [shapely.Polygon(loop) for loop in loops]
-    for i in range(1, len(loops)):
-        spot = shapely.Point(loops[i][0])
-        if not polygons[0].contains(spot):
-            inverted = " and around it" if polygons[i].contains(shapely.Point(loops[0][0])) else ""
+    polygons = np.array([shapely.Polygon(loop) for loop in loops])
+    spots = shapely.points(np.array([loop[0] for loop in loops]))
+    shapely.prepare(polygons[0])
+    outside = ~shapely.contains(polygons[0], spots)
+    one, other = pairs_near(spots, "within", others=polygons)
+    nested = (one != other) & (one > 0) & (other > 0)
+    # of several around one, the first
+    around = dict(sorted(zip(one[nested].tolist(), other[nested].tolist(), strict=True))[::-1])
+    for i in sorted({*(np.flatnonzero(outside[1:]) + 1).tolist(), *around}):
+        if not outside[i]:
             raise MeshError(
-                f"{capitalised(names[i])} lies outside the outline{inverted}: "
+                f"{capitalised(names[i])} lies inside {names[around[i]]}: "
                 f"its point 0 is {_place(loops[i][0])}."
             )
-        for j in range(1, len(loops)):
-            if i != j and polygons[j].contains(spot):
-                raise MeshError(
-                    f"{capitalised(names[i])} lies inside {names[j]}: "
-                    f"its point 0 is {_place(loops[i][0])}."
-                )
+        inverted = " and around it" if polygons[i].contains(spots[0]) else ""
+        raise MeshError(
+            f"{capitalised(names[i])} lies outside the outline{inverted}: "
+            f"its point 0 is {_place(loops[i][0])}."
+        )

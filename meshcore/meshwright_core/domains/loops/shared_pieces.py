@@ -9,7 +9,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.curves.curve import Curve
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.domains.loops.side_pieces import GAP, Piece
 from meshwright_core.errors import MeshError, capitalised
 
@@ -71,6 +73,7 @@ def _cut(pieces: Sequence[Piece], size: float) -> list[Piece]:
     tree = shapely.STRtree(shapely.points(ends))
     found: list[Piece] = []
     for piece in pieces:
+        check_time()
         curve = piece.curve
         margin = GAP * size
         box = shapely.box(*(curve.box[0] - margin), *(curve.box[1] + margin))
@@ -95,7 +98,7 @@ def _with_exact_ends(pieces: Sequence[Piece], size: float) -> list[Piece]:
     number = number.ravel()
     first = np.arange(len(unique))
     spots = shapely.points(unique)
-    near = shapely.STRtree(spots).query(spots, predicate="dwithin", distance=2.0 * GAP * size)
+    near = pairs_near(spots, "dwithin", 2.0 * GAP * size)
     np.minimum.at(first, near[1], near[0])
     while (first[first] != first).any():
         first = first[first]

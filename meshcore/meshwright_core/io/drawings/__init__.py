@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
 
+from meshwright_core.core.time_limit import SECONDS, time_limit
 from meshwright_core.domains.domain import CORNER_ANGLE, Domain, load_json
 from meshwright_core.errors import MeshError
 from meshwright_core.io.drawings.domains import FITS, domain_of
@@ -74,6 +75,7 @@ def read_regions(
     corner_angle: float = CORNER_ANGLE,
     gap: float | None = None,
     layers: Collection[str] | None = None,
+    seconds: float = SECONDS,
 ) -> DrawingReport:
     """Find all regions in a file; coordinates and units stay those of the drawing.
 
@@ -91,20 +93,23 @@ def read_regions(
         gap: width of gaps at loose ends that are closed, in the units of the drawing; None: 0.001
             of its size.
         layers: of DXF, or groups or ids of SVG, that are read; None: all.
+        seconds: processor time that it may take; a limit that holds already
+            (:func:`meshwright_core.core.time_limit.time_limit`) stays.
 
     Raises:
         MeshError: one sentence that begins with the path: the file is missing, empty, cut off,
             damaged or of another kind; or nothing in it is closed, with the place and width of the
-            gap.
+            gap; more time than it may take.
     """
     place = Path(path)
     wanted = None if layers is None else frozenset(layers)
     key = (_stamp(place), corner_angle, gap, wanted)
     if key[0] is not None and _last and _last[0][0] == key:
         return _last[0][1]
-    drawing = _drawing(place)
-    with naming(place):
-        report = traced(drawing, corner_angle, gap, layers)
+    with time_limit(seconds):
+        drawing = _drawing(place)
+        with naming(place):
+            report = traced(drawing, corner_angle, gap, layers)
     _last[:] = [(key, report)]
     return report
 
@@ -118,6 +123,7 @@ def read_domain(
     gap: float | None = None,
     layers: Collection[str] | None = None,
     fit: str | None = None,
+    seconds: float = SECONDS,
 ) -> Domain:
     """Read the shape in a file: one region of it, or several that are meshed together.
 
@@ -133,6 +139,7 @@ def read_domain(
         gap: as there.
         layers: as there.
         fit: "arcs" or "splines" that are to be found in polylines; None: they stay as they are.
+        seconds: as there.
 
     Raises:
         MeshError: as `read_regions`; there is no such region; regions lie apart, and none was
@@ -142,6 +149,19 @@ def read_domain(
     place = Path(path)
     if fit not in (None, *FITS):
         raise MeshError(f"Curves are fitted as {' or '.join(FITS)}, not {fit!r}.")
+    with time_limit(seconds):
+        return _read_domain(place, corner_angle, curve_step, region, gap, layers, fit)
+
+
+def _read_domain(
+    place: Path,
+    corner_angle: float,
+    curve_step: float | None,
+    region: str | int | None,
+    gap: float | None,
+    layers: Collection[str] | None,
+    fit: str | None,
+) -> Domain:
     plain = region is None and gap is None and layers is None and fit is None
     if place.suffix.lower() == ".json" and plain:
         content = load_json(place)

@@ -279,6 +279,7 @@ class _Reader:
         build.part()
         if len(ids):
             build.points(np.concatenate([points for _, points in self.nodes]), ids)
+        used: set[tuple[int, int]] = set()
         for block in _together(self.cells):
             placed = build.cells(block.kind, block.nodes)
             dimension = _DIMENSION.get(block.kind, 3)
@@ -286,11 +287,18 @@ class _Reader:
                 continue
             for tag in np.unique(block.tags).tolist():
                 for group in self._groups_of(dimension, tag):
+                    used.add((dimension, group))
                     name = self.names.get((dimension, group), str(group))
                     rows = [
                         one._replace(rows=one.rows[block.tags[one.which] == tag]) for one in placed
                     ]
                     build.group(name, rows, group)
+        # as in files of meshio, which writes no entities
+        lost = [n for key, n in self.names.items() if key[0] in (1, 2) and key not in used]
+        if lost:
+            build.warnings.append(
+                f"no element is in the physical groups {', '.join(map(repr, lost))}"
+            )
         for name, (nodes, values) in self.values.items():
             place = build.index(nodes) if len(ids) else nodes
             if len(place) == len(ids) and (np.sort(place) == np.arange(len(ids))).all():

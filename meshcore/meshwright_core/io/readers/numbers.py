@@ -91,7 +91,7 @@ def whole(values: NDArray[np.generic]) -> Ints:
     with np.errstate(invalid="ignore"):
         good = (np.abs(values) <= _WIDE) & (values == np.floor(values))
     if not good.all():
-        odd = values[np.argmin(good)]
+        odd = values.flat[np.argmin(good)]
         raise MeshError(f"it is damaged: {odd:g} stands where a whole number belongs")
     return values.astype(np.int64)
 

@@ -72,7 +72,8 @@ class DrawPage(Page):
         self.step.setAccessibleName("Grid spacing")
         self.to_points = _tick("Points", "The mouse snaps to existing corners")
         self.to_angles = _tick("Right angles", "Edges snap to the axes and to right angles")
-        self._ticks = (self.to_grid, self.to_points, self.to_angles)
+        self.to_middles = _tick("Middles", "The mouse snaps to the middles of edges and arcs")
+        self._ticks = (self.to_grid, self.to_points, self.to_angles, self.to_middles)
         self._arrange()
         self._connect()
         self.set_theme(theme)
@@ -91,7 +92,9 @@ class DrawPage(Page):
         snapping.setSpacing(GRID)
         snapping.addWidget(self.hint, 1)
         snapping.addWidget(named("Snap to", "Label"))
-        for part in (self.to_grid, self.step, self.to_points, self.to_angles):
+        for part in (
+            self.to_grid, self.step, self.to_points, self.to_middles, self.to_angles
+        ):  # fmt: skip
             snapping.addWidget(part)
         both = QHBoxLayout()
         both.setSpacing(GRID)
@@ -150,7 +153,7 @@ class DrawPage(Page):
         """Show a drawing again."""
         self.sketch.put_json(state["loops"])
         self.step.setValue(float(state["grid"]))
-        for tick, on in zip(self._ticks, state["snaps"], strict=True):
+        for tick, on in zip(self._ticks, state["snaps"], strict=False):
             tick.setChecked(bool(on))
         self.area.fit()
 
@@ -214,6 +217,7 @@ class DrawPage(Page):
             self.step.value() if self.to_grid.isChecked() else 0.0,
             self.to_points.isChecked(),
             self.to_angles.isChecked(),
+            self.to_middles.isChecked(),
         )
         self.area.set_snapping(self.step.value(), snapper)
 

@@ -22,7 +22,7 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 from meshwright.desktop.files.new_mesh.sketch_painting import SketchPainting
 from meshwright.graphics.theme import GRID, Theme
 from meshwright.graphics.viewport import Viewport
-from meshwright.sources.arc_edges import Place, circle_of
+from meshwright.sources.arc_edges import Place, circle_of, middle_of
 from meshwright.sources.drawing_tools import ARC, LINE, MEASURE, RECTANGLE, Pencil
 from meshwright.sources.polygon_checks import PolygonProblem
 from meshwright.sources.polygon_sketch import Sketch
@@ -31,6 +31,8 @@ from meshwright_core.errors import MeshError
 
 REACH = 9.0
 """Distance in pixels at which the mouse snaps to corners and lines."""
+EXACT = ("point", "middle")
+"""What places are taken from as they are, without rounding."""
 _DRAG = 4.0
 """Pixels that the mouse must move before a press becomes a drag."""
 _BEGIN, _CONTINUE = "0123456789.,-+\u2212", "<;x\u00d7 eE\u00b0"
@@ -217,7 +219,14 @@ class DrawingArea(QWidget):
                 a, b = (np.array(flat.corners[k]) for k in (row, (row + 1) % len(p)))
                 x, y = (a + share[row] * (b - a)).tolist()
                 edge = owners[row]
-                at = self._on_edge(i, edge, (x, y)) if loop.bulge(edge) else self._rounded((x, y))
+                middle = middle_of(*loop.ends(edge), loop.bulge(edge))
+                near = self.snapper.snap((x, y), REACH / self.view.pixels, middles=[middle])
+                if near.met == "middle":
+                    at = middle
+                elif loop.bulge(edge):
+                    at = self._on_edge(i, edge, (x, y))
+                else:
+                    at = self._rounded((x, y))
                 self.sketch.insert(i, edge + 1, at)
                 self._recorded = True  # insertion and drag are one edit
                 return i, edge + 1
@@ -243,18 +252,24 @@ class DrawingArea(QWidget):
         others = [p for i, j, p in self.sketch.corners() if (i, j) != self._moving]
         away = [p for p in others if p not in (before, after)]
         self._snap = self.snapper.snap(
-            self._plane(place), REACH / self.view.pixels, away, before, after
+            self._plane(place), REACH / self.view.pixels, away, before, after,
+            middles=self.sketch.middles(self._moving),
+        )  # fmt: skip
+        exact = self._snap.met in EXACT
+        self.sketch.move(
+            loop, corner, self._snap.place if exact else self._rounded(self._snap.place)
         )
-        self.sketch.move(loop, corner, self._rounded(self._snap.place))
 
     def _snapped(self, place: QPointF) -> Snap:
         where = self._plane(place)
         reach = REACH / self.view.pixels
         points = [p for _, _, p in self.sketch.corners()] + self.sketch.centres()
         pencil = self.pencil
-        free = self.snapper.snap(where, reach, points)
-        if free.met == "point" or pencil.tool == RECTANGLE or (pencil.tool == ARC and pencil.begun):
-            return Snap(self._rounded(free.place), free.met) if free.met != "point" else free
+        free = self.snapper.snap(where, reach, points, middles=self.sketch.middles())
+        if free.met in EXACT:
+            return free
+        if pencil.tool == RECTANGLE or (pencil.tool == ARC and pencil.begun):
+            return Snap(self._rounded(free.place), free.met)
         if pencil.tool not in (LINE, ARC):
             snap = self.snapper.snap(where, reach, points, pencil.start)
         elif not self.sketch.open:
@@ -402,7 +417,7 @@ class DrawingArea(QWidget):
             painting.draft(draft, measures, self._trial() is not None)
         draws = sketch.open or pencil.tool not in (LINE, ARC)
         if snap is not None and self._moving is None and draws:
-            painting.target(place)
+            painting.target(place, middle=snap.met == "middle")
         last = len(sketch.loops) - 1
         painting.corners(sketch.corners(), (last, 0) if sketch.open else None, self.selected)
         if sketch.problem is not None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRectF, Qt
-from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen
+from qtpy.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
 
 from meshwright.desktop.files.new_mesh.painting import polygon
 from meshwright.desktop.widgets.basic import tabular
@@ -183,11 +183,16 @@ class SketchPainting:
                     QPointF(*(p - reach).tolist()), QPointF(*(p + reach).tolist())
                 )
 
-    def target(self, place: Place) -> None:
-        """A ring where the next corner would be."""
+    def target(self, place: Place, middle: bool = False) -> None:
+        """A ring where the next corner would be; a triangle in the middle of an edge."""
         self._painter.setPen(QPen(QColor(self._theme.accent), 1.75))
         self._painter.setBrush(QColor(self._theme.background))
-        self._painter.drawEllipse(self._at(place), 5, 5)
+        at = self._at(place)
+        if middle:
+            corners = [QPointF(-6, 4.5), QPointF(6, 4.5), QPointF(0, -6)]
+            self._painter.drawPolygon(QPolygonF([at + corner for corner in corners]))
+        else:
+            self._painter.drawEllipse(at, 5, 5)
 
     def label(self, place: Place, lines: Sequence[str], typed: str = "") -> None:
         """A box with lines of text beside a place; ``typed`` stands above them, with a caret."""

@@ -1,6 +1,8 @@
 // The colours of the card, read from its CSS variables after each change of theme.
 
-import { COLOUR_NAMES, QUALITY_SCALES, QUALITY_STOPS, REGION_HUES, REGION_SHARE } from "../generated/constants.js";
+import {
+  COLOUR_NAMES, NAME_HUES, QUALITY_SCALES, QUALITY_STOPS, REGION_HUES, REGION_SHARE, SWATCH_SHARE,
+} from "../generated/constants.js";
 
 export class Colours {
   constructor() {
@@ -19,12 +21,18 @@ export class Colours {
 
   /** The fill of a region of a mesh with several, as meshwright.graphics.theme.region_fills. */
   ofRegion(region) {
-    const hue = REGION_HUES[region % REGION_HUES.length];
-    const parts = [1, 3, 5].map((at) => {
-      const [a, b] = [this.fill, hue].map((colour) => parseInt(colour.slice(at, at + 2), 16));
-      return Math.round(a + REGION_SHARE * (b - a));
-    });
-    return `rgb(${parts.join(", ")})`;
+    return mixed(this.fill, REGION_HUES[region % REGION_HUES.length], REGION_SHARE);
+  }
+
+  /** The same where it covers a few pixels only, as region_swatches there. */
+  swatchOf(region) {
+    return mixed(this.fill, REGION_HUES[region % REGION_HUES.length], SWATCH_SHARE);
+  }
+
+  /** The colour of a named side by its number, as name_colours there. */
+  ofName(number) {
+    const turn = Math.floor(number / NAME_HUES.length);
+    return mixed(NAME_HUES[number % NAME_HUES.length], this.background, Math.min(0.6, 0.3 * turn));
   }
 
   /** The colours [r, g, b] of the scale of a measure, at QUALITY_STOPS. */
@@ -52,4 +60,13 @@ export class Colours {
     if (!change) return this.muted;
     return change < 0 ? this.accent : this.warning;
   }
+}
+
+/** A colour #rrggbb with a share of another one. */
+function mixed(colour, other, share) {
+  const parts = [1, 3, 5].map((at) => {
+    const [a, b] = [colour, other].map((one) => parseInt(one.slice(at, at + 2), 16));
+    return Math.round(a + share * (b - a));
+  });
+  return `rgb(${parts.join(", ")})`;
 }

@@ -17,6 +17,7 @@ const FEW_RECTANGLES = 3;
 const EDGE_WIDTH = 1.1;
 const BOUNDARY_WIDTH = 1.75;
 const INTERFACE_WIDTH = 1.5;
+const SIDE_WIDTH = 4.5;
 /** Device pixels by which a painted curve may deviate. */
 export const DEVIATION = 0.2;
 
@@ -25,6 +26,7 @@ export class MeshPainter {
     this.view = null; // the painted view; within half a pixel of the requested one
     this.paints = 0;
     this.measure = ""; // what elements are coloured by: "jacobian", "shape" or nothing
+    this.sides = []; // [name, half-edges] of each named side
     this._canvas = canvas;
     this._pen = canvas.getContext("2d");
     this._colours = colours;
@@ -204,6 +206,7 @@ export class MeshPainter {
     pen.lineWidth = Math.max(BOUNDARY_WIDTH, 1.3 * this._edgeWidth);
     this._path(pen, loops);
     pen.stroke();
+    this._paintSides(pen);
     this._markers.paint(pen, ratio, view, this._replica, this._derived, boxesOf(rectangles, ratio));
     pen.restore();
   }
@@ -286,6 +289,16 @@ export class MeshPainter {
       pen.fill();
       pen.stroke();
     }
+  }
+
+  /** Named sides, each in the colour of its name. */
+  _paintSides(pen) {
+    pen.lineWidth = SIDE_WIDTH;
+    this.sides.forEach(([, halfedges], number) => {
+      pen.strokeStyle = this._colours.ofName(number);
+      this._path(pen, halfedges.map((h) => [h]), false);
+      pen.stroke();
+    });
   }
 
   /** Every inner edge of these elements once; all are straight but interfaces, painted later. */

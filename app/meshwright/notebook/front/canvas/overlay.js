@@ -3,6 +3,7 @@
 
 import { outlineFrom } from "../mesh/sides.js";
 import { arrowMiddle, arrowOf, cornersFrom, lengthOf, paintArrow } from "./arrow.js";
+import { BlocksLayer } from "./blocks_layer.js";
 import { ghostBounds, GhostPainter } from "./ghost.js";
 import { HintBadges } from "./hint_badges.js";
 import { DEVIATION } from "./mesh_painter.js";
@@ -20,6 +21,7 @@ export class Overlay {
     this._ratio = 1;
     this._ghosts = new GhostPainter(colours);
     this.badges = new HintBadges(colours);
+    this.blocks = new BlocksLayer(colours);
     this._clear = true;
   }
 
@@ -31,7 +33,9 @@ export class Overlay {
     this._clear = true;
   }
 
-  /** Paint half-edge, preview and hints: {halfedge, ghost, title, hints, selected}. */
+  /** Paint blocks, half-edge, preview and hints: {blocks, chord, halfedge, ghost, title, hints,
+   * selected}.
+   */
   paint(view, replica, derived, shown) {
     const pen = this._pen;
     if (!this._clear) {
@@ -41,10 +45,12 @@ export class Overlay {
     }
     const pointed = replica.live(shown.halfedge);
     this.badges.clear();
-    if (!pointed && !shown.hints.length) return;
+    this.blocks.clear();
+    if (!pointed && !shown.hints.length && !shown.blocks) return;
     this._clear = false;
     pen.setTransform(this._ratio, 0, 0, this._ratio, 0, 0);
     pen.lineJoin = "round";
+    if (shown.blocks) this.blocks.paint(pen, view, shown.blocks, shown.chord);
     const marks = this._markPlaces(view, replica, derived);
     if (pointed) this._paintPointed(pen, view, replica, derived, shown);
     this.badges.paint(pen, view, replica, shown.hints, shown.selected, marks);

@@ -22,7 +22,9 @@ export class Stage {
     this.meshState = new MeshState();
     this.view = new Viewport();
     this.fitted = true; // the view was not moved: it keeps fitting the mesh
-    this.shown = { halfedge: -1, ghost: null, title: "", hints: [], selected: 0 };
+    this.shown = {
+      halfedge: -1, ghost: null, title: "", hints: [], selected: 0, blocks: null, chord: -1,
+    };
     this._colours = colours;
     this._painted = painted;
     this._lower = node("canvas", "mw-lower", { "aria-hidden": "true" });

@@ -35,6 +35,18 @@ export const REGION_HUES = [
   "#bf5670"
 ];
 export const REGION_SHARE = 0.14;
+export const SWATCH_SHARE = 0.55;
+/** Colours of named sides, in turn, of the same module. */
+export const NAME_HUES = [
+  "#009e73",
+  "#cc79a7",
+  "#e69f00",
+  "#56b4e9",
+  "#8c6bb1",
+  "#7a7f2a",
+  "#b5651d",
+  "#3a8f98"
+];
 /** The scale of measures of meshwright.graphics.colouring; empty: the plain fill. */
 export const QUALITY_STOPS = [0.0, 0.3, 0.6, 1.0];
 export const QUALITY_SCALES = {

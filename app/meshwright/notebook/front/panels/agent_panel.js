@@ -149,13 +149,15 @@ export class AgentPanel {
 
   _statusText({ loading, asking, state, progress, policies, outcome = "" }) {
     if (!policies.length) return "No policy for meshes of this kind.";
-    const { decisions = 0, best = null, gap = null, way = null, seconds = 0 } = progress || {};
+    const { decisions = 0, best = null, gap = null, shape = "", way = null, seconds = 0 } = progress || {};
     const lowest = best === null ? "" : `, best s ${best}`;
     if (loading) return "Loading the policy\u2026";
     if (asking) return "Computing hints\u2026";
     if (way) return `Going there: ${way[0].toLocaleString("en")} of ${way[1].toLocaleString("en")}`;
     if (state === "searching") {
-      return `Searching: ${seconds.toFixed(0)} s${lowest}${gap ? `, ${gap} above the optimum` : ""}`;
+      const above = gap > 0 ? `, ${gap} above the optimum` : "";
+      const worst = shape ? `, ${shape}` : "";
+      return `Searching: ${seconds.toFixed(0)} s${lowest}${above}${worst}`;
     }
     if (state === "playing") return `Playing: ${counted(decisions, "decision")}${lowest}`;
     if (state === "paused") return `Paused after ${counted(decisions, "decision")}${lowest}`;

@@ -45,7 +45,9 @@ export class ScorePanel {
     this._number.setAttribute("aria-label", `Score ${head.score}, optimum ${head.optimum}`);
     this._number.title = "s: the sum of |degree \u2212 desired degree| over all vertices";
     setText(this._goal, `Optimum ${head.optimum.toLocaleString("en")}`);
-    setText(this._gap, `${(head.score - head.optimum).toLocaleString("en")} above it`);
+    const gap = head.score - head.optimum;
+    const distance = Math.abs(gap).toLocaleString("en");
+    setText(this._gap, gap < 0 ? `${distance} below it: no valid mesh is` : `${distance} above it`);
     this._optimal.hidden = !solved;
     this._summary.hidden = solved;
     const share = solved ? 1 : clamp(head.return, 0, 1);

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.curves.curve import Curve
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.io.drawings.drawn import Points
 from meshwright_core.io.drawings.tracing.network import Edge, Network, Owners, joined
 
@@ -46,12 +48,13 @@ def crossings(
     dense = [edge.dense for edge in edges]
     owner = np.repeat(np.arange(len(dense)), [len(line) for line in dense])
     lines = shapely.linestrings(np.concatenate(dense), indices=owner)
-    one, other = shapely.STRtree(lines).query(lines, predicate="intersects")
+    one, other = pairs_near(lines, "intersects")
     later = one < other
     one, other = one[later], other[later]
     found: list[Crossing] = []
-    meeting = shapely.intersection(lines[one], lines[other])
-    for i, j, spots in zip(one.tolist(), other.tolist(), meeting, strict=True):
+    for i, j in zip(one.tolist(), other.tolist(), strict=True):
+        check_time()
+        spots = shapely.intersection(lines[i], lines[j])
         shared = nodes[sorted({edges[i].a, edges[i].b} & {edges[j].a, edges[j].b})]
         near = max(10 * tolerance, _NEAR * min(edges[i].curve.length, edges[j].curve.length))
         for spot in shapely.get_coordinates(spots):
@@ -93,7 +96,7 @@ def _parallel(one: Curve, other: Curve, place: Points) -> bool:
 def _with_itself(line: Points) -> list[Points]:
     """Where a polyline meets itself."""
     parts = shapely.linestrings(np.stack([line[:-1], line[1:]], axis=1))
-    one, other = shapely.STRtree(parts).query(parts, predicate="intersects")
+    one, other = pairs_near(parts, "intersects")
     closed = bool((line[0] == line[-1]).all())
     apart = other - one > 1
     if closed:

@@ -11,6 +11,8 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.components import components
+from meshwright_core.core.time_limit import check_time
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.io.drawings.drawn import Points
 from meshwright_core.io.drawings.tracing import measures
 from meshwright_core.io.drawings.tracing.network import Edge, Network
@@ -87,6 +89,7 @@ def faces_of(network: Network) -> Faces:
     edges = network.edges
     alive = _pruned(network)
     while True:
+        check_time()
         cycles, of = _cycles(network, alive)
         bridges = [i for i in np.flatnonzero(alive).tolist() if of[2 * i] == of[2 * i + 1]]
         if not bridges:
@@ -187,6 +190,7 @@ def _around(network: Network, node: int, halves: list[int]) -> list[int]:
             found[half] = float(np.arctan2(step[1], step[0]))
         return found
 
+    check_time()
     near = angles(_NEAR)
     ordered = sorted(halves, key=lambda half: near[half])
     before = [ordered[-1], *ordered[:-1]]
@@ -224,7 +228,7 @@ def around(faces: Faces) -> NDArray[np.int64]:
     shapes = faces.polygons
     shapely.prepare(shapes)
     spots = np.array([_middle(faces.edges[island.rim[0][0]]) for island in faces.islands])
-    island, face = shapely.STRtree(shapes).query(shapely.points(spots), predicate="within")
+    island, face = pairs_near(shapely.points(spots), "within", others=shapes)
     for i, j in zip(island.tolist(), face.tolist(), strict=True):
         if faces.faces[j].island == i or faces.islands[i].area > faces.faces[j].area:
             continue

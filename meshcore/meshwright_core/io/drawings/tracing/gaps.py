@@ -10,7 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.curves.curve import Curve
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.io.drawings.drawn import Points
 from meshwright_core.io.drawings.tracing import measures
 from meshwright_core.io.drawings.tracing.network import Edge, Network, joined, with_ends
@@ -142,14 +144,16 @@ def _reach(
         return []
     dense = [measures.samples(edge.curve, 5.0) for edge in network.edges]
     owner = np.repeat(np.arange(len(dense)), [len(line) for line in dense])
-    tree = shapely.STRtree(shapely.linestrings(np.concatenate(dense), indices=owner))
+    lines = shapely.linestrings(np.concatenate(dense), indices=owner)
     bend = max(float(np.hypot(*np.diff(line, axis=0).T).max()) for line in dense) * 0.05
     places = np.array([network.nodes[_node(network.edges[i], end)] for i, end in loose])
-    which, near = tree.query(shapely.points(places), predicate="dwithin", distance=gap + bend)
+    which, near = pairs_near(shapely.points(places), "dwithin", gap + bend, lines)
+    begin = np.searchsorted(which, np.arange(len(loose) + 1))
     repairs = []
     for k, (i, end) in enumerate(loose):
+        check_time()
         best, target = gap, None
-        for j in near[which == k].tolist():
+        for j in near[begin[k] : begin[k + 1]].tolist():
             if j == i:
                 continue
             _, distance = network.edges[j].curve.project(places[k])

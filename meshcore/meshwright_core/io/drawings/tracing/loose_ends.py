@@ -16,7 +16,7 @@ _OPEN = 0.5
 _FLAT = 1e-4
 """Extent, as a share of the drawing's size squared, below which lines are no outline."""
 _MOST = 2_000
-"""Loose parts beyond which no outline is looked for."""
+"""Loose parts, and ends of one, beyond which no gap is looked for."""
 
 
 @dataclass
@@ -45,7 +45,7 @@ def opened(
         ends = np.array([end for part in group for end in part.ends])
         if len(ends) < 2:
             continue
-        gaps = _gaps(ends)
+        gaps = _gaps(ends[:_MOST])
         length = sum(part.length for part in group)
         hull = shapely.convex_hull(
             shapely.MultiPoint(np.concatenate([p for part in group for p in part.points]))

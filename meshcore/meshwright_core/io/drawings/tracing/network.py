@@ -15,7 +15,9 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.components import components
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.curves.curve import Curve
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.errors import MeshError
 from meshwright_core.io.drawings.drawn import MAX_POINTS, Points
 from meshwright_core.io.drawings.tracing import measures
@@ -131,8 +133,8 @@ def _clustered(
     if int((crowd**2).sum()) > 2 * _PAIRS:
         raise MeshError("too many of its points lie at one place")
     spots = shapely.points(unique)
-    near = shapely.STRtree(spots).query(spots, predicate="dwithin", distance=tolerance)
-    near = near[:, near[0] < near[1]].T
+    one, other = pairs_near(spots, "dwithin", tolerance)
+    near = np.column_stack([one, other])[one < other]
     count = len(unique)
     low, high = np.full(count, len(points)), np.full(count, -1)
     np.minimum.at(low, inverse, piece)
@@ -154,9 +156,8 @@ def _split_atoms(atoms: Ids, host: Ids, nodes: Points, tolerance: float) -> tupl
     atoms, host = atoms[long], host[long]
     if not len(atoms):
         return atoms, host
-    tree = shapely.STRtree(shapely.points(nodes))
     lines = shapely.linestrings(nodes[atoms])
-    atom, node = tree.query(lines, predicate="dwithin", distance=tolerance)
+    atom, node = pairs_near(lines, "dwithin", tolerance, shapely.points(nodes))
     other = (atoms[atom] != node[:, None]).all(axis=1)
     atom, node = atom[other], node[other]
     start, way = nodes[atoms[atom, 0]], nodes[atoms[atom, 1]] - nodes[atoms[atom, 0]]
@@ -190,12 +191,12 @@ def _split_curves(
     lines = shapely.linestrings(np.concatenate(dense), indices=owner)
     # an arc lies within chord / 2 * tan(turn / 4) of its chord
     sagitta = np.array([np.hypot(*np.diff(line, axis=0).T).max() for line in dense]) * 0.05
-    tree = shapely.STRtree(shapely.points(nodes))
-    near = tree.query(lines, predicate="dwithin", distance=tolerance + sagitta)
+    near = pairs_near(lines, "dwithin", tolerance + sagitta, shapely.points(nodes))
     found: list[tuple[int, Edge]] = []
     kept = 0
     begin = np.searchsorted(near[0], np.arange(len(curves) + 1))
     for i, curve in enumerate(curves):
+        check_time()
         a, b = ends[i].tolist()
         candidates = near[1][begin[i] : begin[i + 1]]
         candidates = candidates[(candidates != a) & (candidates != b)]
@@ -274,6 +275,7 @@ def _without_doubles(
     ends: list[tuple[int, int]] = []
     owned: list[Owners] = []
     for i, edge in parts:
+        check_time()
         key = (min(edge.a, edge.b), max(edge.a, edge.b))
         group = groups.setdefault(key, [])
         for j in group:

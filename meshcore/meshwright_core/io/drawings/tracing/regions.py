@@ -16,7 +16,9 @@ import shapely
 from numpy.typing import NDArray
 
 from meshwright_core.core.irregularity import CORNER_ANGLE
+from meshwright_core.core.time_limit import check_time
 from meshwright_core.curves.curve import Curve
+from meshwright_core.domains.loops.near_pairs import pairs_near
 from meshwright_core.errors import MeshError
 from meshwright_core.io.drawings.drawn import Drawing, Points, counted, listed, place_words
 from meshwright_core.io.drawings.report import DrawingReport, FoundRegion, Side
@@ -167,6 +169,7 @@ class _Tracer:
         for face in faces_of(network).faces:
             if len(face.ways) != 2 or face.ways[0][0] == face.ways[1][0]:
                 continue
+            check_time()
             (i, _), (j, _) = face.ways
             length = network.edges[i].curve.length
             if face.area <= 2 * self.tolerance * length and i not in dropped and j not in dropped:
@@ -211,8 +214,8 @@ class _Tracer:
         if self.drawing.holes is not None:
             shapes = self._shapes
             spots = shapely.points(self.drawing.holes)
-            _, void = shapely.STRtree(shapes).query(spots, predicate="within")
-            return [i not in set(void.tolist()) for i in range(len(faces.faces))]
+            void = set(pairs_near(spots, "within", others=shapes)[1].tolist())
+            return [i not in void for i in range(len(faces.faces))]
         order = sorted(range(len(faces.islands)), key=lambda i: -faces.islands[i].area)
         for island in order:
             parent = int(self.parent[island])
@@ -223,6 +226,7 @@ class _Tracer:
 
     def _is_insert(self, faces: Faces, island: int) -> bool:
         """Whether the rim is drawn on two layers: as the hole of one region, and as an outline."""
+        check_time()
         for i, _ in faces.islands[island].rim:
             if len({self.drawn[owner].layer for owner in faces.edges[i].owners}) < 2:
                 return False
@@ -246,6 +250,7 @@ class _Tracer:
         found = np.full(len(faces.faces), -1)
         shapes = []
         for area in self.drawing.areas or []:
+            check_time()
             rings = [
                 np.concatenate([measures.samples(c)[:-1] for c in ring]) for ring in area.rings
             ]
@@ -257,7 +262,7 @@ class _Tracer:
             shapes.append(shape)
         sizes = shapely.area(np.array(shapes))
         spots = shapely.points(self.inside)
-        face, area_index = shapely.STRtree(shapes).query(spots, predicate="within")
+        face, area_index = pairs_near(spots, "within", others=shapes)
         for i, j in zip(face.tolist(), area_index.tolist(), strict=True):
             if found[i] < 0 or sizes[j] < sizes[found[i]]:
                 found[i] = j
@@ -283,6 +288,7 @@ class _Tracer:
             crossing[k] = crossing[k] or f"the boundary touches itself at {place_words(place)}"
         regions = []
         for k, i in enumerate(solid):
+            check_time()
             loops = tuple(
                 tuple(
                     Side(faces.edges[e].curve, back, self._name(faces.edges[e])) for e, back in loop
@@ -341,7 +347,7 @@ class _Tracer:
         if self.drawing.labels and solid:
             shapes = self._shapes[solid]
             spots = shapely.points(np.array([place for _, place in self.drawing.labels]))
-            label, region = shapely.STRtree(shapes).query(spots, predicate="within")
+            label, region = pairs_near(spots, "within", others=shapes)
             for j, k in zip(label.tolist(), region.tolist(), strict=True):
                 given[k] = given[k] or self.drawing.labels[j][0]
         return named(given, layers)

@@ -1,0 +1,117 @@
+"""MED files of Salome and Code_Aster (.med): HDF5 files, read with h5py.
+
+The groups of elements and points are families: each element has the number of one, and a family has
+the names of its groups. The layout is that of MED 3 and 4
+(https://docs.salome-platform.org/latest/dev/MEDCoupling/developer/med-file.html).
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshwright_core.errors import MeshError
+from meshwright_core.io.content import Content
+from meshwright_core.io.readers.builder import Builder
+from meshwright_core.io.readers.numbers import Ints
+
+_CELLS = {
+    "PO1": ("vertex", 1), "SE2": ("line", 2), "SE3": ("line", 3), "TR3": ("triangle", 3),
+    "TR6": ("triangle", 6), "TR7": ("triangle", 7), "QU4": ("quad", 4), "QU8": ("quad", 8),
+    "QU9": ("quad", 9), "TE4": ("tetra", 4), "T10": ("tetra", 10), "HE8": ("hexahedron", 8),
+    "H20": ("hexahedron", 20), "H27": ("hexahedron", 27), "PY5": ("pyramid", 5),
+    "P13": ("pyramid", 13), "PE6": ("wedge", 6), "P15": ("wedge", 15),
+}  # fmt: skip
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+EXPANDED = 100
+"""Times that an array may be larger than the whole file, where that is compressed."""
+
+
+def read(path: Path) -> Content:
+    """Return the mesh of a MED file; of a series over time the last state."""
+    import h5py
+
+    data = path.read_bytes()
+    if not data.startswith(_SIGNATURE):
+        raise MeshError("it is no MED file: it does not begin as HDF5 does")
+    try:
+        with h5py.File(io.BytesIO(data), "r") as file:
+            return _content(file, EXPANDED * len(data) + 2**20)
+    except (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError) as error:
+        raise MeshError("it is cut off or damaged: its HDF5 structure") from error
+
+
+def _content(file: Any, most: int) -> Content:
+    if "ENS_MAA" not in file or not len(file["ENS_MAA"]):
+        raise MeshError("it holds no mesh of MED")
+    meshes = file["ENS_MAA"]
+    build = Builder()
+    for name in meshes:
+        mesh = meshes[name]
+        dimension = int(mesh.attrs["ESP"])
+        if dimension not in (1, 2, 3):
+            raise MeshError(f"it has {dimension} dimensions")
+        state = mesh if "NOE" in mesh else mesh[list(mesh)[-1]]
+        families = mesh["FAS"] if "FAS" in mesh else file["FAS"].get(name, {})
+        build.part(name)
+        _add(build, state, families, dimension, most)
+    build.dropped += [f"field {name!r}" for name in file.get("CHA", ())]
+    return build.content()
+
+
+def _add(
+    build: Builder, state: Any, families: Mapping[str, Any], dimension: int, most: int
+) -> None:
+    points = _array(state["NOE"]["COO"], most)
+    build.points(points.reshape(dimension, -1).T)
+    if "FAM" in state["NOE"]:
+        _node_sets(build, _array(state["NOE"]["FAM"], most), _names(families.get("NOEUD", {})))
+    names = _names(families.get("ELEME", {}))
+    for code, block in state.get("MAI", {}).items():
+        if code not in _CELLS:
+            raise MeshError(f"its cells {code[:20]!r} are unknown")
+        kind, nodes = _CELLS[code]
+        cells = _array(block["NOD"], most).reshape(nodes, -1).T - 1
+        placed = build.cells(kind, cells)
+        if "FAM" not in block:
+            continue
+        family = _array(block["FAM"], most)
+        for one in placed:
+            numbers = family[one.which]
+            for number in np.unique(numbers).tolist():
+                rows = np.flatnonzero(numbers == number)
+                for group in names.get(number, ()):
+                    build.group(group, [one._replace(rows=one.rows[rows], which=one.which[rows])])
+
+
+def _node_sets(build: Builder, family: Ints, names: dict[int, list[str]]) -> None:
+    sets: dict[str, list[Ints]] = {}
+    for number, groups in names.items():
+        for group in groups:
+            sets.setdefault(group, []).append(np.flatnonzero(family == number))
+    for group, members in sets.items():
+        build.node_set(group, np.concatenate(members))
+
+
+def _names(families: Mapping[str, Any]) -> dict[int, list[str]]:
+    """The names of the groups of each family, by its number."""
+    found = {}
+    for family in families.values():
+        if "GRO" in family:
+            rows = np.asarray(family["GRO"]["NOM"][()]).astype(np.uint8)
+            texts = [bytes(row).split(b"\0")[0] for row in rows.reshape(len(rows), -1)]
+            names = [text.decode("utf-8", "replace").strip() for text in texts]
+            found[int(family.attrs["NUM"])] = [name for name in names if name]
+    return found
+
+
+def _array(data: Any, most: int) -> Any:
+    """A dataset as an array, if it is not larger than `most` bytes."""
+    if data.size * data.dtype.itemsize > most:
+        raise MeshError("it is damaged: an array is larger than the file can hold")
+    found = np.asarray(data[()]).ravel()
+    return found if found.dtype.kind == "f" else found.astype(np.int64)
