@@ -1,4 +1,8 @@
-"""Every lesson runs from top to bottom in a kernel, blank and solved, and is fit to be read."""
+"""Every lesson runs from top to bottom in a kernel, blank and solved, and is fit to be read.
+
+nbformat and nbclient are imported inside functions: they load the grammars of JSON schemas, which
+takes seconds, in every process that collects the tests.
+"""
 
 import copy
 import itertools
@@ -6,10 +10,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-import nbformat
 import pytest
-from nbclient import NotebookClient
-from nbformat import v4
 
 from meshwright.teaching import lessons
 from meshwright.teaching.exercises.result import BLANK, MIME, RIGHT, WRONG
@@ -34,6 +35,8 @@ every_lesson = pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: les
 
 
 def book(lesson: Lesson) -> Any:
+    import nbformat
+
     return nbformat.read(lesson.path, as_version=4)
 
 
@@ -44,6 +47,8 @@ def exercise_of(cell: Any) -> dict[str, Any] | None:
 
 def tried(cell: Any, code: str, state: str) -> Any:
     """The cell with an answer, marked with what should come of it."""
+    from nbformat import v4
+
     name = cell.metadata.meshwright.exercise
     source = lessons.ExerciseCell(name, cell.source, "", ()).answered(code)
     made = v4.new_code_cell(source)
@@ -55,6 +60,8 @@ def blank_then_solved(notebook: Any) -> Any:
     """The cells of a lesson as shipped, then from an empty namespace with wrong answers and with
     solutions: one notebook, so that one kernel is started.
     """
+    from nbformat import v4
+
     cells = []
     for cell in notebook.cells:
         shipped = copy.deepcopy(cell)
@@ -78,6 +85,8 @@ def blank_then_solved(notebook: Any) -> Any:
 
 @every_lesson
 def test_runs_blank_and_solved(lesson: Lesson, tmp_path: Path):
+    from nbclient import NotebookClient
+
     notebook = blank_then_solved(book(lesson))
     client = NotebookClient(
         notebook,
@@ -97,6 +106,8 @@ def test_runs_blank_and_solved(lesson: Lesson, tmp_path: Path):
 
 @every_lesson
 def test_is_valid_and_carries_no_outputs(lesson: Lesson):
+    import nbformat
+
     notebook = book(lesson)
     nbformat.validate(notebook)
     for number, cell in enumerate(notebook.cells, 1):
