@@ -165,6 +165,7 @@ class GuardedRollouts:
         rng: of the random choices.
         count: rollouts side by side.
         max_steps: length of a rollout, by default that of the policy's task.
+        ceiling: largest number of elements, by default that of the policy's task.
 
     Attributes:
         found: the best state of each rollout.
@@ -179,11 +180,13 @@ class GuardedRollouts:
         rng: np.random.Generator,
         count: int = TOGETHER,
         max_steps: int | None = None,
+        ceiling: int | None = None,
     ) -> None:
         """Begin at `mesh`."""
         task = policy.task
         self._network, self._task, self._rng = policy.network, task, rng
-        bounds = task.bounds(mesh.n_elements)
+        floor, own = task.bounds(mesh.n_elements)
+        bounds = floor, own if ceiling is None else ceiling
         batch = Batch(task, [mesh], count, rng, endless=False, bounds=bounds)
         batch.meshes.counters[:, JOURNALLING] = 0
         self._batch = batch
@@ -317,6 +320,8 @@ class GuardedDescent:
     ) -> None:
         """Nothing is done yet."""
         self._mesh, self._policy, self._max_steps = mesh, policy, max_steps
+        # by the start of the descent: by those of its rounds the meshes would grow without end
+        self._ceiling = policy.task.bounds(mesh.n_elements)[1]
         self._rng = np.random.default_rng(seed)
         self.states: list[DrawnState] = []
         self.rollouts = self._rounds = 0
@@ -346,7 +351,7 @@ class GuardedDescent:
     def _leap(self, stop: Callable[[], bool]) -> bool:
         """Leap from the best state; returns whether that has led to lower s."""
         best = self.states[0]
-        found = leap(best.mesh(self._mesh), self._policy, self._rng, stop)
+        found = leap(best.mesh(self._mesh), self._policy, self._rng, stop, self._ceiling)
         if found is None:
             return False
         operations, arrays = found
@@ -381,7 +386,9 @@ class GuardedDescent:
         start = self._mesh
         if self.states and self._rounds % 2:
             before, start = self.states[0].operations, self.states[0].mesh(self._mesh)
-        batch = GuardedRollouts(start, self._policy, self._rng, count, self._max_steps)
+        batch = GuardedRollouts(
+            start, self._policy, self._rng, count, self._max_steps, self._ceiling
+        )
         batch.run(stop)
         self._rounds += 1
         self.rollouts += count

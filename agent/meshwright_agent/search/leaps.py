@@ -38,19 +38,26 @@ Decisions = tuple[tuple[int, int], ...]
 
 
 def leap(
-    mesh: HalfEdgeMesh, policy: Policy, rng: np.random.Generator, stop: Callable[[], bool]
+    mesh: HalfEdgeMesh,
+    policy: Policy,
+    rng: np.random.Generator,
+    stop: Callable[[], bool],
+    ceiling: int | None = None,
 ) -> tuple[Operations, MeshArrays] | None:
     """Operations that lead to lower s, and the arrays there with valid positions; None if no leap
     of this round can be drawn.
 
-    mesh: of quads, without inverted elements; not changed.
+    mesh: of quads, without inverted elements; not changed. ceiling: largest number of elements, by
+    default that of the policy's task.
     """
-    before = with_room(mesh, 3 * mesh.n_elements)
+    if ceiling is None:
+        ceiling = policy.task.bounds(mesh.n_elements)[1]
+    before = with_room(mesh, ceiling)
     rails = rails_of(mesh, len(before.vertex))
     local = local_effort(rings=RINGS, thorough=False)
     active = np.zeros(len(before.points), np.bool_)
     cleaned, touched = np.zeros(MOST_CLEANUPS, np.int64), np.zeros(16, np.int64)
-    for decisions in _shortest(mesh, policy, rng, stop):
+    for decisions in _shortest(mesh, policy, rng, stop, ceiling):
         if stop():
             break
         after = copied(before)
@@ -65,11 +72,15 @@ def leap(
 
 
 def _shortest(
-    mesh: HalfEdgeMesh, policy: Policy, rng: np.random.Generator, stop: Callable[[], bool]
+    mesh: HalfEdgeMesh,
+    policy: Policy,
+    rng: np.random.Generator,
+    stop: Callable[[], bool],
+    ceiling: int,
 ) -> list[Decisions]:
     """The decisions of rollouts until s is lower, each once, the shortest first."""
     task = policy.task
-    bounds = task.bounds(mesh.n_elements)
+    bounds = task.bounds(mesh.n_elements)[0], ceiling
     batch = Batch(task, [mesh], TOGETHER, rng, endless=False, bounds=bounds)
     generator = torch.Generator().manual_seed(int(rng.integers(1 << 31)))
     rows = np.arange(TOGETHER)

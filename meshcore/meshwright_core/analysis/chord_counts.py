@@ -15,8 +15,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, milp
-from scipy.sparse import coo_matrix
 
 from meshwright_core.errors import MeshError
 
@@ -179,6 +177,10 @@ def _together(
     its cost, which is linear there; convexity fills the steps in their order. An even sum has half
     of it as one more integer.
     """
+    # SciPy's parts take a second to import, and a notebook's widget needs them only for grids
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import coo_matrix
+
     low, high = bounds
     named = [c for one in conditions for c in (*one.chords, *one.like)]
     coupled = np.unique(np.array(named, np.int64))

@@ -13,8 +13,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from meshwright_core.analysis.element_division import chords
 from meshwright_core.blocks.patches import Patch, boundary_patches
@@ -175,6 +173,9 @@ class BlockStructure:
 
 def _directions(twin: np.ndarray, chord: np.ndarray) -> np.ndarray:
     """(4 b,) whether each half-edge runs in the direction of its chord: that of its first one."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     rows = np.arange(len(twin))
     inner = np.flatnonzero(twin >= 0)
     # node 2 r is half-edge r forwards, node 2 r + 1 backwards; opposite and twin turn around

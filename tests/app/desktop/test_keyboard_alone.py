@@ -54,11 +54,6 @@ def test_alt_goes_to_the_menu_bar(qtbot, open_window, star):
     press(qtbot, window, Qt.Key.Key_Alt)
     qtbot.waitUntil(bar.hasFocus, timeout=WAIT)
     assert bar.activeAction().text() == "&File"
-    QTest.keyClick(bar, Qt.Key.Key_Down)
-    qtbot.waitUntil(lambda: popup() is not None, timeout=WAIT)
-    assert popup().title() == "&File" and popup().activeAction().text().startswith("New")
-    QTest.keyClick(popup(), Qt.Key.Key_Escape)
-    qtbot.waitUntil(lambda: popup() is None, timeout=WAIT)
 
 
 def test_a_menu_runs_an_action_by_keys(qtbot, open_window, star):

@@ -33,6 +33,9 @@ GOOD = {
     "policy": {"name": "quad"},
     "take_hint": {"index": 0},
     "level": {"action": "again"},
+    "blocks": {},
+    "chord_count": {"ends": [0, 1], "count": 4},
+    "export_blocks": {"ending": ".msh"},
 }
 
 

@@ -29,6 +29,8 @@ def _bits(mesh):
     arrays = mesh.arrays
     slots = {
         "edge": mesh.k * int(arrays.counters[ELEMENT_SLOTS]),
+        "element_mark": int(arrays.counters[ELEMENT_SLOTS]),
+        "region": int(arrays.counters[ELEMENT_SLOTS]),
         "trace": 0,
         "journal": int(arrays.counters[JOURNAL_TOP]),
     }

@@ -72,8 +72,7 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "agent.complete",
         "Complete",
-        "Search until the optimum and a good shape are reached or nothing more is won, and apply"
-        " the best result",
+        "Search until the optimum and a good shape are reached, and apply the best result",
         run=lambda context: context.agent.complete(),
         shortcuts=("Ctrl+Return",),
         enabled=can_run,
