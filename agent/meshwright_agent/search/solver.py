@@ -247,8 +247,9 @@ def _placed(answer: Solution, mesh: HalfEdgeMesh, layout: Layout) -> Solution:
     matched = matched_vertices(layout.arrays, reached.arrays)
     if matched is not None:
         own, ids = matched
-        reached.move(ids, layout.arrays.points[own], layout.arrays.parameter[own])
-        return judged(answer, mesh, placed=reached.arrays)
+        placed = reached.copy()
+        placed.move(ids, layout.arrays.points[own], layout.arrays.parameter[own])
+        return judged(answer, mesh, placed=placed.arrays, reached=reached)
     found = judged(answer, mesh)
     if layout.key[1]:
         longer = replace(answer, operations=layout.operations())
@@ -385,7 +386,7 @@ def _patch_by_patch(
             operations, reached.score, mesh.optimum, 0, rollouts=1,
             method="patches" if operations else "none", reason=why,
         ),
-        mesh, lambda: past(SMOOTHING), placed=placed.arrays,
+        mesh, lambda: past(SMOOTHING), placed=placed.arrays, reached=reached.copy(),
     )  # fmt: skip
     remaining = None if seconds is None else seconds - (time.perf_counter() - began)
     over = (remaining is not None and remaining <= 0.0) or (cancelled is not None and cancelled())
