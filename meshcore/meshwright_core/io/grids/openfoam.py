@@ -63,9 +63,11 @@ class _Dictionary:
 
     def __init__(self, grid: BlockGrid, extrusion: Extrusion, walls: tuple[str, ...]) -> None:
         self.grid, self.extrusion = grid, extrusion
-        every = grid.structure.patches if EVERY_SIDE in walls else ()
-        named = [grid.structure.patch(name) for name in walls if name != EVERY_SIDE]
-        self.walls = {patch.name for patch in (*every, *named)}
+        self.walls = {
+            patch.name
+            for patch in grid.structure.patches
+            if not {patch.name, patch.title, EVERY_SIDE}.isdisjoint(walls)
+        }
         size = float(np.ptp(grid.points[: len(grid.structure.points)], axis=0).max())
         if np.ptp(grid.points[:, 2]) > 1e-9 * size:
             raise MeshError("blockMesh takes grids in the plane of x and y.")
