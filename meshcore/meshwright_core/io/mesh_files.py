@@ -273,7 +273,6 @@ def _prepared(
 def _loaded(content: Content, corner_angle: float) -> Loaded:
     ((kind, elements),) = content.cells.items()
     points = content.points
-    cleaning.refuse_flat(points, elements)
     elements = cleaning.oriented(points, elements)
     points, plane, flat = plane_frames.flattened(points, elements)
     if flat:
@@ -290,6 +289,7 @@ def _loaded(content: Content, corner_angle: float) -> Loaded:
         names=found.names,
         plane=plane,
     )
+    cleaning.refuse_flat(points, elements)
     mesh.left_out = content.dropped
     if plane is not None:
         shown = ", ".join(f"{round(value, 6) + 0.0:.4g}" for value in plane.normal)

@@ -377,7 +377,7 @@ def test_images_that_are_refused(extent, reason, tmp_path):
 @pytest.mark.parametrize("ending", [".vts", ".vti", ".vtr"])
 def test_grids_are_only_read(ending, tmp_path):
     mesh = HalfEdgeMesh.from_elements(PLACES, [[0, 1, 4, 3], [1, 2, 5, 4]])
-    with pytest.raises(MeshError, match="are only read: .vtu and .vtp hold any mesh"):
+    with pytest.raises(MeshError, match=r"are only read: \.vtu and \.vtp hold any mesh"):
         meshwright_core.write(tmp_path / f"a{ending}", mesh)
     assert ending in mesh_files.endings()
     assert ending not in mesh_files.endings(written=True)

@@ -1,7 +1,8 @@
 """Universal files of I-DEAS and Salome (.unv): nodes, elements and groups.
 
 After the descriptions of the universal datasets 2411 (nodes), 2412 (elements) and 2467, 2477, 2452
-and 2435 (groups) by the SDRC of the University of Cincinnati. Other datasets are left out, and noted.
+and 2435 (groups) by the SDRC of the University of Cincinnati. Other datasets are left out, and
+noted.
 """
 
 from __future__ import annotations

@@ -3,7 +3,8 @@ characters or separated by commas.
 
 After the MSC Nastran Quick Reference Guide. The property of an element is its region, named by the
 comments of HyperMesh ("$HMNAME PROP"), ANSA ("$ANSA_NAME_COMMENT") and Femap ("$ Femap Property").
-Files that are included are read from beside the deck. Cards that are no mesh are left out, and noted.
+Files that are included are read from beside the deck. Cards that are no mesh are left out, and
+noted.
 """
 
 from __future__ import annotations

@@ -27,11 +27,13 @@ def write(content: Content) -> str:
     if len(edges):
         edges = names.edges[np.unique(place.ravel(), return_index=True)[1]]
     owner = _properties(content, kind, len(elements))
-    for i, nodes in form.numbered(edges + 1):
+    for i, nodes in enumerate((edges + 1).tolist(), start=1):
         lines += [_row(i, _BEAM, 1, 1, 7, 2), _row(0, 0, 0), _row(*nodes)]
     first = len(edges) + 1
-    for (i, nodes), own in zip(form.numbered(elements + 1), owner.tolist(), strict=True):
-        lines += [_row(i + first - 1, _SHELL[kind], own, 1, 7, len(nodes)), _row(*nodes)]
+    for i, (nodes, own) in enumerate(
+        zip((elements + 1).tolist(), owner.tolist(), strict=True), start=first
+    ):
+        lines += [_row(i, _SHELL[kind], own, 1, 7, len(nodes)), _row(*nodes)]
     lines.append("    -1")
     row = {tuple(pair): i for i, pair in enumerate(np.sort(edges, axis=1).tolist())}
     members = {

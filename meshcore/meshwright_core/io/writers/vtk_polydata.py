@@ -1,4 +1,4 @@
-"""VTK's XML files of polygonal data (.vtp): elements, the edges of named sides, and names as arrays.
+"""VTK's XML files of polygons (.vtp): elements, the edges of named sides, and names as arrays.
 
 Arrays are in base64, each with its length before it.
 """
