@@ -47,8 +47,7 @@ def refuse_strays(points: NDArray[np.float64], elements: Elements) -> None:
     stray = ((elements < 0) | (elements >= count)).any(axis=1)
     if stray.any():
         raise MeshError(
-            f"element {int(np.argmax(stray))} names a point that is not among the {count} of "
-            "the file"
+            f"element {int(np.argmax(stray))} names a point that is not among the {count} there"
         )
     far = np.logical_not((np.abs(points) < _FARTHEST).all(axis=1))[elements]
     if far.any():

@@ -117,10 +117,13 @@ def load(
 
 
 def from_content(
-    content: Content, corner_angle: float = CORNER_ANGLE, to_quads: bool = False
+    content: Content,
+    corner_angle: float = CORNER_ANGLE,
+    to_quads: bool = False,
+    part: str | None = None,
 ) -> Loaded:
     """The mesh in content that does not come from a file; arguments and errors as for `load`."""
-    return _loaded(_prepared(content, False, b"", None, to_quads), corner_angle)
+    return _loaded(_prepared(content, False, b"", part, to_quads), corner_angle)
 
 
 def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
