@@ -16,7 +16,7 @@ from meshwright_core.io.writers import lines as form
 _CODES = {"triangle": "TR3", "quad": "QU4"}
 _PROFILE = np.bytes_("MED_NO_PROFILE_INTERNAL")
 _STEP = "-0000000000000000001-0000000000000000001"
-_LETTERS = 80
+LETTERS = 80
 """Bytes of the name of a group."""
 
 
@@ -68,8 +68,8 @@ def _write(file: Any, content: Content) -> None:
             family.attrs["NUM"] = -number
             listed = family.create_group("GRO")
             listed.attrs["NBR"] = len(own)
-            texts = [name.encode()[:_LETTERS].ljust(_LETTERS, b"\0") for name in own]
-            rows = np.frombuffer(b"".join(texts), np.int8).reshape(-1, _LETTERS)
+            texts = [form.cut(name, LETTERS).ljust(LETTERS, b"\0") for name in own]
+            rows = np.frombuffer(b"".join(texts), np.int8).reshape(-1, LETTERS)
             listed.create_dataset("NOM", data=rows)
 
 
