@@ -202,11 +202,11 @@ def losses(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> tuple[str, ...]:
             )
     if form.spelling is not None:
         written = form.spelling(sides, regions)
-        said += _respelled(form.title, {a: b for a, b in written.items() if a != b})
+        said += respelled(form.title, {a: b for a, b in written.items() if a != b})
     return tuple(said)
 
 
-def _respelled(title: str, names: Mapping[str, str]) -> list[str]:
+def respelled(title: str, names: Mapping[str, str]) -> list[str]:
     """A sentence on names that a format writes in another way."""
     if not names:
         return []
