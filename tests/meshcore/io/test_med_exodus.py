@@ -276,3 +276,24 @@ def test_a_name_that_is_too_long_is_said(ending, longest, tmp_path):
     assert names(meshwright_core.read(tmp_path / f"a{ending}"))[0][
         frozenset({(0, 0, 0), (0, 1, 0)})
     ] == "ä" * (longest // 2)
+
+
+def test_gmsh_reads_the_groups_of_med(tmp_path):
+    """The MED library takes names of groups as arrays of 80 letters only."""
+    need(".med")
+    import h5py
+
+    (tmp_path / "a.msh").write_text(MSH.format(0))
+    path = tmp_path / "a.med"
+    meshwright_core.write(path, meshwright_core.read(tmp_path / "a.msh"))
+    with h5py.File(path) as file:
+        assert file["FAS/mesh/ELEME/FAM_-1/GRO/NOM"].id.get_type().get_array_dims() == (80,)
+    gmsh = pytest.importorskip("gmsh", reason="needs the package gmsh")
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(path))
+        found = {gmsh.model.getPhysicalName(*group) for group in gmsh.model.getPhysicalGroups()}
+    finally:
+        gmsh.finalize()
+    assert found == {"inlet", "wall", "steel", "copper"}

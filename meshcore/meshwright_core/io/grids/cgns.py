@@ -63,7 +63,7 @@ def write_cgns(path: Path, grid: BlockGrid) -> None:
 def _add_families(base: Any, sides: dict[str, str], regions: dict[str, str]) -> None:
     for name in sides.values():
         family = _node(base, name, "Family_t")
-        _node(family, "FamilyBC", "FamilyBC_t", _text("BCTypeUserDefined"))
+        _node(family, "FamilyBC", "FamilyBC_t", _text("UserDefined"))
     for name, label in regions.items():
         family = _node(base, label, "Family_t")
         _node(family, "Description", "Descriptor_t", _text(f"region {name}"))

@@ -70,7 +70,10 @@ def _write(file: Any, content: Content) -> None:
             listed.attrs["NBR"] = len(own)
             texts = [form.cut(name, LETTERS).ljust(LETTERS, b"\0") for name in own]
             rows = np.frombuffer(b"".join(texts), np.int8).reshape(-1, LETTERS)
-            listed.create_dataset("NOM", data=rows)
+            # an array type for each name: the MED library reads no table of bytes
+            made = listed.create_dataset("NOM", (len(own),), np.dtype((np.int8, (LETTERS,))))
+            for i, row in enumerate(rows):
+                made[i] = row
 
 
 def _cells(
