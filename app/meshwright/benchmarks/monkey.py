@@ -32,8 +32,8 @@ SIZE = (900, 620)
 """Of the window, in pixels."""
 EVERY = 250
 """Events between two reports of progress."""
-LARGEST = 2000
-"""A mesh with more elements than this is replaced by the star."""
+SMALLEST, LARGEST = 4, 2000
+"""A mesh with more elements is replaced by the star, and one with fewer soon."""
 STUCK, SILENT = 20.0, 300.0
 """Seconds of CPU time, and of wall time, without an iteration of the event loop after which the
 window counts as hung.
@@ -177,7 +177,11 @@ class Monkey:
 
         document = self.window.document
         self.over += open_now is not None
-        if document.mesh is None or document.mesh.n_elements > LARGEST:
+        if not self.window.isVisible():
+            self.left = 0
+            raise RuntimeError(f"the window was closed by: {self.doing}")
+        count = document.mesh.n_elements if document.mesh is not None else 0
+        if not count or count > LARGEST or (count < SMALLEST and self.rng.random() < 0.05):
             document.replace(_star(self._pick(["tri", "quad"])), "star")
             return
         if isinstance(open_now, QFileDialog):
@@ -324,6 +328,7 @@ def _play(seed: int, events: int) -> dict[str, Any]:
     window = MainWindow(Document(_star("quad"), "star"), ready=True)
     folder = tempfile.TemporaryDirectory()
     window.files.watch(Path(folder.name))
+    window.actions_by_id["quit"].setEnabled(False)  # it is in a menu, too
     window.resize(*SIZE)
     window.show()
     window.activateWindow()
