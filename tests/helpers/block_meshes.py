@@ -34,15 +34,19 @@ def on_domain(
     )
 
 
-def quarter_ring() -> HalfEdgeMesh:
-    """One block between two arcs, radii 1 and 2, and two segments; its four sides have names."""
-    quarter = 0.5 * math.pi
+def quarter_ring(
+    turn: float = 0.5 * math.pi, names: tuple[str, ...] = ("start", "outer", "end", "inner")
+) -> HalfEdgeMesh:
+    """One block between two arcs that turn so far, radii 1 and 2, and two segments; its four sides
+    have names.
+    """
+    x, y = math.cos(turn), math.sin(turn)
     outline = [
-        Curve.line((1, 0), (2, 0)), Curve.arc((0, 0), 2, 0, quarter),
-        Curve.line((0, 2), (0, 1)), Curve.arc((0, 0), 1, quarter, -quarter),
+        Curve.line((1, 0), (2, 0)), Curve.arc((0, 0), 2, 0, turn),
+        Curve.line((2 * x, 2 * y), (x, y)), Curve.arc((0, 0), 1, turn, -turn),
     ]  # fmt: skip
-    domain = Domain.from_curves([outline], names=[["start", "outer", "end", "inner"]])
-    return on_domain(domain, [(1, 0), (2, 0), (0, 2), (0, 1)], [[0, 1, 2, 3]])
+    domain = Domain.from_curves([outline], names=[list(names)])
+    return on_domain(domain, [(1, 0), (2, 0), (2 * x, 2 * y), (x, y)], [[0, 1, 2, 3]])
 
 
 def annulus() -> HalfEdgeMesh:

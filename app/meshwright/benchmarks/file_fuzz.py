@@ -17,6 +17,7 @@ import warnings
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from types import FrameType
@@ -30,7 +31,7 @@ from meshwright.console import Update, no_update
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.io import drawings, mesh_files
-from meshwright_core.io.formats import FORMATS, NOT_UNDERSTOOD
+from meshwright_core.io.formats import FORMATS, NOT_UNDERSTOOD, missing_package
 
 SUMMARY = "mutated files of every format: refused in a sentence, or read as a valid mesh"
 MUTATIONS, QUICK = 2000, 12
@@ -72,6 +73,35 @@ _DRAWINGS = {
 }
 
 
+_GRID = (
+    '<VTKFile type="{0}" byte_order="LittleEndian"><{0} WholeExtent="0 2 0 1 0 0" Origin="0 0 0" '
+    'Spacing="1 1 1"><Piece Extent="0 2 0 1 0 0"><CellData><DataArray type="Int32" Name="m">7 8'
+    "</DataArray></CellData><{1}>{2}</{1}></Piece></{0}></VTKFile>"
+)
+_AXIS = '<DataArray type="Float64" NumberOfComponents="{1}">{0}</DataArray>'
+_DECK = (
+    "*PART, NAME=P\n*NODE\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n*ELEMENT, TYPE=CPS4\n"
+    "1, 1, 2, 3, 4\n*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=I, PART=P\n2., 0., 0.\n"
+    "*END INSTANCE\n*NSET, NSET=left, INSTANCE=I\n1, 4\n*ELSET, ELSET=_S1, INSTANCE=I, GENERATE\n"
+    "1, 1, 1\n*SURFACE, NAME=low, TYPE=ELEMENT\n_S1, S1\n*END ASSEMBLY\n"
+)
+_MESHES = {
+    ".vts": _GRID.format(
+        "StructuredGrid", "Points", _AXIS.format("0 0 0 1 0 0 2 0 0 0 1 0 1 1 0 2 1 0", 3)
+    ),
+    ".vti": _GRID.format("ImageData", "PointData", ""),
+    ".vtr": _GRID.format(
+        "RectilinearGrid",
+        "Coordinates",
+        "".join(_AXIS.format(values, 1) for values in ("0 1 2", "0 1", "0")),
+    ),
+    ".inp": _DECK,
+    ".msh": "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$ENDNOD\n$ELM\n3\n1 1 7 1 2 1 2\n"
+    "2 2 8 1 3 1 2 3\n3 2 8 1 3 1 3 4\n$ENDELM\n",
+}
+"""Files that we do not write, beside those that we do."""
+
+
 class _TooLong(BaseException):
     """Reading has taken more processor time than it may."""
 
@@ -98,7 +128,8 @@ def kinds(folder: Path) -> dict[str, Kind]:
     found = hostile_files.kinds(folder, mutated)
     for ending, sources in _sources(folder):
         read = _read_drawing if ending in _DRAWINGS else _read_mesh
-        found[ending] = Kind(sources, read, mutated)
+        change = partial(hostile_files.archive_mutated, mutated) if ending == ".3mf" else mutated
+        found[ending] = Kind(sources, read, change)
     return found
 
 
@@ -236,12 +267,14 @@ def _sources(folder: Path) -> Iterator[tuple[str, list[bytes]]]:
         files = []
         for mesh in meshes:
             name = "triangle" if mesh.k == 3 else "quad"
-            if name in form.kinds and not form.needs:
+            if name in form.kinds and missing_package(form) is None:
                 path = folder / f"whole{ending}"
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore")
                     mesh_files.write(path, mesh)
                 files.append(path.read_bytes())
+        if ending in _MESHES:
+            files.append(_MESHES[ending].encode())
         if files:
             yield ending, files
     for ending, text in _DRAWINGS.items():

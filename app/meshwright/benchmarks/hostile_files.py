@@ -268,6 +268,23 @@ def level_mutated(by_bytes: Mutation, data: bytes, rng: np.random.Generator) -> 
     return json.dumps(json_mutated(json.loads(data), rng)).encode()
 
 
+def archive_mutated(by_bytes: Mutation, data: bytes, rng: np.random.Generator) -> bytes:
+    """A zip archive with other bytes, or with other bytes in one of its files."""
+    if rng.random() < 0.3:
+        return by_bytes(data, rng)
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    largest = max(files, key=lambda name: len(files[name]))
+    names = list(files)
+    name = largest if rng.random() < 0.7 else names[int(rng.integers(len(names)))]
+    files[name] = by_bytes(files[name], rng)
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(zipfile.ZipInfo(name), content)
+    return target.getvalue()
+
+
 def json_mutated(content: Any, rng: np.random.Generator) -> Any:
     """The content with one to three fields replaced, left out or repeated."""
     for _ in range(int(rng.integers(1, 4))):

@@ -35,7 +35,7 @@ def run(seed: int, quick: bool, update: Update = no_update) -> dict[str, Any]:
     results: dict[str, Any] = {"elements": len(elements)}
     with tempfile.TemporaryDirectory() as folder:
         for ending, form in FORMATS.items():
-            if ending in _ALIKE or form.needs:
+            if ending in _ALIKE or form.needs or not form.kinds:
                 continue
             update(len(results), ending)
             path = Path(folder) / f"grid{ending}"

@@ -22,7 +22,11 @@ def checked_mesh_output(path: str, kind: str | None = None) -> Path:
     from meshwright_core.io import formats
 
     noun = ELEMENT_NOUN.get(kind or "")
-    fit = [ending for ending, form in formats.FORMATS.items() if not noun or noun in form.kinds]
+    fit = [
+        ending
+        for ending, form in formats.FORMATS.items()
+        if (noun in form.kinds if noun else form.kinds)
+    ]
     return checked_output(path, tuple(fit))
 
 

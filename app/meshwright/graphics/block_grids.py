@@ -116,7 +116,12 @@ def blocks(
         sizing: further fields of :class:`meshwright_core.blocks.sizing.Sizing`: `side_sizes`,
             `side_counts`, `edge_counts`, `chord_counts`.
 
+    Numbers of cells, gradings and layers that were set in the window or the widget count where none
+    are given here.
+
     Raises MeshError, one sentence: no quads, not plane, or numbers that contradict each other.
     """
     wanted = Sizing(size=size, divide=divide, walls=tuple(walls), **sizing)
-    return Blocks(block_grid(resolve.mesh(mesh), wanted))
+    structure = BlockStructure.of(found := resolve.mesh(mesh))
+    kept = Sizing.planned(structure, found.grid_plan)
+    return Blocks(block_grid(structure, wanted.over(kept)))

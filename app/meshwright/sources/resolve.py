@@ -101,7 +101,7 @@ def resolve(
     from meshwright_core.io.objects import incoming
 
     angle = CORNER_ANGLE if corner_angle is None else corner_angle
-    if (foreign := incoming.taken(source, angle)) is not None:
+    if (foreign := incoming.taken(source, angle, to_quads, part, region)) is not None:
         return foreign if isinstance(foreign, Domain) else Document(foreign, name)
     if isinstance(source, np.ndarray | list | tuple):
         return Domain(source)
@@ -121,26 +121,28 @@ def mesh(
     seed: int = 0,
     part: str | None = None,
     to_quads: bool = False,
+    region: str | None = None,
 ) -> HalfEdgeMesh:
     """A new mesh of what ``source`` means.
 
     Args:
         source: the name of a gallery shape (``"star"``); a mesh file, a project, or a drawing; a
-            domain; the corners of a polygon (n, 2); a dataset of PyVista, a Trimesh or Path2D of
-            trimesh, a meshio.Mesh, polygons of shapely, a pair of points and elements; or a mesh
-            or document, whose mesh is copied.
+            domain; the corners of a polygon (n, 2); a dataset of PyVista, a Trimesh, Scene or
+            Path2D of trimesh, a meshio.Mesh, polygons of shapely, a pair of points and elements;
+            or a mesh or document, whose mesh is copied.
         kind: ``"tri"`` or ``"quad"`` (the default) for what has to be meshed; a mesh that is
             there already must be of this kind.
         max_edge: upper bound on the length of edges, in the units of the source.
         min_angle: lower bound, in degrees, that Triangle aims at for the angles.
         seed: 0 for the plain mesh; other values vary it where Triangle has a choice.
-        part: the only part of a mesh file that is read, as for :func:`resolve`.
-        to_quads: make quads of the triangles of a mesh file.
+        part: the only part of a mesh file or object that is read, as for :func:`resolve`.
+        to_quads: make quads of the triangles of a mesh file or object.
+        region: regions of a drawing or of shapely's polygons, as for :func:`resolve`.
 
     Raises MeshError, one sentence, if the source means nothing or cannot be meshed.
     """
     _check_kind(kind)
-    found = resolve(source, part=part, to_quads=to_quads)
+    found = resolve(source, part=part, to_quads=to_quads, region=region)
     if not isinstance(found, Document):
         from meshwright_core.domains import meshing
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import re
+import unicodedata
+from collections.abc import Container
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -24,6 +27,8 @@ class Patch:
     """Letters, digits, "_", "-" and ".", as all file formats permit them."""
     edges: np.ndarray
     """(p,) block edges, in the order of the boundary."""
+    title: str
+    """The name as it was drawn; `name` where there is none."""
 
 
 def boundary_patches(
@@ -51,13 +56,27 @@ def boundary_patches(
         for piece in pieces[c] if c < len(pieces) else ():
             if piece.start <= t < piece.stop:
                 name = piece.name
-        found.setdefault(plain_name(name) or loops.get(c, "outline"), []).append(edge)
-    return tuple(Patch(name, np.array(rows, np.int64)) for name, rows in found.items())
+        found.setdefault(name.strip() or loops.get(c, "outline"), []).append(edge)
+    patches: list[Patch] = []
+    for number, (title, rows) in enumerate(found.items(), start=1):
+        name = unlike(plain_name(title) or f"side_{number}", {patch.name for patch in patches})
+        patches.append(Patch(name, np.array(rows, np.int64), title))
+    return tuple(patches)
 
 
 def plain_name(name: str) -> str:
-    """The name with every run of other characters than letters, digits, _ - . as one "_"."""
-    return _NOT_PLAIN.sub("_", name.strip()).strip("_")
+    """The name with every run of other characters than letters, digits, _ - . as one "_", and
+    letters without their accents.
+    """
+    bare = unicodedata.normalize("NFKD", name)
+    bare = "".join(sign for sign in bare if not unicodedata.combining(sign))
+    return _NOT_PLAIN.sub("_", bare.strip()).strip("_")
+
+
+def unlike(name: str, taken: Container[str]) -> str:
+    """The name, with a number behind it where it is taken."""
+    tried = (f"{name}_{number}" for number in itertools.count(2))
+    return name if name not in taken else next(one for one in tried if one not in taken)
 
 
 def _around(mesh: HalfEdgeMesh, halfedges: np.ndarray) -> np.ndarray:

@@ -87,7 +87,7 @@ class Sizing:
 
         Raises GridConflictError if a chord has several numbers of cells.
         """
-        names = {patch.name for patch in structure.patches}
+        names = {name for patch in structure.patches for name in (patch.name, patch.title)}
         counts: dict[int, int] = {}
         for (a, b), count in plan.counts.items():
             edge = structure.edge_between(a, b)

@@ -163,11 +163,13 @@ class BlockStructure:
         return {(a, b): edge for edge, (a, b) in enumerate(ends.tolist())}
 
     def patch(self, name: str) -> Patch:
-        """The patch with this name. Raises MeshError that lists the names if there is none."""
+        """The patch with this name, as drawn or plain. Raises MeshError that lists the names if
+        there is none.
+        """
         for patch in self.patches:
-            if patch.name == name:
+            if name in (patch.title, patch.name):
                 return patch
-        known = ", ".join(patch.name for patch in self.patches)
+        known = ", ".join(patch.title for patch in self.patches)
         raise MeshError(f"There is no side named {name!r}; there are {known}.")
 
 

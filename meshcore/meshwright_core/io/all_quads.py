@@ -51,7 +51,8 @@ def converted(content: Content) -> Content:
         )
     else:
         made, source = blocks[0], sources[0]
-        how = f"{len(triangles)} triangles are joined in {len(pairs)} pairs"
+        noun = "pair" if len(pairs) == 1 else "pairs"
+        how = f"{len(triangles)} triangles are joined in {len(pairs)} {noun}"
     said = f"{len(made)} quads are made of {how}" if len(alone) else f"{how} to make quads"
     result = content._replace(
         cells={"quad": made},

@@ -10,6 +10,7 @@ from meshwright_core.errors import MeshError, MixedElementsError
 from meshwright_core.io.content import Cells, Content
 
 _MOST_DEGREE = 10_000
+_TRIED = 1000
 _FARTHEST = 1e100
 """Coordinates beyond this would overflow in areas."""
 
@@ -46,8 +47,7 @@ def refuse_strays(points: NDArray[np.float64], elements: Elements) -> None:
     stray = ((elements < 0) | (elements >= count)).any(axis=1)
     if stray.any():
         raise MeshError(
-            f"element {int(np.argmax(stray))} names a point that is not among the {count} of "
-            "the file"
+            f"element {int(np.argmax(stray))} names a point that is not among the {count} there"
         )
     far = np.logical_not((np.abs(points) < _FARTHEST).all(axis=1))[elements]
     if far.any():
@@ -55,6 +55,17 @@ def refuse_strays(points: NDArray[np.float64], elements: Elements) -> None:
         point = int(elements[row][np.argmax(far[row])])
         shown = ", ".join(f"{value:g}" for value in points[point])
         raise MeshError(f"point {point}, of element {row}, is at ({shown}), not a finite place")
+
+
+def refuse_flat(points: NDArray[np.float64], elements: Elements) -> None:
+    """MeshError if no element has an area, as where a plane is written without one of its axes."""
+    for rows in (elements[:_TRIED], elements):
+        a, b = points[rows[:, 2]] - points[rows[:, 0]], points[rows[:, -1]] - points[rows[:, 1]]
+        if rows.shape[1] == 3:
+            b = points[rows[:, 1]] - points[rows[:, 0]]
+        if np.cross(a, b).any():
+            return
+    raise MeshError("its elements have no area: all its points lie on one line")
 
 
 def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:

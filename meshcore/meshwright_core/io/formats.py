@@ -29,6 +29,7 @@ from meshwright_core.io.readers import (
     dolfin,
     exodus,
     gmsh,
+    ideas,
     legacy_vtk,
     med,
     medit,
@@ -43,9 +44,10 @@ from meshwright_core.io.readers import (
 )
 from meshwright_core.io.readers.binary_scenes import require_bounded
 from meshwright_core.io.writers import abaqus as abaqus_writer
-from meshwright_core.io.writers import cell_arrays
+from meshwright_core.io.writers import cell_arrays, vtk_polydata
 from meshwright_core.io.writers import exodus as exodus_writer
 from meshwright_core.io.writers import gmsh as gmsh_writer
+from meshwright_core.io.writers import ideas as ideas_writer
 from meshwright_core.io.writers import med as med_writer
 from meshwright_core.io.writers import nastran as nastran_writer
 from meshwright_core.io.writers import su2 as su2_writer
@@ -65,12 +67,13 @@ class Format:
         title: its name in messages.
         read: from a path to its content.
         write: the content to a path.
-        kinds: the element types that it holds.
+        kinds: the element types that it holds; none for formats that are only read.
         data: whether it holds data by point.
         regions: whether it holds the region of each element.
         sides: whether it holds sides.
         numbers: whether sides and regions have numbers there, in place of names.
         spelling: from names of sides and of regions to how they are written, None for as they are.
+        longest: bytes that a name may have, 0 for any.
         merge: whether points at the same place are to be merged on reading.
         needs: packages that reading and writing take beyond our own dependencies.
     """
@@ -84,15 +87,17 @@ class Format:
     sides: bool = False
     numbers: bool = False
     spelling: Callable[[Sequence[str], Sequence[str]], dict[str, str]] | None = None
+    longest: int = 0
     merge: bool = False
     needs: tuple[str, ...] = ()
 
 
-def of(path: str | os.PathLike[str]) -> Format:
-    """Return the format of a file by the ending of its name.
+def of(path: str | os.PathLike[str], written: bool = False) -> Format:
+    """Return the format of a file by the ending of its name. written: it is to be written.
 
     Raises:
-        MeshError: no format has this ending; the message does not name the path.
+        MeshError: no format has this ending, or it is only read; the message does not name the
+            path.
     """
     ending = Path(path).suffix.lower()
     if ending in SHAPES:
@@ -101,13 +106,20 @@ def of(path: str | os.PathLike[str]) -> Format:
         shown = f"the ending {ending!r} is not one of a mesh file" if ending else "no ending"
         raise MeshError(f"{shown}; there are {' '.join(FORMATS)}")
     form = FORMATS[ending]
-    for package in form.needs:
-        if importlib.util.find_spec(package) is None:
-            raise MeshError(
-                f"{form.title} files need the package {package}, which is not installed "
-                f"(pip install {package}, or meshwright[files])"
-            )
+    if written and not form.kinds:
+        raise MeshError(f"{form.title} files ({ending}) are only read: .vtu and .vtp hold any mesh")
+    package = missing_package(form)
+    if package is not None:
+        raise MeshError(
+            f"{form.title} files need the package {package}, which is not installed "
+            f"(pip install {package}, or meshwright[files])"
+        )
     return form
+
+
+def missing_package(form: Format) -> str | None:
+    """The package that a format needs and that is not installed; None if there is none."""
+    return next((name for name in form.needs if importlib.util.find_spec(name) is None), None)
 
 
 @contextlib.contextmanager
@@ -196,6 +208,11 @@ def _own_write(write: Callable[[Content], str]) -> Callable[[Path, Content], Non
     return put
 
 
+def _not_written(path: Path, content: Content) -> None:
+    """Of formats that are only read; :func:`mesh_files.write` refuses them before."""
+    raise MeshError("this format is only read")
+
+
 write_msh_4 = _own_write(lambda content: gmsh_writer.write(content, "4.1"))
 """Writes a Gmsh file of version 4.1."""
 
@@ -251,9 +268,25 @@ _VTK = Format(
 _VTU = Format(
     "VTU", _own_read(vtk_xml.read), _meshio_write("vtu"), data=True, regions=True, sides=True
 )
+_VTP = Format(
+    "VTK polygonal data",
+    _own_read(vtk_xml.read),
+    _own_write(vtk_polydata.write),
+    data=True,
+    regions=True,
+    sides=True,
+)
+_GRID = Format("VTK grid", _own_read(vtk_xml.read), _not_written, kinds=())
+_UNV = Format(
+    "I-DEAS universal",
+    _own_read(ideas.read),
+    _own_write(ideas_writer.write),
+    regions=True,
+    sides=True,
+)
 _INP = Format(
     "Abaqus",
-    _own_read(abaqus.read),
+    _own_path(abaqus.read_path),
     _own_write(abaqus_writer.write),
     regions=True,
     sides=True,
@@ -266,7 +299,9 @@ _SU2 = Format(
     sides=True,
     spelling=su2_writer.spelling,
 )
-_BDF = Format("Nastran", _own_read(nastran.read), _own_write(nastran_writer.write), regions=True)
+_BDF = Format(
+    "Nastran", _own_path(nastran.read_path), _own_write(nastran_writer.write), regions=True
+)
 _DAT = Format("Tecplot", _own_read(tecplot.read), _meshio_write("tecplot"), data=True)
 _PLY = Format("PLY", _own_read(ply.read), _meshio_write("ply"), data=True)
 _MESH = Format(
@@ -292,6 +327,7 @@ _EXODUS = Format(
     exodus_writer.write,
     regions=True,
     sides=True,
+    longest=exodus_writer.LETTERS,
     needs=("netCDF4",),
 )
 
@@ -299,6 +335,10 @@ FORMATS: dict[str, Format] = {
     ".msh": _MSH,
     ".vtk": _VTK,
     ".vtu": _VTU,
+    ".vtp": _VTP,
+    ".vts": _GRID,
+    ".vti": _GRID,
+    ".vtr": _GRID,
     ".inp": _INP,
     ".su2": _SU2,
     ".obj": _OBJ,
@@ -306,12 +346,14 @@ FORMATS: dict[str, Format] = {
     ".stl": _STL,
     ".off": _OFF,
     ".mesh": _MESH,
+    ".meshb": _MESH,
     ".avs": _AVS,
     ".xml": _XML,
     ".vol": _VOL,
     ".bdf": _BDF,
     ".nas": _BDF,
     ".fem": _BDF,
+    ".unv": _UNV,
     ".dat": _DAT,
     ".tec": _DAT,
     ".glb": Format("glTF", *_trimesh("glb"), kinds=_TRIANGLES, merge=True),
@@ -325,12 +367,13 @@ FORMATS: dict[str, Format] = {
         med_writer.write,
         regions=True,
         sides=True,
+        longest=med_writer.LETTERS,
         needs=("h5py",),
     ),
     ".exo": _EXODUS,
     ".e": _EXODUS,
 }
-"""Every ending that is read and written.
+"""Every ending that is read; those whose format has kinds are written too.
 
 XDMF is written as plain XML, MED and Exodus in memory first: the HDF5 library kills the process
 when the disk is full.

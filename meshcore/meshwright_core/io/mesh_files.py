@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwright_core.core.irregularity import CORNER_ANGLE
+from meshwright_core.core.names import groups
 from meshwright_core.errors import FileWarning, MeshError
 from meshwright_core.io import (
     cleaning,
@@ -35,9 +36,9 @@ SURFACE = (
 """What is said of a mesh that lies in no plane."""
 
 
-def endings() -> tuple[str, ...]:
-    """Return the endings that `read` and `write` know, with their dots."""
-    return tuple(formats.FORMATS)
+def endings(written: bool = False) -> tuple[str, ...]:
+    """Return the endings that `read` knows, or those that `write` does, with their dots."""
+    return tuple(ending for ending, form in formats.FORMATS.items() if form.kinds or not written)
 
 
 class Loaded(NamedTuple):
@@ -116,10 +117,13 @@ def load(
 
 
 def from_content(
-    content: Content, corner_angle: float = CORNER_ANGLE, to_quads: bool = False
+    content: Content,
+    corner_angle: float = CORNER_ANGLE,
+    to_quads: bool = False,
+    part: str | None = None,
 ) -> Loaded:
     """The mesh in content that does not come from a file; arguments and errors as for `load`."""
-    return _loaded(_prepared(content, False, b"", None, to_quads), corner_angle)
+    return _loaded(_prepared(content, False, b"", part, to_quads), corner_angle)
 
 
 def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
@@ -140,7 +144,7 @@ def write(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> None:
     """
     place = Path(path)
     try:
-        form = formats.of(place)
+        form = formats.of(place, written=True)
         kind = "triangle" if mesh.k == 3 else "quad"
         if kind not in form.kinds:
             raise MeshError(f"{form.title} files hold no {kind}s")
@@ -188,13 +192,21 @@ def losses(path: str | os.PathLike[str], mesh: HalfEdgeMesh) -> tuple[str, ...]:
             f"{form.title} files hold numbers in place of names: {_listed([*sides, *regions])} "
             "become numbers."
         )
+    if form.longest:
+        every = dict.fromkeys(group for name in (*sides, *regions) for group in groups(name))
+        long = [name for name in every if len(name.encode()) > form.longest]
+        if long:
+            said.append(
+                f"Names in {form.title} files have at most {form.longest} bytes: {_listed(long)} "
+                "will be shorter."
+            )
     if form.spelling is not None:
         written = form.spelling(sides, regions)
-        said += _respelled(form.title, {a: b for a, b in written.items() if a != b})
+        said += respelled(form.title, {a: b for a, b in written.items() if a != b})
     return tuple(said)
 
 
-def _respelled(title: str, names: Mapping[str, str]) -> list[str]:
+def respelled(title: str, names: Mapping[str, str]) -> list[str]:
     """A sentence on names that a format writes in another way."""
     if not names:
         return []
@@ -280,6 +292,7 @@ def _loaded(content: Content, corner_angle: float) -> Loaded:
         names=found.names,
         plane=plane,
     )
+    cleaning.refuse_flat(points, elements)
     mesh.left_out = content.dropped
     if plane is not None:
         shown = ", ".join(f"{round(value, 6) + 0.0:.4g}" for value in plane.normal)

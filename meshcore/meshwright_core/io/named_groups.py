@@ -114,14 +114,24 @@ def _sides(names: Names, elements: Ints, twin: Ints, regions: Ints) -> dict[tupl
         region = regions.repeat(elements.shape[1])
         side = (twin < 0) | (region != region[np.maximum(twin, 0)])
         start, end = start[side], end[side]
+        rim = np.union1d(start, end)
         for name, ids in sets.items():
             both = np.isin(start, ids) & np.isin(end, ids)
-            if both.all():
-                continue  # of all points: it tells nothing of sides
+            if both.all() or _covers(ids, elements, rim):
+                continue  # of all points, or of those of an area: it tells nothing of sides
             for a, b in zip(start[both].tolist(), end[both].tolist(), strict=True):
                 there = found.setdefault((min(a, b), max(a, b)), [])
                 there.append(name)
     return {ends: texts.joined(groups) for ends, groups in found.items() if groups}
+
+
+def _covers(ids: Ints, elements: Ints, rim: Ints) -> bool:
+    """Whether points are those of whole elements, some of them within: not all on the `rim`."""
+    live = ids[np.isin(ids, elements)]
+    if not len(np.setdiff1d(live, rim)):
+        return False
+    whole = np.isin(elements, live).all(axis=1)
+    return bool(np.isin(live, elements[whole]).all())
 
 
 def _cut_apart(
@@ -172,7 +182,7 @@ def _cut_apart(
 def _lost_points(names: Names, elements: Ints, sides: dict[tuple[int, int], str]) -> list[str]:
     """A sentence for each set of points that names no side."""
     kept = {group for name in sides.values() for group in texts.groups(name)}
-    kept |= {group for name in names.sides for group in texts.groups(name)}
+    kept |= {group for name in (*names.sides, *names.regions) for group in texts.groups(name)}
     live = np.unique(elements)
     said = []
     for name, ids in names.points.items():

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from meshwright import benchmarks, cli
-from meshwright.benchmarks import ablation, gmsh_peer
+from meshwright.benchmarks import ablation, block_cells, gmsh_peer
 from meshwright_core.domains.random_parts import parts
 
 
@@ -53,6 +53,19 @@ def test_parts_suite_prints_a_table(capsys):
             assert 1 <= row["blocks"] <= row["elements"]
             assert (row["worst SJ"] > 0) == (row["worst shape"] > 0) == (row["inverted"] == 0)
             assert 0 < row["q*"] <= 1
+
+
+def test_block_cells_suite_prints_a_row_for_each_number_of_cells(capsys):
+    command = ["bench", "--suite", "block_cells", "--quick", "--seconds", "10"]
+    assert cli.main([*command, "--json"]) == 0
+    results = json.loads(capsys.readouterr().out)["results"]
+    assert list(results["sizes"]) == ["1,000", "4,000"]
+    for row in results["sizes"].values():
+        assert row["all"] == pytest.approx(
+            sum(row[stage] for stage in block_cells.STAGES), abs=0.01
+        )
+        assert row["cells"] > 500
+    assert "blocks, s = " in block_cells.text(results)
 
 
 def test_ablation_compares_the_search_with_parts_of_it_left_out(capsys):

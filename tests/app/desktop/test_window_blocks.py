@@ -2,14 +2,16 @@
 
 import numpy as np
 import pytest
-from block_meshes import annulus, corner_blocks
+from block_meshes import annulus, corner_blocks, quarter_ring
 from driving import WAIT, pixel, press
 from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
 
-from meshwright.desktop.blocks.export_blocks_dialog import DIVIDE, ExportBlocksDialog
+from meshwright.desktop.blocks.export_blocks_dialog import DIVIDE, BlockExport, ExportBlocksDialog
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.blocks.structure import BlockStructure
+from meshwright_core.core.grid_plan import GridPlan, Wall
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier
@@ -254,9 +256,19 @@ def test_the_dialog_exports_in_the_background_and_says_the_result(
     assert window.document.mesh.grid_plan.empty
 
 
-def test_a_cancelled_export_writes_nothing(qtbot, shown, tmp_path):
-    from meshwright.desktop.blocks.export_blocks_dialog import BlockExport
+def test_the_dialog_lists_sides_by_their_drawn_names_and_finds_what_was_kept_by_plain_ones(qtbot):
+    structure = BlockStructure.of(quarter_ring(names=("a", "b", "c", "bolt hole")))
+    plan = GridPlan(walls=(Wall("bolt_hole", 0.02, 1.3),), side_counts={"bolt_hole": 9})
+    dialog = ExportBlocksDialog(structure, plan, BlockExport(".geo"))
+    qtbot.addWidget(dialog)
+    assert list(dialog.sides) == [patch.title for patch in structure.patches]
+    assert dialog.sides["bolt hole"].height.value() == pytest.approx(0.02)
+    dialog.sides["a"].count.setValue(4)
+    assert dialog.plan.walls == (("bolt hole", 0.02, 1.3),)
+    assert dialog.plan.side_counts == {"bolt hole": 9, "a": 4}
 
+
+def test_a_cancelled_export_writes_nothing(qtbot, shown, tmp_path):
     window = shown(annulus())
     path = tmp_path / "ring.msh"
     window.block_export.start(BlockExport(".msh"), str(path))

@@ -5,6 +5,9 @@ import pytest
 from block_meshes import annulus
 
 import meshwright as mw
+from meshwright.document import block_edits
+from meshwright.document.document import Document
+from meshwright_core.blocks.structure import BlockStructure
 
 
 def test_a_grid_as_data_as_multiblock_and_as_a_file(tmp_path):
@@ -30,3 +33,13 @@ def test_each_quad_is_a_block_and_numbers_may_be_given():
     assert len(grid.cells) == 9 * mesh.n_elements
     with pytest.raises(mw.MeshError, match="not both"):
         mw.blocks(mesh, 0.1, divide=3)
+
+
+def test_numbers_that_were_set_in_a_document_count_where_none_are_given():
+    document = Document(annulus())
+    structure = BlockStructure.of(document.mesh)
+    chord = int(structure.chord[structure.edge_between(0, 4)])
+    block_edits.set_count(document, structure, chord, 17)
+    assert mw.blocks(document.mesh).counts[chord] == 17
+    assert mw.blocks(document.mesh, size=0.5).counts[chord] == 17
+    assert mw.blocks(document.mesh, chord_counts={chord: 9}).counts[chord] == 9

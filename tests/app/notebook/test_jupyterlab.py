@@ -1,7 +1,9 @@
 """The widget in JupyterLab: Chromium, mouse and keyboard, pixels, a real kernel."""
 
 import json
+from pathlib import Path
 
+import block_meshes
 import pytest
 from browser import Lab
 
@@ -11,6 +13,7 @@ from meshwright.benchmarks.notebook.widget_driver import MOMENT, Card, differing
 SETUP = "import time\nfrom meshwright.notebook import MeshWidget\n"
 STAR = SETUP + "widget = MeshWidget('star')\nwidget"
 TURNED = "flip_left"
+HELPERS = Path(block_meshes.__file__).parent
 RESTART = f"async () => {{ {PANEL} await panel.sessionContext.session.kernel.restart(); }}"
 
 
@@ -357,3 +360,38 @@ def test_curved_edges_follow_edits_in_the_kernel(lab, shape, tmp_path):
     card.aside()
     assert card.look(BENT) == before
     assert differing(picture, card.layer("lower")) == 0
+
+
+RING = f"""{SETUP}import sys
+sys.path.insert(0, {str(HELPERS)!r})
+from block_meshes import annulus
+widget = MeshWidget(annulus(), height=420)
+widget"""
+
+
+def test_blocks_are_shown_and_the_number_of_a_chord_is_changed_by_its_number(lab, tmp_path):
+    card = lab.card(RING)
+    panel = card.root.locator(".mw-part-blocks")
+    box, text = card.root.locator(".mw-check"), "Keep the size of the elements"
+    assert box.inner_text() == text
+    place, above = box.bounding_box(), card.root.locator(".mw-prefer").bounding_box()
+    assert place["width"] > 150
+    assert place["y"] >= above["y"] + above["height"]
+    panel.get_by_text("Show", exact=True).click()
+    card.until("root => root.meshwright.stage.shown.blocks")
+    panel.get_by_title("Next chord").click()
+    count = panel.get_by_label("Cells across the chord")
+    count.click(click_count=3)
+    card.page.keyboard.type("17")
+    card.page.keyboard.press("Enter")
+    card.await_head(cursor=1)
+    card.until("root => root.meshwright.stage.shown.blocks?.counts?.includes(17)")
+    assert lab.ask("17 in __import__('meshwright').blocks(widget.mesh).counts.tolist()")
+    card.page.screenshot(path=tmp_path / "blocks.png")
+    panel.get_by_text("Auto", exact=True).click()
+    card.await_head(cursor=2)
+    card.until("root => !root.meshwright.stage.shown.blocks?.counts?.includes(17)")
+    with card.page.expect_download(timeout=MOMENT) as download:
+        panel.get_by_text("Export grid").click()
+    download.value.save_as(tmp_path / "grid")
+    assert "edgeGrading" in (tmp_path / "grid").read_text()

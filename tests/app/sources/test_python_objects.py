@@ -144,3 +144,72 @@ def test_a_project_as_polydata(tmp_path, two_quads):
     made = read_project(str(tmp_path / "two.meshwright"))
     assert made.n_cells == 2
     assert list(made.field_data["side_names"]) == ["wall; hot", "joint"]
+
+
+SQUARES = QUADS.tolist()
+TRIANGLES = [[0, 1, 4], [0, 4, 3]]
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        SQUARES,
+        np.array(SQUARES, float),
+        {"quad": SQUARES},
+        [("quad", np.array(SQUARES))],
+        [("quad", SQUARES[:1]), ("quad", SQUARES[1:])],
+    ],
+    ids=["list", "floats", "dict", "pairs", "two blocks"],
+)
+def test_points_and_cells_in_all_forms(cells):
+    mesh = mw.mesh((POINTS, cells))
+    assert mesh.elements().tolist() == SQUARES
+    assert mesh.points.tolist() == np.asarray(POINTS, float).tolist()
+
+
+def test_points_in_another_plane_are_edited_in_it():
+    turned = np.asarray(POINTS, float)[:, [0, 2, 1]]
+    with pytest.warns(FileWarning, match="is edited in that plane"):
+        mesh = mw.mesh((turned, SQUARES))
+    assert np.array_equal(mesh.points_in_space(), turned)
+
+
+def test_mixed_cells_become_quads():
+    for source in (
+        (POINTS, [*TRIANGLES, SQUARES[1]]),
+        meshio.Mesh(POINTS, [("triangle", TRIANGLES), ("quad", SQUARES[1:])]),
+    ):
+        with pytest.raises(MeshError, match="It mixes 2 triangles and 1 quad"):
+            mw.mesh(source)
+        with pytest.warns(FileWarning, match="2 triangles are joined in 1 pair"):
+            assert mw.mesh(source, to_quads=True).elements().shape == (2, 4)
+
+
+def test_a_part_of_several_blocks():
+    one = pyvista.Plane(i_resolution=2, j_resolution=2)
+    blocks = pyvista.MultiBlock([one, one.translate((5, 0, 0))])
+    with pytest.warns(FileWarning, match="There are 2 parts"):
+        assert mw.mesh(blocks).n_elements == 8
+    found = mw.mesh(blocks, part="2")
+    assert (found.n_elements, found.points[:, 0].min()) == (4, 4.5)
+
+
+def test_a_scene_of_trimesh():
+    flat = trimesh.Trimesh(POINTS, TRIANGLES, process=False)
+    scene = trimesh.Scene()
+    scene.add_geometry(flat)
+    scene.add_geometry(flat, transform=trimesh.transformations.translation_matrix([7, 0, 0]))
+    with pytest.warns(FileWarning, match="There are 2 parts"):
+        mesh = mw.mesh(scene)
+    assert (mesh.n_elements, mesh.points[:, 0].max()) == (4, 8)
+
+
+def test_several_polygons():
+    left, right = shapely.box(0, 0, 1, 1), shapely.box(1, 0, 2, 1)
+    mesh = mw.mesh([left, right])
+    assert len(mesh.region_names) == 2
+    apart = shapely.MultiPolygon([left, shapely.box(5, 0, 6, 1)])
+    with pytest.raises(MeshError, match="2 separate outlines"):
+        mw.mesh(apart)
+    assert mw.mesh(apart, region="2").points[:, 0].min() == 5
+    assert mw.mesh(apart, region="all").points[:, 0].max() == 6

@@ -18,6 +18,9 @@ ALIKE = {
     ".tec": ".dat",
     ".gltf": ".glb",
     ".xmf": ".xdmf",
+    ".meshb": ".mesh",
+    ".vti": ".vts",
+    ".vtr": ".vts",
     ".e": ".exo",
 }
 POINTS = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 .5 0 0\n5 .5 .5 0\n6 0 .5 0\n"
@@ -58,6 +61,9 @@ QUADRATIC = {
     ".mesh": "MeshVersionFormatted 2\nDimension 3\nVertices 6\n"
     + PLAIN.replace("\n", " 0\n")
     + "TrianglesP2 1\n1 2 3 4 5 6 0\nEnd\n",
+    ".unv": "    -1\n  2411\n"
+    + "".join(f"{i} 1 1 11\n{line}\n" for i, line in enumerate(PLAIN.splitlines(), start=1))
+    + "    -1\n    -1\n  2412\n1 92 1 1 7 6\n1 4 2 5 3 6\n    -1\n",
     ".vol": "mesh3d\ndimension\n3\nsurfaceelements\n1\n1 1 0 0 6 1 2 3 4 5 6\n"
     f"points\n6\n{PLAIN}endmesh\n",
     ".bdf": "".join(f"GRID,{i},,{x},{y},0.\n" for i, (x, y) in enumerate(
@@ -69,6 +75,9 @@ QUADRATIC = {
     "</DataItem></Topology></Grid></Domain></Xdmf>",
 }  # fmt: skip
 PARTS = {
+    ".vtp": '<VTKFile type="PolyData"><PolyData>'
+    + "".join(PIECE.format(a, b).replace("Cells", "Polys") for a, b in ((0, 1), (5, 6)))
+    + "</PolyData></VTKFile>",
     ".vtu": '<VTKFile type="UnstructuredGrid"><UnstructuredGrid>'
     + PIECE.format(0, 1) + PIECE.format(5, 6) + "</UnstructuredGrid></VTKFile>",
     ".inp": PART.format("a", "0.", "1.") + PART.format("b", "5.", "6."),
@@ -104,7 +113,12 @@ def test_what_is_written(ending):
     assert form.numbers == ("n" in row["regions"])
 
 
-@pytest.mark.parametrize("ending", [e for e, row in TABLE.items() if row["quadratic"]])
+def test_quadratic_elements_of_the_table_are_tested():
+    """Those of MED and Exodus are in test_med_exodus.py."""
+    assert {*QUADRATIC, ".med", ".exo"} == {e for e, row in TABLE.items() if row["quadratic"]}
+
+
+@pytest.mark.parametrize("ending", [e for e in QUADRATIC if TABLE[e]["quadratic"]])
 def test_quadratic_elements_are_read(ending, tmp_path):
     path = tmp_path / f"a{ending}"
     path.write_text(QUADRATIC[ending])

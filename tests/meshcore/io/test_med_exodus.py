@@ -1,6 +1,7 @@
 """MED and Exodus files: names survive, what damages them is said, and the packages are optional."""
 
 import importlib.util
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.io import mesh_files
 
 PACKAGES = {".med": "h5py", ".exo": "netCDF4"}
+CASES = Path(__file__).parent / "cases" / "quadratic-med"
 POINTS = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]]
 QUADS = [[0, 1, 4, 3], [1, 2, 5, 4]]
 MSH = (
@@ -130,3 +132,168 @@ def test_a_size_beyond_all_memory_is_refused_in_a_sentence(tmp_path, monkeypatch
     monkeypatch.setattr(h5py, "File", fails)
     with pytest.raises(MeshError, match="cut off or damaged"):
         mesh_files.load(path)
+
+
+# -- quadratic elements ----------------------------------------------------------------------------
+
+CORNERS = [(0, 0), (2, 0), (2, 2), (0, 2)]
+MIDDLES = [(1, 0), (2, 1), (1, 2), (0, 1), (1, 1)]
+SIX = [*CORNERS[:3], (1, 0), (2, 1), (1, 1), (4 / 3, 2 / 3)]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "nodes", "count"),
+    [("quads8", "quad", 8, 2), ("quads9", "quad", 9, 2), ("triangles6", "tri", 6, 4)],
+)
+def test_quadratic_elements_of_med_by_gmsh(name, kind, nodes, count):
+    """Written by Gmsh 4.15.2, with groups of quadratic edges."""
+    need(".med")
+    found = mesh_files.load(CASES / f"gmsh-{name}.med")
+    assert (found.mesh.kind, found.mesh.n_elements, found.mesh.n_vertices) == (kind, count, 6)
+    assert any(f"{nodes} points are read with straight sides" in note for note in found.notes)
+    sides, regions = names(found.mesh)
+    assert sides == {
+        frozenset({(0, 0, 0), (0, 1, 0)}): "in let",
+        frozenset({(1, 0, 0), (1, 1, 0)}): "joint",
+    }
+    assert sorted(set(regions.values())) == ["copper", "steel"]
+    areas = found.mesh.points[found.mesh.elements()][..., 0]
+    assert np.ptp(areas, axis=1).max() == 1  # each corner is a corner
+
+
+def put_med(path, code, points, cells, lines=()):
+    """A file of one kind of elements, points counted from 0, and edges in the group 'low'."""
+    import h5py
+
+    with h5py.File(path, "w") as file:
+        mesh = file.create_group("ENS_MAA/m")
+        mesh.attrs.update({"ESP": 2, "DIM": 2})
+        state = mesh.create_group("-0000000000000000001-0000000000000000001")
+        state["NOE/COO"] = np.array(points, float).T.ravel()
+        state[f"MAI/{code}/NOD"] = np.array(cells).T.ravel() + 1
+        if len(lines):
+            state["MAI/SE3/NOD"] = np.array(lines).T.ravel() + 1
+            state["MAI/SE3/FAM"] = np.full(len(lines), -4)
+            family = file.create_group("FAS/m/ELEME/low")
+            family.attrs["NUM"] = -4
+            letters = np.frombuffer(b"low".ljust(80, b"\0"), np.int8)
+            family.create_dataset("GRO/NOM", data=letters.reshape(1, -1))
+
+
+@pytest.mark.parametrize(
+    ("code", "points"),
+    [("TR6", SIX[:6]), ("TR7", SIX), ("QU8", CORNERS + MIDDLES[:4]), ("QU9", CORNERS + MIDDLES)],
+)
+def test_quadratic_elements_of_med(code, points, tmp_path):
+    need(".med")
+    path = tmp_path / "a.med"
+    put_med(path, code, points, [range(len(points))], [(0, 1, 3 if code[0] == "T" else 4)])
+    found = mesh_files.load(path)
+    assert found.notes == (
+        f"1 element of {len(points)} points is read with straight sides: only the corners are kept",
+    )
+    size = 3 if code[0] == "T" else 4
+    assert found.mesh.points[:, :2].tolist() == [list(map(float, p)) for p in CORNERS[:size]]
+    assert names(found.mesh)[0] == {frozenset({(0, 0, 0), (2, 0, 0)}): "low"}
+
+
+def put_exodus(path, word, points, cells, dimension):
+    """A file of one block, its second side in the side set 7."""
+    import netCDF4
+
+    with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
+        table = np.array(cells) + 1
+        sizes = {"num_dim": dimension, "num_nodes": len(points), "num_elem": len(table),
+                 "num_el_blk": 1, "num_el_in_blk1": len(table),
+                 "num_nod_per_el1": table.shape[1], "num_side_sets": 1,
+                 "num_side_ss1": 1}  # fmt: skip
+        for name, size in sizes.items():
+            file.createDimension(name, size)
+        places = np.zeros((len(points), 3))
+        places[:, :2] = points
+        for i, axis in enumerate("xyz"[:dimension]):
+            file.createVariable(f"coord{axis}", "f8", ("num_nodes",))[:] = places[:, i]
+        made = file.createVariable("connect1", "i4", ("num_el_in_blk1", "num_nod_per_el1"))
+        made.elem_type = word
+        made[:] = table
+        file.createVariable("ss_prop1", "i4", ("num_side_sets",))[:] = 7
+        file.createVariable("elem_ss1", "i4", ("num_side_ss1",))[:] = 1
+        side = 2 if dimension == 2 else 4  # behind the two faces of a shell
+        file.createVariable("side_ss1", "i4", ("num_side_ss1",))[:] = side
+
+
+@pytest.mark.parametrize(
+    ("word", "points", "dimension"),
+    [
+        ("TRI6", SIX[:6], 2),
+        ("TRI7", SIX, 2),
+        ("TRISHELL6", SIX[:6], 3),
+        ("QUAD8", CORNERS + MIDDLES[:4], 2),
+        ("QUAD9", CORNERS + MIDDLES, 2),
+        ("SHELL8", CORNERS + MIDDLES[:4], 3),
+        ("SHELL9", CORNERS + MIDDLES, 3),
+        ("quad", CORNERS + MIDDLES, 2),
+    ],
+)
+def test_quadratic_elements_of_exodus(word, points, dimension, tmp_path):
+    need(".exo")
+    path = tmp_path / "a.exo"
+    put_exodus(path, word, points, [range(len(points))], dimension)
+    found = mesh_files.load(path)
+    assert found.notes == (
+        f"1 element of {len(points)} points is read with straight sides: only the corners are kept",
+    )
+    size = 3 if word.upper().startswith("TRI") else 4
+    assert found.mesh.points[:, :2].tolist() == [list(map(float, p)) for p in CORNERS[:size]]
+    assert names(found.mesh)[0] == {frozenset({(2, 0, 0), (2, 2, 0)}): "side set 7"}
+
+
+@pytest.mark.parametrize("ending", PACKAGES)
+@pytest.mark.parametrize("kind", ["triangle6", "quad8", "quad9"])
+def test_quadratic_elements_by_meshio(ending, kind, tmp_path):
+    need(ending)
+    meshio = pytest.importorskip("meshio")
+    points = {"triangle6": SIX[:6], "quad8": CORNERS + MIDDLES[:4], "quad9": CORNERS + MIDDLES}[
+        kind
+    ]
+    if (ending, kind) == (".med", "quad9"):
+        pytest.skip("meshio writes no such cells to MED")
+    places = np.column_stack([points, np.zeros(len(points))])
+    path = tmp_path / f"a{ending}"
+    meshio.write(path, meshio.Mesh(places, [(kind, np.array([range(len(points))]))]))
+    mesh = mesh_files.load(path).mesh
+    assert mesh.n_vertices == (3 if kind == "triangle6" else 4)
+
+
+@pytest.mark.parametrize(("ending", "longest"), [(".med", 80), (".exo", 256)])
+def test_a_name_that_is_too_long_is_said(ending, longest, tmp_path):
+    need(ending)
+    (tmp_path / "a.msh").write_text(MSH.format(0).replace("inlet", "ä" * 200))
+    mesh = meshwright_core.read(tmp_path / "a.msh")
+    assert any(f"at most {longest} bytes" in line for line in mesh_files.losses(f"a{ending}", mesh))
+    with pytest.warns(meshwright_core.errors.FileWarning, match="at most"):
+        meshwright_core.write(tmp_path / f"a{ending}", mesh)
+    assert names(meshwright_core.read(tmp_path / f"a{ending}"))[0][
+        frozenset({(0, 0, 0), (0, 1, 0)})
+    ] == "ä" * (longest // 2)
+
+
+def test_gmsh_reads_the_groups_of_med(tmp_path):
+    """The MED library takes names of groups as arrays of 80 letters only."""
+    need(".med")
+    import h5py
+
+    (tmp_path / "a.msh").write_text(MSH.format(0))
+    path = tmp_path / "a.med"
+    meshwright_core.write(path, meshwright_core.read(tmp_path / "a.msh"))
+    with h5py.File(path) as file:
+        assert file["FAS/mesh/ELEME/FAM_-1/GRO/NOM"].id.get_type().get_array_dims() == (80,)
+    gmsh = pytest.importorskip("gmsh", reason="needs the package gmsh")
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(path))
+        found = {gmsh.model.getPhysicalName(*group) for group in gmsh.model.getPhysicalGroups()}
+    finally:
+        gmsh.finalize()
+    assert found == {"inlet", "wall", "steel", "copper"}

@@ -481,7 +481,12 @@ def test_data_by_element_that_makes_no_regions_is_left(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "ending", [e for e in HERE if e not in (*SINGLE_PRECISION, ".bdf", ".nas", ".fem", ".stl")]
+    "ending",
+    [
+        e
+        for e in endings(written=True)
+        if e in HERE and e not in (*SINGLE_PRECISION, ".bdf", ".nas", ".fem", ".stl")
+    ],
 )
 def test_positions_are_written_with_all_their_digits(ending, tmp_path):
     rng = np.random.default_rng(5)

@@ -11,7 +11,7 @@ from meshwright_core.errors import FileWarning
 from meshwright_core.io import mesh_files
 from meshwright_core.io.formats import FORMATS
 
-NAMED = (".msh", ".vtk", ".vtu", ".inp", ".xdmf")
+NAMED = (".msh", ".vtk", ".vtu", ".vtp", ".inp", ".unv", ".xdmf")
 """Endings of formats that hold names of sides and regions."""
 
 
@@ -86,7 +86,12 @@ def test_names_that_are_written_in_another_way_are_said():
 
 
 @pytest.mark.parametrize(
-    "ending", [e for e in FORMATS if e not in (*NAMED, ".xmf", ".3mf", ".med", ".exo", ".e")]
+    "ending",
+    [
+        e
+        for e in mesh_files.endings(written=True)
+        if e not in (*NAMED, ".xmf") and not FORMATS[e].needs
+    ],
 )
 def test_what_a_format_loses_is_said(ending, tmp_path):
     form = FORMATS[ending]

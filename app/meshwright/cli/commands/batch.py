@@ -115,7 +115,7 @@ def _ending(word: str, grids: bool) -> str:
         if grids:
             block_files.check_format(f"part{ending}")
         else:
-            formats.of(f"part{ending}")
+            formats.of(f"part{ending}", written=True)
     except MeshError as error:
         raise UserError(f"--to {word}: {str(error).rstrip('.')}") from error
     return ending

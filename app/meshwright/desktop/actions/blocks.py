@@ -16,7 +16,7 @@ def has_blocks(context: ActionContext) -> bool:
     return has_quads(context) and context.levels.level is None
 
 
-@needing("Needs a quad mesh whose blocks are shown, and a selected chord.")
+@needing("Needs a chord selected in the Blocks view.")
 def has_chord(context: ActionContext) -> bool:
     """A chord is selected in the Blocks view."""
     return has_blocks(context) and context.blocks.shown and context.blocks.chord >= 0

@@ -114,7 +114,7 @@ class ExportBlocksDialog(ExportFrame):
     ) -> None:
         super().__init__("Export blocks", parent)
         self._structure = structure
-        self.plan, self.order = plan, order
+        self.plan, self.order = _titled(plan, structure), order
         self._usual = float(structure.lengths.mean()) / 8.0
         self.format_box = QComboBox()
         self.order_box = QComboBox()
@@ -126,7 +126,7 @@ class ExportBlocksDialog(ExportFrame):
         self.cell_size = DecimalBox()
         self.divide = IntegerBox()
         self.sides = {
-            patch.name: SideRow(patch.name, self._on_changed) for patch in structure.patches
+            patch.title: SideRow(patch.title, self._on_changed) for patch in structure.patches
         }
         self.note.setWordWrap(True)
         self._filled = False
@@ -303,3 +303,13 @@ class ExportBlocksDialog(ExportFrame):
         self.export.setEnabled(not warns)
         self.note.setObjectName("NoticeText" if warns else "Hint")
         self.note.style().polish(self.note)
+
+
+def _titled(plan: GridPlan, structure: BlockStructure) -> GridPlan:
+    """The plan with the drawn names of sides in place of their plain ones."""
+    title = {patch.name: patch.title for patch in structure.patches}
+    return replace(
+        plan,
+        walls=tuple(wall._replace(name=title.get(wall.name, wall.name)) for wall in plan.walls),
+        side_counts={title.get(name, name): count for name, count in plan.side_counts.items()},
+    )

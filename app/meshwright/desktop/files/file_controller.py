@@ -386,7 +386,7 @@ def to_open() -> str:
 
 def to_save() -> str:
     """The filters of the Save dialog."""
-    return _filters({PROJECTS: (ENDING,), MESHES: mesh_files.endings()})
+    return _filters({PROJECTS: (ENDING,), MESHES: mesh_files.endings(written=True)})
 
 
 def _filters(groups: dict[str, tuple[str, ...]]) -> str:

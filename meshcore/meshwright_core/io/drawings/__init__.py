@@ -180,13 +180,19 @@ def _read_domain(
         return domain
 
 
-def domain_in(drawing: Drawing, corner_angle: float = CORNER_ANGLE) -> Domain:
-    """The domain of all regions in a drawing that comes from elsewhere than a file.
+def domain_in(
+    drawing: Drawing, corner_angle: float = CORNER_ANGLE, region: str | None = None
+) -> Domain:
+    """The domain of the chosen regions in a drawing that comes from elsewhere than a file.
+
+    region: their names or numbers, "all", or None for all if they touch.
 
     Raises:
         MeshError: as `read_domain`, without a path.
     """
-    return domain_of(traced(drawing, corner_angle, None, None).chosen(None), "", corner_angle, None)
+    return domain_of(
+        traced(drawing, corner_angle, None, None).chosen(region), "", corner_angle, None
+    )
 
 
 _last: list[tuple[Any, DrawingReport]] = []

@@ -33,15 +33,29 @@ class EdgeShape(NamedTuple):
 
 def edge_shape(grid: BlockGrid, edge: int) -> EdgeShape:
     """The shape of an edge of the grid, from its start to its end."""
-    line = grid.points[grid.edge_vertices(edge)]
-    nothing = np.zeros(3)
+    vertices = grid.edge_vertices(edge)
     if grid.structure.parts.curve[edge] < 0:
-        middle = line[len(line) // 2]
-        if _off_chord(line) <= _STRAIGHT:
-            return EdgeShape("line", 0.5 * (line[0] + line[-1]), nothing, line[1:-1])
-        return EdgeShape("spline", middle, nothing, _thinned(line[1:-1]))
-    share = np.linspace(0.0, 1.0, _SAMPLES)
-    at = grid.structure.edge_points(np.full(_SAMPLES, edge), share)
+        return line_shape(grid.points[vertices])
+    return curve_shape(grid, edge, vertices, (0.0, 1.0))
+
+
+def line_shape(line: np.ndarray) -> EdgeShape:
+    """The shape of a line through points (k + 1, 3) of a grid, off all curves."""
+    nothing = np.zeros(3)
+    if _off_chord(line) <= _STRAIGHT:
+        return EdgeShape("line", 0.5 * (line[0] + line[-1]), nothing, line[1:-1])
+    return EdgeShape("spline", line[len(line) // 2], nothing, _thinned(line[1:-1]))
+
+
+def curve_shape(
+    grid: BlockGrid, edge: int, vertices: np.ndarray, share: tuple[float, float]
+) -> EdgeShape:
+    """The shape of a part of an edge on a curve: between two shares of its length, where these
+    vertices (k + 1,) of the grid lie.
+    """
+    line = grid.points[vertices]
+    nothing = np.zeros(3)
+    at = grid.structure.edge_points(np.full(_SAMPLES, edge), np.linspace(*share, _SAMPLES))
     middle = at[_SAMPLES // 2]
     if _off_chord(at) <= _STRAIGHT:
         return EdgeShape("line", middle, nothing, line[1:-1])

@@ -6,7 +6,7 @@ import os
 import secrets
 import shutil
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack
 from pathlib import Path
 
 from meshwright_core.blocks.grid import BlockGrid
@@ -42,10 +42,37 @@ def check_format(path: str | os.PathLike[str], order: int = 1, extruded: bool = 
 
 
 def losses(path: str | os.PathLike[str], grid: BlockGrid) -> tuple[str, ...]:
-    """What a file of this name cannot hold of the names of the mesh: a sentence each."""
-    if _kind(Path(path)) in STRUCTURED:
-        return ()
-    return mesh_files.losses(path, grid.structure.mesh)
+    """What a file of this name cannot hold of the names of the mesh, or holds otherwise: a sentence
+    each.
+    """
+    kind = _kind(Path(path))
+    if kind not in STRUCTURED:
+        return mesh_files.losses(path, grid.structure.mesh)
+    structure = grid.structure
+    said, names = [], {}
+    if kind == BLOCK_MESH_DICT:
+        pieces, blocks = openfoam.piece_count(grid), len(structure.corners)
+        if pieces > blocks:
+            said.append(
+                f"blockMesh takes no blocks that bend so far: the file has {pieces:,} in place of "
+                f"{blocks:,}, with the same cells."
+            )
+        names = openfoam.side_names(grid)
+        if len(structure.region_names) > 1:
+            zones = openfoam.zone_names(grid)
+            said += mesh_files.respelled(kind, _changed(structure.region_names, zones))
+    elif kind == ".cgns":
+        names, regions = cgns.families(grid)
+        said += mesh_files.respelled("CGNS", _changed(tuple(regions), list(regions.values())))
+    elif kind in (".xyz", ".p3d"):
+        names = {patch.name: patch.name for patch in structure.patches}
+    titles = tuple(patch.title for patch in structure.patches if patch.name in names)
+    title = {".cgns": "CGNS", BLOCK_MESH_DICT: kind}.get(kind, "Plot3D")
+    return (*said, *mesh_files.respelled(title, _changed(titles, list(names.values()))))
+
+
+def _changed(old: tuple[str, ...], new: list[str]) -> dict[str, str]:
+    return {a: b for a, b in zip(old, new, strict=True) if a != b}
 
 
 def write_blocks(
@@ -85,9 +112,11 @@ def write_blocks(
             beside = place.with_suffix(".nmf")
             writers[beside] = lambda file: _put(file, text)
             written.append(beside)
-        for file, write in writers.items():
-            with replacing(file) as temporary:
-                write(temporary)
+        with ExitStack() as stack:
+            # all are written before the first one takes its place
+            places = {file: stack.enter_context(replacing(file)) for file in written}
+            for file, temporary in places.items():
+                writers[file](temporary)
         return written
     except MeshError as error:
         if str(error).startswith(str(place.parent)) or str(error).startswith(str(place)):
@@ -149,19 +178,22 @@ def _write_multiblock(place: Path, grid: BlockGrid) -> list[Path]:
         raise MeshError(f"{place}: {folder} is there already, and is no folder of such a grid.")
     text = vtk_xml.vtm_text(grid, folder.name)
     temporary = place.with_name(f".{secrets.token_hex(6)}")
+    old = place.with_name(f"{temporary.name}.old")
     try:
         with replacing(place) as file:
             temporary.mkdir()
             vtk_xml.write_multiblock(temporary, grid)
             _put(file, text)
             if folder.exists():
-                shutil.rmtree(folder)
+                folder.rename(old)
             temporary.rename(folder)
     except OSError as error:
         raise MeshError(f"{place}: cannot be written ({error.strerror or error}).") from error
     finally:
-        with suppress(FileNotFoundError):
-            shutil.rmtree(temporary)
+        if old.exists() and not folder.exists():
+            old.rename(folder)
+        for rest in (temporary, old):
+            shutil.rmtree(rest, ignore_errors=True)
     return [place, folder]
 
 

@@ -15,9 +15,12 @@ import numpy as np
 
 from meshwright_core.blocks.grid import BlockGrid
 from meshwright_core.blocks.grid_quality import block_sides
+from meshwright_core.blocks.patches import plain_name, unlike
 from meshwright_core.errors import MeshError
 
 _VERSION = 3.4
+_LONGEST = 28
+"""Letters of a family, so that a number can stand behind them: names have at most 32."""
 _TYPES = {"float64": "R8", "float32": "R4", "int32": "I4", "int64": "I8", "int8": "C1"}
 
 
@@ -43,41 +46,62 @@ def write_cgns(path: Path, grid: BlockGrid) -> None:
         root.create_dataset(" hdf5version", data=_characters(h5py.version.hdf5_version, 33))
         _node(root, "CGNSLibraryVersion", "CGNSLibraryVersion_t", np.array([_VERSION], np.float32))
         base = _node(root, "Base", "CGNSBase_t", np.array([2, 3], np.int32))
-        _add_families(base, grid)
+        labels = families(grid)
+        _add_families(base, *labels)
         joints = _joints(grid)
         for block in range(len(grid.shapes)):
-            _add_zone(base, grid, block, joints[block])
+            _add_zone(base, grid, block, joints[block], labels)
 
 
-def _add_families(base: Any, grid: BlockGrid) -> None:
-    for patch in grid.structure.patches:
-        family = _node(base, patch.name, "Family_t")
-        _node(family, "FamilyBC", "FamilyBC_t", _text("BCTypeUserDefined"))
-    names = grid.structure.region_names
-    for name in names if len(names) > 1 else ():
-        family = _node(base, _region_family(grid, name), "Family_t")
+def _add_families(base: Any, sides: dict[str, str], regions: dict[str, str]) -> None:
+    for name in sides.values():
+        family = _node(base, name, "Family_t")
+        _node(family, "FamilyBC", "FamilyBC_t", _text("UserDefined"))
+    for name, label in regions.items():
+        family = _node(base, label, "Family_t")
         _node(family, "Description", "Descriptor_t", _text(f"region {name}"))
 
 
-def _region_family(grid: BlockGrid, name: str) -> str:
-    """Regions and patches of one name become two families."""
-    taken = any(patch.name == name for patch in grid.structure.patches)
-    return f"{name}_region" if taken else name
+def families(grid: BlockGrid) -> tuple[dict[str, str], dict[str, str]]:
+    """The families of patches and of regions by their names: no two are called the same, nor as a
+    zone is, and none has more than 32 letters. One region alone is no family.
+    """
+    structure = grid.structure
+    taken = {_zone_name(block) for block in range(len(grid.shapes))}
+
+    def label(name: str) -> str:
+        found = unlike((plain_name(name) or "region")[:_LONGEST], taken)
+        taken.add(found)
+        return found
+
+    sides = {patch.name: label(patch.name) for patch in structure.patches}
+    names = dict.fromkeys(structure.region_names)
+    if len(structure.region_names) == 1:
+        return sides, {}
+    return sides, {
+        name: label(f"{name}_region" if plain_name(name) in sides else name) for name in names
+    }
 
 
 def _zone_name(block: int) -> str:
     return f"Block{block + 1:05d}"
 
 
-def _add_zone(base: Any, grid: BlockGrid, block: int, joints: list[tuple[Any, ...]]) -> None:
+def _add_zone(
+    base: Any,
+    grid: BlockGrid,
+    block: int,
+    joints: list[tuple[Any, ...]],
+    labels: tuple[dict[str, str], dict[str, str]],
+) -> None:
     structure = grid.structure
+    sides, regions = labels
     n, m = grid.shapes[block].tolist()
     size = np.array([[n + 1, m + 1], [n, m], [0, 0]], np.int32)
     zone = _node(base, _zone_name(block), "Zone_t", size)
     _node(zone, "ZoneType", "ZoneType_t", _text("Structured"))
-    names = structure.region_names
-    if len(names) > 1:
-        family = _region_family(grid, names[structure.region[block]])
+    if regions:
+        family = regions[structure.region_names[structure.region[block]]]
         _node(zone, "FamilyName", "FamilyName_t", _text(family))
     coordinates = _node(zone, "GridCoordinates", "GridCoordinates_t")
     points = grid.block_points(block)
@@ -95,11 +119,10 @@ def _add_zone(base: Any, grid: BlockGrid, block: int, joints: list[tuple[Any, ..
         for side in np.flatnonzero(np.isin(structure.sides[block], patch.edges)).tolist():
             if structure.neighbours[structure.sides[block, side]].min() >= 0:
                 continue
-            condition = _node(
-                conditions, f"{patch.name}_{side + 1}"[:32], "BC_t", _text("FamilySpecified")
-            )
+            label = f"{sides[patch.name]}_{side + 1}"
+            condition = _node(conditions, label, "BC_t", _text("FamilySpecified"))
             _node(condition, "PointRange", "IndexRange_t", _range(n, m, side, True))
-            _node(condition, "FamilyName", "FamilyName_t", _text(patch.name))
+            _node(condition, "FamilyName", "FamilyName_t", _text(sides[patch.name]))
 
 
 def _joints(grid: BlockGrid) -> list[list[tuple[Any, ...]]]:

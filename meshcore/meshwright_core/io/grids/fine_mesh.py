@@ -10,6 +10,7 @@ from meshwright_core.blocks.grid import BlockGrid
 from meshwright_core.blocks.high_order import high_order
 from meshwright_core.io import formats
 from meshwright_core.io.content import Content, NamesBuilder
+from meshwright_core.io.writers.lines import words
 
 
 def fine_content(grid: BlockGrid) -> Content:
@@ -20,7 +21,7 @@ def fine_content(grid: BlockGrid) -> Content:
     for region, name in enumerate(structure.region_names):
         names.add_elements(name, "quad", np.flatnonzero(grid.regions == region))
     for name, faces in grid.patch_faces().items():
-        names.add_edges(name, faces)
+        names.add_edges(structure.patch(name).title, faces)
     several = len(structure.region_names) > 1
     return Content(
         grid.points, cells, {}, {"quad": grid.regions} if several else None, names.result()
@@ -49,11 +50,14 @@ def inp_text(grid: BlockGrid) -> str:
     lines.append("*ELEMENT, TYPE=CPS8, ELSET=ELEMENTS")
     elements: list[list[int]] = [row.tolist() for row in local]
     lines += [f"{i}, {', '.join(map(str, row))}" for i, row in enumerate(elements, 1)]
-    for region, name in enumerate(grid.structure.region_names):
-        lines.append(f"*ELSET, ELSET={name}")
+    structure = grid.structure
+    titles = [patch.title for patch in structure.patches]
+    label = words(dict.fromkeys([*structure.region_names, *titles]))
+    for region, name in enumerate(structure.region_names):
+        lines.append(f"*ELSET, ELSET={label[name]}")
         lines += _listed(np.flatnonzero(grid.regions == region) + 1)
-    for name, faces in fine.faces.items():
-        lines.append(f"*NSET, NSET={name}")
+    for title, faces in zip(titles, fine.faces.values(), strict=True):
+        lines.append(f"*NSET, NSET={label[title]}")
         lines += _listed(np.unique(number[faces]))
     return "\n".join(lines) + "\n"
 

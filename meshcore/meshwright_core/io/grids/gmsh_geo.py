@@ -19,6 +19,11 @@ def geo_text(grid: BlockGrid) -> str:
     return "\n".join(writer.lines()) + "\n"
 
 
+def quoted(name: str) -> str:
+    """A name as Gmsh takes it between quotation marks."""
+    return " ".join(name.replace('"', "'").split())
+
+
 class _Writer:
     """Numbers points and curves."""
 
@@ -94,12 +99,11 @@ class _Writer:
         groups = []
         for patch in structure.patches:
             listed = ", ".join(str(c) for edge in patch.edges.tolist() for c in self.of_edge[edge])
-            groups.append(f'Physical Curve("{patch.name}") = {{{listed}}};')
-        for region, name in enumerate(structure.region_names):
-            blocks = np.flatnonzero(structure.region == region) + 1
-            if len(blocks):
-                listed = ", ".join(map(str, blocks.tolist()))
-                groups.append(f'Physical Surface("{name}") = {{{listed}}};')
+            groups.append(f'Physical Curve("{quoted(patch.title)}") = {{{listed}}};')
+        names = np.array(structure.region_names)[structure.region]
+        for name in dict.fromkeys(names.tolist()):
+            listed = ", ".join(map(str, (np.flatnonzero(names == name) + 1).tolist()))
+            groups.append(f'Physical Surface("{quoted(name)}") = {{{listed}}};')
         return [
             f"// Meshwright: {count} blocks, {grid.cell_count} cells",
             *self.points, *self.curves, *surfaces,

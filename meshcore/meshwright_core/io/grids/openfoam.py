@@ -1,7 +1,8 @@
 """OpenFOAM's `blockMeshDict`: blocks, graded edges, arcs and splines, patches.
 
 The plane grid is one cell thick with an empty front and back, or extruded, or a wedge of five
-degrees around the x axis for axially symmetric flows.
+degrees around the x axis for axially symmetric flows. Blocks that bend too far for blockMesh are
+cut (:mod:`.block_pieces`).
 """
 
 from __future__ import annotations
@@ -12,8 +13,11 @@ import numpy as np
 
 from meshwright_core.blocks.grading_sections import sections
 from meshwright_core.blocks.grid import BlockGrid
+from meshwright_core.blocks.patches import plain_name, unlike
+from meshwright_core.blocks.sizing import EVERY_SIDE
 from meshwright_core.errors import MeshError
-from meshwright_core.io.grids.block_edges import EdgeShape, edge_shape
+from meshwright_core.io.grids.block_edges import EdgeShape
+from meshwright_core.io.grids.block_pieces import BlockPieces, part_counts
 
 _HALF_WEDGE = np.radians(2.5)
 _ON_AXIS = 1e-9
@@ -55,41 +59,45 @@ def block_mesh_dict(
 
 
 class _Dictionary:
-    """Vertices of the front are those of the structure, those of the back follow."""
+    """Vertices of the front are the corners of the pieces of blocks, those of the back follow."""
 
     def __init__(self, grid: BlockGrid, extrusion: Extrusion, walls: tuple[str, ...]) -> None:
-        self.grid, self.extrusion, self.walls = grid, extrusion, walls
-        corners = grid.points[: len(grid.structure.points)]
-        size = float(np.ptp(corners, axis=0).max())
+        self.grid, self.extrusion = grid, extrusion
+        self.walls = {
+            patch.name
+            for patch in grid.structure.patches
+            if not {patch.name, patch.title, EVERY_SIDE}.isdisjoint(walls)
+        }
+        size = float(np.ptp(grid.points[: len(grid.structure.points)], axis=0).max())
         if np.ptp(grid.points[:, 2]) > 1e-9 * size:
             raise MeshError("blockMesh takes grids in the plane of x and y.")
+        self.pieces = BlockPieces.of(grid)
+        used = np.unique(self.pieces.corners)
+        self.number = {vertex: i for i, vertex in enumerate(used.tolist())}
+        self.corners = grid.points[used]
         self.height = 0.1 * size if extrusion.height is None else extrusion.height
         self.low = grid.points[0, 2]
-        self.axis = np.zeros(len(corners), bool)
+        self.axis = np.zeros(len(used), bool)
         if extrusion.wedge:
-            if corners[:, 1].min() < -_ON_AXIS * size:
+            if self.corners[:, 1].min() < -_ON_AXIS * size:
                 raise MeshError("A wedge around the x axis needs a grid above that axis.")
-            self.axis = corners[:, 1] <= _ON_AXIS * size
+            self.axis = self.corners[:, 1] <= _ON_AXIS * size
         # the back of a vertex on the axis is the vertex itself
-        count = len(corners)
+        count = len(used)
         self.back = np.where(self.axis, np.arange(count), count + np.cumsum(~self.axis) - 1)
 
     def text(self) -> str:
-        structure = self.grid.structure
-        corners = self.grid.points[: len(structure.points)]
-        vertices = [self._at(corner, 0) for corner in corners]
-        vertices += [self._at(corner, 1) for corner in corners[~self.axis]]
+        vertices = [self._at(corner, 0) for corner in self.corners]
+        vertices += [self._at(corner, 1) for corner in self.corners[~self.axis]]
+        cells = self.grid.cell_count * self._layers
         lines = [
-            f"// Meshwright: {len(structure.corners)} blocks, {self._cells()} cells", _HEADER,
+            f"// Meshwright: {len(self.pieces.corners)} blocks, {cells} cells", _HEADER,
             "vertices", "(",
             *(f"    {_point(at)}" for at in vertices), ");", "",
             "blocks", "(", *self._blocks(), ");", "", "edges", "(", *self._edges(), ");", "",
             "boundary", "(", *self._patches(), ");", "", "mergePatchPairs", "(", ");",
         ]  # fmt: skip
         return "\n".join(lines) + "\n"
-
-    def _cells(self) -> int:
-        return self.grid.cell_count * self._layers
 
     @property
     def _layers(self) -> int:
@@ -103,28 +111,31 @@ class _Dictionary:
             return np.array([x, y * np.cos(angle), y * np.sin(angle)])
         return np.array([x, y, self.low + level * self.height])
 
+    def _rows(self) -> list[list[int]]:
+        """The corners of each piece on the front."""
+        return [[self.number[v] for v in corner] for corner in self.pieces.corners.tolist()]
+
     def _blocks(self) -> list[str]:
-        structure, grid = self.grid.structure, self.grid
-        lines = []
-        names = structure.region_names
+        pieces, lines = self.pieces, []
+        names = zone_names(self.grid)
         several = len(names) > 1
         gradings: dict[tuple[int, bool], str] = {}
 
-        def grading(block: int, side: int) -> str:
-            edge = int(structure.sides[block, side])
-            key = (edge, bool(structure.forward[block, side]))
+        def grading(piece: int, side: int) -> str:
+            line = int(pieces.sides[piece, side])
+            key = (line, bool(pieces.forward[piece, side]))
             if key not in gradings:
-                sizes = grid.edge_sizes(edge)
+                sizes = pieces.lines[line].sizes
                 gradings[key] = _grading(sizes if key[1] else sizes[::-1])
             return gradings[key]
 
-        for block, corner in enumerate(structure.corners):
-            front = " ".join(map(str, corner.tolist()))
+        for piece, corner in enumerate(self._rows()):
+            front = " ".join(map(str, corner))
             back = " ".join(map(str, self.back[corner].tolist()))
-            n, m = grid.shapes[block].tolist()
-            zone = f" {names[structure.region[block]]}" if several else ""
-            first, second = grading(block, 0), grading(block, 2)
-            third, fourth = grading(block, 3), grading(block, 1)
+            n, m = pieces.shapes[piece].tolist()
+            zone = f" {names[pieces.region[piece]]}" if several else ""
+            first, second = grading(piece, 0), grading(piece, 2)
+            third, fourth = grading(piece, 3), grading(piece, 1)
             along = " ".join([first, second, second, first, third, fourth, fourth, third])
             lines.append(
                 f"    hex ({front} {back}){zone} ({n} {m} {self._layers}) "
@@ -133,17 +144,17 @@ class _Dictionary:
         return lines
 
     def _edges(self) -> list[str]:
-        lines = []
-        for edge, (start, end) in enumerate(self.grid.structure.edges.tolist()):
-            shape = edge_shape(self.grid, edge)
-            if shape.kind == "line":
+        found = []
+        for line in self.pieces.lines:
+            if line.shape.kind == "line":
                 continue
+            start, end = self.number[int(line.vertices[0])], self.number[int(line.vertices[-1])]
             for level in (0, 1):
                 a, b = (start, end) if level == 0 else (self.back[start], self.back[end])
                 if level and a == start and b == end:
                     continue
-                lines.append(f"    {self._curve(shape, int(a), int(b), level)}")
-        return lines
+                found.append(f"    {self._curve(line.shape, int(a), int(b), level)}")
+        return found
 
     def _curve(self, shape: EdgeShape, a: int, b: int, level: int) -> str:
         if shape.kind == "arc":
@@ -152,32 +163,63 @@ class _Dictionary:
         return f"spline {a} {b} ({knots})"
 
     def _patches(self) -> list[str]:
-        structure = self.grid.structure
         lines: list[str] = []
         on_axis: list[str] = []
-        for patch in structure.patches:
+        names = side_names(self.grid)
+        for patch, ends in self.pieces.faces.items():
             faces = []
-            for edge in patch.edges.tolist():
-                a, b = structure.edges[edge]
-                if structure.neighbours[edge, 0] < 0:
-                    a, b = b, a
+            for one, other in ends:
+                a, b = self.number[one], self.number[other]
                 face = f"({a} {b} {self.back[b]} {self.back[a]})"
                 if self.axis[a] and self.axis[b]:
                     on_axis.append(face)
                 else:
                     faces.append(face)
-            wall = patch.name in self.walls or "all" in self.walls
             if faces:
-                lines += _patch(patch.name, "wall" if wall else "patch", faces)
+                kind = "wall" if patch in self.walls else "patch"
+                lines += _patch(names[patch], kind, faces)
+            else:
+                names[patch] = ""  # it is the axis, and its name is free
+        taken = set(names.values())
+
+        def made(name: str, kind: str, faces: list[str]) -> list[str]:
+            return _patch(unlike(name, taken), kind, faces)
+
         if on_axis:
-            lines += _patch("axis", "empty", on_axis)
-        front = [f"({' '.join(map(str, c[::-1].tolist()))})" for c in structure.corners]
-        back = [f"({' '.join(map(str, self.back[c].tolist()))})" for c in structure.corners]
+            lines += made("axis", "empty", on_axis)
+        rows = self._rows()
+        front = [f"({' '.join(map(str, c[::-1]))})" for c in rows]
+        back = [f"({' '.join(map(str, self.back[c].tolist()))})" for c in rows]
         if self.extrusion.wedge:
-            return [*lines, *_patch("front", "wedge", front), *_patch("back", "wedge", back)]
+            return [*lines, *made("front", "wedge", front), *made("back", "wedge", back)]
         if self._layers > 1 or self.extrusion.height is not None:
-            return [*lines, *_patch("front", "patch", front), *_patch("back", "patch", back)]
-        return [*lines, *_patch("frontAndBack", "empty", [*front, *back])]
+            return [*lines, *made("front", "patch", front), *made("back", "patch", back)]
+        return [*lines, *made("frontAndBack", "empty", [*front, *back])]
+
+
+def side_names(grid: BlockGrid) -> dict[str, str]:
+    """How a blockMeshDict spells the names of patches: words that begin with no digit."""
+    found: dict[str, str] = {}
+    for patch in grid.structure.patches:
+        found[patch.name] = unlike(_word(patch.name, "side"), set(found.values()))
+    return found
+
+
+def zone_names(grid: BlockGrid) -> list[str]:
+    """How it spells the names of regions, each another one."""
+    found: list[str] = []
+    for number, name in enumerate(grid.structure.region_names, start=1):
+        found.append(unlike(_word(plain_name(name) or str(number), "region"), set(found)))
+    return found
+
+
+def _word(name: str, kind: str) -> str:
+    return name if name[0].isalpha() or name[0] == "_" else f"{kind}_{name}"
+
+
+def piece_count(grid: BlockGrid) -> int:
+    """How many blocks a blockMeshDict of the grid has."""
+    return int(part_counts(grid)[grid.structure.crossing].prod(axis=1).sum())
 
 
 def _patch(name: str, kind: str, faces: list[str]) -> list[str]:

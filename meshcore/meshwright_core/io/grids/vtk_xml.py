@@ -84,7 +84,7 @@ def vtm_text(grid: BlockGrid, folder: str) -> str:
     body.append(f'<Block index="{len(structure.region_names)}" name="patches">')
     for i, patch in enumerate(structure.patches):
         file = quoteattr(f"{folder}/{patch_file(patch.name)}")
-        body.append(f'<DataSet index="{i}" name={quoteattr(patch.name)} file={file}/>')
+        body.append(f'<DataSet index="{i}" name={quoteattr(patch.title)} file={file}/>')
     return _file("vtkMultiBlockDataSet", [*body, "</Block>", "</vtkMultiBlockDataSet>"])
 
 

@@ -17,7 +17,7 @@ from meshwright_core.domains.domain import Domain
 from meshwright_core.errors import FileWarning, MeshError, sentence
 from meshwright_core.io import mesh_files
 from meshwright_core.io.content import Content
-from meshwright_core.io.readers import vtk_cells
+from meshwright_core.io.readers import numbers, vtk_cells
 from meshwright_core.io.readers.builder import Builder, Placed
 from meshwright_core.io.readers.fields import CellFields, keep_point_data
 from meshwright_core.mesh import HalfEdgeMesh
@@ -31,6 +31,7 @@ _DERIVED = frozenset(
     }
 )  # fmt: skip
 """Data that follow from the mesh: our own, and those that libraries add by themselves."""
+_CORNERS = {3: "triangle", 4: "quad"}
 _SAME = {"triangle6": "triangle", "triangle7": "triangle", "quad8": "quad", "quad9": "quad",
          "line3": "line", "line4": "line", "triangle10": "triangle", "quad16": "quad"}  # fmt: skip
 
@@ -41,45 +42,93 @@ def library_of(source: Any) -> str:
     return next((root for root in roots if root in _LIBRARIES), "")
 
 
-def is_points_and_cells(source: Any) -> bool:
-    """Whether a source is a pair of points (n, 2|3) and elements (m, 3|4)."""
+def points_and_cells(source: Any) -> Content | None:
+    """The content of a pair of points (n, 2|3) and cells, None if a source is none.
+
+    Cells are an array (m, 3|4), a list of elements of three and four corners, or blocks by type,
+    as meshio's: a dictionary or a list of pairs.
+
+    Raises:
+        MeshError: the cells are understood, but not as numbers of points.
+    """
     if not isinstance(source, tuple | list) or len(source) != 2:
-        return False
+        return None
     try:
-        points, cells = (np.asarray(part) for part in source)
-    except ValueError:
-        return False
-    if points.ndim != 2 or cells.ndim != 2 or cells.dtype.kind not in "iu":
-        return False
-    return points.shape[1] in (2, 3) and cells.shape[1] in (3, 4)
+        points = np.asarray(source[0], dtype=np.float64)
+    except (ValueError, TypeError):
+        return None
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        return None
+    blocks = _blocks(source[1])
+    if blocks is None:
+        return None
+    build = Builder()
+    build.points(points)
+    for kind, cells in blocks:
+        build.cells(_SAME.get(kind, kind), numbers.whole(cells))
+    return build.content()
+
+
+def _blocks(cells: Any) -> list[tuple[str, np.ndarray]] | None:
+    """Cells of a pair by type; None if they are none."""
+    if isinstance(cells, Mapping):
+        pairs = list(cells.items())
+    elif isinstance(cells, list | tuple) and all(
+        isinstance(one, list | tuple) and len(one) == 2 and isinstance(one[0], str) for one in cells
+    ):
+        pairs = list(cells)
+    else:
+        return _listed(cells)
+    try:
+        return [(str(kind), np.atleast_2d(np.asarray(block))) for kind, block in pairs]
+    except (ValueError, TypeError):
+        return None
+
+
+def _listed(cells: Any) -> list[tuple[str, np.ndarray]] | None:
+    """Elements in one list, by their number of corners."""
+    try:
+        sizes = {len(one) for one in cells}
+        blocks = [np.asarray([one for one in cells if len(one) == size]) for size in sorted(sizes)]
+    except (ValueError, TypeError):
+        return None
+    if not sizes or not sizes <= _CORNERS.keys() or any(b.dtype.kind not in "iuf" for b in blocks):
+        return None
+    return [(_CORNERS[block.shape[1]], block) for block in blocks]
 
 
 def taken(
-    source: Any, corner_angle: float = CORNER_ANGLE, to_quads: bool = False
+    source: Any,
+    corner_angle: float = CORNER_ANGLE,
+    to_quads: bool = False,
+    part: str | None = None,
+    region: str | None = None,
 ) -> HalfEdgeMesh | Domain | None:
     """The mesh in an object, the shape in it, or None if it is of another kind.
 
-    Meshes are pyvista.PolyData and other datasets of PyVista, trimesh.Trimesh, meshio.Mesh, and
-    pairs of points and elements; shapes are trimesh.path.Path2D and polygons of shapely. What is
-    not kept is said by a FileWarning each.
+    Meshes are pyvista.PolyData and other datasets of PyVista, Trimesh and Scene of trimesh,
+    meshio.Mesh, and pairs of points and elements (:func:`points_and_cells`); shapes are
+    trimesh.path.Path2D, polygons of shapely and lists of them. What is not kept is said by a
+    FileWarning each. Other arguments are as for files.
 
     Raises:
         MeshError: one sentence that begins with the type of the object, as for a file.
     """
-    if is_points_and_cells(source):
-        points, cells = (np.asarray(part) for part in source)
-        return HalfEdgeMesh.from_elements(points, cells, corner_angle=corner_angle)
     library = library_of(source)
-    if not library:
-        return None
     kind = type(source).__name__
+    several = not library and isinstance(source, list | tuple) and len(source) > 0
+    if several and all(library_of(one) == "shapely" for one in source):
+        library, kind = "shapely", f"{type(source[0]).__name__}s"
     try:
         if library == "shapely":
-            return _shape(source, corner_angle)
+            return _shape(source, corner_angle, region)
         if library == "trimesh" and hasattr(source, "entities"):
-            return _path(source, corner_angle)
-        content = _content(library, source)
-        loaded = mesh_files.from_content(content, corner_angle, to_quads)
+            return _path(source, corner_angle, region)
+        content = _content(library, source) if library else points_and_cells(source)
+        if content is None:
+            return None
+        kind = kind if library else "(points, cells)"
+        loaded = mesh_files.from_content(content, corner_angle, to_quads, part)
     except MeshError as error:
         raise MeshError(f"{kind}: {sentence(str(error))}") from error
     for line in loaded.said():
@@ -92,6 +141,8 @@ def _content(library: str, source: Any) -> Content:
         return _dataset(source)
     if library == "meshio" and hasattr(source, "cells"):
         return _meshio(source)
+    if library == "trimesh" and hasattr(source, "to_geometry"):  # a scene, its parts in place
+        source = source.to_geometry()
     if library == "trimesh" and hasattr(source, "faces"):
         return _trimesh(source)
     raise MeshError("no mesh is in an object of this type")
@@ -234,22 +285,26 @@ def _keep_cells(fields: CellFields, name: str, values: Any) -> None:
         fields.keep(name, values if values.ndim == 1 else np.zeros(0))
 
 
-def _shape(source: Any, corner_angle: float) -> Domain:
-    """The polygons of a geometry of shapely; those that touch are regions of one domain."""
+def _shape(source: Any, corner_angle: float, region: str | None) -> Domain:
+    """The polygons of a geometry of shapely, or several of them; those that touch are regions of
+    one domain.
+    """
     import shapely
 
     from meshwright_core.io import drawings
     from meshwright_core.io.drawings.readers import wkt
 
+    if isinstance(source, list | tuple):
+        source = shapely.GeometryCollection(list(source))
     if source.geom_type == "Polygon" and not source.is_empty:
         holes = [np.asarray(ring.coords)[:, :2] for ring in source.interiors]
         outline = np.asarray(source.exterior.coords)[:, :2]
         return Domain(outline, holes, corner_angle=corner_angle)
     text = shapely.to_wkt(source, rounding_precision=-1, output_dimension=2)
-    return drawings.domain_in(wkt.read(text.encode()), corner_angle)
+    return drawings.domain_in(wkt.read(text.encode()), corner_angle, region)
 
 
-def _path(source: Any, corner_angle: float) -> Domain:
+def _path(source: Any, corner_angle: float, region: str | None) -> Domain:
     """The regions that the lines and arcs of a trimesh path enclose."""
     from meshwright_core.curves.curve import Curve
     from meshwright_core.io import drawings
@@ -265,4 +320,4 @@ def _path(source: Any, corner_angle: float) -> Domain:
             drawing.add(polyline(nodes), layer)
         else:
             drawing.add(polyline(np.asarray(entity.discrete(source.vertices))[:, :2]), layer)
-    return drawings.domain_in(drawing, corner_angle)
+    return drawings.domain_in(drawing, corner_angle, region)

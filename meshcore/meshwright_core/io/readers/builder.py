@@ -238,6 +238,10 @@ class Builder:
         found = self.index(np.asarray(nodes, np.int64).ravel())
         self._sets.append((name, found[found >= 0]))
 
+    def point_set(self, name: str, points: Ints) -> None:
+        """The same by point indices."""
+        self._sets.append((name, points))
+
     # -- the result --------------------------------------------------------------------------------
 
     def content(self, **more: Any) -> Content:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,7 @@ from meshwright_core.io.writers.cell_arrays import REGION, SIDE
 
 OURS = ("geometric", "desired_degree")
 """Data by point that we write ourselves."""
+_LISTED = 6
 _MOST_GROUPS = 1000
 """Different whole numbers of data by cell up to which they are taken for groups."""
 _BOOKKEEPING = frozenset(
@@ -24,6 +27,15 @@ def keep_point_data(build: Builder, name: str, values: NDArray[np.generic]) -> N
         build.data[name] = np.asarray(values).ravel()
     else:
         build.dropped.append(f"point data {name!r}")
+
+
+def contents_of(words: Iterable[str]) -> str:
+    """What is not kept of a file by the words that it stands under there, as a phrase."""
+    listed = sorted(set(words))
+    more = len(listed) - _LISTED
+    return f"the content of {', '.join(listed[:_LISTED])}" + (
+        f" and {more} more" if more > 0 else ""
+    )
 
 
 class CellFields:
@@ -55,7 +67,7 @@ class CellFields:
             return
         marks = values[np.concatenate([one.which for one in edges])] if edges else values[:0]
         if len(mine) > 1 or name in _TAGS:
-            if len(mine) > min(_MOST_GROUPS, max(1, self._rows // 2)):
+            if len(mine) > min(_MOST_GROUPS, max(2, self._rows // 2)):
                 self._build.dropped.append(f"cell data {name!r}")
                 return
             for value in mine.tolist():

@@ -1,4 +1,4 @@
-"""Gmsh files (.msh): versions 2, 4.0 and 4.1, text and binary, with their physical groups.
+"""Gmsh files (.msh): versions 1, 2, 4.0 and 4.1, text and binary, with their physical groups.
 
 After the section "MSH file format" of the Gmsh reference manual. A cell without a physical group is
 in no region; it may be in several, which versions up to 2.2 express by writing it once for each.
@@ -32,6 +32,7 @@ TYPES = {
 }  # fmt: skip
 """Kind and nodes of the cells by their number; of kinds we keep the corners come first."""
 _DIMENSION = {"vertex": 0, "line": 1, "triangle": 2, "quad": 2}
+_SILENT = frozenset({"Comments", "EndMeshFormat", "Parametrizations", "InterpolationScheme"})
 _KEPT = ("geometric", "desired_degree")
 
 
@@ -70,19 +71,25 @@ class _Reader:
             "ParametricNodes": self._parametric_nodes,
             "Elements": self._elements,
             "NodeData": self._node_data,
+            "NOD": self._nodes,
+            "ELM": self._elements,
         }
-        if self._section() != "MeshFormat":
+        start = words.at
+        if (first := self._section()) == "NOD":
+            words.at, self.version = start, 1.0
+        elif first != "MeshFormat":
             raise MeshError("it does not begin with $MeshFormat")
-        self._format()
+        else:
+            self._format()
         while name := self._section():
             if name in sections:
                 sections[name]()
                 words.skip_line_end()
-            elif name in ("NOD", "ELM"):
-                raise MeshError(f"its section ${name} is not read")
             elif name in ("ElementData", "ElementNodeData"):
                 self._dropped(name)
-            if not words.skip_past(b"$End" + name.encode()):
+            elif name not in _SILENT:
+                self.build.dropped.append(f"the section ${name[:40]}")
+            if not words.skip_past((b"$END" if name.isupper() else b"$End") + name.encode()):
                 raise MeshError(f"{CUT_OFF}: $End{name} is missing")
         return self._result()
 
@@ -227,6 +234,7 @@ class _Reader:
             if at + 3 > len(flat):
                 raise MeshError(f"{CUT_OFF}: {count} elements are missing")
             code, tags = flat[at + 1 : at + 3].tolist()
+            tags = tags if self.version > 1 else 2
             kind, nodes = self._type(code)
             if not 0 <= tags <= 64:
                 raise MeshError("an element has no sound number of tags")
@@ -235,10 +243,14 @@ class _Reader:
             if fit == 0:
                 raise MeshError(f"{CUT_OFF}: {count} elements are missing")
             table = flat[at : at + fit * width].reshape(fit, width)
-            same = (table[:, 1] == code) & (table[:, 2] == tags)
+            # of version 1: id, type, physical and elementary tag, number of nodes, nodes
+            first, column = (3, 2) if self.version > 1 else (2, 4)
+            same = (table[:, 1] == code) & (table[:, column] == (tags if first == 3 else nodes))
+            if not same[0]:
+                raise MeshError("an element has another number of nodes than its type")
             rows = fit if same.all() else int(np.argmin(same))
             table = table[:rows]
-            group = table[:, 3] if tags else np.zeros(rows, np.int64)
+            group = table[:, first] if tags else np.zeros(rows, np.int64)
             self.cells.append(_Cells(kind, table[:, 3 + tags :], group))
             at, count = at + rows * width, count - rows
             block = 4 * block if rows == fit else max(1, rows)

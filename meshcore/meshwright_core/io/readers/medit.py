@@ -5,6 +5,8 @@ The reference of a triangle, quad or edge names its region or side: "ref=3".
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from meshwright_core.errors import MeshError
@@ -26,6 +28,10 @@ _ROWS = {"CORNERS": 1, "RIDGES": 1, "REQUIREDVERTICES": 1, "REQUIREDEDGES": 1, "
          "NORMALATTRIANGLEVERTICES": 3, "TANGENTATEDGES": 3, "REQUIREDQUADRILATERALS": 1,
          "EDGEONGEOMETRICEDGE": 2, "VERTEXONGEOMETRICVERTEX": 2, "VERTEXONGEOMETRICEDGE": 3,
          "TANGENTATEDGE": 3}  # fmt: skip
+_APART = re.compile(rb"(?<=\S)[ \t]+([A-Z][A-Za-z]+)")
+"""A keyword behind other words of its line."""
+_COUNTED = re.compile(rb"^([A-Z][A-Za-z]+)[ \t]+(\d+)[ \t]+(?=\S)", re.MULTILINE)
+"""A keyword and a number with more behind them in their line."""
 _BINARY = {4: "VERTICES", 5: "EDGES", 6: "TRIANGLES", 7: "QUADRILATERALS", 8: "TETRAHEDRA",
            9: "PRISMS", 10: "HEXAHEDRA", 24: "TRIANGLESP2", 25: "EDGESP2", 27: "QUADRILATERALSQ2",
            49: "PYRAMIDS"}  # fmt: skip
@@ -67,7 +73,8 @@ class _Text(_Medit):
         lines = numbers.text_of(data).split(b"\n")
         if any(b"#" in line for line in lines):
             lines = [line.partition(b"#")[0] for line in lines]
-        self.words = Words(b"\n".join(lines))
+        text = _APART.sub(rb"\n\1", b"\n".join(lines))
+        self.words = Words(_COUNTED.sub(rb"\1 \2\n", text))
 
     def content(self) -> Content:
         words = self.words
@@ -94,8 +101,10 @@ class _Text(_Medit):
                 flat = words.floats(width * self._count(rest, width))
                 self.points(flat.reshape(-1, width))
             elif keyword in _CELLS:
-                width = _CELLS[keyword][1] + 1
-                nodes = words.ints("", width * self._count(rest, width))
+                count = self._count(rest, 2)
+                width = self._width(keyword, count)
+                numbers.count_of(str(count), words.left() // (2 * width - 1) + 1)
+                nodes = words.ints("", width * count)
                 self.cells(keyword, nodes.reshape(-1, width))
             elif keyword in _ROWS:
                 width = self.dimension if keyword in ("NORMALS", "TANGENTS") else _ROWS[keyword]
@@ -107,6 +116,15 @@ class _Text(_Medit):
                 raise MeshError("it does not begin with MeshVersionFormatted")
             raise MeshError(f"{CUT_OFF}: End is missing")
         return self.build.content()
+
+    def _width(self, keyword: str, count: int) -> int:
+        """Numbers of a row; Gmsh writes quads of 8 and 9 nodes under the keyword of plain ones."""
+        words = self.words
+        place = words.at
+        found = {len(words.words()) for _ in range(min(count, 2))}
+        words.at = place
+        high = keyword == "QUADRILATERALS" and found in ({9}, {10})
+        return found.pop() if high else _CELLS[keyword][1] + 1
 
     def _count(self, rest: list[str], width: int) -> int:
         if rest:

@@ -1,27 +1,31 @@
 """Nastran bulk data (.bdf, .nas, .fem): GRID points and shell elements, in fields of 8 or 16
 characters or separated by commas.
 
-After the MSC Nastran Quick Reference Guide. The property of an element is its region; comments of
-HyperMesh and Patran, and PSHELL cards with a name in a comment before them, are passed over but for
-"$HMNAME COMP" and "$HMNAME PROP", which name properties.
+After the MSC Nastran Quick Reference Guide. The property of an element is its region, named by the
+comments of HyperMesh ("$HMNAME PROP"), ANSA ("$ANSA_NAME_COMMENT") and Femap ("$ Femap Property").
+Files that are included are read from beside the deck. Cards that are no mesh are left out, and
+noted.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
 from meshwright_core.errors import MeshError
 from meshwright_core.io.content import Content
-from meshwright_core.io.readers import numbers
+from meshwright_core.io.readers import includes, numbers
 from meshwright_core.io.readers.builder import Builder
+from meshwright_core.io.readers.fields import contents_of
 from meshwright_core.io.readers.numbers import Floats
 
 _NODES = {
     "CTRIA3": ("triangle", 3), "CTRIAR": ("triangle", 3), "CTRIA6": ("triangle", 6),
     "CQUAD4": ("quad", 4), "CQUADR": ("quad", 4), "CQUAD8": ("quad", 8), "CQUAD": ("quad", 9),
+    "CQUAD9": ("quad", 9),
     "CSHEAR": ("quad", 4), "CPLSTN3": ("triangle", 3), "CPLSTN4": ("quad", 4),
     "CPLSTN6": ("triangle", 6), "CPLSTN8": ("quad", 8), "CPLSTS3": ("triangle", 3),
     "CPLSTS4": ("quad", 4), "CPLSTS6": ("triangle", 6), "CPLSTS8": ("quad", 8),
@@ -31,19 +35,35 @@ _NODES = {
     "PLOTEL": ("line", 2),
 }  # fmt: skip
 _VOLUMES = frozenset({"CTETRA", "CHEXA", "CPENTA", "CPYRAM", "CPYRA"})
-_NAME = re.compile(r'\$HMNAME\s+(?:COMP|PROP)\s+(\d{1,9})\s*"([^"]*)"')
+_NAMES = (
+    re.compile(r'\$HMNAME\s+(?:COMP|PROP)\s+(\d{1,9})\s*"([^"]*)"'),
+    re.compile(r"\$ANSA_NAME_COMMENT;(\d{1,9});P[A-Z]+;([^;]+);"),
+    re.compile(r"\$ Femap Property (\d{1,9}) : (.+)"),
+)
+_STARTS = re.compile(rb"^INCLUDE\b", re.IGNORECASE | re.MULTILINE)
+_INCLUDE = re.compile(r"""INCLUDE\s*=?\s*(?:'([^']+)'|"([^"]+)"|(\S+))""", re.IGNORECASE)
+_SILENT = frozenset({"ENDDATA", "BEGIN", "PARAM", "PLOTEL"})
 _EXPONENT = re.compile(rb"(?<=[\d.])([-+])(?=\d)")
 _FIELDS = 8
 _CORNERS = {"triangle": 3, "quad": 4, "line": 2}
 
 
-def read(data: bytes) -> Content:
-    """Return the content of a Nastran bulk data file.
+def read_path(path: Path) -> Content:
+    """Return the content of a Nastran bulk data file and those that it includes.
 
     Raises:
-        MeshError: points in a coordinate system of their own, another file that is included, or
-            damage.
+        MeshError: points in a coordinate system of their own, a file that is not there, or damage.
     """
+    return read(includes.expanded(path, _STARTS, _included))
+
+
+def _included(line: str) -> tuple[str, str] | None:
+    found = _INCLUDE.match(line)
+    return ("", (found[1] or found[2] or found[3]).strip()) if found else None
+
+
+def read(data: bytes) -> Content:
+    """Return the content of a Nastran bulk data file that includes no others; errors as above."""
     text = numbers.text_of(data)
     build = Builder()
     ids: list[bytes] = []
@@ -52,10 +72,13 @@ def read(data: bytes) -> Content:
     volumes: dict[str, int] = {}
     names: dict[int, str] = {}
     plane_systems: set[bytes] = set()
+    others: set[str] = set()
+    default, alone = b"", False  # the system of points that name none
     for name, fields in _cards(text, names):
         if name == "GRID":
             if len(fields) > 1 and fields[1] not in (b"", b"0"):
                 plane_systems.add(fields[1])
+            alone |= len(fields) < 2 or not fields[1]
             ids.append(fields[0] if fields else b"")
             places += [field or b"0." for field in (*fields[2:5], b"", b"", b"")[:3]]
         elif name in _NODES:
@@ -75,8 +98,14 @@ def read(data: bytes) -> Content:
             volumes[name] = volumes.get(name, 0) + 1
         elif name == "INCLUDE":
             raise MeshError("it includes another file, which is not read")
+        elif name == "GRDSET":
+            default = fields[1] if len(fields) > 1 else b""
         elif name.startswith(("CQUAD", "CTRIA")):
             raise MeshError(f"elements {name[:12]} are not read")
+        elif name not in _SILENT and name.isalnum():
+            others.add(name[:8])
+    if alone and default not in (b"", b"0"):
+        plane_systems.add(default)
     if plane_systems:
         shown = numbers.words_of(min(plane_systems))
         raise MeshError(f"points in a coordinate system of their own ({shown}) are not read")
@@ -85,6 +114,8 @@ def read(data: bytes) -> Content:
     _add(build, elements, names)
     for name, count in volumes.items():
         build.cells(name, np.zeros((count, 1)))
+    if others:
+        build.dropped.append(contents_of(others))
     return build.content()
 
 
@@ -132,8 +163,9 @@ def _cards(text: bytes, names: dict[int, str]) -> Iterator[tuple[str, list[bytes
     name, fields, width = "", list[bytes](), _FIELDS
     for line in lines[start:]:
         if line.startswith(b"$") or not line.strip():
-            if line.startswith(b"$HMNAME") and (found := _NAME.match(numbers.words_of(line))):
-                names[int(found[1])] = found[2]
+            if line.startswith((b"$HMNAME", b"$ANSA_NAME", b"$ Femap Prop")):
+                for found in filter(None, (one.match(numbers.words_of(line)) for one in _NAMES)):
+                    names[int(found[1])] = found[2].strip()
             continue
         if b"$" in line:
             line = line.partition(b"$")[0]

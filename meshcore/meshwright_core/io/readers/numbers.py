@@ -17,6 +17,8 @@ Ints = NDArray[np.int64]
 
 CUT_OFF = "it is cut off"
 _FORTRAN = re.compile(rb"(?<=[\d.])[dD](?=[-+]?\d)")
+_DECIMAL_COMMA = re.compile(rb"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
+_END = 64
 _WIDE = 2**53
 """Whole numbers beyond this are not exact as floating point numbers."""
 
@@ -34,8 +36,13 @@ def without_mark(data: bytes) -> bytes:
 
 
 def text_of(data: bytes) -> bytes:
-    """The bytes of a text file with lines that end in a line feed, without a byte order mark."""
+    """The bytes of a text file with lines that end in a line feed, without a byte order mark.
+
+    Bytes that DOS and some writers put behind the text (end of file, zeros) are left.
+    """
     data = without_mark(data)
+    if b"\x1a" in data[-_END:] or b"\0" in data[-_END:]:
+        data = data.rstrip(b"\x1a\0\r\n")
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
 
 
@@ -71,7 +78,10 @@ def _numbers(text: bytes, kind: type) -> NDArray[np.generic]:
             pass
         if kind is np.float64 and _FORTRAN.search(text):
             return _numbers(_FORTRAN.sub(b"e", text), kind)
-    raise MeshError(f"it is damaged: there is no number in {_shown(_odd(text))}")
+    odd = _odd(text)
+    if _DECIMAL_COMMA.fullmatch(odd):
+        raise MeshError(f"its numbers have decimal commas, as in {_shown(odd)}: they need points")
+    raise MeshError(f"it is damaged: there is no number in {_shown(odd)}")
 
 
 def _odd(text: bytes) -> bytes:

@@ -59,8 +59,13 @@ class _Reader:
                     self.markers.append((value, []))
                 case "MARKER_ELEMS":
                     name = self.markers.pop()[0] if self.markers else "marker"
-                    self.markers.append((name, self._take(self._count(value))))
+                    count = self._count(value)
+                    if self.lines[self.at : self.at + 1] and b"SEND_RECV" in self.lines[self.at]:
+                        self.at += 1  # of points between partitions
+                    self.markers.append((name, self._take(count)))
                 case _:
+                    if key.startswith("FFD"):
+                        self.build.dropped.append("the free-form deformation")
                     self._pass_over()
         self._flush()
         return self.build.content()

@@ -12,9 +12,17 @@ from meshwright_core.io.readers import numbers, vtk_cells
 from meshwright_core.io.readers.builder import Builder, Placed
 from meshwright_core.io.readers.numbers import CUT_OFF, Ints
 
+_OBJ_DATA = {
+    b"vt": "point data 'texture coordinates'",
+    b"vn": "point data 'normals'",
+    b"mtllib": "the library of materials",
+}
 _AFTER_SLASH = re.compile(rb"/\S*")
 _OFF = re.compile(rb"(?:ST)?C?N?(4)?(n)?OFF$")
 _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
+_END_SOLID = re.compile(rb"\bend\s*solid\b", re.IGNORECASE)
+_TAIL = 4096
+"""Bytes behind the last facet, at most; a comment of the program that wrote it may stand there."""
 _SOLID = re.compile(rb"^\s*solid\b[ \t]*([^\n]*)", re.IGNORECASE | re.MULTILINE)
 
 
@@ -44,6 +52,8 @@ def read_obj(data: bytes) -> Content:
             lines.append(rest)
         elif key in names:
             names[key].append((len(faces), rest.strip()))
+        elif key in _OBJ_DATA:
+            build.dropped.append(_OBJ_DATA[key])
         elif key in (b"curv", b"surf", b"vp", b"cstype"):
             build.warnings.append("its free-form curves and surfaces are not read")
     build.points(_first_three(points))
@@ -102,6 +112,10 @@ def read_off(data: bytes) -> Content:
     lines = [line.partition(b"#")[0].strip() for line in numbers.text_of(data).split(b"\n")]
     lines = [line for line in lines if line]
     head = lines[0].split() if lines else []
+    if len(head) in (2, 3) and all(word.isdigit() for word in head):  # the word is optional
+        lines, head = [b"OFF", *lines], [b"OFF"]
+    elif head[:1] == [b"off"]:
+        head[0] = b"OFF"
     kind = _OFF.match(head[0]) if head else None
     if kind is None:
         raise MeshError('it does not begin with "OFF"')
@@ -138,7 +152,8 @@ def read_stl(data: bytes) -> Content:
     count = int.from_bytes(data[80:84], "little")
     text = data.lstrip()[:5].lower() == b"solid"
     exact = len(data) == 84 + 50 * count
-    if len(data) >= 84 and (exact or not text or b"facet" not in data[:4096].lower()):
+    binary = exact or not text or b"\0" in data[:256] or b"facet" not in data[:4096].lower()
+    if len(data) >= 84 and binary:
         if len(data) < 84 + 50 * count:
             raise MeshError(f"{CUT_OFF}: {count} triangles are announced")
         facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
@@ -152,7 +167,8 @@ def read_stl(data: bytes) -> Content:
 
 
 def _text_stl(text: bytes) -> Content:
-    if text.rstrip().rpartition(b"\n")[2].split()[:1] not in ([b"endsolid"], [b"ENDSOLID"]):
+    tail = text[-_TAIL:]
+    if not _END_SOLID.search(tail, max(0, tail.lower().rfind(b"endfacet"))):
         raise MeshError(f'{CUT_OFF}: it does not end with "endsolid"')
     build = Builder()
     heads = list(_SOLID.finditer(text))

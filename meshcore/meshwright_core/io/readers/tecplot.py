@@ -22,6 +22,7 @@ _RECORD = re.compile(
     rb"|FUNCTION|USERREC|AUXDATA)\b",
     re.IGNORECASE,
 )
+_COMMENT = re.compile(rb"""^((?:[^#"]|"[^"]*")*)#.*$""")
 _DATA = re.compile(rb"^\s*[-+.]?\d|^\s*nan\b|^\s*[-+]?inf", re.IGNORECASE)
 _PAIR = re.compile(
     r"""([A-Za-z_0-9]+)\s*=\s*(\((?:[^()]|\([^()]*\))*\)|"(?:[^"\\]|\\.)*"|[^\s,"()]+)"""
@@ -70,11 +71,17 @@ def _zones(text: bytes) -> list[_Zone]:
         elif record == "ZONE":
             zones.append(_Zone(head, [], variables))
 
+    known = False
     for line in text.split(b"\n"):
-        if line.lstrip().startswith(b"#") or not line.strip():
+        if b"#" in line:
+            line = _COMMENT.sub(rb"\1", line)
+        if not line.strip():
             continue
         found = _RECORD.match(line)
-        if found and not (record == "ZONE" and found[1].upper() == b"AUXDATA"):
+        known |= found is not None
+        if found and record == "ZONE" and found[1].upper() == b"AUXDATA":
+            continue
+        if found:
             close()
             record, head = found[1].decode().upper(), line[found.end() :]
         elif record in ("ZONE", "") and _DATA.match(line):
@@ -83,7 +90,9 @@ def _zones(text: bytes) -> list[_Zone]:
                 record = ""
             if not zones:
                 zones.append(_Zone(b"", [], variables))
-            zones[-1].lines.append(line)
+            zones[-1].lines.append(line.replace(b",", b" ") if b"," in line else line)
+        elif not known:
+            raise MeshError("it is no Tecplot file: it begins with another word")
         else:
             head += b" " + line
     close()

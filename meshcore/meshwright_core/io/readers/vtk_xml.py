@@ -1,4 +1,5 @@
-"""VTK's XML files: unstructured grids (.vtu) and polygonal data (.vtp), of any number of pieces.
+"""VTK's XML files, of any number of pieces: unstructured grids (.vtu), polygonal data (.vtp), and
+structured grids, images and rectilinear grids of quads (.vts, .vti, .vtr).
 
 After the VTK file formats documentation: arrays as text, as base64 with or without compression by
 zlib, LZMA or LZ4, and appended, encoded or raw.
@@ -30,7 +31,8 @@ _TYPES = {
 }  # fmt: skip
 _APPENDED = re.compile(rb"<AppendedData[^>]*>")
 _ENCODING = re.compile(rb"""encoding\s*=\s*["'](\w+)["']""")
-_SETS = ("UnstructuredGrid", "PolyData")
+_GRIDS = ("StructuredGrid", "ImageData", "RectilinearGrid")
+_SETS = ("UnstructuredGrid", "PolyData", *_GRIDS)
 _LARGEST = 2**32
 """Bytes that compressed arrays of a file may have in all."""
 
@@ -191,6 +193,10 @@ def read(data: bytes) -> Content:
     pieces = [] if dataset is None else dataset.findall("Piece")
     for piece in pieces:
         build.part()
+        if name in _GRIDS and dataset is not None:
+            placed, rows = _structured(build, name, dataset, piece, arrays)
+            _fields(build, piece, arrays, placed, rows, only=len(pieces) == 1)
+            continue
         count = numbers.count_of(piece.get("NumberOfPoints", "0"), 2**48)
         points = piece.find("Points/DataArray")
         if count and points is None:
@@ -242,6 +248,50 @@ def _grid_cells(
     if len(codes) != count:
         raise MeshError(f"{CUT_OFF} or damaged: {count} cells are announced")
     return vtk_cells.add_cells(build, codes, sizes, members), count
+
+
+def _structured(
+    build: Builder, name: str, dataset: ElementTree.Element, piece: ElementTree.Element,
+    arrays: _Arrays,
+) -> tuple[list[Placed], int]:  # fmt: skip
+    """The quads of a piece of a grid, and their number."""
+    extent = _listed(piece.get("Extent", ""), 6)
+    low, high = numbers.whole(extent[::2]), numbers.whole(extent[1::2])
+    if (high < low).any():
+        raise MeshError("it is damaged: the extent of a piece")
+    a, b, c = (high - low + 1).tolist()
+    count = a * b * c
+    if name == "StructuredGrid":
+        points = piece.find("Points/DataArray")
+        flat = np.zeros(0) if points is None else arrays.read(points)
+        if len(flat) != 3 * count:
+            raise MeshError(f"{CUT_OFF} or damaged: {count} points are announced")
+        build.points(flat.reshape(-1, 3))
+    else:
+        vtk_cells.refuse_huge(count)
+        axes = [np.arange(first, last + 1.0) for first, last in zip(low, high, strict=True)]
+        if name == "RectilinearGrid":
+            found = [arrays.read(one) for one in piece.findall("Coordinates/DataArray")]
+            if [len(axis) for axis in found] != [a, b, c]:
+                raise MeshError("its coordinates do not fit its extent")
+            axes = [axis.astype(np.float64) for axis in found]
+        z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
+        places = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+        if name == "ImageData":
+            turn = _listed(dataset.get("Direction", "1 0 0 0 1 0 0 0 1"), 9).reshape(3, 3)
+            spacing = _listed(dataset.get("Spacing", "1 1 1"), 3)
+            places = _listed(dataset.get("Origin", "0 0 0"), 3) + (places * spacing) @ turn.T
+        build.points(places)
+    quads = vtk_cells.grid_cells((a, b, c))
+    return build.cells("quad", quads), len(quads)
+
+
+def _listed(text: str, count: int) -> np.ndarray:
+    """The numbers of an attribute."""
+    found = numbers.floats(text.encode())
+    if len(found) != count:
+        raise MeshError(f"it is damaged: {text[:40]!r} stands where {count} numbers belong")
+    return found
 
 
 def _polygons(

@@ -13,7 +13,8 @@ from meshwright_core.io.writers import lines as form
 
 _TYPES = {("triangle", 2): "TRI3", ("quad", 2): "QUAD4",
           ("triangle", 3): "TRISHELL3", ("quad", 3): "SHELL4"}  # fmt: skip
-_LETTERS = 256
+LETTERS = 256
+"""Bytes of the name of a block or set."""
 
 
 def write(path: Path, content: Content) -> None:
@@ -41,7 +42,7 @@ def _write(file: Any, content: Content) -> None:
     flat = content.points.shape[1] < 3 or not content.points[:, 2].any()
     dimension = 2 if flat else 3
     sizes = {"num_dim": dimension, "num_nodes": count, "num_elem": len(elements),
-             "num_el_blk": len(used), "len_name": _LETTERS, "time_step": None}  # fmt: skip
+             "num_el_blk": len(used), "len_name": LETTERS, "time_step": None}  # fmt: skip
     if sides:
         sizes["num_side_sets"] = len(sides)
     for name, size in sizes.items():
@@ -82,8 +83,8 @@ def _listed(file: Any, word: str, dimension: str, titles: list[str]) -> None:
     numbers = file.createVariable(f"{word}_prop1", "i4", (dimension,))
     numbers.setncattr("name", "ID")
     numbers[:] = np.arange(1, len(titles) + 1)
-    rows = np.zeros((len(titles), _LETTERS), "S1")
+    rows = np.zeros((len(titles), LETTERS), "S1")
     for row, title in zip(rows, titles, strict=True):
-        letters = title.encode()[:_LETTERS]
+        letters = form.cut(title, LETTERS)
         row[: len(letters)] = np.frombuffer(letters, "S1")
     file.createVariable(f"{word}_names", "S1", (dimension, "len_name"))[:] = rows

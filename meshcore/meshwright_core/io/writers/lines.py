@@ -40,6 +40,11 @@ def word(name: str) -> str:
     return _ODD.sub("_", name).strip("_") or "_"
 
 
+def cut(name: str, bytes_of_it: int) -> bytes:
+    """The first bytes of a name, whole letters only."""
+    return name.encode()[:bytes_of_it].decode(errors="ignore").encode()
+
+
 def words(all_names: Iterable[str]) -> dict[str, str]:
     """A different word for each name."""
     found: dict[str, str] = {}

@@ -16,7 +16,7 @@ from meshwright_core.io.writers import lines as form
 _CODES = {"triangle": "TR3", "quad": "QU4"}
 _PROFILE = np.bytes_("MED_NO_PROFILE_INTERNAL")
 _STEP = "-0000000000000000001-0000000000000000001"
-_LETTERS = 80
+LETTERS = 80
 """Bytes of the name of a group."""
 
 
@@ -68,9 +68,12 @@ def _write(file: Any, content: Content) -> None:
             family.attrs["NUM"] = -number
             listed = family.create_group("GRO")
             listed.attrs["NBR"] = len(own)
-            texts = [name.encode()[:_LETTERS].ljust(_LETTERS, b"\0") for name in own]
-            rows = np.frombuffer(b"".join(texts), np.int8).reshape(-1, _LETTERS)
-            listed.create_dataset("NOM", data=rows)
+            texts = [form.cut(name, LETTERS).ljust(LETTERS, b"\0") for name in own]
+            rows = np.frombuffer(b"".join(texts), np.int8).reshape(-1, LETTERS)
+            # an array type for each name: the MED library reads no table of bytes
+            made = listed.create_dataset("NOM", (len(own),), np.dtype((np.int8, (LETTERS,))))
+            for i, row in enumerate(rows):
+                made[i] = row
 
 
 def _cells(

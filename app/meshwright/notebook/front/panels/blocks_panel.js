@@ -29,6 +29,13 @@ export class BlocksPanel {
       title: "Cells across the selected chord",
     });
     this._count.addEventListener("change", () => this._send(this._count.valueAsNumber));
+    this._count.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter") return;
+      // notebooks have a meaning of their own for it, and the browser then reports no change
+      event.preventDefault();
+      event.stopPropagation();
+      this._send(this._count.valueAsNumber);
+    });
     this._auto = button("mw-tool mw-tool-text", "Let size and evenness decide the number of cells", {
       text: "Auto", act: () => this._send(null),
     });
@@ -99,6 +106,9 @@ export class BlocksPanel {
 
   _send(count) {
     if (!this._blocks || this._edge < 0 || Number.isNaN(count)) return;
+    const { chord, counts, set } = this._blocks;
+    const own = chord[this._edge];
+    if (set.includes(own) && counts && counts[own] === count) return;
     this._card.request("chord_count", { ends: this._blocks.ends[this._edge], count });
     this._asked = -1; // a refusal leaves the revision as it is, and the field shows what holds
   }

@@ -134,7 +134,7 @@ class VertexMenu {
     const choice = (title, checked, act) => this.popup.addRow({
       label: title, checked, act,
       parts: [node("span", "mw-row-line", {},
-        node("span", "mw-check", {}, ...(checked ? [icon("check", 14)] : [])),
+        node("span", "mw-tick", {}, ...(checked ? [icon("check", 14)] : [])),
         node("span", "mw-row-title", {}, title))],
     });
     const wanted = new Set([desired - 1, desired, desired + 1].filter((d) => d >= 1));
