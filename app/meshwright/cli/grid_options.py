@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from meshwright.cli import arguments as inputs
 from meshwright.console import UserError
@@ -11,6 +11,8 @@ from meshwright.console import UserError
 if TYPE_CHECKING:
     from meshwright_core.blocks.sizing import Sizing
     from meshwright_core.io.grids.openfoam import Extrusion
+
+Number = TypeVar("Number", int, float)
 
 GROWTH = 1.2
 """Ratio of a layer where none is given."""
@@ -58,16 +60,18 @@ def sizing(arguments: argparse.Namespace) -> Sizing:
     from meshwright_core.blocks.sizing import Sizing, WallLayer
     from meshwright_core.errors import MeshError
 
-    sizes, counts, walls = {}, {}, []
+    sizes: dict[str, float] = {}
+    counts: dict[str, int] = {}
+    walls = []
     for text in arguments.side_size:
         name, value = _named(text, "--side-size", "NAME:H")
-        sizes[name] = _number(value, "--side-size", text)
+        sizes[name] = _once(sizes, name, _number(value, "--side-size", text), "--side-size")
     for text in arguments.count:
         name, value = _named(text, "--count", "NAME:N")
         number = _number(value, "--count", text)
         if number != int(number):
             raise UserError(f"--count {text}: {value} is not a whole number")
-        counts[name] = int(number)
+        counts[name] = _once(counts, name, int(number), "--count")
     for text in arguments.wall:
         words = text.split(":")
         if len(words) not in (2, 3) or not words[0]:
@@ -96,6 +100,13 @@ def extrusion(arguments: argparse.Namespace) -> Extrusion | None:
     if number != int(number) or number < 1:
         raise UserError(f"--extrude {text}: {layers} is not a whole number of at least 1")
     return Extrusion(value, int(number))
+
+
+def _once(known: dict[str, Number], name: str, value: Number, option: str) -> Number:
+    """The value; raises UserError where the side has another one."""
+    if known.get(name, value) != value:
+        raise UserError(f"{option} {name}: given twice, as {known[name]:g} and {value:g}")
+    return value
 
 
 def _named(text: str, option: str, form: str) -> tuple[str, str]:

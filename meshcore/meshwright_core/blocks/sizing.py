@@ -327,7 +327,7 @@ def _sums(structure: BlockStructure, sizing: Sizing) -> list[tuple[str, Sum]]:
         if len(chords) > total:
             raise GridConflictError(
                 f"The side {name} consists of {len(chords)} block edges, and cannot have "
-                f"{total} cells.",
+                f"{total} cell{'s' * (total > 1)}.",
                 np.unique(chords).tolist(),
             )
         found.append((f"{total} cells on {name}", Sum(chords.tolist(), total)))

@@ -62,6 +62,8 @@ def test_the_text_names_the_files(capsys, corner, tmp_path):
         (["-o", "a.geo", "--wall", "outline:0.1:99"], "ratio of growth"),
         (["-o", "a.geo", "--wall", "outline:x"], "not a number"),
         (["-o", "a.geo", "--count", "outline:1.5"], "not a whole number"),
+        (["-o", "a.geo", "--count", "outline:40", "--count", "outline:42"], "given twice"),
+        (["-o", "a.geo", "--count", "outline:1"], "cannot have 1 cell."),
         (["-o", "a.geo", "--size", "1", "--divide", "2"], "not allowed with"),
         (["-o", "a.geo", "--order", "2"], "order 2 cannot be written as .geo"),
         (["-o", "a.geo", "--extrude", "1", "2"], "only a blockMeshDict is extruded"),

@@ -37,7 +37,11 @@ def write_cgns(path: Path, grid: BlockGrid) -> None:
     require_h5py()
     import h5py
 
-    with h5py.File(path, "w", libver=("earliest", "v108"), track_order=True) as file:
+    # in memory first: where the disk is full, HDF5 does not survive closing its file
+    with h5py.File(
+        path, "w", libver=("earliest", "v108"), track_order=True, driver="core",
+        backing_store=False,
+    ) as file:  # fmt: skip
         root = file["/"]
         root.attrs.create("name", np.bytes_("HDF5 MotherNode"), dtype="S33")
         root.attrs.create("label", np.bytes_("Root Node of HDF5 File"), dtype="S33")
@@ -51,6 +55,9 @@ def write_cgns(path: Path, grid: BlockGrid) -> None:
         joints = _joints(grid)
         for block in range(len(grid.shapes)):
             _add_zone(base, grid, block, joints[block], labels)
+        file.flush()
+        image = file.id.get_file_image()
+    path.write_bytes(image)
 
 
 def _add_families(base: Any, sides: dict[str, str], regions: dict[str, str]) -> None:
