@@ -104,6 +104,7 @@ class Port:
     def __init__(self, session: Session, view: str = "v", read_only: bool = False) -> None:
         self.session, self.view, self.read_only = session, view, read_only
         self.reachable = True
+        self.model_id = f"model of {view}"
         self.packets: list[Packet] = []
         self.replica = Replica()
         self.score = -1
@@ -118,6 +119,9 @@ class Port:
 
     def show_score(self) -> None:
         self.score = self.session.document.score
+
+    def keep(self, snapshot: dict[str, Any]) -> None:
+        self.snapshot = snapshot
 
     def close(self) -> None:
         self.session.leave(self)

@@ -1,5 +1,6 @@
 """The widget in JupyterLab: Chromium, mouse and keyboard, pixels, a real kernel."""
 
+import json
 from pathlib import Path
 
 import block_meshes
@@ -260,6 +261,39 @@ def test_reloaded_page_shows_the_present_mesh(lab, star, tmp_path):
     again.button("Undo").click()
     again.await_head(cursor=1)
     assert lab.ask("widget.history.cursor") == 1
+
+
+STILLS = f"""() => {{
+    {PANEL}
+    return [...panel.content.model.cells].flatMap(cell => cell.sharedModel.getOutputs())
+        .filter(output => output.data && output.data["image/png"])
+        .map(output => output.data["image/png"]);
+}}"""
+PICTURE = (
+    "mimebundle.still(widget.mesh)[0]['image/png']",
+    ("from meshwright.graphics.export import mimebundle"),
+)
+
+
+def test_the_picture_in_the_file_follows_the_last_edit(lab, star):
+    first = lab.ask(*PICTURE)
+    assert lab.page.evaluate(STILLS) == [first]
+    star.look("root => { root.same = true; }")
+    star.arm(TURNED)
+    star.click(lab.spot(TURNED))
+    star.await_head(cursor=1)
+    lab.page.wait_for_function(f"old => ({STILLS})()[0] !== old", arg=first, timeout=MOMENT)
+    changed = lab.ask(*PICTURE)
+    assert changed != first
+    lab.save()
+    cells = json.loads((lab.folder / lab.name).read_text())["cells"]
+    [output] = cells[0]["outputs"]
+    assert output["data"]["image/png"].strip() == changed
+    assert "24 quads" in output["metadata"]["image/png"]["alt"]
+    assert star.look("root => root.same")  # the widget was not drawn again
+    star.button("Undo").click()
+    star.await_head(cursor=0)
+    lab.page.wait_for_function(f"old => ({STILLS})()[0] === old", arg=first, timeout=MOMENT)
 
 
 def test_light_and_dark_follow_the_notebook(lab, star, tmp_path):

@@ -4,9 +4,11 @@ import json
 
 import pytest
 from browser import WatchedPage
+from porting import Port
 
 from meshwright.benchmarks.notebook.widget_driver import Card, differing
 from meshwright.document.document import Document
+from meshwright.graphics.export import mimebundle
 from meshwright.notebook import MeshWidget, bundle
 from meshwright.notebook.export import snapshot as snapshots
 from meshwright.notebook.export.snapshot import snapshot
@@ -60,6 +62,26 @@ def test_large_histories_and_meshes_are_left_out(monkeypatch):
     assert snapshot(document) == {}
     assert snapshot(Document()) == {}
     widget.close()
+
+
+def test_pages_that_ask_for_it_get_the_picture_after_each_change():
+    widget = MeshWidget("star")
+    first, second = Port(widget.session, "a"), Port(widget.session, "b", read_only=True)
+    edit(widget)
+    widget.session.catch_up()
+    assert not first.of("still") and not second.of("still")  # nobody has asked
+    [answer] = second.ask("still")
+    assert answer["model_id"] == "model of b"
+    assert answer["image"] == mimebundle.still(widget.mesh)[0]["image/png"]
+    assert answer["metadata"]["alt"].startswith("25 quads")
+    edit(widget)
+    widget.session.catch_up()
+    later = first.of("still")[-1]
+    assert later["image"] == mimebundle.still(widget.mesh)[0]["image/png"] != answer["image"]
+    widget.session.catch_up()
+    assert len(first.of("still")) == 2  # nothing has changed
+    for port in (first, second, widget):
+        port.close()
 
 
 PAGE = """async ([module, snapshot]) => {

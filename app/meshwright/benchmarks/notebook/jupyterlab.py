@@ -64,12 +64,14 @@ class LabNotebook:
     Attributes:
         page: Playwright's page.
         name: file name of the notebook in the server's folder.
+        folder: that folder.
     """
 
     def __init__(self, page: Page, server: Server, name: str = "book.ipynb") -> None:
         """Make the notebook, empty, and open it; returns when its kernel is idle."""
         self.page = page
         self.name = name
+        self.folder = server.folder
         self._server = server
         path = server.folder / name
         if not path.exists():

@@ -17,6 +17,8 @@ from meshwright.graphics.mesh_figure import FigureOptions, elements, figure
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.notebook_display import Bundle
 
+PNG = "image/png"
+"""The type of the still."""
 SIZE = (480, 360)
 """Size of the picture on the page in pixels."""
 SHARP = 2
@@ -43,8 +45,8 @@ def mimebundle(mesh: HalfEdgeMesh, name: str = "") -> Bundle:
 
 def still(mesh: HalfEdgeMesh) -> Bundle:
     """The picture as PNG, with its size and alternative text as metadata."""
-    data = {"image/png": b64encode(png(mesh)).decode("ascii")}
-    return data, {"image/png": {"width": SIZE[0], "height": SIZE[1], "alt": caption(mesh)}}
+    data = {PNG: b64encode(png(mesh)).decode("ascii")}
+    return data, {PNG: {"width": SIZE[0], "height": SIZE[1], "alt": caption(mesh)}}
 
 
 def caption(mesh: HalfEdgeMesh) -> str:

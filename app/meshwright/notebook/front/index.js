@@ -12,6 +12,7 @@
 import { mount } from "./card.js";
 import { KernelLink } from "./link/kernel_link.js";
 import { RestoredLink } from "./link/restored_link.js";
+import { SavedStill } from "./link/saved_still.js";
 
 export { showRecording } from "./recording_page.js";
 
@@ -27,10 +28,12 @@ export function render({ model, el }) {
   const link = snapshot && snapshot.state ? new RestoredLink(kernel, snapshot) : kernel;
   const options = () => ({ height: canvasHeight(model.get("height")), theme: model.get("theme") });
   const card = mount(el, link, options());
+  const still = new SavedStill(model, kernel);
   const onChange = () => card.configure(options());
   for (const name of ["height", "theme"]) model.on(`change:${name}`, onChange);
   return () => {
     for (const name of ["height", "theme"]) model.off(`change:${name}`, onChange);
+    still.close();
     card.release();
   };
 }

@@ -31,6 +31,11 @@ class Port(Protocol):
     read_only: bool
 
     @property
+    def model_id(self) -> str | None:
+        """The id of the widget in the notebook."""
+        ...
+
+    @property
     def reachable(self) -> bool:
         """Whether the connection to the browser is open."""
         ...

@@ -65,6 +65,10 @@ class Hover(Request, frozen=True, tag="hover"):
     tolerance: Annotated[float, Meta(gt=0.0, le=1.0)] | UnsetType = UNSET
 
 
+class Still(Request, frozen=True, tag="still"):
+    """Send the static picture for the saved notebook, now and after each change."""
+
+
 class Operate(Request, frozen=True, tag="operate"):
     """Apply an operation; ``ends`` are the half-edge's vertices in the browser's copy."""
 
@@ -192,6 +196,7 @@ class ChangeLevel(Request, frozen=True, tag="level"):
 AnyRequest: TypeAlias = (
     Hello
     | Hover
+    | Still
     | Operate
     | Undo
     | Redo

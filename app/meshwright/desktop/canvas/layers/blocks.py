@@ -71,6 +71,11 @@ class GridLinesLayer(PictureLayer):
             self._first = np.concatenate([[0], np.cumsum([len(line) for line in some])]).astype(int)
             self.forget()
 
+    def look(self, viewport: Viewport) -> None:
+        """Follow a change of the view; the overlay also calls this where only marks changed."""
+        if viewport != self.viewport:
+            super().look(viewport)
+
     def draw(self, painter: QPainter) -> None:
         """Paint all lines."""
         colour = QColor(self.theme.edge)
@@ -152,9 +157,10 @@ class BlocksLayer(PictureLayer):
         return int(self._edge_of[nearest]) if away[nearest] <= reach else -1
 
     def look(self, viewport: Viewport) -> None:
-        """Follow a change of the view."""
-        super().look(viewport)
-        self._lines = []
+        """Follow a change of the view; the overlay also calls this where only marks changed."""
+        if viewport != self.viewport:
+            super().look(viewport)
+            self._lines = []
 
     def draw(self, painter: QPainter) -> None:
         """Paint strips, edges and numbers, in this order."""
