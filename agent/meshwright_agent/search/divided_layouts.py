@@ -17,7 +17,7 @@ from meshwright_core.geometry.smoothing import draw
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import Operation
 
-FINEST = 700
+FINEST = 500
 """Elements up to which a layout is divided: positions for more take seconds."""
 
 WAYS, PROPOSALS = 30, 100_000

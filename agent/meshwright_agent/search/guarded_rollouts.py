@@ -71,6 +71,8 @@ THIN_EVERY = 10
 THIN_LEAST = 0.1
 """Least sine of a corner around a strip that is collapsed."""
 _LONGEST_PASS = 200
+_SLICE = 20
+"""Strips that are collapsed between two looks at the clock."""
 
 
 @kernel
@@ -351,23 +353,28 @@ class GuardedDescent:
             return wanted if most is None else min(wanted, most - (self.rollouts - begun))
 
         while self.score > optimum and not stop() and (count := granted(together)) > 0:
+            before = self.score
             self._round(count, stop)
+            stuck = self._rounds > 1 and self.score == before
             while self.states and self.score > optimum and not stop():
-                if not (self._leap(stop) or self._anneal(stop)):
+                if not (self._leap(stop, stuck) or (stuck and self._anneal(stop))):
                     break
             if self.score <= optimum or stop():
-                continue
-            if (count := granted(free)) > 0:
+                break
+            if (stuck or self._mesh.n_elements <= COARSE) and (count := granted(free)) > 0:
                 self._free(count, stop)
 
-    def _leap(self, stop: Callable[[], bool]) -> bool:
-        """Leap from the best state; returns whether that has led to lower s."""
+    def _leap(self, stop: Callable[[], bool], divide: bool) -> bool:
+        """Leap from the best state; returns whether that has led to lower s.
+
+        divide: whether what cannot be drawn as it is is divided.
+        """
         best = self.states[0]
-        found = leap(best.mesh(self._mesh), self._policy, self._rng, stop, self._ceiling)
+        found = leap(best.mesh(self._mesh), self._policy, self._rng, stop, self._ceiling, divide)
         if found is None:
             return False
         operations, arrays = found
-        self.states = [self._thinned(DrawnState.of(best.operations + operations, arrays))]
+        self.states = [self._thinned(DrawnState.of(best.operations + operations, arrays), stop)]
         return True
 
     def _anneal(self, stop: Callable[[], bool]) -> bool:
@@ -383,23 +390,24 @@ class GuardedDescent:
                 stop,
             )  # fmt: skip
             if drawn is not None:
-                self.states = [self._thinned(drawn)]
+                self.states = [self._thinned(drawn, stop)]
                 return True
         return False
 
-    def _thinned(self, state: DrawnState) -> DrawnState:
-        """The state thinned out, if it is above s* and has become larger than the start."""
-        if state.score <= self._mesh.optimum or state.elements <= self._mesh.n_elements:
+    def _thinned(self, state: DrawnState, stop: Callable[[], bool]) -> DrawnState:
+        """The state thinned out, if it has become larger than the start."""
+        if state.elements <= self._mesh.n_elements:
             return state
-        arrays = copied(state.arrays)
+        arrays, made = copied(state.arrays), list(state.operations)
         arrays.counters[JOURNALLING] = 0
-        log = np.zeros((4 * state.elements, 2), np.int32)
-        count = thin_out(
-            arrays, copied(arrays), rails_of(self._mesh, len(arrays.vertex)), thinning_effort(),
-            np.zeros(len(arrays.points), np.bool_), log, self._rng,
-        )  # fmt: skip
-        made = [(NAMES[code], h) for code, h in log[:count].tolist()]
-        return DrawnState.of(state.operations + made, arrays)
+        trial, rails = copied(arrays), rails_of(self._mesh, len(arrays.vertex))
+        active = np.zeros(len(arrays.points), np.bool_)
+        log = np.zeros((_SLICE, 2), np.int32)
+        count = len(log)
+        while count == len(log) and not stop():
+            count = thin_out(arrays, trial, rails, thinning_effort(), active, log, self._rng)
+            made += [(NAMES[code], h) for code, h in log[:count].tolist()]
+        return DrawnState.of(made, arrays)
 
     def _first_drawn(
         self,
@@ -438,7 +446,7 @@ class GuardedDescent:
         reached.sort(key=lambda pair: pair[0].n_elements)
         drawn = self._first_drawn(reached, FREE_DRAWN, 2, stop)
         if drawn is not None:
-            self.states = [drawn]
+            self.states = [self._thinned(drawn, stop)]
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""

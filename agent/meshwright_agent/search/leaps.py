@@ -48,12 +48,13 @@ def leap(
     rng: np.random.Generator,
     stop: Callable[[], bool],
     ceiling: int | None = None,
+    divide: bool = False,
 ) -> tuple[Operations, MeshArrays] | None:
     """Operations that lead to lower s, and the arrays there with valid positions; None if no leap
     of this round can be drawn.
 
     mesh: of quads, without inverted elements; not changed. ceiling: largest number of elements, by
-    default that of the policy's task.
+    default that of the policy's task. divide: whether leaps are divided where none can be drawn.
     """
     if ceiling is None:
         ceiling = policy.task.bounds(mesh.n_elements)[1]
@@ -75,7 +76,7 @@ def leap(
         if settle(before, after, rails, local, active) > 0.0:
             return operations, after
         found.append(operations)
-    for operations in found[:DIVIDED]:
+    for operations in found[: DIVIDED if divide else 0]:
         reached = replayed(mesh, operations)
         divisions, drawn = drawn_divided(reached, stop, 1)
         if drawn:
