@@ -22,7 +22,7 @@ FINEST = 500
 
 WAYS, PROPOSALS = 30, 100_000
 """Ways down that are annealed from a state, and proposals of each."""
-LONGEST = 100
+LONGEST = 1000
 """Operations of a way."""
 WARM, COLD = 0.4, 0.3
 """Temperatures, see :mod:`meshwright_agent.search.annealing`."""

@@ -23,7 +23,7 @@ from meshwright_agent.policy.inference import tensors
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations, copy_mesh
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.divided_layouts import drawn_divided, ways_down
+from meshwright_agent.search.divided_layouts import FINEST, drawn_divided, ways_down
 from meshwright_agent.search.guarded_coarsening import candidates
 from meshwright_agent.search.leaps import leap
 from meshwright_agent.search.search_worker import RolloutBatch, Worker
@@ -62,7 +62,7 @@ time, and what can be drawn remains the same."""
 FREE_WORK, MOST_FREE, FREE_DRAWN = 2000, 24, 2
 """Free rollouts between two rounds of guarded ones, in elements of their starts and in number, and
 how many of their results are given positions."""
-ANNEALED_DRAWN = 4
+ANNEALED_DRAWN = 6
 """Results of annealing that are given positions."""
 COARSE = 110
 """Elements up to which the result of a free rollout is given positions before it is divided."""
@@ -312,9 +312,10 @@ class GuardedRollouts:
 class GuardedDescent:
     """Rounds of guarded rollouts, from the start and from the best state in turn.
 
-    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), and, on small
-    meshes, free rollouts from the start: few of these reach s*, and few of what does can be drawn,
-    but they are fast.
+    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`). Where a round has
+    not brought s down, and on small meshes after each, there are free rollouts from the start, and
+    ways down from the best state by annealing: few of these reach s*, and little of what does can
+    be drawn before its strips are divided (:mod:`meshwright_agent.search.divided_layouts`).
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -343,6 +344,11 @@ class GuardedDescent:
         """The lowest s."""
         return self.states[0].score if self.states else self._mesh.score
 
+    @property
+    def elements(self) -> int:
+        """Of the best state."""
+        return self.states[0].elements if self.states else self._mesh.n_elements
+
     def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
         begun, optimum = self.rollouts, self._mesh.optimum
@@ -355,7 +361,8 @@ class GuardedDescent:
         while self.score > optimum and not stop() and (count := granted(together)) > 0:
             before = self.score
             self._round(count, stop)
-            stuck = self._rounds > 1 and self.score == before
+            small = self.elements <= FINEST // 2
+            stuck = small and self._rounds > 1 and self.score == before
             while self.states and self.score > optimum and not stop():
                 if not (self._leap(stop, stuck) or (stuck and self._anneal(stop))):
                     break

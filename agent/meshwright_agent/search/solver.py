@@ -49,6 +49,8 @@ from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
 """Share of the time that is reserved for shortening."""
+FINISH = 0.08
+"""Share of the time that is reserved for it after a search among layouts, which are small."""
 POLISHED = 0.5
 """Largest share of the time that shortening and coarsening may take."""
 OPENING = 0.5
@@ -187,7 +189,7 @@ def _search_layouts(
     ]
 
     def stop() -> bool:
-        return search.over(1.0 - POLISH)
+        return search.over(1.0 - FINISH)
 
     def run(i: int) -> None:
         seeker = seekers[i]
