@@ -44,7 +44,6 @@ def test_positions_without_meaning_are_found_again():
     mesh = mesh_domain(gallery.shape("plate-with-round-hole"), "quad")
     rng = np.random.default_rng(1)
     ids = mesh.vertices()[mesh.curve_ids()[mesh.vertices()] < 0]
-    ids = ids[~mesh.on_boundary()[ids]] if hasattr(mesh, "on_boundary") else ids
     size = np.ptp(mesh.points[mesh.vertices()], axis=0).max()
     places = mesh.points[ids] + 0.1 * size * np.array([1.0, 1.0, 0.0]) * rng.normal(
         size=(len(ids), 3)

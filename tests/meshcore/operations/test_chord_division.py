@@ -1,6 +1,4 @@
-"""The division of strips of quads: counts, s, refusals, undo, and random operations against the face
-list.
-"""
+"""The division of strips of quads: counts, s, refusals, undo, random operations, face lists."""
 
 from __future__ import annotations
 
