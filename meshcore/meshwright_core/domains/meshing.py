@@ -88,7 +88,8 @@ def mesh_domain(
         seed: 0 is the plain mesh. Any other value turns and renumbers the input of Triangle
             first, in a way that depends on the seed, so that it chooses otherwise where it can.
         quads: "catmull-clark" cuts each triangle into three quads; by default the triangles of a
-            domain with straight sides have no points but its corners, as in the benchmark.
+            domain with straight sides have no points but its corners, as in the benchmark, and
+            where sides bend well-shaped pairs of triangles are cut into four.
             "pairing" joins triangles in pairs, and cuts everything once more
             if some triangle stays alone.
         seconds: processor time that it may take. Left out: 30, and 10 more for each million

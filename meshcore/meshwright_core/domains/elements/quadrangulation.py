@@ -181,9 +181,7 @@ def _best_matching(one: Elements, other: Elements, quality: Reals) -> Elements:
     return np.array(sorted(graph.edges[pair]["index"] for pair in matching), dtype=np.int64)
 
 
-def _greedy_matching(
-    one: Elements, other: Elements, quality: Reals, count: int
-) -> Elements:
+def _greedy_matching(one: Elements, other: Elements, quality: Reals, count: int) -> Elements:
     taken = np.zeros(count, dtype=bool)
     chosen = []
     for i in np.argsort(-quality, kind="stable"):
