@@ -134,7 +134,7 @@ def test_steps_from_before_the_document_are_not_saved(triangles, tmp_path, steps
     before = mesh.elements()
     wander(document, 5, 2)
     document.go_to(3)
-    document.save()
+    document.save(path)
     other.open(path)
     assert (len(other.history), other.history.cursor) == (5, 3)
     assert (other.mesh.steps, other.mesh.undone_steps) == (3, 2)
