@@ -62,11 +62,11 @@ STUCK = 20
 GOAL = 0.1
 """Sine of the worst corner up to which what an operation changes is raised: more takes most of the
 time, and what can be drawn remains the same."""
-FREE_WORK, MOST_FREE = 2000, 24
-"""Free rollouts between two rounds of guarded ones, in elements of their starts and in number."""
+FREE_WORK, MOST_FREE = 1500, 16
+"""Free rollouts from a state between two rounds of guarded ones, in its elements and in number."""
 COARSE = 120
 """Elements down to which these are coarsened first."""
-FREE_DRAWN = ((6, 1), (2, 2))
+FREE_DRAWN = ((4, 1), (1, 2))
 """How many of their results are given positions, with how many attempts; then again."""
 LARGEST_STUCK = 250
 """Elements up to which the best state, where a round has not helped, is divided after leaps and
@@ -360,7 +360,6 @@ class GuardedDescent:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
         begun, optimum = self.rollouts, self._mesh.optimum
         together = max(1, min(TOGETHER, ELEMENTS_EACH // self._mesh.n_elements))
-        free = max(2, min(MOST_FREE, FREE_WORK // self._mesh.n_elements))
 
         def granted(wanted: int) -> int:
             return wanted if most is None else min(wanted, most - (self.rollouts - begun))
@@ -375,7 +374,8 @@ class GuardedDescent:
                     break
             if self.score <= optimum or stop():
                 break
-            if (count := granted(free)) > 0:
+            free = FREE_WORK // max(self._mesh.n_elements, self.elements)
+            if (count := granted(max(2, min(MOST_FREE, free)))) > 0:
                 self._free(count, stop)
 
     def _leap(self, stop: Callable[[], bool], divide: bool) -> bool:
@@ -449,21 +449,27 @@ class GuardedDescent:
         return None
 
     def _free(self, count: int, stop: Callable[[], bool]) -> None:
-        """So many free rollouts from the start; what is at s* and can be drawn becomes the best.
-
-        The coarsest few are tried.
+        """So many free rollouts from the start and from the best state, first from what has fewer
+        elements. The first that is at s* and can be drawn becomes the best; the coarsest few are
+        tried.
         """
-        mesh = self._mesh
-        batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
-        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
-        self.rollouts += count
-        for most, attempts in FREE_DRAWN:
-            reached = [(replayed(mesh, one.operations), one.operations) for one in batch.found]
-            reached.sort(key=lambda pair: pair[0].n_elements)
-            drawn = self._first_drawn(reached, most, attempts, stop)
-            if drawn is not None:
-                self.states = [self._thinned(drawn, stop)]
-                break
+        begun = [(state.operations, state.mesh(self._mesh)) for state in self.states[:1]]
+        begun.append(([], self._mesh))
+        for before, mesh in sorted(begun, key=lambda pair: pair[1].n_elements):
+            if stop():
+                return
+            batch = RolloutBatch(mesh, self._policy, self._max_steps, self._mesh.optimum)
+            Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
+            self.rollouts += count
+            for most, attempts in FREE_DRAWN:
+                reached = [
+                    (replayed(mesh, one.operations), before + one.operations) for one in batch.found
+                ]
+                reached.sort(key=lambda pair: pair[0].n_elements)
+                drawn = self._first_drawn(reached, most, attempts, stop)
+                if drawn is not None:
+                    self.states = [self._thinned(drawn, stop)]
+                    return
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""
