@@ -46,6 +46,18 @@ def test_layers_and_numbers_on_named_sides(capsys, corner, tmp_path):
     assert given["patches"] == [{"name": "outline", "cells": 40}]
 
 
+def test_a_layer_without_effect_is_said_in_one_line(capsys, corner, tmp_path):
+    words = [corner, "-o", tmp_path / "a.geo", "--size", "0.25", "--wall", "outline:0.5"]
+    assert cli.main(["blocks", *map(str, words), "--json"]) == 0
+    output = capsys.readouterr()
+    (remark,) = json.loads(output.out)["remarks"]
+    assert "The layer at outline has no effect" in remark
+    assert remark in output.err
+    assert output.err.count("\n") == 1
+    thin = run(capsys, corner, "-o", tmp_path / "b.geo", "--wall", "outline:0.01")
+    assert thin["remarks"] == []
+
+
 def test_the_text_names_the_files(capsys, corner, tmp_path):
     assert cli.main(["blocks", str(corner), "-o", str(tmp_path / "a.xyz"), "--divide", "2"]) == 0
     output = capsys.readouterr().out

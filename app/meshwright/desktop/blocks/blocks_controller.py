@@ -124,6 +124,7 @@ class BlocksController(Controller):
             self.planned = self._bent = self._bent_of = None
             self.layer.show(None)
             self.grid.show([])
+            overlay.markers.displace()
             self._status.show_message("Blocks hidden.")
         self.changed.emit()
 
@@ -159,6 +160,7 @@ class BlocksController(Controller):
         counts = planned.division.counts if planned.division is not None else None
         if self._bent_of is not None and not _alike(self._bent_of, structure):
             self._bent = self._bent_of = None
+            self._canvas.overlay.markers.displace()
         self.layer.show(
             BlocksShown(
                 structure.parts, self._bent, structure.chord, counts, frozenset(planned.pinned()),
@@ -173,6 +175,8 @@ class BlocksController(Controller):
         if planned.problem:
             self.grid.show([])
             self.say(planned.problem)
+        elif planned.remarks:
+            self.say(" ".join(planned.remarks))
         elif self._said:
             self._notice.hide()
             self._said = ""
@@ -214,6 +218,8 @@ class BlocksController(Controller):
         if preview.final and self.planned is not None and self.layer.shown is not None:
             self._bent, self._bent_of = preview.edges, self.planned.structure
             self.layer.show(replace(self.layer.shown, bent=self._bent))
+            marks = self._canvas.overlay.markers
+            marks.displace(self.planned.structure.vertices, preview.corners)
             if self.block >= 0:
                 self.layer.select(-1, -1, self._outline(self.block))
             quality, values = preview.quality, self.panel.values
