@@ -148,11 +148,15 @@ def _noted_interrupts() -> Iterator[threading.Event]:
         noted.set()
         raise KeyboardInterrupt
 
+    def repeat_interrupt() -> None:
+        if not left.is_set():
+            _thread.interrupt_main()
+
     def report_unraisable(unraisable: Any) -> None:
         if not isinstance(unraisable.exc_value, KeyboardInterrupt):
             usual(unraisable)
             return
-        repeat = threading.Timer(REPEATED_AFTER, lambda: left.is_set() or _thread.interrupt_main())
+        repeat = threading.Timer(REPEATED_AFTER, repeat_interrupt)
         repeat.daemon = True
         repeat.start()
 

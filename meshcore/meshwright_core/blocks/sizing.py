@@ -22,6 +22,8 @@ ACROSS = 3.0
 """Cells across a block, at least, where no size is given."""
 MOST_CELLS = 50_000_000
 """Cells that a grid may have."""
+THINNEST = 1e-12
+"""The lowest first cell, relative to the largest coordinate: rounding spoils thinner ones."""
 EVERY_SIDE = "all"
 """In place of the name of a side: every one."""
 STEEPEST = 10.0
@@ -154,6 +156,7 @@ def division(structure: BlockStructure, sizing: Sizing) -> Division:
     contradict each other, more than :data:`MOST_CELLS` cells.
     """
     _require_positive(sizing)
+    _require_resolved(structure, sizing)
     first, last, ratio = _layers(structure, sizing.walls)
     _grade(structure, sizing, first, last, ratio)
     chord = structure.chord
@@ -227,6 +230,25 @@ def _require_positive(sizing: Sizing) -> None:
     every = (sizing.side_counts, sizing.edge_counts, sizing.chord_counts)
     if any(count < 1 for counts in every for count in counts.values()):
         raise MeshError("A number of cells must be at least 1.")
+    most = max((count for counts in every for count in counts.values()), default=0)
+    if max(most, sizing.divide or 0) > MOST_CELLS:
+        raise MeshError(
+            f"Along one edge {max(most, sizing.divide or 0):,} cells are wanted; at most "
+            f"{MOST_CELLS:,} are made in all."
+        )
+
+
+def _require_resolved(structure: BlockStructure, sizing: Sizing) -> None:
+    largest = float(np.abs(structure.points).max())
+    heights = [(f"at {wall.name}", wall.height) for wall in sizing.walls]
+    for (a, b), grading in sizing.edge_gradings.items():
+        heights += [(f"along edge {a}-{b}", height) for height in (grading.first, grading.last)]
+    for where, height in heights:
+        if 0.0 < height < THINNEST * largest:
+            raise MeshError(
+                f"The first cell {where} of {height:g} is too thin: at coordinates up to "
+                f"{largest:g} it must be at least {THINNEST * largest:.2g}."
+            )
 
 
 def _edge_sizes(structure: BlockStructure, sizing: Sizing) -> np.ndarray:

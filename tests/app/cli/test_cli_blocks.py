@@ -81,6 +81,10 @@ def test_the_text_names_the_files(capsys, corner, tmp_path):
         (["-o", "a.geo", "--extrude", "1", "2"], "only a blockMeshDict is extruded"),
         (["-o", "a.txt"], "not one of a grid"),
         (["-o", "a.geo", "--size", "1e-7"], "cells; at most"),
+        (["-o", "a.geo", "--count", "outline:1e18"], "cells are wanted; at most"),
+        (["-o", "a.geo", "--wall", "outline:1e-30"], "too thin: at coordinates up to 2"),
+        (["-o", "blockMeshDict", "--extrude", "1", "1000000000"], "OpenFOAM counts up to"),
+        (["-o", "a.geo", "--min-shape", "7"], "not a number of 0 to 1"),
     ],
 )
 def test_wrong_use_is_one_sentence(capsys, corner, tmp_path, monkeypatch, options, words):

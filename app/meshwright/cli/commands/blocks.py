@@ -55,7 +55,7 @@ def add_own_arguments(parser: argparse.ArgumentParser) -> None:
         "the best shape (balanced)",
     )  # fmt: skip
     parser.add_argument(
-        "--min-shape", metavar="X", type=inputs.positive_float,
+        "--min-shape", metavar="X", type=inputs.share,
         help="worst scaled Jacobian of a block, 0 to 1, beyond which only their number counts",
     )  # fmt: skip
     parser.add_argument(
