@@ -95,7 +95,7 @@ class CutElements:
         sines, _ = self._corners(
             points, quads.reshape(-1, 4), number.reshape(-1, 4), np.tile(edge, 2), base
         )
-        found: Reals = sines.reshape(count, -1).min(axis=1)
+        found: Reals = sines.reshape(count, 4 * k).min(axis=1)
         return found
 
     def corner_angles(self, triangles: Ids) -> Reals:
