@@ -326,8 +326,12 @@ def test_irregular_vertices_are_marked_where_the_blocks_meet(qtbot, shown):
     assert np.linalg.norm(corner - window.document.mesh.points[0, :2]) > 0.05
     (disc,) = marks.discs
     assert disc[3] == 1
+    # the straight edges of the mesh do not show beside the bent ones
+    surface = window.canvas.view._scene._surface.GetProperty()
+    assert not surface.GetEdgeVisibility()
     assert disc[:2] == pytest.approx(window.canvas.viewport.to_screen(corner[None])[0], abs=0.1)
     blocks.show(False)
+    assert surface.GetEdgeVisibility()
     (disc,) = marks.discs
     place = window.document.mesh.points[:1, :2]
     assert disc[:2] == pytest.approx(window.canvas.viewport.to_screen(place)[0], abs=0.1)

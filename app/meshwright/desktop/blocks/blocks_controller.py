@@ -116,6 +116,7 @@ class BlocksController(Controller):
         overlay = self._canvas.overlay
         overlay.element.visible = overlay.arrow.visible = not shown
         overlay.markers.strokes = not shown
+        self._canvas.show_edges(not shown)
         if shown:
             self._refresh()
             self._status.show_message("Blocks: click an edge to select its chord, or a block.")
