@@ -181,6 +181,8 @@ def put(node, *values):
         (lambda zone: put(zone["cells"], NGON, 0), "polygons of CGNS files before version 4"),
         (lambda zone: put(zone["cells/ElementConnectivity"], *range(2, 10)), "names a point that"),
         (lambda zone: zone["ZoneType"].attrs.modify("type", np.bytes_("LK")), "has links to other"),
+        (lambda zone: zone.__setitem__("x", h5py.SoftLink("/nowhere")), "cannot be opened"),
+        (lambda zone: zone["cells"].move(" data", "data"), "data is missing in 'cells'"),
         (lambda zone: condition(zone, "w", [[1], [10**9]], word="PointRange"), "the range of a"),
     ],
 )

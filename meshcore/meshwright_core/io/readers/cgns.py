@@ -244,6 +244,8 @@ class _Zone:
 def _children(node: Any, label: str) -> Iterator[Any]:
     """The children with a label, in the order of the file."""
     for child in node.values():
+        if child is None:
+            raise MeshError("a node of it cannot be opened: it is damaged, or in another file")
         kind = child.attrs.get("type", b"")
         if bytes(kind).strip(b"\0") == b"LK":
             raise MeshError("it has links to other files or nodes, which are not followed")

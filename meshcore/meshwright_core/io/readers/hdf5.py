@@ -15,7 +15,15 @@ from meshwright_core.io.content import Content
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _EXPANDED = 100
 """Times that an array may be larger than the whole file, where that is compressed."""
-_FAULTS = (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError)
+_FAULTS = (
+    OSError,
+    RuntimeError,
+    LookupError,
+    AttributeError,
+    TypeError,
+    ValueError,
+    ArithmeticError,
+)
 """What the library, and the use of what it gives, raise on damaged files."""
 
 
