@@ -39,6 +39,7 @@ from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime import rtsys
 
+from meshwright_core.core.interrupts import interrupts_held
 from meshwright_core.core.references import declare_read_only
 
 Types = tuple[Any, ...]
@@ -310,11 +311,14 @@ class Kernel(CPUDispatcher):
             args, _ = typing_of(sig)
             known = self.overloads.get(args)
             if known is None:
-                known = self._cache.load_overload(args, self.targetctx)
+                with interrupts_held():
+                    known = self._cache.load_overload(args, self.targetctx)
                 if known is None:
                     self._cache_misses[args] += 1
-                    known = self._linked(self._part(args))
-                    self._cache.save_overload(args, known)
+                    part = self._part(args)  # takes longest, and may be interrupted
+                    with interrupts_held():
+                        known = self._linked(part)
+                        self._cache.save_overload(args, known)
                 else:
                     self._cache_hits[args] += 1
                 self.targetctx.insert_user_function(known.entry_point, known.fndesc, [])
