@@ -17,8 +17,8 @@ from meshwright_core.geometry.smoothing import draw
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import Operation
 
-FINEST = 500
-"""Elements up to which a layout is divided: positions for more take seconds."""
+FINEST = 1000
+"""Elements that a layout may have once it is divided: positions for more take seconds."""
 
 WAYS, PROPOSALS = 30, 100_000
 """Ways down that are annealed from a state, and proposals of each."""
@@ -50,6 +50,33 @@ def ways_down(
     return sorted(found, key=len)
 
 
+def collapse_chords(
+    mesh: HalfEdgeMesh, most: int, rng: np.random.Generator, usable: Callable[[HalfEdgeMesh], bool]
+) -> Operations:
+    """Collapse strips of a quad mesh, in place and in random order, until it has `most` elements or
+    no more can go without higher s. Returns the operations.
+
+    usable: of the mesh after a collapse; one after which it is not is undone.
+    """
+    done: Operations = []
+    score, gone = mesh.score, True
+    while gone and mesh.n_elements > most:
+        gone = False
+        for h in rng.permutation(4 * mesh.element_ids()).tolist():
+            for side in (h, h + 1):
+                if not mesh.check(Operation.CHORD_COLLAPSE, side):
+                    continue
+                mesh.apply(Operation.CHORD_COLLAPSE, side)
+                if mesh.score <= score and usable(mesh):
+                    done.append((Operation.CHORD_COLLAPSE, side))
+                    gone = True
+                    break
+                mesh.undo()
+            if mesh.n_elements <= most:
+                break
+    return done
+
+
 def divide_chords(mesh: HalfEdgeMesh) -> Operations:
     """Cut every strip of a quad mesh in two, in place, but for those that close in a ring.
 
@@ -72,8 +99,8 @@ def drawn_divided(
 ) -> tuple[Operations, bool]:
     """Divide the strips of a plane quad mesh, in place, and look for positions.
 
-    Returns the operations and whether nothing is inverted. A mesh that would become too large is
-    drawn as it is.
+    Returns the operations and whether nothing is inverted. A mesh that would have more than
+    :data:`FINEST` elements is drawn as it is.
     """
     divisions = divide_chords(reached) if 4 * reached.n_elements <= FINEST else []
     return divisions, not len(draw(reached, stop, attempts))

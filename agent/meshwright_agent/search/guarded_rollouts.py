@@ -23,7 +23,11 @@ from meshwright_agent.policy.inference import tensors
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations, copy_mesh
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.divided_layouts import FINEST, drawn_divided, ways_down
+from meshwright_agent.search.divided_layouts import (
+    collapse_chords,
+    drawn_divided,
+    ways_down,
+)
 from meshwright_agent.search.guarded_coarsening import candidates
 from meshwright_agent.search.leaps import leap
 from meshwright_agent.search.search_worker import RolloutBatch, Worker
@@ -40,7 +44,6 @@ from meshwright_core.core.compilation import kernel
 from meshwright_core.geometry.layout_positions import layout_bound, rails_of
 from meshwright_core.geometry.local_positions import LocalEffort, local_effort, settle
 from meshwright_core.geometry.shape_bound import corner_angles
-from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
@@ -59,13 +62,17 @@ STUCK = 20
 GOAL = 0.1
 """Sine of the worst corner up to which what an operation changes is raised: more takes most of the
 time, and what can be drawn remains the same."""
-FREE_WORK, MOST_FREE, FREE_DRAWN = 2000, 24, 2
-"""Free rollouts between two rounds of guarded ones, in elements of their starts and in number, and
-how many of their results are given positions."""
+FREE_WORK, MOST_FREE = 1500, 16
+"""Free rollouts from a state between two rounds of guarded ones, in its elements and in number."""
+COARSE = 120
+"""Elements down to which these are coarsened first."""
+FREE_DRAWN = ((4, 1), (1, 2))
+"""How many of their results are given positions, with how many attempts; then again."""
+LARGEST_STUCK = 250
+"""Elements up to which the best state, where a round has not helped, is divided after leaps and
+annealing."""
 ANNEALED_DRAWN = 6
 """Results of annealing that are given positions."""
-COARSE = 110
-"""Elements up to which the result of a free rollout is given positions before it is divided."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1
@@ -312,10 +319,10 @@ class GuardedRollouts:
 class GuardedDescent:
     """Rounds of guarded rollouts, from the start and from the best state in turn.
 
-    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`). Where a round has
-    not brought s down, and on small meshes after each, there are free rollouts from the start, and
-    ways down from the best state by annealing: few of these reach s*, and little of what does can
-    be drawn before its strips are divided (:mod:`meshwright_agent.search.divided_layouts`).
+    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), free rollouts
+    from the start, and, where a round has not brought s down, ways down from the best state by
+    annealing. Little of what these reach can be drawn before its strips are divided
+    (:mod:`meshwright_agent.search.divided_layouts`).
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -353,7 +360,6 @@ class GuardedDescent:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
         begun, optimum = self.rollouts, self._mesh.optimum
         together = max(1, min(TOGETHER, ELEMENTS_EACH // self._mesh.n_elements))
-        free = max(FREE_DRAWN, min(MOST_FREE, FREE_WORK // self._mesh.n_elements))
 
         def granted(wanted: int) -> int:
             return wanted if most is None else min(wanted, most - (self.rollouts - begun))
@@ -361,14 +367,15 @@ class GuardedDescent:
         while self.score > optimum and not stop() and (count := granted(together)) > 0:
             before = self.score
             self._round(count, stop)
-            small = self.elements <= FINEST // 2
+            small = self.elements <= LARGEST_STUCK
             stuck = small and self._rounds > 1 and self.score == before
             while self.states and self.score > optimum and not stop():
                 if not (self._leap(stop, stuck) or (stuck and self._anneal(stop))):
                     break
             if self.score <= optimum or stop():
                 break
-            if (stuck or self._mesh.n_elements <= COARSE) and (count := granted(free)) > 0:
+            free = FREE_WORK // max(self._mesh.n_elements, self.elements)
+            if (count := granted(max(2, min(MOST_FREE, free)))) > 0:
                 self._free(count, stop)
 
     def _leap(self, stop: Callable[[], bool], divide: bool) -> bool:
@@ -423,37 +430,46 @@ class GuardedDescent:
         attempts: int,
         stop: Callable[[], bool],
     ) -> DrawnState | None:
-        """The first of some states, with what leads to them, that can be drawn, as it is or
-        divided.
+        """The first of some states, with what leads to them, that can be drawn divided.
 
         Positions take long: of those whose degrees permit any at most so many are tried.
         """
         angle = corner_angles(self._mesh)  # no vertex that operations add is a corner
-        fit = [pair for pair in reached if layout_bound(pair[0].arrays, angle) > THIN_LEAST]
-        for after, operations in fit[:most]:
+
+        def usable(mesh: HalfEdgeMesh) -> bool:
+            return bool(layout_bound(mesh.arrays, angle) > THIN_LEAST)
+
+        for after, operations in [pair for pair in reached if usable(pair[0])][:most]:
             if stop():
                 break
-            if after.n_elements <= COARSE and attempts > 1 and not len(relax(after)):
-                return DrawnState.of(operations, after.arrays)
+            collapses = collapse_chords(after, COARSE, self._rng, usable)
             divisions, drawn = drawn_divided(after, stop, attempts)
             if drawn:
-                return DrawnState.of(operations + divisions, after.arrays)
+                return DrawnState.of(operations + collapses + divisions, after.arrays)
         return None
 
     def _free(self, count: int, stop: Callable[[], bool]) -> None:
-        """So many free rollouts from the start; what is at s* and can be drawn becomes the best.
-
-        The coarsest few are tried.
+        """So many free rollouts from the start and from the best state, first from what has fewer
+        elements. The first that is at s* and can be drawn becomes the best; the coarsest few are
+        tried.
         """
-        mesh = self._mesh
-        batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
-        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
-        self.rollouts += count
-        reached = [(replayed(mesh, found.operations), found.operations) for found in batch.found]
-        reached.sort(key=lambda pair: pair[0].n_elements)
-        drawn = self._first_drawn(reached, FREE_DRAWN, 2, stop)
-        if drawn is not None:
-            self.states = [self._thinned(drawn, stop)]
+        begun = [(state.operations, state.mesh(self._mesh)) for state in self.states[:1]]
+        begun.append(([], self._mesh))
+        for before, mesh in sorted(begun, key=lambda pair: pair[1].n_elements):
+            if stop():
+                return
+            batch = RolloutBatch(mesh, self._policy, self._max_steps, self._mesh.optimum)
+            Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
+            self.rollouts += count
+            for most, attempts in FREE_DRAWN:
+                reached = [
+                    (replayed(mesh, one.operations), before + one.operations) for one in batch.found
+                ]
+                reached.sort(key=lambda pair: pair[0].n_elements)
+                drawn = self._first_drawn(reached, most, attempts, stop)
+                if drawn is not None:
+                    self.states = [self._thinned(drawn, stop)]
+                    return
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""
