@@ -25,10 +25,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
 from numba.core import compiler, types, typing
+from numba.core import config as numba_config
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import compile_result
@@ -160,11 +162,23 @@ class EntryPoint(JITCodeLibrary):
         return library
 
 
+class _ByModule(UserProvidedCacheLocator):
+    """Finds the files of a kernel by the name of its package, not by where that is installed.
+
+    The cache folder belongs to these very sources, so all installations of them share it.
+    """
+
+    def __init__(self, py_func: Callable[..., Any], py_file: str) -> None:
+        super().__init__(py_func, py_file)
+        package = py_func.__module__.rpartition(".")[0]
+        self._cache_path = str(Path(numba_config.CACHE_DIR) / package)
+
+
 class _StoredForm(CompileResultCacheImpl):
     """Converts an entry point to what is pickled into the cache, and back."""
 
     # numba's other locators put files beside the sources or under a key that misses imported code
-    _locator_classes = (UserProvidedCacheLocator,)
+    _locator_classes = (_ByModule,)
 
     def reduce(self, result: Any) -> Any:
         library = result.library
