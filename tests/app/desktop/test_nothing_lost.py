@@ -85,7 +85,7 @@ def hole_area(mesh: HalfEdgeMesh) -> float:
 
 
 def test_clean_all_and_collapses_keep_a_round_hole(qtbot, open_window, tmp_path):
-    mesh = meshing.mesh_domain(gallery.shape("plate-with-round-hole"), "quad")
+    mesh = meshing.mesh_domain(gallery.shape("filleted-bracket"), "quad")
     window = open_window(mesh)
     before = hole_area(mesh)
     press(qtbot, window, Qt.Key.Key_L, CONTROL)

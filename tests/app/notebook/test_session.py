@@ -58,7 +58,7 @@ def test_hello_is_answered_with_state_and_agent(session):
     state, agent = port.ask("hello")
     assert (state["type"], state["reply"], state["to"]) == ("state", 1, "v")
     assert state["read_only"] is False and state["k"] == 4
-    assert [entry["key"] for entry in state["catalogue"]] == list("FRSCGXVI")
+    assert [entry["key"] for entry in state["catalogue"]] == list("FRSCGXVIY")
     head = state["head"]
     assert (head["score"], head["optimum"], head["elements"]) == (12, 4, 24)
     track = head["track"]
