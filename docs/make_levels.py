@@ -36,7 +36,7 @@ from meshwright_agent.search.solver import solve
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.geometry import quality
 from meshwright_core.geometry.smoothing import relax
-from meshwright_core.operations.catalogue import CODES, Operation
+from meshwright_core.operations.catalogue import Operation, of_kind
 
 TRIES = 400
 """The most random meshes tried for one recipe."""
@@ -111,10 +111,10 @@ def beamed(mesh: HalfEdgeMesh, goal: int) -> list[Operations]:
 
 
 def allowed(mesh: HalfEdgeMesh) -> Iterator[tuple[Operation, int]]:
-    """All allowed operations but chord collapses and clean-ups of lines."""
-    names = [name for name in CODES[mesh.k] if name not in ("chord_collapse", "cleanup")]
+    """All allowed operations that policies choose."""
+    names = [info.operation for info in of_kind(mesh.kind) if info.policy]
     halfedges = mesh.halfedges_of(mesh.element_ids()).ravel().tolist()
-    yield from ((Operation(name), h) for h in halfedges for name in names if mesh.check(name, h))
+    yield from ((name, h) for h in halfedges for name in names if mesh.check(name, h))
 
 
 def fingerprint(mesh: HalfEdgeMesh) -> tuple[int, ...]:

@@ -54,7 +54,9 @@ def test_wheel_holds_every_file_of_the_four_packages_and_nothing_else(wheel):
 
 def test_wheel_holds_command_and_licence(wheel):
     (info,) = {name.split("/")[0] for name in wheel.namelist() if ".dist-info/" in name}
-    assert "meshwright = meshwright.cli:main" in wheel.read(f"{info}/entry_points.txt").decode()
+    assert (
+        "meshwright = meshwright.__main__:main" in wheel.read(f"{info}/entry_points.txt").decode()
+    )
     assert f"{info}/licenses/LICENSE" in wheel.namelist()
 
 

@@ -17,6 +17,10 @@ class FileWarning(UserWarning):
     """What reading a file leaves out, or writing one loses; one sentence that names the file."""
 
 
+class GridWarning(UserWarning):
+    """A wish for a block grid that has no effect; one sentence."""
+
+
 def sentence(text: str) -> str:
     """The text with a capital letter and a full stop, unless it ends in a mark already."""
     text = capitalised(text)

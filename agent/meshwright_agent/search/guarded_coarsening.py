@@ -398,6 +398,7 @@ class Coarsener:
         seed: of all random choices.
         floor: least number of elements.
         ceiling: largest number of elements; by default twice that of the start.
+        room: elements that given layouts may have on the way, if that is more.
     """
 
     def __init__(
@@ -407,13 +408,14 @@ class Coarsener:
         seed: int = 0,
         floor: int = 1,
         ceiling: int | None = None,
+        room: int = 0,
     ) -> None:
         """Prepare the arrays that all layouts are copied from."""
         task = Task("quad")
         size = mesh.n_elements
         ceiling = max(2 * size, size + 8) if ceiling is None else ceiling
         self.rng = np.random.default_rng(seed)
-        self.start = with_room(mesh, ceiling)
+        self.start = with_room(mesh, max(ceiling, room))
         self.rails = rails_of(mesh, len(self.start.vertex))
         self.aims = aims
         self.bends = has_bends(mesh)

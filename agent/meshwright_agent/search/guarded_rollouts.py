@@ -23,6 +23,11 @@ from meshwright_agent.policy.inference import tensors
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations, copy_mesh
 from meshwright_agent.search.coarsening import replayed
+from meshwright_agent.search.divided_layouts import (
+    collapse_chords,
+    drawn_divided,
+    ways_down,
+)
 from meshwright_agent.search.guarded_coarsening import candidates
 from meshwright_agent.search.leaps import leap
 from meshwright_agent.search.search_worker import RolloutBatch, Worker
@@ -37,9 +42,8 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.compilation import kernel
 from meshwright_core.geometry.layout_positions import layout_bound, rails_of
-from meshwright_core.geometry.local_positions import local_effort, settle
+from meshwright_core.geometry.local_positions import LocalEffort, local_effort, settle
 from meshwright_core.geometry.shape_bound import corner_angles
-from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
@@ -58,14 +62,24 @@ STUCK = 20
 GOAL = 0.1
 """Sine of the worst corner up to which what an operation changes is raised: more takes most of the
 time, and what can be drawn remains the same."""
-FREE, FREE_ELEMENTS, FREE_DRAWN = 8, 110, 2
-"""Free rollouts between two rounds of guarded ones, elements of the start up to which they are
-made, and how many results are given positions."""
+FREE_WORK, MOST_FREE = 1500, 16
+"""Free rollouts from a state between two rounds of guarded ones, in its elements and in number."""
+COARSE = 120
+"""Elements down to which these are coarsened first."""
+FREE_DRAWN = ((4, 1), (1, 2))
+"""How many of their results are given positions, with how many attempts; then again."""
+LARGEST_STUCK = 250
+"""Elements up to which the best state, where a round has not helped, is divided after leaps and
+annealing."""
+ANNEALED_DRAWN = 6
+"""Results of annealing that are given positions."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1
 """Least sine of a corner around a strip that is collapsed."""
 _LONGEST_PASS = 200
+_SLICE = 20
+"""Strips that are collapsed between two looks at the clock."""
 
 
 @kernel
@@ -118,6 +132,11 @@ def thin_out(m, trial, rails, local, active, log, rng):
             length += 1
             improved = True
     return length
+
+
+def thinning_effort() -> LocalEffort:
+    """How hard positions are looked for where a strip is collapsed."""
+    return local_effort(GOAL, THIN_LEAST, rounds=0, thorough=False)
 
 
 @dataclass
@@ -194,7 +213,7 @@ class GuardedRollouts:
         self._optimum = mesh.optimum
         self._rails = rails_of(mesh, batch.meshes.vertex.shape[1])
         self._local = local_effort(GOAL, thorough=False)
-        self._thin = local_effort(GOAL, THIN_LEAST, rounds=0, thorough=False)
+        self._thin = thinning_effort()
         self._trial = copied(member_of(batch.meshes, 0))
         active = np.zeros(len(self._trial.points), np.bool_)
         self._scratch = batch.scratch.touched, batch.scratch.cleaned, active
@@ -300,9 +319,10 @@ class GuardedRollouts:
 class GuardedDescent:
     """Rounds of guarded rollouts, from the start and from the best state in turn.
 
-    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), and, on small
-    meshes, free rollouts from the start: few of these reach s*, and few of what does can be drawn,
-    but they are fast.
+    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), free rollouts
+    from the start, and, where a round has not brought s down, ways down from the best state by
+    annealing. Little of what these reach can be drawn before its strips are divided
+    (:mod:`meshwright_agent.search.divided_layouts`).
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -331,6 +351,11 @@ class GuardedDescent:
         """The lowest s."""
         return self.states[0].score if self.states else self._mesh.score
 
+    @property
+    def elements(self) -> int:
+        """Of the best state."""
+        return self.states[0].elements if self.states else self._mesh.n_elements
+
     def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
         begun, optimum = self.rollouts, self._mesh.optimum
@@ -340,45 +365,111 @@ class GuardedDescent:
             return wanted if most is None else min(wanted, most - (self.rollouts - begun))
 
         while self.score > optimum and not stop() and (count := granted(together)) > 0:
+            before = self.score
             self._round(count, stop)
-            while self.states and self.score > optimum and not stop() and self._leap(stop):
-                pass
-            if self._mesh.n_elements > FREE_ELEMENTS or self.score <= optimum or stop():
-                continue
-            if (count := granted(FREE)) > 0:
+            small = self.elements <= LARGEST_STUCK
+            stuck = small and self._rounds > 1 and self.score == before
+            while self.states and self.score > optimum and not stop():
+                if not (self._leap(stop, stuck) or (stuck and self._anneal(stop))):
+                    break
+            if self.score <= optimum or stop():
+                break
+            free = FREE_WORK // max(self._mesh.n_elements, self.elements)
+            if (count := granted(max(2, min(MOST_FREE, free)))) > 0:
                 self._free(count, stop)
 
-    def _leap(self, stop: Callable[[], bool]) -> bool:
-        """Leap from the best state; returns whether that has led to lower s."""
+    def _leap(self, stop: Callable[[], bool], divide: bool) -> bool:
+        """Leap from the best state; returns whether that has led to lower s.
+
+        divide: whether what cannot be drawn as it is is divided.
+        """
         best = self.states[0]
-        found = leap(best.mesh(self._mesh), self._policy, self._rng, stop, self._ceiling)
+        found = leap(best.mesh(self._mesh), self._policy, self._rng, stop, self._ceiling, divide)
         if found is None:
             return False
         operations, arrays = found
-        self.states = [DrawnState.of(best.operations + operations, arrays)]
+        self.states = [self._thinned(DrawnState.of(best.operations + operations, arrays), stop)]
         return True
 
-    def _free(self, count: int, stop: Callable[[], bool]) -> None:
-        """So many free rollouts from the start; what is at s* and can be drawn becomes the best.
-
-        Positions take long: only the shortest few are tried.
+    def _anneal(self, stop: Callable[[], bool]) -> bool:
+        """Anneal from the best state, to s* or else to any lower s, and divide what that leads to;
+        returns whether something could be drawn.
         """
-        mesh = self._mesh
-        batch = RolloutBatch(mesh, self._policy, self._max_steps, mesh.optimum)
-        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
-        self.rollouts += count
-        angle = corner_angles(mesh)  # no vertex that operations add is a corner
-        tried = 0
-        for candidate in sorted(batch.found, key=lambda found: len(found.operations)):
-            if stop() or tried == FREE_DRAWN:
+        best = self.states[0]
+        before = best.mesh(self._mesh)
+        for goal in sorted({self._mesh.optimum, best.score - 1}):
+            ways = ways_down(before, goal, self._rng, stop)
+            drawn = self._first_drawn(
+                [(replayed(before, way), best.operations + way) for way in ways], ANNEALED_DRAWN, 1,
+                stop,
+            )  # fmt: skip
+            if drawn is not None:
+                self.states = [self._thinned(drawn, stop)]
+                return True
+        return False
+
+    def _thinned(self, state: DrawnState, stop: Callable[[], bool]) -> DrawnState:
+        """The state thinned out, if it has become larger than the start."""
+        if state.elements <= self._mesh.n_elements:
+            return state
+        arrays, made = copied(state.arrays), list(state.operations)
+        arrays.counters[JOURNALLING] = 0
+        trial, rails = copied(arrays), rails_of(self._mesh, len(arrays.vertex))
+        active = np.zeros(len(arrays.points), np.bool_)
+        log = np.zeros((_SLICE, 2), np.int32)
+        count = len(log)
+        while count == len(log) and not stop():
+            count = thin_out(arrays, trial, rails, thinning_effort(), active, log, self._rng)
+            made += [(NAMES[code], h) for code, h in log[:count].tolist()]
+        return DrawnState.of(made, arrays)
+
+    def _first_drawn(
+        self,
+        reached: list[tuple[HalfEdgeMesh, Operations]],
+        most: int,
+        attempts: int,
+        stop: Callable[[], bool],
+    ) -> DrawnState | None:
+        """The first of some states, with what leads to them, that can be drawn divided.
+
+        Positions take long: of those whose degrees permit any at most so many are tried.
+        """
+        angle = corner_angles(self._mesh)  # no vertex that operations add is a corner
+
+        def usable(mesh: HalfEdgeMesh) -> bool:
+            return bool(layout_bound(mesh.arrays, angle) > THIN_LEAST)
+
+        for after, operations in [pair for pair in reached if usable(pair[0])][:most]:
+            if stop():
                 break
-            reached = replayed(mesh, candidate.operations)
-            if layout_bound(reached.arrays, angle) <= THIN_LEAST:
-                continue
-            tried += 1
-            if not len(relax(reached)):
-                self.states = [DrawnState.of(candidate.operations, reached.arrays)]
-                break
+            collapses = collapse_chords(after, COARSE, self._rng, usable)
+            divisions, drawn = drawn_divided(after, stop, attempts)
+            if drawn:
+                return DrawnState.of(operations + collapses + divisions, after.arrays)
+        return None
+
+    def _free(self, count: int, stop: Callable[[], bool]) -> None:
+        """So many free rollouts from the start and from the best state, first from what has fewer
+        elements. The first that is at s* and can be drawn becomes the best; the coarsest few are
+        tried.
+        """
+        begun = [(state.operations, state.mesh(self._mesh)) for state in self.states[:1]]
+        begun.append(([], self._mesh))
+        for before, mesh in sorted(begun, key=lambda pair: pair[1].n_elements):
+            if stop():
+                return
+            batch = RolloutBatch(mesh, self._policy, self._max_steps, self._mesh.optimum)
+            Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
+            self.rollouts += count
+            for most, attempts in FREE_DRAWN:
+                reached = [
+                    (replayed(mesh, one.operations), before + one.operations) for one in batch.found
+                ]
+                reached.sort(key=lambda pair: pair[0].n_elements)
+                drawn = self._first_drawn(reached, most, attempts, stop)
+                if drawn is not None:
+                    self.states = [self._thinned(drawn, stop)]
+                    return
 
     def _round(self, count: int, stop: Callable[[], bool]) -> None:
         """So many rollouts from the start or from the best state, in turn."""

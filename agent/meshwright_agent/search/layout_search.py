@@ -100,15 +100,21 @@ class LayoutSearch:
         preference: what counts.
         seed: of all random choices.
         floor: least number of elements.
+        room: elements that added layouts may have, if that is more than twice those of the start.
     """
 
     def __init__(
-        self, mesh: HalfEdgeMesh, preference: Preference, seed: int = 0, floor: int = 1
+        self,
+        mesh: HalfEdgeMesh,
+        preference: Preference,
+        seed: int = 0,
+        floor: int = 1,
+        room: int = 0,
     ) -> None:
         """Prepare the arrays; the pool is empty."""
         self._mesh, self.optimum = mesh, mesh.optimum
         self.aims = preference.aims(attainable_bound(mesh), shape_bound(mesh))
-        self.coarsener = Coarsener(mesh, self.aims, seed, floor)
+        self.coarsener = Coarsener(mesh, self.aims, seed, floor, room=room)
         self.pool: list[Layout] = []
         self.best: Layout | None = None
         self.kicks = self.idle = self._served = 0

@@ -3,8 +3,9 @@ between may not be.
 
 From a mesh without inverted elements some rollouts go on, unguarded, until s is lower. The shortest
 of them are then positioned around all that they have changed; the first one that can be drawn is
-taken. Where a guarded rollout (:mod:`meshwright_agent.search.guarded_rollouts`) is stuck a leap
-often is not.
+taken, or the first one that can be drawn when it is divided
+(:mod:`meshwright_agent.search.divided_layouts`). Where a guarded rollout
+(:mod:`meshwright_agent.search.guarded_rollouts`) is stuck a leap often is not.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from meshwright_agent.env.vector_env import Batch
 from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations, with_room
+from meshwright_agent.search.coarsening import replayed
+from meshwright_agent.search.divided_layouts import drawn_divided
 from meshwright_core.core.arrays import MeshArrays, copied
 from meshwright_core.geometry.layout_positions import rails_of
 from meshwright_core.geometry.local_positions import local_effort, settle
@@ -31,6 +34,8 @@ LONGEST = 60
 """The most decisions of a leap."""
 TRIED = 5
 """Leaps that are positioned."""
+DIVIDED = 3
+"""Leaps that are divided where none can be drawn as it is."""
 RINGS = 3
 """Rings of elements around what has changed whose vertices move too."""
 
@@ -43,12 +48,13 @@ def leap(
     rng: np.random.Generator,
     stop: Callable[[], bool],
     ceiling: int | None = None,
+    divide: bool = False,
 ) -> tuple[Operations, MeshArrays] | None:
     """Operations that lead to lower s, and the arrays there with valid positions; None if no leap
     of this round can be drawn.
 
     mesh: of quads, without inverted elements; not changed. ceiling: largest number of elements, by
-    default that of the policy's task.
+    default that of the policy's task. divide: whether leaps are divided where none can be drawn.
     """
     if ceiling is None:
         ceiling = policy.task.bounds(mesh.n_elements)[1]
@@ -57,9 +63,10 @@ def leap(
     local = local_effort(rings=RINGS, thorough=False)
     active = np.zeros(len(before.points), np.bool_)
     cleaned, touched = np.zeros(MOST_CLEANUPS, np.int64), np.zeros(16, np.int64)
+    found: list[Operations] = []
     for decisions in _shortest(mesh, policy, rng, stop, ceiling):
         if stop():
-            break
+            return None
         after = copied(before)
         operations: Operations = []
         for code, h in decisions:
@@ -68,6 +75,12 @@ def leap(
             operations += [(Operation.CLEANUP, line) for line in cleaned[:count].tolist()]
         if settle(before, after, rails, local, active) > 0.0:
             return operations, after
+        found.append(operations)
+    for operations in found[: DIVIDED if divide else 0]:
+        reached = replayed(mesh, operations)
+        divisions, drawn = drawn_divided(reached, stop, 1)
+        if drawn:
+            return operations + divisions, reached.arrays
     return None
 
 

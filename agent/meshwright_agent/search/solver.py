@@ -25,6 +25,7 @@ from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
 from meshwright_agent.search.coarsening import replayed, undrawable
+from meshwright_agent.search.divided_layouts import FINEST
 from meshwright_agent.search.drawn_patches import improve_drawn
 from meshwright_agent.search.guarded_coarsening import Layout
 from meshwright_agent.search.guarded_rollouts import THIN_EVERY, GuardedDescent
@@ -48,6 +49,8 @@ from meshwright_core.mesh import HalfEdgeMesh
 
 POLISH = 0.15
 """Share of the time that is reserved for shortening."""
+FINISH = 0.08
+"""Share of the time that is reserved for it after a search among layouts, which are small."""
 POLISHED = 0.5
 """Largest share of the time that shortening and coarsening may take."""
 OPENING = 0.5
@@ -180,10 +183,13 @@ def _search_layouts(
     # without free rollouts the start is the only candidate
     candidates = search.take() if drawn == mesh.score else []
     total = 0 if not coarsen else None if timed else KICKS_EACH * search.wanted_rollouts
-    seekers = [LayoutSearch(mesh, preference, search.seed + 7919 * i) for i in range(workers)]
+    room = FINEST if descents else 0
+    seekers = [
+        LayoutSearch(mesh, preference, search.seed + 7919 * i, room=room) for i in range(workers)
+    ]
 
     def stop() -> bool:
-        return search.over(1.0 - POLISH)
+        return search.over(1.0 - FINISH)
 
     def run(i: int) -> None:
         seeker = seekers[i]

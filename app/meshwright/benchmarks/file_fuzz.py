@@ -8,6 +8,7 @@ address space is limited. Of the shapes that are read, some are meshed too.
 
 from __future__ import annotations
 
+import io
 import multiprocessing
 import resource
 import signal
@@ -275,10 +276,51 @@ def _sources(folder: Path) -> Iterator[tuple[str, list[bytes]]]:
                 files.append(path.read_bytes())
         if ending in _MESHES:
             files.append(_MESHES[ending].encode())
+        if ending == ".cgns" and missing_package(form) is None:
+            files += [_cgns(structured) for structured in (False, True)]
         if files:
             yield ending, files
     for ending, text in _DRAWINGS.items():
         yield ending, [text.encode()]
+
+
+def _cgns(structured: bool) -> bytes:
+    """A CGNS file of one zone: two quads, a named side and a family."""
+    import h5py
+
+    memory = io.BytesIO()
+    with h5py.File(memory, "w") as file:
+
+        def node(parent: Any, name: str, label: str, data: Any = None) -> Any:
+            made = parent.create_group(name)
+            made.attrs["label"] = np.bytes_(label)
+            if data is not None:
+                codes = list(data.encode()) if isinstance(data, str) else data
+                kind = np.int8 if isinstance(data, str) else None
+                made.create_dataset(" data", data=np.array(codes, kind))
+            return made
+
+        base = node(file, "Base", "CGNSBase_t", [2, 3])
+        size = [[3, 2], [2, 1], [0, 0]] if structured else [[6], [2], [0]]
+        zone = node(base, "Zone", "Zone_t", size)
+        node(zone, "ZoneType", "ZoneType_t", "Structured" if structured else "Unstructured")
+        node(zone, "FamilyName", "FamilyName_t", "steel")
+        places = node(zone, "GridCoordinates", "GridCoordinates_t")
+        node(places, "CoordinateX", "DataArray_t", [0.0, 1.0, 2.0, 0.0, 1.0, 2.0])
+        node(places, "CoordinateY", "DataArray_t", [0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
+        if not structured:
+            for name, code, span, nodes in (
+                ("bars", 3, [1, 2], [1, 2, 2, 3]),
+                ("cells", 20, [3, 4], [7, 1, 2, 5, 4, 7, 2, 3, 6, 5]),
+            ):
+                section = node(zone, name, "Elements_t", [code, 0])
+                node(section, "ElementRange", "IndexRange_t", span)
+                node(section, "ElementConnectivity", "DataArray_t", nodes)
+        side = node(node(zone, "ZoneBC", "ZoneBC_t"), "wall", "BC_t", "BCWall")
+        node(side, "PointRange", "IndexRange_t", [[1, 1], [3, 1]] if structured else [[1], [2]])
+        if not structured:
+            node(side, "GridLocation", "GridLocation_t", "EdgeCenter")
+    return memory.getvalue()
 
 
 def _read_mesh(path: Path) -> None:

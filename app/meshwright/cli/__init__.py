@@ -9,6 +9,7 @@ elements that were inverted before still are; 141 stdout was closed by its reade
 
 from __future__ import annotations
 
+import _thread
 import argparse
 import gc
 import os
@@ -31,6 +32,9 @@ DEBUG = "MESHWRIGHT_DEBUG"
 
 GARBAGE_THRESHOLD = 20_000
 """New objects after which Python looks for reference cycles; its default is 700."""
+
+REPEATED_AFTER = 0.05
+"""Seconds after which a Ctrl-C that was lost is repeated."""
 
 EPILOG = """\
 Without a command the window opens; with the name of a mesh file or a shape it opens on that.
@@ -132,9 +136,10 @@ def _noted_warnings(report: Report) -> Iterator[None]:
 @contextmanager
 def _noted_interrupts() -> Iterator[threading.Event]:
     """Record Ctrl-C in an event besides raising KeyboardInterrupt: a library may turn the exception
-    into another one, as numba does while it compiles.
+    into another one, as numba does while it compiles. Where Python drops the exception, as in
+    finalizers and callbacks of C code, Ctrl-C is repeated a moment later.
     """
-    noted = threading.Event()
+    noted, left = threading.Event(), threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield noted
         return
@@ -143,9 +148,17 @@ def _noted_interrupts() -> Iterator[threading.Event]:
         noted.set()
         raise KeyboardInterrupt
 
+    def repeat_interrupt() -> None:
+        if not left.is_set():
+            _thread.interrupt_main()
+
     def report_unraisable(unraisable: Any) -> None:
         if not isinstance(unraisable.exc_value, KeyboardInterrupt):
             usual(unraisable)
+            return
+        repeat = threading.Timer(REPEATED_AFTER, repeat_interrupt)
+        repeat.daemon = True
+        repeat.start()
 
     before = signal.signal(signal.SIGINT, note)
     usual = sys.unraisablehook
@@ -153,6 +166,7 @@ def _noted_interrupts() -> Iterator[threading.Event]:
     try:
         yield noted
     finally:
+        left.set()
         sys.unraisablehook = usual
         signal.signal(signal.SIGINT, before)
 

@@ -10,7 +10,13 @@ import numpy as np
 from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.blocks.grid import BlockGrid, block_grid, interpolated
 from meshwright_core.blocks.grid_quality import GridQuality
-from meshwright_core.blocks.sizing import Division, GridConflictError, Sizing, division
+from meshwright_core.blocks.sizing import (
+    Division,
+    GridConflictError,
+    Sizing,
+    division,
+    flat_layers,
+)
 from meshwright_core.blocks.structure import BlockStructure
 
 MOST_BLOCKS = 3000
@@ -60,6 +66,13 @@ class PlannedBlocks:
             return 0
         return int(self.division.counts[self.structure.crossing].prod(axis=1).sum())
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Wishes that have no effect, a sentence each."""
+        if self.division is None:
+            return ()
+        return flat_layers(self.structure, self.sizing, self.division)
+
     def pinned(self) -> set[int]:
         """The chords whose number of cells the user has set."""
         return set(self.sizing.chord_counts)
@@ -74,6 +87,8 @@ class GridPreview:
     edges: list[np.ndarray]
     """(p, 2) each, the block edges, in the direction of their chords; smoothing bends those that
     are not on curves."""
+    corners: np.ndarray
+    """(v, 2) the corners of blocks, as :attr:`BlockStructure.vertices` has them."""
     quality: GridQuality
     final: bool
     """Whether it is the grid that is exported, and not yet without its smoothing."""
@@ -87,11 +102,16 @@ def previews(
         return
     rough = interpolated(planned.structure, planned.division)
     if not stopped():
-        show(GridPreview(_lines(rough), _edges(rough), rough.quality, False))
+        show(_preview(rough, False))
     if not stopped():
         fine = block_grid(planned.structure, planned.sizing)
         if not stopped():
-            show(GridPreview(_lines(fine), _edges(fine), fine.quality, True))
+            show(_preview(fine, True))
+
+
+def _preview(grid: BlockGrid, final: bool) -> GridPreview:
+    corners = grid.points[: len(grid.structure.points), :2]
+    return GridPreview(_lines(grid), _edges(grid), corners, grid.quality, final)
 
 
 def _lines(grid: BlockGrid) -> list[np.ndarray]:

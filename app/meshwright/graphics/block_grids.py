@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ from meshwright.sources import resolve
 from meshwright_core.blocks.grid import BlockGrid, BlockStructure, block_grid
 from meshwright_core.blocks.grid_quality import GridQuality
 from meshwright_core.blocks.sizing import Sizing, WallLayer
+from meshwright_core.errors import GridWarning
 
 if TYPE_CHECKING:
     import pyvista
@@ -120,8 +122,12 @@ def blocks(
     are given here.
 
     Raises MeshError, one sentence: no quads, not plane, or numbers that contradict each other.
+    Warns (GridWarning) of layers that have no effect, as the cells are thinner already.
     """
     wanted = Sizing(size=size, divide=divide, walls=tuple(walls), **sizing)
     structure = BlockStructure.of(found := resolve.mesh(mesh))
     kept = Sizing.planned(structure, found.grid_plan)
-    return Blocks(block_grid(structure, wanted.over(kept)))
+    grid = block_grid(structure, wanted.over(kept))
+    for remark in grid.remarks:
+        warnings.warn(remark, GridWarning, stacklevel=2)
+    return Blocks(grid)

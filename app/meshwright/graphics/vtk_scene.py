@@ -58,6 +58,8 @@ class Scene:
         """(n, 3) uint8 colours of elements by id, None for the plain fill or those of regions; seen
         at the next :meth:`update`.
         """
+        self.edges_shown = True
+        """Whether the edges are drawn, and not by the caller; seen at the next :meth:`look`."""
         plotter.set_background(theme.background)
         plotter.enable_parallel_projection()
 
@@ -149,9 +151,11 @@ class Scene:
         for value, actor in self._discs.items():
             usual = 3.0 + 2.0 * abs(value)
             actor.GetProperty().SetPointSize(self._width * min(usual, max(1.0, room)))
-        if self._surface is not None and self._tinted:
-            shown = self._edge * pixels >= CLOSE_EDGES
-            self._surface.GetProperty().SetEdgeVisibility(shown)
+        if self._surface is not None:
+            close = not self._tinted or self._edge * pixels >= CLOSE_EDGES
+            self._surface.GetProperty().SetEdgeVisibility(self.edges_shown and close)
+        if self._curved is not None:
+            self._curved[1].SetVisibility(self.edges_shown)
 
     def show_crowd(self, mesh: HalfEdgeMesh, crowd: bool) -> None:
         """Set whether VTK draws the discs of irregular vertices (``crowd``) or the caller."""

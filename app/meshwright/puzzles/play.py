@@ -19,12 +19,14 @@ from meshwright.signals import Signal
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 
 STRIP, RING = Operation.CHORD_COLLAPSE.value, Operation.INSERT_RING.value
+DIVISION = Operation.DIVIDE_CHORD.value
 COUNTED = frozenset(operation.value for operation in Operation)
 FREE = frozenset(("smooth", "untangle", "move"))
 """Steps that only move vertices; they are not counted."""
 BARRED = {
     STRIP: "Collapse strip goes beyond the paper's operations and is not allowed in levels",
     RING: "Insert ring goes beyond the paper's operations and is not allowed in levels",
+    DIVISION: "Divide strip goes beyond the paper's operations and is not allowed in levels",
     "clean_all": "Clean all deletes several lines at once: in a level they are deleted one by one",
     "desired": "A level keeps its desired degrees",
     "geometric": "A level keeps its corners",

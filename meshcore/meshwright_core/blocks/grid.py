@@ -19,7 +19,7 @@ from meshwright_core.blocks.compiled_grid import (
 )
 from meshwright_core.blocks.grid_quality import GridQuality, measured
 from meshwright_core.blocks.plane_frame import PlaneFrame
-from meshwright_core.blocks.sizing import Division, Sizing, WallLayer, division
+from meshwright_core.blocks.sizing import Division, Sizing, WallLayer, division, flat_layers
 from meshwright_core.blocks.smoothing import smoothed
 from meshwright_core.blocks.structure import SIDE_CORNERS, BlockStructure
 
@@ -45,6 +45,8 @@ class BlockGrid:
     direction; 0 elsewhere."""
     points: np.ndarray
     """(N, 3) the vertices; those on the boundary lie on its curves."""
+    remarks: tuple[str, ...] = ()
+    """Wishes that have no effect, a sentence each."""
 
     @property
     def cell_count(self) -> int:
@@ -129,7 +131,8 @@ def block_grid(
     structure = mesh if isinstance(mesh, BlockStructure) else BlockStructure.of(mesh)
     frame = PlaneFrame.of(structure)
     wanted = division(structure, sizing or Sizing())
-    grid = interpolated(structure, wanted)
+    remarks = flat_layers(structure, sizing or Sizing(), wanted)
+    grid = replace(interpolated(structure, wanted), remarks=remarks)
     if not smooth:
         return grid
     coarse = interpolated(structure, _evened(wanted))

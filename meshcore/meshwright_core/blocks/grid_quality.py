@@ -39,6 +39,7 @@ def measured(
 ) -> GridQuality:
     """The quality of a grid with these points (N, 3)."""
     flat = PlaneFrame.of(structure).flat(points)
+    flat = flat - flat[0]  # areas of parts that are far from the origin
     count = len(cells)
     sine, aspect, area = np.empty(count), np.empty(count), np.empty(count)
     measure_cells(flat, cells, sine, aspect, area)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -22,6 +22,8 @@ ACROSS = 3.0
 """Cells across a block, at least, where no size is given."""
 MOST_CELLS = 50_000_000
 """Cells that a grid may have."""
+THINNEST = 1e-12
+"""The lowest first cell, relative to the largest coordinate: rounding spoils thinner ones."""
 EVERY_SIDE = "all"
 """In place of the name of a side: every one."""
 STEEPEST = 10.0
@@ -154,6 +156,7 @@ def division(structure: BlockStructure, sizing: Sizing) -> Division:
     contradict each other, more than :data:`MOST_CELLS` cells.
     """
     _require_positive(sizing)
+    _require_resolved(structure, sizing)
     first, last, ratio = _layers(structure, sizing.walls)
     _grade(structure, sizing, first, last, ratio)
     chord = structure.chord
@@ -227,6 +230,25 @@ def _require_positive(sizing: Sizing) -> None:
     every = (sizing.side_counts, sizing.edge_counts, sizing.chord_counts)
     if any(count < 1 for counts in every for count in counts.values()):
         raise MeshError("A number of cells must be at least 1.")
+    most = max((count for counts in every for count in counts.values()), default=0)
+    if max(most, sizing.divide or 0) > MOST_CELLS:
+        raise MeshError(
+            f"Along one edge {max(most, sizing.divide or 0):,} cells are wanted; at most "
+            f"{MOST_CELLS:,} are made in all."
+        )
+
+
+def _require_resolved(structure: BlockStructure, sizing: Sizing) -> None:
+    largest = float(np.abs(structure.points).max())
+    heights = [(f"at {wall.name}", wall.height) for wall in sizing.walls]
+    for (a, b), grading in sizing.edge_gradings.items():
+        heights += [(f"along edge {a}-{b}", height) for height in (grading.first, grading.last)]
+    for where, height in heights:
+        if 0.0 < height < THINNEST * largest:
+            raise MeshError(
+                f"The first cell {where} of {height:g} is too thin: at coordinates up to "
+                f"{largest:g} it must be at least {THINNEST * largest:.2g}."
+            )
 
 
 def _edge_sizes(structure: BlockStructure, sizing: Sizing) -> np.ndarray:
@@ -255,18 +277,61 @@ def _layers(
     heights = np.full((2, count), np.inf)
     ratio = np.full(count, np.inf)
     for wall in walls:
-        patches = structure.patches if wall.name == EVERY_SIDE else (structure.patch(wall.name),)
-        for edge in np.concatenate([patch.edges for patch in patches]).tolist():
-            block = int(structure.neighbours[edge].max())
-            side = int(np.flatnonzero(structure.sides[block] == edge)[0])
-            across = (side + 1) % 2  # the axis of the block that leads away from the wall
+        for block, across, end in _away_from(structure, wall.name):
             chord = structure.crossing[block, across]
-            near_start = side in (0, 3)
-            end = 0 if near_start == structure.forward[block, across] else 1
             heights[end, chord] = min(heights[end, chord], wall.height)
             ratio[chord] = min(ratio[chord], wall.ratio)
     first, last = np.where(np.isfinite(heights), heights, 0.0)
     return first, last, np.where(np.isfinite(ratio), ratio, 1.0)
+
+
+def _away_from(structure: BlockStructure, name: str) -> Iterator[tuple[int, int, int]]:
+    """For each block edge on a side: its block, the axis of the block that leads away from the
+    side, and whether the side is at the start (0) or at the end (1) of that axis's chord.
+    """
+    patches = structure.patches if name == EVERY_SIDE else (structure.patch(name),)
+    for edge in np.concatenate([patch.edges for patch in patches]).tolist():
+        block = int(structure.neighbours[edge].max())
+        side = int(np.flatnonzero(structure.sides[block] == edge)[0])
+        across = (side + 1) % 2
+        near_start = side in (0, 3)
+        yield block, across, 0 if near_start == structure.forward[block, across] else 1
+
+
+def flat_layers(structure: BlockStructure, sizing: Sizing, divided: Division) -> tuple[str, ...]:
+    """The layers at walls, and gradings of edges, that have no effect, or not everywhere, since the
+    cells there are thinner already than the first cell that is wished: a sentence each.
+    """
+    said = []
+    for a, b in sizing.edge_gradings:
+        edge = structure.edge_between(a, b)
+        chord = int(structure.chord[edge])
+        even = float(structure.lengths[edge]) / float(divided.counts[chord])
+        highest = float(max(divided.first[chord], divided.last[chord]))
+        if highest >= even:
+            said.append(
+                f"The grading of chord {chord} has no effect where its first cell of {highest:g} "
+                f"would be longer than even cells, {even:.3g}."
+            )
+    for wall in sizing.walls:
+        flat, thinnest, every = 0, math.inf, 0
+        for block, across, end in _away_from(structure, wall.name):
+            chord = structure.crossing[block, across]
+            # the lower cells of another wall, or a grading, are not this wall's
+            if (divided.first, divided.last)[end][chord] != wall.height:
+                continue
+            every += 1
+            sides = structure.sides[block, [across, across + 2]]
+            even = float(structure.lengths[sides].max()) / float(divided.counts[chord])
+            if wall.height >= even:
+                flat, thinnest = flat + 1, min(thinnest, even)
+        if flat:
+            where = "" if flat == every else f" along {flat} of its {every} block edges"
+            said.append(
+                f"The layer at {wall.name} has no effect{where}: its first cell of "
+                f"{wall.height:g} would be higher than the cells there, {thinnest:.3g}."
+            )
+    return tuple(said)
 
 
 def _grade(

@@ -195,11 +195,13 @@ class _Relaxation:
 
 
 def _free(grid: BlockGrid) -> np.ndarray:
-    """(N,) bool: the vertices off all curves."""
+    """(N,) bool: the vertices off all curves that the user keeps neither locked nor pinned."""
     free = np.ones(len(grid.points), bool)
     structure = grid.structure
     on_curves = np.flatnonzero(structure.parts.curve >= 0)
     free[structure.edges[on_curves].ravel()] = False
+    kept = structure.mesh.locked() | structure.mesh.pinned()
+    free[np.flatnonzero(kept[structure.vertices])] = False
     for edge in on_curves.tolist():
         free[grid.layout.edge_first[edge] : grid.layout.edge_first[edge + 1]] = False
     return free

@@ -25,10 +25,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
 from numba.core import compiler, types, typing
+from numba.core import config as numba_config
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import compile_result
@@ -37,6 +39,7 @@ from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime import rtsys
 
+from meshwright_core.core.interrupts import interrupts_held
 from meshwright_core.core.references import declare_read_only
 
 Types = tuple[Any, ...]
@@ -159,11 +162,23 @@ class EntryPoint(JITCodeLibrary):
         return library
 
 
+class _ByModule(UserProvidedCacheLocator):
+    """Finds the files of a kernel by the name of its package, not by where that is installed.
+
+    The cache folder belongs to these very sources, so all installations of them share it.
+    """
+
+    def __init__(self, py_func: Callable[..., Any], py_file: str) -> None:
+        super().__init__(py_func, py_file)
+        package = py_func.__module__.rpartition(".")[0]
+        self._cache_path = str(Path(numba_config.CACHE_DIR) / package)
+
+
 class _StoredForm(CompileResultCacheImpl):
     """Converts an entry point to what is pickled into the cache, and back."""
 
     # numba's other locators put files beside the sources or under a key that misses imported code
-    _locator_classes = (UserProvidedCacheLocator,)
+    _locator_classes = (_ByModule,)
 
     def reduce(self, result: Any) -> Any:
         library = result.library
@@ -296,11 +311,14 @@ class Kernel(CPUDispatcher):
             args, _ = typing_of(sig)
             known = self.overloads.get(args)
             if known is None:
-                known = self._cache.load_overload(args, self.targetctx)
+                with interrupts_held():
+                    known = self._cache.load_overload(args, self.targetctx)
                 if known is None:
                     self._cache_misses[args] += 1
-                    known = self._linked(self._part(args))
-                    self._cache.save_overload(args, known)
+                    part = self._part(args)  # takes longest, and may be interrupted
+                    with interrupts_held():
+                        known = self._linked(part)
+                        self._cache.save_overload(args, known)
                 else:
                     self._cache_hits[args] += 1
                 self.targetctx.insert_user_function(known.entry_point, known.fndesc, [])

@@ -19,7 +19,7 @@ from meshwright_core.core.irregularity import QUAD_STRAIGHT, TRIANGLE_STRAIGHT
 from meshwright_core.core.time_limit import SECONDS, time_limit
 from meshwright_core.domains.domain import Domain, Flags, Points
 from meshwright_core.domains.elements import quadrangulation, triangulation
-from meshwright_core.domains.elements.coarse_start import coarse
+from meshwright_core.domains.elements.coarse_start import coarse, coarse_quads
 from meshwright_core.domains.elements.refined_start import refined
 from meshwright_core.domains.elements.side_edges import SideEdges
 from meshwright_core.domains.elements.sided_elements import SidedElements
@@ -88,7 +88,8 @@ def mesh_domain(
         seed: 0 is the plain mesh. Any other value turns and renumbers the input of Triangle
             first, in a way that depends on the seed, so that it chooses otherwise where it can.
         quads: "catmull-clark" cuts each triangle into three quads; by default the triangles of a
-            domain with straight sides have no points but its corners, as in the benchmark.
+            domain with straight sides have no points but its corners, as in the benchmark, and
+            where sides bend well-shaped pairs of triangles are cut into four.
             "pairing" joins triangles in pairs, and cuts everything once more
             if some triangle stays alone.
         seconds: processor time that it may take. Left out: 30, and 10 more for each million
@@ -157,7 +158,9 @@ def _sided(domain: Domain, kind: str, bounds: Bounds, seed: int, quads: Quads) -
     assert sides is not None
     edges = SideEdges(sides)
     if bounds == Bounds():
-        found = coarse(edges, domain.diameter, seed)
+        if kind == "quad" and quads == "catmull-clark":
+            return coarse_quads(edges, domain.diameter, seed)
+        found = coarse(edges, domain.diameter, seed).elements()
     else:
         found = refined(edges, domain.diameter, bounds, seed)
     if kind == "tri":

@@ -22,12 +22,12 @@ Start = Callable[[MovablePart], None]
 def starts(part: MovablePart, rng: np.random.Generator) -> list[Start]:
     """The initial guesses in order: the present positions first, unless many are inverted."""
     tangled = part.inverted_rows().mean() > TANGLED
-    first: list[Start] = [_embedded, _present] if tangled else [_present, _embedded]
+    first: list[Start] = [_embedded, as_they_are] if tangled else [as_they_are, _embedded]
     more = SCATTERED if len(part.elements) <= SMALL else 0
-    return [*first, _spread, *(_scattered(rng, 0.01 * (i + 1)) for i in range(more))]
+    return [*first, spread_and_embedded, *(_scattered(rng, 0.01 * (i + 1)) for i in range(more))]
 
 
-def _present(part: MovablePart) -> None:
+def as_they_are(part: MovablePart) -> None:
     """Start from where the vertices are."""
 
 
@@ -52,11 +52,17 @@ def _embedded(part: MovablePart) -> None:
     part.points[free] = splu(inner.tocsc()).solve(outer)
 
 
-def _spread(part: MovablePart) -> None:
-    """Start from boundary vertices spread evenly on their sides, the others at means."""
+def spread(part: MovablePart) -> None:
+    """Start from boundary vertices spread evenly on their sides, the others where they are."""
     for run in part.runs():
         even = np.linspace(run.low, run.high, len(run.members) + 2)[1:-1]
         part.seats.parameter[run.members] = even - run.shift
+    part.settle()
+
+
+def spread_and_embedded(part: MovablePart) -> None:
+    """Start from boundary vertices spread evenly on their sides, the others at means."""
+    spread(part)
     hold_single_quads(part)
     _embedded(part)
 
@@ -155,7 +161,7 @@ def _scattered(rng: np.random.Generator, share: float) -> Start:
 
     def start(part: MovablePart) -> None:
         assert part.frame is not None
-        _spread(part)
+        spread_and_embedded(part)
         free = np.flatnonzero(part.free)
         size = np.ptp(part.points, axis=0).max() * share
         part.points[free] += size * rng.standard_normal((len(free), 2)) @ part.frame[:2]

@@ -7,7 +7,7 @@ the elements around no worse, and inverts none.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,7 +20,7 @@ from meshwright_core.geometry.movable_part import MovablePart
 from meshwright_core.geometry.quality import TOLERANCE
 from meshwright_core.geometry.seats import place_seat
 from meshwright_core.geometry.unfixable import fixable
-from meshwright_core.geometry.untangling import ALL, untangle_part
+from meshwright_core.geometry.untangling import ALL, untangle_from_sides, untangle_part
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -248,6 +248,20 @@ def relax(
         return _relax_whole(mesh)
     seeds = movable_part.live(mesh, around)
     return _relax_near(mesh, seeds, thorough).inverted() if len(seeds) else seeds
+
+
+def draw(
+    mesh: HalfEdgeMesh, stop: Callable[[], bool] = lambda: False, attempts: int = ALL
+) -> np.ndarray:
+    """Find positions for a plane mesh whose present ones say little, see
+    :func:`meshwright_core.geometry.untangling.untangle_from_sides`.
+
+    stop: polled between attempts. Returns ids, ascending, of the elements that stay inverted.
+    """
+    part = movable_part.whole(mesh)
+    untangle_from_sides(part, stop, attempts)
+    _write(mesh, part)
+    return part.inverted()
 
 
 def _relax_near(mesh: HalfEdgeMesh, seeds: np.ndarray, thorough: bool = True) -> MovablePart:

@@ -9,7 +9,7 @@ doublet) are left out of the energy, found beforehand, and their elements report
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,11 +20,17 @@ from meshwright_core.geometry.coons import CurvedElements
 from meshwright_core.geometry.curved_energy import DIFFERENCES, SLIGHT
 from meshwright_core.geometry.edge_kernels import NODES, WEIGHTS, bulges
 from meshwright_core.geometry.foldover_energy import Problem, unfold
-from meshwright_core.geometry.initial_guesses import hold_single_quads, starts
+from meshwright_core.geometry.initial_guesses import (
+    as_they_are,
+    hold_single_quads,
+    spread,
+    spread_and_embedded,
+    starts,
+)
 from meshwright_core.geometry.movable_part import MovablePart
 from meshwright_core.geometry.planes import vector_areas
 from meshwright_core.geometry.turning import turnings
-from meshwright_core.geometry.unfixable import unfixable_corners
+from meshwright_core.geometry.unfixable import fixable, unfixable_corners
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -38,6 +44,10 @@ BUDGET = 4_000_000
 """Corners evaluated after which no random start is tried: some tenth of a second."""
 ALL = 100
 """More than the number of starts: no limit."""
+GLANCE, MANY, FEW = 15, 0.1, 0.01
+"""An attempt with vertices held is given up if more than MANY of the elements are inverted after
+GLANCE values of the regularisation, or more than FEW after all. Of 60 layouts none with more was
+drawn in the end."""
 POLISH = 60
 """Steps for shape once nothing is folded."""
 
@@ -128,6 +138,42 @@ def untangle_part(
     return tried, evaluations
 
 
+def untangle_from_sides(
+    part: MovablePart, stop: Callable[[], bool], attempts: int = ALL, polish: int = POLISH
+) -> bool:
+    """Untangle `part` in place where connectivity has changed much since it had good positions.
+
+    Each attempt holds the vertices on sides first, so that they do not gather in few places while
+    much is folded, and releases them only if something stays folded. Attempts begin at the present
+    positions, with the vertices on sides spread evenly, and with the others at means besides. True
+    if nothing is inverted but what no position can unfold.
+    """
+    if part.frame is None or not part.movable.any():
+        return not fixable(part).any()
+    part.settle()
+    lost = unfixable_corners(part)
+    best, present = _BestPositions(part, lost), _BestPositions(part, lost)
+    for start in (as_they_are, spread, spread_and_embedded)[:attempts]:
+        present.restore(part)
+        start(part)
+        held = hold_single_quads(part)
+        held = held.holding(np.flatnonzero(held.sliding).tolist())
+        for moving, rounds, hopeless in (
+            (held, GLANCE, MANY),
+            (held, ROUNDS, FEW),
+            (part, ROUNDS, 0.0),
+        ):
+            if best.done or stop():
+                break
+            _run(moving, lost, polish, rounds)
+            best.keep_better(part)
+            if part.inverted_rows().mean() > hopeless:
+                break
+    best.restore(part)
+    part.settle()
+    return best.done
+
+
 class _BestPositions:
     """The best positions of a movable part so far."""
 
@@ -161,7 +207,7 @@ class _BestPositions:
         part.seats.parameter[:] = self._parameter
 
 
-def _run(part: MovablePart, dropped: np.ndarray, polish: int) -> int:
+def _run(part: MovablePart, dropped: np.ndarray, polish: int, rounds: int = ROUNDS) -> int:
     """Minimise the energy of all corners but the `dropped` ones, from the part's positions."""
     assert part.frame is not None
     axes = part.frame[:2]
@@ -172,7 +218,7 @@ def _run(part: MovablePart, dropped: np.ndarray, polish: int) -> int:
     problem, x = energy_problem(part, dropped, unit, targets)
     if not len(x) or not (len(problem.corners) or problem.active.any()):
         return 0
-    _, evaluations = unfold(problem, x, UNFOLDING, ROUNDS, INNER, polish, SHAPING)
+    _, evaluations = unfold(problem, x, UNFOLDING, rounds, INNER, polish, SHAPING)
     free, slides = np.flatnonzero(part.free), np.flatnonzero(part.sliding)
     flat = part.points[free] @ axes.T
     part.points[free] += (problem.points[free] * unit + problem.centre - flat) @ axes

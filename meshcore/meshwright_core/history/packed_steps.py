@@ -222,6 +222,32 @@ def _deep(piece: Steps, width: int) -> np.ndarray:
     return coordinates
 
 
+def first_steps(parts: Sequence[Steps], count: int) -> list[Steps]:
+    """The first `count` steps of `parts`, all if there are fewer."""
+    return _some(parts, 0, count)
+
+
+def last_steps(parts: Sequence[Steps], count: int) -> list[Steps]:
+    """The last `count` steps of `parts`, all if there are fewer."""
+    held = sum(map(len, parts))
+    return _some(parts, max(0, held - count), held)
+
+
+def _some(parts: Sequence[Steps], start: int, stop: int) -> list[Steps]:
+    """Steps `start` up to `stop` of all in `parts`."""
+    found = []
+    at = 0
+    for piece in parts:
+        first, last = max(0, start - at), min(len(piece), stop - at)
+        at += len(piece)
+        if last - first == len(piece):
+            found.append(piece)
+        elif first < last:
+            rows, entries = unpack(piece)
+            found += pieces(rows[first:last], entries, last - first)
+    return found
+
+
 def divided(steps: Steps, size: int) -> list[Steps]:
     """The same steps in pieces of up to `size`; MeshError if the arrays do not fit together."""
     return pieces(*unpack(steps), size)

@@ -11,6 +11,8 @@ from meshwright_core.io.content import Cells, Content
 
 _MOST_DEGREE = 10_000
 _TRIED = 1000
+_THIN = 1e-12
+"""Width of points on one line, as a share of their length."""
 _FARTHEST = 1e100
 """Coordinates beyond this would overflow in areas."""
 
@@ -65,7 +67,10 @@ def refuse_flat(points: NDArray[np.float64], elements: Elements) -> None:
             b = points[rows[:, 1]] - points[rows[:, 0]]
         if np.cross(a, b).any():
             return
-    raise MeshError("its elements have no area: all its points lie on one line")
+    used = points[np.unique(elements)]
+    widths = np.linalg.svd(used - used[0], compute_uv=False)
+    why = ": all its points lie on one line" if widths[1] <= _THIN * widths[0] else ""
+    raise MeshError(f"its elements have no area{why}")
 
 
 def oriented(points: NDArray[np.float64], elements: Elements) -> Elements:

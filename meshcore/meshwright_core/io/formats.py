@@ -26,6 +26,7 @@ from meshwright_core.io.content import Content
 from meshwright_core.io.readers import (
     abaqus,
     avs,
+    cgns,
     dolfin,
     exodus,
     gmsh,
@@ -370,6 +371,7 @@ FORMATS: dict[str, Format] = {
         longest=med_writer.LETTERS,
         needs=("h5py",),
     ),
+    ".cgns": Format("CGNS", _own_path(cgns.read), _not_written, kinds=(), needs=("h5py",)),
     ".exo": _EXODUS,
     ".e": _EXODUS,
 }

@@ -60,7 +60,8 @@ class Loaded(NamedTuple):
         """The notes, and one on what is not kept."""
         if not self.dropped:
             return list(self.notes)
-        are = "is" if len(self.dropped) == 1 else "are"
+        several = len(self.dropped) > 1 or self.dropped[0].startswith("the elements")
+        are = "are" if several else "is"
         return [*self.notes, f"{', '.join(self.dropped)} {are} not kept"]
 
 

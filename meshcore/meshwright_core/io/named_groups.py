@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,17 @@ class Named(NamedTuple):
     names: MeshNames
     warnings: list[str]
     """What could not be kept, a sentence each."""
+
+
+def unique_pairs(
+    first: NDArray[Any], second: NDArray[np.int64]
+) -> tuple[NDArray[Any], NDArray[np.int64]]:
+    """The different pairs (n, 2) of two columns (m,), in order, and which of them (m,) each is."""
+    ones, one = np.unique(first, return_inverse=True)
+    others, other = np.unique(second, return_inverse=True)
+    keys, place = np.unique(one * len(others) + other, return_inverse=True)
+    at, beside = np.divmod(keys, max(1, len(others)))
+    return np.column_stack([ones[at], others[beside]]), place
 
 
 def renumbered(names: Names | None, number: Ints) -> Names | None:
@@ -89,7 +100,7 @@ def _regions(
     whole = number.shape == (count,) and number.dtype.kind in "biuf"
     if not (whole and np.isfinite(number).all() and (number == np.rint(number)).all()):
         number = np.zeros(count)
-    pairs, region = np.unique(np.column_stack([number, row]), axis=0, return_inverse=True)
+    pairs, region = unique_pairs(number, row)
     found = [_bare(spelled[int(one)]) for _, one in pairs]
     if len(found) == 1 and not found[0]:
         return None, [""]

@@ -45,7 +45,14 @@ from meshwright_core.core.score_bound import bound_excess_of
 from meshwright_core.errors import MeshError
 from meshwright_core.history import step_archive
 from meshwright_core.history.journal import WRITE_KINDS
-from meshwright_core.history.packed_steps import COLUMNS, Steps, divided, joined
+from meshwright_core.history.packed_steps import (
+    COLUMNS,
+    Steps,
+    divided,
+    first_steps,
+    joined,
+    last_steps,
+)
 from meshwright_core.io.snapshot_checks import require_sound, require_within
 from meshwright_core.io.snapshot_curves import boundary_arrays, outline_boundary, stored_boundary
 from meshwright_core.io.stored_arrays import Arrays, stored
@@ -61,11 +68,18 @@ _OLD_WRITE_KINDS = 4
 _PARTS = ("rows", "places", "whole", "coordinates", "parameters")
 
 
-def to_arrays(mesh: HalfEdgeMesh) -> Arrays:
-    """The arrays of a mesh and its history; those of the mesh itself are not copied."""
+def to_arrays(mesh: HalfEdgeMesh, done: int | None = None, undone: int | None = None) -> Arrays:
+    """The arrays of a mesh and its history; those of the mesh itself are not copied.
+
+    done, undone: how many steps on each side of the present state to keep; None for all.
+    """
     m = mesh.arrays
     halfedges = int(m.counters[ELEMENT_SLOTS]) * mesh.k
-    done, undone = mesh.packed_steps()
+    past, future = mesh.packed_steps()
+    if done is not None:
+        past = last_steps(past, done)
+    if undone is not None:
+        future = first_steps(future, undone)
     return {
         "sizes": np.array([mesh.k, len(m.vertex), len(m.element_mark), mesh.degree_cap]),
         "counters": m.counters[:RESTORED],
@@ -77,8 +91,8 @@ def to_arrays(mesh: HalfEdgeMesh) -> Arrays:
         "parameter": mesh.parameters(),
         "region": m.region[: int(m.counters[ELEMENT_SLOTS])],
         **boundary_arrays(mesh.namings, mesh.naming, mesh.seats_recorded),
-        **steps_arrays(done, "done"),
-        **steps_arrays(undone, "undone"),
+        **steps_arrays(past, "done"),
+        **steps_arrays(future, "undone"),
     }
 
 

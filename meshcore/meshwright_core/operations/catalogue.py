@@ -31,6 +31,7 @@ from meshwright_core.core.entry_points import entry
 from meshwright_core.history.journal import begin_step, end_step
 from meshwright_core.operations import (
     chord_collapse,
+    chord_division,
     global_lines,
     global_split,
     quad_edits,
@@ -52,12 +53,13 @@ class Operation(StrEnum):
     CLEANUP = "cleanup"
     CHORD_COLLAPSE = "chord_collapse"
     INSERT_RING = "insert_ring"
+    DIVIDE_CHORD = "divide_chord"
 
 
 # codes for compiled kernels; triangles and quads do not share codes
 TRI_FLIP, TRI_SPLIT, TRI_COLLAPSE = 0, 1, 2
 FLIP_LEFT, FLIP_RIGHT, QUAD_SPLIT, QUAD_COLLAPSE = 3, 4, 5, 6
-GLOBAL_SPLIT, CLEANUP, CHORD_COLLAPSE, INSERT_RING = 7, 8, 9, 10
+GLOBAL_SPLIT, CLEANUP, CHORD_COLLAPSE, INSERT_RING, DIVIDE_CHORD = 7, 8, 9, 10, 11
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,6 +209,18 @@ CATALOGUE = (
         policy=False,
         beyond_paper=True,
     ),
+    OperationInfo(
+        operation=Operation.DIVIDE_CHORD,
+        kind="quad",
+        code=DIVIDE_CHORD,
+        title="Divide strip",
+        summary="cuts the strip of quads that crosses the edge in two along its length",
+        key="Y",
+        growth=None,
+        needs_twin=False,
+        policy=False,
+        beyond_paper=True,
+    ),
 )
 
 
@@ -257,7 +271,9 @@ def check(m, operation, h, cap):
         return global_lines.check_cleanup(m, h, cap)
     if operation == CHORD_COLLAPSE:
         return chord_collapse.check_chord_collapse(m, h, cap)
-    return ring_insertion.check_insert_ring(m, h, cap)
+    if operation == INSERT_RING:
+        return ring_insertion.check_insert_ring(m, h, cap)
+    return chord_division.check_divide_chord(m, h, cap)
 
 
 @bare_shared_kernel
@@ -284,8 +300,10 @@ def rewrite(m, operation, h):
         global_lines.cleanup(m, h)
     elif operation == CHORD_COLLAPSE:
         chord_collapse.chord_collapse(m, h)
-    else:
+    elif operation == INSERT_RING:
         ring_insertion.insert_ring(m, h)
+    else:
+        chord_division.divide_chord(m, h)
     end_step(m)
 
 
@@ -300,7 +318,8 @@ def score_change(m, operation, h):
     """The exact change of s that an allowed operation makes, without applying it.
 
     In O(1), and for a ring in the length of its loop.
-    0 for the collapse of a chord, which has no formula: a dry run gives its change.
+    0 for the division of a chord, and for the collapse of one, which has no formula: a dry run
+    gives its change.
     """
     if operation == TRI_FLIP:
         return triangle_edits.score_change_flip(m, h)

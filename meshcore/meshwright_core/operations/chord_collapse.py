@@ -70,7 +70,7 @@ def chord_start(m, h):
 
 
 @bare_kernel
-def _chord_length(m, start):
+def strip_length(m, start):
     """Quads of the strip that begins at `start`, at most twice the number of elements."""
     entry = start
     for count in range(1, 2 * m.counters[ELEMENTS] + 1):
@@ -207,7 +207,7 @@ def check_chord_collapse(m, h, cap):
     """
     start = chord_start(m, h)
     ring = m.edge[start, TWIN] >= 0
-    length = _chord_length(m, start)
+    length = strip_length(m, start)
     refused = CHORD_CROSSES_ITSELF
     if _mark_strip(m, start, length, ring):
         refused = _check_rungs(m, start, length, ring, cap)
@@ -247,7 +247,7 @@ def chord_collapse(m, h):
     """
     start = chord_start(m, h)
     ring = m.edge[start, TWIN] >= 0
-    length = _chord_length(m, start)
+    length = strip_length(m, start)
     rungs = length if ring else length + 1
 
     entry = start

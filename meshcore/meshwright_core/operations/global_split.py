@@ -90,7 +90,7 @@ def check_global_split(m, h, cap):
 
 
 @bare_kernel
-def _cut(m, entry, v, before, after):
+def cut(m, entry, v, before, after):
     """Cut the quad entered through `entry`, whose edge x-y the vertex v halves, and continue.
 
     before, after: the half-edges y-v and v-x on the other side of that edge. Returns the half-edge
@@ -136,10 +136,10 @@ def _cut(m, entry, v, before, after):
 
 
 @bare_kernel
-def _carry(m, entry, v, before, after):
+def carry(m, entry, v, before, after):
     """Carry the hanging vertex v straight on until the boundary."""
     while entry >= 0:
-        entry, v, before, after = _cut(m, entry, v, before, after)
+        entry, v, before, after = cut(m, entry, v, before, after)
 
 
 @bare_kernel
@@ -161,7 +161,7 @@ def global_split(m, h):
     g = m.edge[tp, ORIGIN]
     bc, gb = m.edge[n, TWIN], m.edge[tp, TWIN]
 
-    # the degree of a hanging vertex counts the cut that will leave it, added by _cut
+    # the degree of a hanging vertex counts the cut that will leave it, added by cut
     n1 = on_edge(m, n, 3, QUAD_INSIDE if bc >= 0 else QUAD_STRAIGHT, 4)
     touch_new(m, n1)
     n2 = on_edge(m, tp, 3, QUAD_INSIDE if gb >= 0 else QUAD_STRAIGHT, 4)
@@ -188,9 +188,9 @@ def global_split(m, h):
         m.counters[BOUNDARY_EDGES] += 1
     add_degree(m, a, 1)
     add_degree(m, b, -1)
-    _carry(m, bc, n1, q + 2, n)
+    carry(m, bc, n1, q + 2, n)
     # the first cut may have crossed the quad that the second one enters
-    _carry(m, m.edge[tp, TWIN], n2, tp, q + 1)
+    carry(m, m.edge[tp, TWIN], n2, tp, q + 1)
     touch(m, a)
     touch(m, b)
     touch(m, c)

@@ -233,6 +233,27 @@ class _Rewrite:
                 if len(made) > most:
                     raise Refused("it does not end")
 
+    def divide_chord(self, a: int, b: int) -> None:
+        first = (a, b)
+        self._left(a, b)
+        while (b, a) in self.mesh.left:
+            _, _, a, b = self._left(b, a)
+            if (a, b) == first:
+                raise Refused("the strip closes in a ring")
+        v = self._new(boundary=True)
+        self._halve(a, b, v)
+        self._carry(a, v, b)
+
+    def _carry(self, x: int, v: int, y: int) -> None:
+        """Cut quad after quad in two, from the vertex v on the edge x-y to the boundary."""
+        while (x, y) in self.mesh.left:
+            face = self._left(x, y)
+            _, _, z, w = face
+            far = self._new(boundary=(w, z) not in self.mesh.left)
+            self._swap([face], [(x, v, far, w), (v, y, z, far)])
+            self._halve(w, z, far)
+            x, v, y = w, far, z
+
     def insert_ring(self, a: int, b: int) -> None:
         mesh = self.mesh
         self._left(a, b)

@@ -23,7 +23,7 @@ from meshwright_core.testing.face_list_oracle import Refused
 _SMALLEST, _LARGEST = 8, 60
 """Elements beyond which a run makes no more new ones lie between these: most rules concern small
 meshes."""
-_GROWING = ("split", "global_split", "insert_ring")
+_GROWING = ("split", "global_split", "insert_ring", "divide_chord")
 _RUN = 300  # operations before a run is undone to its beginning and a new one starts
 _STUCK = 100  # refusals in a row after which a mesh counts as used up, a single quad for instance
 

@@ -15,7 +15,7 @@ def policy():
     return policy_files.load(policy_files.shipped("quad")[0])
 
 
-@pytest.fixture(scope="module", params=["plate-with-round-hole", "filleted-bracket"])
+@pytest.fixture(scope="module", params=["airfoil-in-box", "filleted-bracket"])
 def start(request):
     return mesh_domain(gallery.shape(request.param), "quad")
 

@@ -13,7 +13,7 @@ from meshwright_core.geometry.smoothing import relax
 
 
 def test_a_leap_lowers_s_and_inverts_nothing():
-    mesh = mesh_domain(gallery.shape("plate-with-round-hole"), "quad")
+    mesh = mesh_domain(gallery.shape("filleted-bracket"), "quad")
     relax(mesh)
     policy = policy_files.load(policy_files.shipped("quad")[0])
     before = mesh.points.copy()
@@ -30,6 +30,6 @@ def test_a_leap_lowers_s_and_inverts_nothing():
 
 
 def test_a_stopped_leap_is_none():
-    mesh = mesh_domain(gallery.shape("plate-with-round-hole"), "quad")
+    mesh = mesh_domain(gallery.shape("filleted-bracket"), "quad")
     policy = policy_files.load(policy_files.shipped("quad")[0])
     assert leap(mesh, policy, np.random.default_rng(2), lambda: True) is None

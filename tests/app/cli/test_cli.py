@@ -2,14 +2,16 @@
 
 import io
 import json
+import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from meshwright import cli, console
+from meshwright import __main__, cli, console
 from meshwright.cli import output_files
 from meshwright.cli.commands import COMMANDS, shapes
 from meshwright.console import Report, UserError
@@ -218,3 +220,27 @@ def test_replacing_keeps_the_old_file_when_writing_fails(tmp_path, error):
     assert isinstance(error, KeyboardInterrupt) or "no space left on device" in str(caught.value)
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_an_interrupt_that_a_finalizer_swallows_is_repeated(monkeypatch, capsys):
+    class Interrupted:
+        def __del__(self) -> None:
+            signal.raise_signal(signal.SIGINT)
+
+    def run(*_: object) -> None:
+        Interrupted()  # Python drops what its finalizer raises
+        threading.Event().wait(60.0)
+        raise AssertionError("not interrupted")
+
+    monkeypatch.setattr(shapes, "run", run)
+    assert cli.main(["shapes"]) == 2
+    assert "stopped by Ctrl-C" in capsys.readouterr().err
+
+
+def test_an_interrupt_during_the_imports_is_one_line(monkeypatch, capsys):
+    def interrupted() -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "main", interrupted)
+    assert __main__.main() == 2
+    assert capsys.readouterr().err == "meshwright: stopped by Ctrl-C; no file is half written\n"

@@ -12,6 +12,7 @@ from block_meshes import corner_blocks, two_regions
 
 import meshwright_core
 from meshwright import cli
+from meshwright.cli.batches.cluster import run_on_cluster
 from meshwright.cli.batches.workers import run_on_workers
 
 
@@ -89,6 +90,26 @@ def test_a_cluster_does_the_parts_of_a_killed_worker_again(capsys, parts, tmp_pa
         values = run(capsys, parts, tmp_path / "out", "--dask", cluster.scheduler_address)
         thread.join(timeout=60)
     assert (values["parts"], values["done"], values["failed"]) == (10, 9, 1)
+
+
+@pytest.mark.slow
+def test_a_cluster_keeps_no_records_that_were_collected(parts, tmp_path):
+    """What a worker still holds when it ends, the cluster computes again."""
+    distributed = pytest.importorskip("dask.distributed")
+    tasks = [
+        (str(i), ["blocks", str(parts / "corner0.vtk"), "-o", str(tmp_path / f"{i}.geo")])
+        for i in range(4)
+    ]
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=None
+    ) as cluster:
+        results = run_on_cluster(tasks, cluster.scheduler_address)
+        assert sorted(next(results)[0] for _ in tasks) == [key for key, _ in tasks]
+        until = time.monotonic() + 20.0
+        while cluster.scheduler.tasks and time.monotonic() < until:
+            time.sleep(0.05)
+        assert not cluster.scheduler.tasks
+        assert list(results) == []
 
 
 @pytest.mark.parametrize(

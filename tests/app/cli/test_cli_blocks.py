@@ -46,6 +46,18 @@ def test_layers_and_numbers_on_named_sides(capsys, corner, tmp_path):
     assert given["patches"] == [{"name": "outline", "cells": 40}]
 
 
+def test_a_layer_without_effect_is_said_in_one_line(capsys, corner, tmp_path):
+    words = [corner, "-o", tmp_path / "a.geo", "--size", "0.25", "--wall", "outline:0.5"]
+    assert cli.main(["blocks", *map(str, words), "--json"]) == 0
+    output = capsys.readouterr()
+    (remark,) = json.loads(output.out)["remarks"]
+    assert "The layer at outline has no effect" in remark
+    assert remark in output.err
+    assert output.err.count("\n") == 1
+    thin = run(capsys, corner, "-o", tmp_path / "b.geo", "--wall", "outline:0.01")
+    assert thin["remarks"] == []
+
+
 def test_the_text_names_the_files(capsys, corner, tmp_path):
     assert cli.main(["blocks", str(corner), "-o", str(tmp_path / "a.xyz"), "--divide", "2"]) == 0
     output = capsys.readouterr().out
@@ -69,6 +81,10 @@ def test_the_text_names_the_files(capsys, corner, tmp_path):
         (["-o", "a.geo", "--extrude", "1", "2"], "only a blockMeshDict is extruded"),
         (["-o", "a.txt"], "not one of a grid"),
         (["-o", "a.geo", "--size", "1e-7"], "cells; at most"),
+        (["-o", "a.geo", "--count", "outline:1e18"], "cells are wanted; at most"),
+        (["-o", "a.geo", "--wall", "outline:1e-30"], "too thin: at coordinates up to 2"),
+        (["-o", "blockMeshDict", "--extrude", "1", "1000000000"], "OpenFOAM counts up to"),
+        (["-o", "a.geo", "--min-shape", "7"], "not a number of 0 to 1"),
     ],
 )
 def test_wrong_use_is_one_sentence(capsys, corner, tmp_path, monkeypatch, options, words):

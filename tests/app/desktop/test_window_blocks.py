@@ -24,6 +24,15 @@ def rows_of_blocks() -> HalfEdgeMesh:
     return HalfEdgeMesh.from_elements(points, [(c, c + 1, c + 5, c + 4) for c in corners])
 
 
+def five_around_a_vertex() -> HalfEdgeMesh:
+    """A pentagon of five blocks around vertex 0, which is not in its middle."""
+    turn = np.arange(10) * np.pi / 5
+    reach = np.where(np.arange(10) % 2, 1.0, np.cos(np.pi / 5))  # middles of sides, and corners
+    ring = reach[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+    quads = [(0, 1 + 2 * i, 2 + 2 * i, 1 + (2 * i + 2) % 10) for i in range(5)]
+    return HalfEdgeMesh.from_elements(np.vstack([[(0.25, 0.1)], ring]), quads)
+
+
 @pytest.fixture
 def shown(qtbot, open_window):
     """Open a window with the blocks of a mesh shown by the toolbar's button."""
@@ -303,3 +312,35 @@ def test_meshes_without_blocks_are_refused_in_words(qtbot, open_window):
     window = open_window(HalfEdgeMesh.from_elements(points, [[0, 1, 2], [0, 2, 3]]))
     assert not window.actions_by_id["blocks.view"].isEnabled()
     assert not window.actions_by_id["blocks.export"].isEnabled()
+
+
+def test_irregular_vertices_are_marked_where_the_blocks_meet(qtbot, shown):
+    """Smoothing moves the corners of blocks inside; their marks move along, and back."""
+    window = shown(five_around_a_vertex())
+    marks, blocks = window.canvas.overlay.markers, window.blocks
+    qtbot.waitUntil(lambda: blocks.layer.shown.bent is not None, timeout=3 * WAIT)
+    structure = blocks.planned.structure
+    edge = structure.edge_between(0, 1)
+    line = blocks.layer.shown.bent[edge]
+    corner = line[0] if structure.vertices[structure.edges[edge, 0]] == 0 else line[-1]
+    assert np.linalg.norm(corner - window.document.mesh.points[0, :2]) > 0.05
+    (disc,) = marks.discs
+    assert disc[3] == 1
+    # the straight edges of the mesh do not show beside the bent ones
+    surface = window.canvas.view._scene._surface.GetProperty()
+    assert not surface.GetEdgeVisibility()
+    assert disc[:2] == pytest.approx(window.canvas.viewport.to_screen(corner[None])[0], abs=0.1)
+    blocks.show(False)
+    assert surface.GetEdgeVisibility()
+    (disc,) = marks.discs
+    place = window.document.mesh.points[:1, :2]
+    assert disc[:2] == pytest.approx(window.canvas.viewport.to_screen(place)[0], abs=0.1)
+
+
+def test_a_layer_without_effect_is_said_while_blocks_are_shown(qtbot, shown):
+    window = shown(rows_of_blocks())
+    plan = GridPlan(size=0.1, walls=(Wall("outline", 0.5),))
+    window.document.plan_grid(plan, "Sizes")
+    assert "no effect" in window.notice.text
+    window.document.plan_grid(GridPlan(size=0.1), "Sizes")
+    assert window.notice.text == ""

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from document_edits import wander
+from document_edits import bits, wander
 
 from meshwright.document.document import Document
 from meshwright.document.storage import recovery
@@ -113,3 +113,31 @@ def test_edits_of_the_mesh_are_saved_at_the_next_use(document, tmp_path):
     lost.discard()
     assert [row.title for row in state.history][1] == "Edit in Python"
     assert np.array_equal(state.mesh.elements(), document.mesh.elements())
+
+
+@pytest.mark.parametrize("steps", [1, 70, 300])
+def test_steps_from_before_the_document_are_not_saved(triangles, tmp_path, steps):
+    mesh = triangles
+    for _ in range(steps):
+        edge = next(h for h in range(3 * mesh.n_elements) if mesh.check("flip", h))
+        mesh.apply("flip", edge)
+    mesh.undo()
+    document = Document(mesh, "disc")
+    path = tmp_path / "disc.meshwright"
+    document.save(path)
+    other = Document()
+    other.open(path)
+    assert (len(other.history), other.mesh.steps, other.mesh.undone_steps) == (0, 0, 0)
+    assert np.array_equal(other.mesh.elements(), mesh.elements())
+
+    document = Document(mesh, "disc")
+    before = mesh.elements()
+    wander(document, 5, 2)
+    document.go_to(3)
+    document.save(path)
+    other.open(path)
+    assert (len(other.history), other.history.cursor) == (5, 3)
+    assert (other.mesh.steps, other.mesh.undone_steps) == (3, 2)
+    assert bits(other) == bits(document)
+    other.go_to(0)
+    assert np.array_equal(other.mesh.elements(), before)

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from block_meshes import annulus
+from block_meshes import annulus, corner_blocks
 
 import meshwright as mw
 from meshwright.document import block_edits
 from meshwright.document.document import Document
 from meshwright_core.blocks.structure import BlockStructure
+from meshwright_core.errors import GridWarning
 
 
 def test_a_grid_as_data_as_multiblock_and_as_a_file(tmp_path):
@@ -43,3 +44,8 @@ def test_numbers_that_were_set_in_a_document_count_where_none_are_given():
     assert mw.blocks(document.mesh).counts[chord] == 17
     assert mw.blocks(document.mesh, size=0.5).counts[chord] == 17
     assert mw.blocks(document.mesh, chord_counts={chord: 9}).counts[chord] == 9
+
+
+def test_a_layer_without_effect_warns():
+    with pytest.warns(GridWarning, match="The layer at outline has no effect"):
+        mw.blocks(corner_blocks(), 0.25, walls=[mw.WallLayer("outline", 0.5)])

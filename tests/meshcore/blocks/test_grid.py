@@ -150,3 +150,10 @@ def test_meshes_off_a_plane_are_refused():
     points = [(0, 0, 0), (1, 0, 0), (1, 1, 1), (0, 1, 0)]
     with pytest.raises(MeshError, match="plane"):
         block_grid(HalfEdgeMesh.from_elements(np.array(points, float), [[0, 1, 2, 3]]))
+
+
+def test_areas_of_a_part_far_from_the_origin():
+    mesh = corner_blocks()
+    points = mesh.points + np.array([1e9, -1e9, 0.0])
+    far = HalfEdgeMesh.from_elements(points, mesh.elements())
+    assert block_grid(far, Sizing(divide=4)).quality.areas.sum() == pytest.approx(3.0, rel=1e-6)

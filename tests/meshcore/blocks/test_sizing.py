@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from block_meshes import annulus, corner_blocks, quarter_ring
 
-from meshwright_core import MeshError
+from meshwright_core import HalfEdgeMesh, MeshError
 from meshwright_core.blocks.grading_sections import sections
-from meshwright_core.blocks.sizing import Sizing, WallLayer, division, layer_cells
+from meshwright_core.blocks.sizing import Sizing, WallLayer, division, flat_layers, layer_cells
 from meshwright_core.blocks.structure import BlockStructure
+from meshwright_core.core.grid_plan import Grading
 
 
 def counts(mesh, **wanted) -> list[int]:
@@ -107,3 +108,32 @@ def test_sections_describe_a_graded_line():
     assert np.concatenate(rebuilt) == pytest.approx(sizes / sizes.sum())
     assert [(part.cells, part.ratio) for part in found] == [(3, 2.0), (3, 1.0)]
     assert sections(np.ones(5)) == [(1.0, 5, 1.0)]
+
+
+def test_layers_higher_than_the_cells_are_said():
+    structure = BlockStructure.of(annulus())
+
+    def said(*walls: WallLayer, **more) -> tuple[str, ...]:
+        sizing = Sizing(size=0.1, walls=walls, **more)
+        return flat_layers(structure, sizing, division(structure, sizing))
+
+    assert said(WallLayer("wall", 0.01)) == ()
+    assert said(WallLayer("wall", 0.5)) == (
+        "The layer at wall has no effect: its first cell of 0.5 would be higher than the cells "
+        "there, 0.1.",
+    )
+    # the thinner of two wishes for a side holds, and is no surprise
+    assert said(WallLayer("wall", 0.5), WallLayer("wall", 0.01)) == ()
+    assert len(said(WallLayer("far", 0.01), WallLayer("wall", 0.5))) == 1
+    a, b = structure.vertices[structure.edges[0]].tolist()
+    (grading,) = said(edge_gradings={(a, b): Grading(2.0, 0.0, 1.2)})
+    assert "The grading of chord" in grading
+
+
+def test_a_layer_that_is_too_high_along_a_part_of_its_side_is_said():
+    points = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 0.1), (2, 0.1)]
+    mesh = HalfEdgeMesh.from_elements(np.array(points, float), [[0, 1, 4, 3], [1, 2, 5, 4]])
+    structure = BlockStructure.of(mesh)
+    sizing = Sizing(divide=5, walls=(WallLayer("outline", 0.05),))
+    (said,) = flat_layers(structure, sizing, division(structure, sizing))
+    assert "no effect along 2 of its 6 block edges" in said

@@ -114,6 +114,11 @@ def test_a_filled_cache_compiles_nothing(tiny):
     assert tiny.run() == [EXPECTED, 0, 0]
 
 
+def test_another_installation_of_the_same_sources_compiles_nothing(tiny, tmp_path):
+    other = Tiny(tmp_path)
+    assert other.run(tiny.cache) == [EXPECTED, 0, 0]
+
+
 def test_an_edit_means_a_fresh_cache(tmp_path):
     tiny = Tiny(tmp_path)
     assert tiny.run() == [EXPECTED, 2, 3]

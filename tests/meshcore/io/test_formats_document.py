@@ -114,8 +114,10 @@ def test_what_is_written(ending):
 
 
 def test_quadratic_elements_of_the_table_are_tested():
-    """Those of MED and Exodus are in test_med_exodus.py."""
-    assert {*QUADRATIC, ".med", ".exo"} == {e for e, row in TABLE.items() if row["quadratic"]}
+    """Those of MED and Exodus are in test_med_exodus.py, and of CGNS in test_cgns.py."""
+    assert {*QUADRATIC, ".med", ".exo", ".cgns"} == {
+        e for e, row in TABLE.items() if row["quadratic"]
+    }
 
 
 @pytest.mark.parametrize("ending", [e for e in QUADRATIC if TABLE[e]["quadratic"]])
@@ -127,7 +129,12 @@ def test_quadratic_elements_are_read(ending, tmp_path):
     assert any("6 points is read with straight sides" in note for note in found.notes)
 
 
-@pytest.mark.parametrize("ending", [e for e, row in TABLE.items() if row["parts"]])
+def test_parts_of_the_table_are_tested():
+    """Those of CGNS are in test_cgns.py."""
+    assert {*PARTS, ".cgns"} == {e for e, row in TABLE.items() if row["parts"]}
+
+
+@pytest.mark.parametrize("ending", [e for e in PARTS if TABLE[e]["parts"]])
 def test_parts_are_read(ending, tmp_path):
     path = tmp_path / f"a{ending}"
     path.write_text(PARTS[ending])

@@ -31,14 +31,18 @@ def run_on_cluster(tasks: Sequence[Task], address: str) -> Iterator[tuple[str, d
     except (OSError, ValueError) as error:
         raise UserError(f"--dask {address}: there is no cluster ({error})") from error
     with client:
-        keys = {}
+        keys, futures = {}, []
         for key, words in tasks:
-            future = client.submit(run_part, list(words), pure=False, retries=TRIES)
-            keys[future.key] = (key, future)
-        for future in as_completed([future for _, future in keys.values()]):
-            key = keys[future.key][0]
-            failure = future.exception()
+            futures.append(client.submit(run_part, list(words), pure=False, retries=TRIES))
+            keys[futures[-1].key] = key
+        finished = as_completed(futures)
+        # a record that is still held by its worker would be computed again when that ends
+        futures.clear()
+        for future in finished:
+            key, failure = keys[future.key], future.exception()
             if failure is not None:
-                yield key, {"status": "failed", "error": f"{type(failure).__name__}: {failure}"}
+                record = {"status": "failed", "error": f"{type(failure).__name__}: {failure}"}
             else:
-                yield key, future.result()
+                record = future.result()
+            future.release()
+            yield key, record

@@ -55,7 +55,7 @@ def add_own_arguments(parser: argparse.ArgumentParser) -> None:
         "the best shape (balanced)",
     )  # fmt: skip
     parser.add_argument(
-        "--min-shape", metavar="X", type=inputs.positive_float,
+        "--min-shape", metavar="X", type=inputs.share,
         help="worst scaled Jacobian of a block, 0 to 1, beyond which only their number counts",
     )  # fmt: skip
     parser.add_argument(
@@ -102,13 +102,14 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
         "output": str(output),
         "files": [str(file) for file in files],
         **grid_values(grid),
+        "remarks": list(grid.remarks),
         "order": arguments.order,
         "search_seconds": round(searched, 3),
         "grid_seconds": round(made - began - searched, 3),
         "seconds": round(time.perf_counter() - began, 3),
     }
     report.result(values, _text(values))
-    for sentence in losses(output, grid):
+    for sentence in (*grid.remarks, *losses(output, grid)):
         report.note(f"meshwright blocks: {output}: {sentence}")
     if not values["inverted_elements"]:
         return None

@@ -116,6 +116,10 @@ ACTIONS: tuple[Action, ...] = (
         "interface, of the selected edge", "Ctrl+Shift+R", partial(_apply, Operation.INSERT_RING),
     ),
     _tool(
+        "divide", "Divide chord", "Cut the selected strip of blocks in two along its length",
+        "Ctrl+Shift+Y", partial(_apply, Operation.DIVIDE_CHORD),
+    ),
+    _tool(
         "collapse", "Collapse chord", "Remove the selected strip of blocks", "Ctrl+Shift+V",
         partial(_apply, Operation.CHORD_COLLAPSE),
     ),

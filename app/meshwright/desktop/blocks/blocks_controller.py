@@ -116,6 +116,7 @@ class BlocksController(Controller):
         overlay = self._canvas.overlay
         overlay.element.visible = overlay.arrow.visible = not shown
         overlay.markers.strokes = not shown
+        self._canvas.show_edges(not shown)
         if shown:
             self._refresh()
             self._status.show_message("Blocks: click an edge to select its chord, or a block.")
@@ -124,6 +125,7 @@ class BlocksController(Controller):
             self.planned = self._bent = self._bent_of = None
             self.layer.show(None)
             self.grid.show([])
+            overlay.markers.displace()
             self._status.show_message("Blocks hidden.")
         self.changed.emit()
 
@@ -159,6 +161,7 @@ class BlocksController(Controller):
         counts = planned.division.counts if planned.division is not None else None
         if self._bent_of is not None and not _alike(self._bent_of, structure):
             self._bent = self._bent_of = None
+            self._canvas.overlay.markers.displace()
         self.layer.show(
             BlocksShown(
                 structure.parts, self._bent, structure.chord, counts, frozenset(planned.pinned()),
@@ -173,6 +176,8 @@ class BlocksController(Controller):
         if planned.problem:
             self.grid.show([])
             self.say(planned.problem)
+        elif planned.remarks:
+            self.say(" ".join(planned.remarks))
         elif self._said:
             self._notice.hide()
             self._said = ""
@@ -214,6 +219,8 @@ class BlocksController(Controller):
         if preview.final and self.planned is not None and self.layer.shown is not None:
             self._bent, self._bent_of = preview.edges, self.planned.structure
             self.layer.show(replace(self.layer.shown, bent=self._bent))
+            marks = self._canvas.overlay.markers
+            marks.displace(self.planned.structure.vertices, preview.corners)
             if self.block >= 0:
                 self.layer.select(-1, -1, self._outline(self.block))
             quality, values = preview.quality, self.panel.values

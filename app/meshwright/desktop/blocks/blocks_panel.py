@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from qtpy.QtCore import QSignalBlocker, QSize, Signal
-from qtpy.QtGui import QColor, QIcon, QPixmap
+from qtpy.QtGui import QColor, QIcon, QPixmap, QResizeEvent
 from qtpy.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
@@ -186,6 +186,15 @@ class BlocksPanel(QWidget):
         """Draw in the colours of ``theme``."""
         self._theme = theme
 
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Give the hint the lines that it takes in this width."""
+        super().resizeEvent(event)
+        self._note.setMinimumHeight(self._note.heightForWidth(self._note.width()))
+
+    def _say(self, words: str) -> None:
+        self._note.setText(words)
+        self._note.setMinimumHeight(self._note.heightForWidth(self._note.width()))
+
     def show_chord(self, shown: ChordShown | None) -> None:
         """Show the selected chord; None for none."""
         self._shown = shown
@@ -194,14 +203,14 @@ class BlocksPanel(QWidget):
         self._swatch.setVisible(shown is not None)
         self._title.setVisible(shown is not None)
         if shown is None:
-            self._note.setText(POINT)
+            self._say(POINT)
             return
         self._swatch.setPixmap(_square(shown.colour))
         self._title.setText(f"Chord {shown.chord}")
         how = "cells set" if shown.pinned else "cells by size"
         edges = "1 edge" if shown.edges == 1 else f"{shown.edges} edges"
         blocks = "1 block" if shown.blocks == 1 else f"{shown.blocks} blocks"
-        self._note.setText(f"{edges}, {blocks}; {how}")
+        self._say(f"{edges}, {blocks}; {how}")
         self.free.setEnabled(shown.pinned)
         fields = (self.count, self.first, self.last, self.ratio)
         blockers = [QSignalBlocker(box) for box in fields]
@@ -219,7 +228,7 @@ class BlocksPanel(QWidget):
         self.show_chord(None)
         self._title.show()
         self._title.setText(f"Block {block}")
-        self._note.setText(f"{shape[0]} \u00d7 {shape[1]} cells, crossed by two chords:")
+        self._say(f"{shape[0]} \u00d7 {shape[1]} cells, crossed by two chords:")
         self._links = chords
         for link, chord, colour in zip(self.crossing, chords, colours, strict=True):
             link.setText(f"Chord {chord}")

@@ -91,7 +91,7 @@ class ExportBlocksController(ExportTask):
         self._report(partial(self.bar.show_stage, words))
         walls = tuple(wall.name for wall in sizing.walls)
         files = write_blocks(path, grid, order.order, order.extrusion, walls)
-        lost = losses(path, grid)
+        lost = (*grid.remarks, *losses(path, grid))
         return " ".join((result_words(grid, files), *lost)), bool(lost)
 
 

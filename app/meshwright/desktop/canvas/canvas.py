@@ -56,6 +56,7 @@ class Canvas(QWidget):
         self._picker: Picker | None = None
         self._delta = np.empty(0, dtype=int)  # irregularities of the picker's mesh
         self._fills: np.ndarray | None = None
+        self._edges_shown = True
         self._fitted = True
         self._stale = False
         self._at: QPointF | None = None  # the position of the mouse
@@ -116,6 +117,7 @@ class Canvas(QWidget):
         self.overlay.raise_()
         self.overlay.setGeometry(self.rect())
         self.view.fill(None, None, self._fills)
+        self.view.show_edges(self._edges_shown)
         self._on_replaced()
 
     def release(self) -> None:
@@ -135,6 +137,12 @@ class Canvas(QWidget):
         self._theme = theme
         self.overlay.set_theme(theme)
         self.view.set_theme(theme, self.document.mesh, self.edges)
+        self._look()
+
+    def show_edges(self, shown: bool) -> None:
+        """Draw the edges of the mesh; False where a layer of the overlay draws them instead."""
+        self._edges_shown = shown
+        self.view.show_edges(shown)
         self._look()
 
     def fill(self, fills: np.ndarray | None) -> None:

@@ -54,6 +54,9 @@ class CanvasView:
     ) -> None:
         """Fill the elements with these colours (n, 3) by id, uint8; None: the plain fill."""
 
+    def show_edges(self, shown: bool) -> None:
+        """Draw the edges, or leave them to the overlay; seen at the next :meth:`look`."""
+
     def look(self, viewport: Viewport) -> None:
         """Move the camera."""
 
@@ -127,6 +130,10 @@ class VtkView(CanvasView):
         self._scene.fills = fills
         if mesh is not None and edges is not None:
             self._scene.refill(mesh, edges)
+
+    def show_edges(self, shown: bool) -> None:
+        """Draw the edges, or leave them to the overlay; seen at the next :meth:`look`."""
+        self._scene.edges_shown = shown
 
     def look(self, viewport: Viewport) -> None:
         """Move the camera."""

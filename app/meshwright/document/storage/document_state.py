@@ -77,9 +77,12 @@ class _Header(Struct):
 
 
 def packed(state: DocumentState) -> tuple[dict[str, Any], Arrays]:
-    """The header and the arrays; those of the mesh itself are not copied."""
-    arrays = snapshot.to_arrays(state.mesh)
+    """The header and the arrays; those of the mesh itself are not copied.
+
+    Steps that the mesh had before the history began are left out.
+    """
     history = state.history
+    arrays = snapshot.to_arrays(state.mesh, history.cursor, len(history) - history.cursor)
     header = _Header(
         version=VERSION,
         name=state.name,

@@ -110,7 +110,7 @@ def exported(mesh: HalfEdgeMesh, ending: str, title: str) -> tuple[str, bytes, s
             data = archive.getvalue()
     worst = grid.quality.worst_scaled_jacobian
     words = f"Exported {name}: {grid.cell_count:,} cells, worst scaled Jacobian {worst:.2f}."
-    return name, data, " ".join((words, *losses(path, grid)))
+    return name, data, " ".join((words, *grid.remarks, *losses(path, grid)))
 
 
 def blocks_packet(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from meshwright_core.core.time_limit import check_time
 from meshwright_core.domains.elements import chord_conflicts
-from meshwright_core.domains.elements.curved_quads import CurvedTriangles
+from meshwright_core.domains.elements.cut_elements import CutElements
 from meshwright_core.domains.elements.labelled_triangles import edge_keys, neighbours, regions_of
 from meshwright_core.domains.elements.side_edges import SideEdges
 from meshwright_core.domains.elements.sided_elements import SidedElements
@@ -23,6 +24,8 @@ Reals = NDArray[np.float64]
 
 GOOD = 0.01
 """Scaled Jacobian that the quads of a triangle with curved sides should have at least."""
+PAIRED = 0.2
+"""Scaled Jacobian of the quads of a pair of triangles, at least."""
 _ROUNDS = 10
 _SWEEPS = 8
 _MANY_BAD = 1 << 60
@@ -39,7 +42,36 @@ _BEND = np.radians(2.0)
 """An edge that turns by less is not cut for the sake of a triangle's shape."""
 
 
-def coarse(edges: SideEdges, size: float, seed: int) -> SidedElements:
+class CoarseTriangles(NamedTuple):
+    """Triangles on the edges of sides and on further points."""
+
+    edges: SideEdges
+    points: Points
+    triangles: Ids
+    regions: Ids
+
+    def elements(self) -> SidedElements:
+        """With the places of the vertices on the sides."""
+        return SidedElements.of(*self)
+
+
+def coarse_quads(edges: SideEdges, size: float, seed: int) -> SidedElements:
+    """The triangles of :func:`coarse`, joined in pairs where these are well shaped; each pair is
+    cut into four quads, and each triangle that stays alone into three.
+
+    Pairs make fewer quads, and more regular vertices. Arguments as there.
+    """
+    found = coarse(edges, size, seed)
+    shape = CutElements(found.edges, found.points)
+
+    def qualities(quads: Ids) -> Reals:
+        return shape.quad_shapes(quads) - PAIRED
+
+    elements = found.elements()
+    return elements.catmull_clark(*elements.paired(qualities)).without_doublets()
+
+
+def coarse(edges: SideEdges, size: float, seed: int) -> CoarseTriangles:
     """Triangles on the coarse edges of sides, without a point inside where none is needed.
 
     Edges are flipped, points inserted and edges of sides cut while a triangle has an inverted quad,
@@ -59,13 +91,13 @@ def coarse(edges: SideEdges, size: float, seed: int) -> SidedElements:
             chord_conflicts.settle(trial, settled)
             settled = len(trial.side)
             points, triangles, regions = _triangulation(trial, inner, size, seed)
-            shape = CurvedTriangles(trial, points)
+            shape = CutElements(trial, points)
             walls = edge_keys(trial.ends, len(points))
             quality = _flipped(shape, triangles, walls)
             bad = int((quality < GOOD).sum())
             if (bad, len(triangles)) < best:
                 best = (bad, len(triangles))
-                found = SidedElements.of(trial, points, triangles, regions)
+                found = CoarseTriangles(copy(trial), points, triangles.copy(), regions)
             if not bad or (best[0] == 0 and len(triangles) > best[1]):
                 break
             more, cuts = _remedy(shape, triangles, walls, quality, insert)
@@ -91,7 +123,7 @@ def _triangulation(
     return found.points, found.triangles[own], regions[own]
 
 
-def _flipped(shape: CurvedTriangles, triangles: Ids, walls: Ids) -> Reals:
+def _flipped(shape: CutElements, triangles: Ids, walls: Ids) -> Reals:
     """Flip edges of bad triangles, in place, where that helps; the shapes of all triangles."""
     quality = shape.shapes(triangles)
     count = len(shape.points)
@@ -132,7 +164,7 @@ def _flipped(shape: CurvedTriangles, triangles: Ids, walls: Ids) -> Reals:
 
 
 def _remedy(
-    shape: CurvedTriangles, triangles: Ids, walls: Ids, quality: Reals, insert: bool
+    shape: CutElements, triangles: Ids, walls: Ids, quality: Reals, insert: bool
 ) -> tuple[Points, Ids]:
     """Points to insert for bad triangles, and edges of sides to cut.
 

@@ -5,7 +5,7 @@ All on plain arrays: points (n, 2 or 3), elements (m, 3 or 4) counter-clockwise,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from meshwright_core.core.time_limit import check_time
 from meshwright_core.domains.domain import Flags, Points
 
 Elements = NDArray[np.int64]
+Reals = NDArray[np.float64]
 
 _EXACT_PAIRING = 600
 """Triangles up to which the best pairing is sought; more are paired greedily."""
@@ -65,24 +66,28 @@ def split_elements(count: int, blocks: Sequence[Elements]) -> tuple[Elements, El
     return pairs, np.concatenate([quad.reshape(-1, 4) for quad in quads])
 
 
-def pair(points: Points, triangles: Elements) -> tuple[Elements, Elements]:
-    """Join neighbouring triangles in pairs to convex quads.
+def pair(
+    points: Points, triangles: Elements, qualities: Callable[[Elements], Reals] | None = None
+) -> tuple[Elements, Elements]:
+    """Join neighbouring triangles in pairs to quads.
 
-    As many pairs as possible, and among those matchings one of greatest total quality; a quad's
-    quality is 1 less its largest deviation from a right angle, in right angles. Meshes of more
-    than 600 triangles are paired greedily, best pair first.
+    As many pairs as possible, and among those matchings one of greatest total quality. Meshes of
+    more than 600 triangles are paired greedily, best pair first.
 
     Args:
         points: (n, 2).
         triangles: (m, 3).
+        qualities: gives those (m,) of quads (m, 4), not positive where there shall be none. By
+            default 1 less the largest deviation from a right angle, in right angles: quads are
+            convex.
 
     Returns:
         the quads (p, 4), and the triangles that stay alone (m - 2 p, 3).
     """
     one, other, quads = _candidates(points, triangles)
-    quality = _squareness(points[quads])
-    convex = quality > 1e-6
-    one, other, quads, quality = one[convex], other[convex], quads[convex], quality[convex]
+    quality = _squareness(points[quads]) if qualities is None else qualities(quads)
+    good = quality > 1e-6
+    one, other, quads, quality = one[good], other[good], quads[good], quality[good]
     if len(triangles) <= _EXACT_PAIRING:
         chosen = _best_matching(one, other, quality)
     else:
@@ -155,7 +160,7 @@ def _candidates(points: Points, triangles: Elements) -> tuple[Elements, Elements
     return h // 3, g // 3, quads
 
 
-def _squareness(corners: Points) -> NDArray[np.float64]:
+def _squareness(corners: Points) -> Reals:
     """Return 1 - max |angle - 90| / 90 for (m, 4, 2) corners; not positive unless convex."""
     before = corners - np.roll(corners, 1, axis=1)
     after = np.roll(before, -1, axis=1)
@@ -165,7 +170,7 @@ def _squareness(corners: Points) -> NDArray[np.float64]:
     return 1 - np.abs(turn - 90).max(axis=1) / 90
 
 
-def _best_matching(one: Elements, other: Elements, quality: NDArray[np.float64]) -> Elements:
+def _best_matching(one: Elements, other: Elements, quality: Reals) -> Elements:
     import networkx
 
     graph = networkx.Graph()
@@ -176,9 +181,7 @@ def _best_matching(one: Elements, other: Elements, quality: NDArray[np.float64])
     return np.array(sorted(graph.edges[pair]["index"] for pair in matching), dtype=np.int64)
 
 
-def _greedy_matching(
-    one: Elements, other: Elements, quality: NDArray[np.float64], count: int
-) -> Elements:
+def _greedy_matching(one: Elements, other: Elements, quality: Reals, count: int) -> Elements:
     taken = np.zeros(count, dtype=bool)
     chosen = []
     for i in np.argsort(-quality, kind="stable"):

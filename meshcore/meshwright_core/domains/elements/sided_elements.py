@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,13 +127,18 @@ class SidedElements:
             ),
         )
 
-    def paired(self) -> tuple[list[Ids], list[Ids]]:
-        """Quads of pairs of triangles of one region, and triangles left over, with regions."""
+    def paired(
+        self, qualities: Callable[[Ids], Reals] | None = None
+    ) -> tuple[list[Ids], list[Ids]]:
+        """Quads of pairs of triangles of one region, and triangles left over, with regions.
+
+        qualities: of quads, as for :func:`.quadrangulation.pair`.
+        """
         quads, alone = [np.empty((0, 4), int)], [np.empty((0, 3), int)]
         labels: list[list[Ids]] = [[np.empty(0, int)], [np.empty(0, int)]]
         for region in np.unique(self.regions):
             own = self.elements[self.regions == region]
-            pairs, rest = quadrangulation.pair(self.points, own)
+            pairs, rest = quadrangulation.pair(self.points, own, qualities)
             quads.append(pairs)
             alone.append(rest)
             labels[0].append(np.full(len(pairs), region))

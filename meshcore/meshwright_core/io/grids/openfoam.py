@@ -19,6 +19,8 @@ from meshwright_core.errors import MeshError
 from meshwright_core.io.grids.block_edges import EdgeShape
 from meshwright_core.io.grids.block_pieces import BlockPieces, part_counts
 
+MOST_CELLS = 2**31 - 1
+"""What OpenFOAM's labels count where they have 32 bits, as they have by default."""
 _HALF_WEDGE = np.radians(2.5)
 _ON_AXIS = 1e-9
 _HEADER = """\
@@ -63,6 +65,11 @@ class _Dictionary:
 
     def __init__(self, grid: BlockGrid, extrusion: Extrusion, walls: tuple[str, ...]) -> None:
         self.grid, self.extrusion = grid, extrusion
+        cells = grid.cell_count * self._layers
+        if cells > MOST_CELLS:
+            raise MeshError(
+                f"That makes {cells:,} cells; OpenFOAM counts up to {MOST_CELLS:,} by default."
+            )
         self.walls = {
             patch.name
             for patch in grid.structure.patches

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshwright_core.core.names import safe
 from meshwright_core.errors import MeshError
 from meshwright_core.io.content import Content, NamesBuilder
 from meshwright_core.io.readers.numbers import Floats, Ints
@@ -300,4 +301,7 @@ class Builder:
                 f"{self._collapsed} quad{'s' if more else ''} with a corner that is given twice "
                 f"{'are' if more else 'is'} read as {'triangles' if more else 'a triangle'}"
             )
+        for name in dict.fromkeys(one[0] for one in (*self._groups, *self._edges, *self._sets)):
+            if safe(name) != " ".join(name.split()):
+                said.append(f"the name {name[:60]!r} is read as {safe(name)[:60]!r}")
         return said

@@ -75,7 +75,9 @@ class _Reader:
             "ELM": self._elements,
         }
         start = words.at
-        if (first := self._section()) == "NOD":
+        while (first := self._section()) == "Comments" and words.skip_past(b"$EndComments"):
+            start = words.at
+        if first == "NOD":
             words.at, self.version = start, 1.0
         elif first != "MeshFormat":
             raise MeshError("it does not begin with $MeshFormat")

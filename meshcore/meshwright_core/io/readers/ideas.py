@@ -107,15 +107,16 @@ def _elements(build: Builder, lines: list[bytes]) -> list[tuple[list, Ints]]:
     rows: dict[tuple[int, int], list[bytes]] = {}
     at = 0
     while at < len(lines):
-        head = numbers.ints(lines[at])
-        if len(head) < 6:
-            raise MeshError("it is damaged: an element is not understood")
-        code, count = int(head[1]), int(head[5])
+        head = lines[at].split()
+        try:
+            code, count = int(head[1]), int(head[5])
+        except (IndexError, ValueError) as error:
+            raise MeshError("it is damaged: an element is not understood") from error
         first = at + (2 if code in _BEAMS else 1)
         at = first + -(-count // _A_LINE)
         if not 1 <= count <= 64 or at > len(lines):
             raise MeshError(f"{CUT_OFF} or damaged: an element of {count} nodes")
-        row = b" ".join([b"%d %d" % (head[0], head[2]), *lines[first:at]])
+        row = b" ".join([head[0], head[2], *lines[first:at]])
         rows.setdefault((code, count), []).append(row)
     found = []
     for (code, count), texts in rows.items():

@@ -7,7 +7,6 @@ the names of its groups. The layout is that of MED 3 and 4
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ import numpy as np
 
 from meshwright_core.errors import MeshError
 from meshwright_core.io.content import Content
+from meshwright_core.io.readers import hdf5
 from meshwright_core.io.readers.builder import Builder
 from meshwright_core.io.readers.numbers import Ints
 
@@ -26,23 +26,11 @@ _CELLS = {
     "H20": ("hexahedron", 20), "H27": ("hexahedron", 27), "PY5": ("pyramid", 5),
     "P13": ("pyramid", 13), "PE6": ("wedge", 6), "P15": ("wedge", 15),
 }  # fmt: skip
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-EXPANDED = 100
-"""Times that an array may be larger than the whole file, where that is compressed."""
 
 
 def read(path: Path) -> Content:
     """Return the mesh of a MED file; of a series over time the last state."""
-    import h5py
-
-    data = path.read_bytes()
-    if not data.startswith(_SIGNATURE):
-        raise MeshError("it is no MED file: it does not begin as HDF5 does")
-    try:
-        with h5py.File(io.BytesIO(data), "r") as file:
-            return _content(file, EXPANDED * len(data) + 2**20)
-    except (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError) as error:
-        raise MeshError("it is cut off or damaged: its HDF5 structure") from error
+    return hdf5.content_of(path, "MED", _content)
 
 
 def _content(file: Any, most: int) -> Content:
@@ -66,20 +54,20 @@ def _content(file: Any, most: int) -> Content:
 def _add(
     build: Builder, state: Any, families: Mapping[str, Any], dimension: int, most: int
 ) -> None:
-    points = _array(state["NOE"]["COO"], most)
+    points = hdf5.array(state["NOE"]["COO"], most)
     build.points(points.reshape(dimension, -1).T)
     if "FAM" in state["NOE"]:
-        _node_sets(build, _array(state["NOE"]["FAM"], most), _names(families.get("NOEUD", {})))
+        _node_sets(build, hdf5.array(state["NOE"]["FAM"], most), _names(families.get("NOEUD", {})))
     names = _names(families.get("ELEME", {}))
     for code, block in state.get("MAI", {}).items():
         if code not in _CELLS:
             raise MeshError(f"its cells {code[:20]!r} are unknown")
         kind, nodes = _CELLS[code]
-        cells = _array(block["NOD"], most).reshape(nodes, -1).T - 1
+        cells = hdf5.array(block["NOD"], most).reshape(nodes, -1).T - 1
         placed = build.cells(kind, cells)
         if "FAM" not in block:
             continue
-        family = _array(block["FAM"], most)
+        family = hdf5.array(block["FAM"], most)
         for one in placed:
             numbers = family[one.which]
             for number in np.unique(numbers).tolist():
@@ -107,11 +95,3 @@ def _names(families: Mapping[str, Any]) -> dict[int, list[str]]:
             names = [text.decode("utf-8", "replace").strip() for text in texts]
             found[int(family.attrs["NUM"])] = [name for name in names if name]
     return found
-
-
-def _array(data: Any, most: int) -> Any:
-    """A dataset as an array, if it is not larger than `most` bytes."""
-    if data.size * data.dtype.itemsize > most:
-        raise MeshError("it is damaged: an array is larger than the file can hold")
-    found = np.asarray(data[()]).ravel()
-    return found if found.dtype.kind == "f" else found.astype(np.int64)

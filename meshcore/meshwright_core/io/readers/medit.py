@@ -13,6 +13,7 @@ from meshwright_core.errors import MeshError
 from meshwright_core.io.content import Content
 from meshwright_core.io.readers import numbers
 from meshwright_core.io.readers.builder import Builder
+from meshwright_core.io.readers.fields import contents_of
 from meshwright_core.io.readers.numbers import CUT_OFF, Floats
 from meshwright_core.io.readers.words import Words
 
@@ -28,10 +29,9 @@ _ROWS = {"CORNERS": 1, "RIDGES": 1, "REQUIREDVERTICES": 1, "REQUIREDEDGES": 1, "
          "NORMALATTRIANGLEVERTICES": 3, "TANGENTATEDGES": 3, "REQUIREDQUADRILATERALS": 1,
          "EDGEONGEOMETRICEDGE": 2, "VERTEXONGEOMETRICVERTEX": 2, "VERTEXONGEOMETRICEDGE": 3,
          "TANGENTATEDGE": 3}  # fmt: skip
-_APART = re.compile(rb"(?<=\S)[ \t]+([A-Z][A-Za-z]+)")
-"""A keyword behind other words of its line."""
-_COUNTED = re.compile(rb"^([A-Z][A-Za-z]+)[ \t]+(\d+)[ \t]+(?=\S)", re.MULTILINE)
-"""A keyword and a number with more behind them in their line."""
+_COMMENT = re.compile(rb"#[^\n]*")
+_KEYWORD = re.compile(rb"([A-Z][A-Za-z]+(?:[ \t]+\d+(?=[ \t]+\S))?)")
+"""A keyword, and the number that more follows behind in its line."""
 _BINARY = {4: "VERTICES", 5: "EDGES", 6: "TRIANGLES", 7: "QUADRILATERALS", 8: "TETRAHEDRA",
            9: "PRISMS", 10: "HEXAHEDRA", 24: "TRIANGLESP2", 25: "EDGESP2", 27: "QUADRILATERALSQ2",
            49: "PYRAMIDS"}  # fmt: skip
@@ -67,17 +67,23 @@ class _Medit:
             self.build.group(f"ref={ref}", rows, ref)
 
 
+def _on_its_line(match: re.Match[bytes]) -> bytes:
+    """A keyword at the beginning of a line, with its number alone where it has one."""
+    ends = b"\n" if match[1][-1:].isdigit() else b""
+    return b"\n" + match[1] + ends
+
+
 class _Text(_Medit):
     def __init__(self, data: bytes) -> None:
         super().__init__()
-        lines = numbers.text_of(data).split(b"\n")
-        if any(b"#" in line for line in lines):
-            lines = [line.partition(b"#")[0] for line in lines]
-        text = _APART.sub(rb"\n\1", b"\n".join(lines))
-        self.words = Words(_COUNTED.sub(rb"\1 \2\n", text))
+        text = numbers.text_of(data)
+        if b"#" in text:
+            text = _COMMENT.sub(b"", text)
+        self.words = Words(_KEYWORD.sub(_on_its_line, text))
 
     def content(self) -> Content:
         words = self.words
+        others: set[str] = set()
         seen = False
         while head := words.words():
             keyword, rest = head[0].upper(), head[1:]
@@ -109,12 +115,16 @@ class _Text(_Medit):
             elif keyword in _ROWS:
                 width = self.dimension if keyword in ("NORMALS", "TANGENTS") else _ROWS[keyword]
                 words.text(width * self._count(rest, width))
+                others.add(head[0])
             else:
                 self._pass_over()
+                others.add(head[0][:40])
         else:
             if not seen:
                 raise MeshError("it does not begin with MeshVersionFormatted")
             raise MeshError(f"{CUT_OFF}: End is missing")
+        if others:
+            self.build.dropped.append(contents_of(others))
         return self.build.content()
 
     def _width(self, keyword: str, count: int) -> int:

@@ -36,10 +36,12 @@ _NODES = {
 }  # fmt: skip
 _VOLUMES = frozenset({"CTETRA", "CHEXA", "CPENTA", "CPYRAM", "CPYRA"})
 _NAMES = (
-    re.compile(r'\$HMNAME\s+(?:COMP|PROP)\s+(\d{1,9})\s*"([^"]*)"'),
+    re.compile(r'\$HMNAME\s+PROP\s+(\d{1,9})\s*"([^"]*)"'),
     re.compile(r"\$ANSA_NAME_COMMENT;(\d{1,9});P[A-Z]+;([^;]+);"),
     re.compile(r"\$ Femap Property (\d{1,9}) : (.+)"),
 )
+_COMPONENT = re.compile(r'\$HMNAME\s+COMP\s+(\d{1,9})\s*"([^"]*)"')
+"""A component of HyperMesh, which names its property where nothing else does."""
 _STARTS = re.compile(rb"^INCLUDE\b", re.IGNORECASE | re.MULTILINE)
 _INCLUDE = re.compile(r"""INCLUDE\s*=?\s*(?:'([^']+)'|"([^"]+)"|(\S+))""", re.IGNORECASE)
 _SILENT = frozenset({"ENDDATA", "BEGIN", "PARAM", "PLOTEL"})
@@ -160,12 +162,10 @@ def _cards(text: bytes, names: dict[int, str]) -> Iterator[tuple[str, list[bytes
     """The cards of the bulk data: name and fields, continuation lines joined."""
     lines = text.split(b"\n")
     start = next((i + 1 for i, line in enumerate(lines) if line.upper().startswith(b"BEGIN")), 0)
+    _take_names(lines, names)
     name, fields, width = "", list[bytes](), _FIELDS
     for line in lines[start:]:
         if line.startswith(b"$") or not line.strip():
-            if line.startswith((b"$HMNAME", b"$ANSA_NAME", b"$ Femap Prop")):
-                for found in filter(None, (one.match(numbers.words_of(line)) for one in _NAMES)):
-                    names[int(found[1])] = found[2].strip()
             continue
         if b"$" in line:
             line = line.partition(b"$")[0]
@@ -182,6 +182,21 @@ def _cards(text: bytes, names: dict[int, str]) -> Iterator[tuple[str, list[bytes
         width = _FIELDS // 2 if head.endswith(b"*") else _FIELDS
     if name:
         yield name, fields
+
+
+def _take_names(lines: list[bytes], names: dict[int, str]) -> None:
+    """Enter the names that comments give to properties, by their numbers."""
+    components = {}
+    for line in lines:
+        if not line.startswith((b"$HMNAME", b"$ANSA_NAME", b"$ Femap Prop")):
+            continue
+        text = numbers.words_of(line)
+        if found := _COMPONENT.match(text):
+            components[int(found[1])] = found[2].strip()
+        for found in filter(None, (one.match(text) for one in _NAMES)):
+            names[int(found[1])] = found[2].strip()
+    for number, name in components.items():
+        names.setdefault(number, name)
 
 
 def _fields(line: bytes) -> tuple[bytes, list[bytes]]:

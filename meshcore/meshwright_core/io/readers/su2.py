@@ -106,9 +106,12 @@ class _Reader:
         for kind, nodes in _cells(self.elements):
             self.build.cells(kind, nodes)
         for name, lines in self.markers:
-            for kind, nodes in _cells(lines):
+            cells = _cells(lines)
+            for kind, nodes in cells:
                 if kind == "line":
                     self.build.edges(name, nodes[:, :2])
+            if cells and not any(kind == "line" for kind, _ in cells):
+                self.build.dropped.append(f"the marker {name!r}, which has no edges,")
         self.points = self.elements = None
         self.markers = []
 

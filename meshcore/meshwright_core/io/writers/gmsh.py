@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from meshwright_core.core.names import groups
 from meshwright_core.io.content import Content
-from meshwright_core.io.named_groups import group_edges, group_rows, tags_of
+from meshwright_core.io.named_groups import group_edges, group_rows, tags_of, unique_pairs
 from meshwright_core.io.writers import lines as form
 
 _CODES = {"line": 1, "triangle": 2, "quad": 3}
@@ -32,10 +32,7 @@ class _Writer:
         self.curves = tags_of(list(group_edges(self.names)), 1, tags)
         row = self.names.elements.get(self.kind, np.full(len(self.elements), -1, np.int64))
         # one entity for each region: by its number in the mesh and its name
-        self.pairs, self.entity = np.unique(
-            np.column_stack([self.numbers, row]), axis=0, return_inverse=True
-        )
-        self.entity = self.entity.ravel()
+        self.pairs, self.entity = unique_pairs(self.numbers, row)
         self.physical = [self._physical(int(one)) for _, one in self.pairs]
 
     def _physical(self, row: int) -> list[int]:

@@ -6,11 +6,12 @@ import numpy as np
 
 from meshwright_core.core.names import numbered
 from meshwright_core.io.content import Content
-from meshwright_core.io.named_groups import group_edges, group_rows, tags_of
+from meshwright_core.io.named_groups import group_edges, group_rows, tags_of, unique_pairs
 from meshwright_core.io.writers import lines as form
 
 _SHELL = {"triangle": 91, "quad": 94}
 _BEAM = 21
+_NODE, _PLACE = "%10d         1         1        11", "%25.16E%25.16E%25.16E"
 _ELEMENT = 8
 """The code of elements in groups."""
 
@@ -20,8 +21,8 @@ def write(content: Content) -> str:
     kind, elements = form.block(content)
     names = form.names(content)
     lines = ["    -1", "  2411"]
-    for i, (x, y, z) in form.numbered(content.points):
-        lines += [_row(i, 1, 1, 11), "".join(f"{v:25.16E}" for v in (x, y, z)).replace("E", "D")]
+    for i, point in form.numbered(content.points):
+        lines += [_NODE % i, (_PLACE % tuple(point)).replace("E", "D")]
     lines += ["    -1", "    -1", "  2412"]
     edges, place = np.unique(np.sort(names.edges, axis=1), axis=0, return_inverse=True)
     if len(edges):
@@ -30,10 +31,12 @@ def write(content: Content) -> str:
     for i, nodes in enumerate((edges + 1).tolist(), start=1):
         lines += [_row(i, _BEAM, 1, 1, 7, 2), _row(0, 0, 0), _row(*nodes)]
     first = len(edges) + 1
+    shell = f"%10d{_row(_SHELL[kind])}%10d{_row(1, 7, elements.shape[1])}"
+    corners = "%10d" * elements.shape[1]
     for i, (nodes, own) in enumerate(
         zip((elements + 1).tolist(), owner.tolist(), strict=True), start=first
     ):
-        lines += [_row(i, _SHELL[kind], own, 1, 7, len(nodes)), _row(*nodes)]
+        lines += [shell % (i, own), corners % tuple(nodes)]
     lines.append("    -1")
     row = {tuple(pair): i for i, pair in enumerate(np.sort(edges, axis=1).tolist())}
     members = {
@@ -55,10 +58,10 @@ def _properties(content: Content, kind: str, count: int) -> np.ndarray:
     number = (content.regions or {}).get(kind)
     number = np.zeros(count, np.int64) if number is None else np.asarray(number)
     row = names.elements.get(kind, np.full(count, -1, np.int64))
-    pairs, place = np.unique(np.column_stack([number, row]), axis=0, return_inverse=True)
+    pairs, place = unique_pairs(number, row)
     keys = [names.regions[int(one)] if one >= 0 else f"region={int(n) + 1}" for n, one in pairs]
     tags = tags_of(list(dict.fromkeys(keys)), 2, names.tags)
-    return np.array([tags[key] for key in keys], np.int64)[place.ravel()]
+    return np.array([tags[key] for key in keys], np.int64)[place]
 
 
 def _groups(members: dict[str, np.ndarray]) -> list[str]:

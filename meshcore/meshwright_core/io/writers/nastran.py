@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwright_core.errors import MeshError
 from meshwright_core.io.content import Content
-from meshwright_core.io.named_groups import tags_of
+from meshwright_core.io.named_groups import tags_of, unique_pairs
 from meshwright_core.io.writers import lines as form
 
 
@@ -36,11 +36,11 @@ def _properties(content: Content, kind: str, count: int) -> tuple[list[int], lis
     numbers = (content.regions or {}).get(kind)
     numbers = np.zeros(count, np.int64) if numbers is None else np.asarray(numbers)
     row = names.elements.get(kind, np.full(count, -1, np.int64))
-    pairs, place = np.unique(np.column_stack([numbers, row]), axis=0, return_inverse=True)
+    pairs, place = unique_pairs(numbers, row)
     bare = [int(number) for number, one in pairs if one < 0]
     keys = [names.regions[int(one)] if one >= 0 else f"region={int(n) + 1}" for n, one in pairs]
     tags = tags_of(list(dict.fromkeys(keys)), 2, names.tags)
-    owners = np.array([tags[key] for key in keys])[place.ravel()]
+    owners = np.array([tags[key] for key in keys])[place]
     comments = [
         f'$HMNAME PROP          {tag:>8}"{key.replace(chr(34), chr(39))}"'
         for key, tag in tags.items()

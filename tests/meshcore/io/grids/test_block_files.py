@@ -9,6 +9,7 @@ from block_meshes import annulus, corner_blocks, quarter_ring, two_regions
 from meshwright_core import MeshError, read
 from meshwright_core.blocks.grid import BlockGrid, Sizing, WallLayer, block_grid
 from meshwright_core.blocks.grid_quality import block_sides
+from meshwright_core.io import mesh_files
 from meshwright_core.io.grids import cgns, plot3d
 from meshwright_core.io.grids.block_files import write_blocks
 from meshwright_core.io.grids.openfoam import Extrusion, block_mesh_dict
@@ -116,6 +117,10 @@ def test_cgns_has_the_layout_of_the_standard(tmp_path, ring):
             x = zone["GridCoordinates"]["CoordinateX"][" data"][:]
             assert (x == ring.block_points(block)[:, :, 0]).all()
             assert len(zone["ZoneGridConnectivity"]) == 2
+    found = mesh_files.load(path)
+    assert found.mesh.n_elements == ring.cell_count
+    assert len(found.parts) == 4
+    assert set(found.mesh.sides()) == {"far", "wall"}
 
 
 def test_without_h5py_cgns_is_refused(tmp_path, ring, monkeypatch):

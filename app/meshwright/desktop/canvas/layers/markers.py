@@ -25,6 +25,8 @@ class MarkersLayer(Layer):
         self._font.setWeight(QFont.Weight.DemiBold)
         # x, y, radius, delta, corner?, anchor? of visible irregular vertices
         self._discs = np.empty((0, 6))
+        self._marks: Markers | None = None  # of the discs, which are not VTK's
+        self._displaced, self._places = np.empty(0, np.int64), np.empty((0, 2))
         self._numbers = True
         self._strokes = True
         self._corners = np.empty((0, 2))
@@ -56,6 +58,25 @@ class MarkersLayer(Layer):
             self._strokes = shown
             self.changed()
 
+    @property
+    def discs(self) -> np.ndarray:
+        """(n, 4) the visible irregular vertices: x, y and radius in pixels, irregularity."""
+        return self._discs[:, :4]
+
+    def displace(
+        self, vertices: np.ndarray | None = None, places: np.ndarray | None = None
+    ) -> None:
+        """Mark these vertices (n,), in ascending order, at other places (n, 2) of the plane: where
+        another layer draws them. Without arguments all are marked where they are.
+        """
+        if vertices is None or places is None:
+            if not len(self._displaced):
+                return
+            vertices, places = np.empty(0, np.int64), np.empty((0, 2))
+        self._displaced, self._places = vertices, places
+        self._place_discs()
+        self.changed()
+
     def show(
         self,
         marks: Markers | None,
@@ -69,7 +90,7 @@ class MarkersLayer(Layer):
         Discs are VTK's where ``crowd``, the boundary is where ``outlined``.
         """
         self.viewport = viewport
-        self._discs = np.empty((0, 6))
+        self._marks = marks if edges is not None and not crowd else None
         self._corners = self._anchors = self._rings = self._pins = np.empty((0, 2))
         self._outline, self._interfaces = QPainterPath(), QPainterPath()
         if marks is not None and edges is not None:
@@ -85,16 +106,29 @@ class MarkersLayer(Layer):
                 self._corners = corners if len(corners) < MOST_CORNERS else self._corners
                 anchors = inside(viewport.to_screen(marks.anchor_places), viewport)
                 self._anchors = anchors if len(anchors) < MOST_CORNERS else self._anchors
-                discs = np.column_stack(
-                    (
-                        viewport.to_screen(marks.places),
-                        marks.radii(viewport),
-                        marks.delta,
-                        marks.corners,
-                        marks.anchors,
-                    )
-                )
-                self._discs = inside(discs, viewport)
+        self._place_discs()
+
+    def _place_discs(self) -> None:
+        marks, viewport = self._marks, self.viewport
+        if marks is None:
+            self._discs = np.empty((0, 6))
+            return
+        places = marks.places
+        if len(self._displaced):
+            row = np.searchsorted(self._displaced, marks.vertices)
+            row = np.minimum(row, len(self._displaced) - 1)
+            moved = self._displaced[row] == marks.vertices
+            places = np.where(moved[:, None], self._places[row], places)
+        discs = np.column_stack(
+            (
+                viewport.to_screen(places),
+                marks.radii(viewport),
+                marks.delta,
+                marks.corners,
+                marks.anchors,
+            )
+        )
+        self._discs = inside(discs, viewport)
 
     def paint(self, painter: QPainter, rect: QRect) -> None:
         """Paint the boundary, then the marks on vertices."""

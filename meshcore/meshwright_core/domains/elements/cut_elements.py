@@ -1,7 +1,7 @@
-"""Shape of the quads that triangles with curved sides are cut into.
+"""Shape of the quads that elements with curved sides are cut into.
 
-A triangle of corners a, b, c is cut through the middles of its sides and a centre. Each quad has
-two curved sides at most: the halves of the triangle's sides at its corner. Its shape is that of its
+A triangle or quad is cut through the middles of its sides and a centre. Each of the new quads has
+two curved sides at most: the halves of the element's sides at its corner. Its shape is that of its
 Coons map at the samples of :mod:`meshwright_core.geometry.coons`.
 """
 
@@ -30,11 +30,11 @@ _SEEN = 0.15
 """Sine of the angle at an end of an edge, from the edge to a point that sees it well."""
 
 
-class CurvedTriangles:
-    """Triangles some of whose sides are edges of the domain's sides.
+class CutElements:
+    """Triangles and quads some of whose sides are edges of the domain's sides.
 
     Args:
-        edges: cut so that every edge is a side of triangles.
+        edges: cut so that every edge is a side of elements.
         points: (n, 2) of all vertices, those of the edges first.
     """
 
@@ -46,11 +46,11 @@ class CurvedTriangles:
         order = np.argsort(keys)
         self._keys, self._bent = keys[order], bent[order]
 
-    def side_edges(self, triangles: Ids) -> Ids:
-        """(m, 3) the bent edge that each side is, from corner i to i + 1; -1 for straight ones."""
-        start, end = triangles, np.roll(triangles, -1, axis=1)
+    def side_edges(self, elements: Ids) -> Ids:
+        """(m, k) the bent edge that each side is, from corner i to i + 1; -1 for straight ones."""
+        start, end = elements, np.roll(elements, -1, axis=1)
         key = np.minimum(start, end) * len(self.points) + np.maximum(start, end)
-        found = np.full(triangles.shape, -1)
+        found = np.full(elements.shape, -1)
         if len(self._keys):
             at = np.minimum(np.searchsorted(self._keys, key), len(self._keys) - 1)
             found = np.where(self._keys[at] == key, self._bent[at], -1)
@@ -66,32 +66,36 @@ class CurvedTriangles:
         found = np.where(triangle_areas(self.points, triangles) > 0.0, 1.0, -1.0)
         bent = np.flatnonzero(~plain)
         if len(bent):
-            found[bent] = self._curved_shapes(triangles[bent], sides[bent])
+            found[bent] = self._cut_shapes(triangles[bent], sides[bent])
         return found
 
-    def _curved_shapes(self, triangles: Ids, sides: Ids) -> Reals:
-        count, n = len(triangles), len(self.points)
-        middles = 0.5 * (self.points[triangles] + self.points[np.roll(triangles, -1, axis=1)])
+    def quad_shapes(self, quads: Ids) -> Reals:
+        """(m,) the least scaled Jacobian of the four quads of each quad (m, 4)."""
+        return self._cut_shapes(quads, self.side_edges(quads))
+
+    def _cut_shapes(self, elements: Ids, sides: Ids) -> Reals:
+        (count, k), n = elements.shape, len(self.points)
+        middles = 0.5 * (self.points[elements] + self.points[np.roll(elements, -1, axis=1)])
         row, corner = np.nonzero(sides >= 0)
         edge = sides[row, corner]
-        span = self._spans(triangles[row, corner], edge)
+        span = self._spans(elements[row, corner], edge)
         half = span.mean(axis=1)
         middles[row, corner] = place_all(self.edges.curves, self.edges.side[edge], half)[:, :2]
         points = np.concatenate([self.points, middles.reshape(-1, 2), middles.mean(axis=1)])
         # one quad at each corner: the middles of the sides from and to it, and the centre
-        middle = n + np.arange(3 * count).reshape(count, 3)
-        centre = np.broadcast_to(n + 3 * count + np.arange(count)[:, None], (count, 3))
-        quads = np.stack([triangles, middle, centre, np.roll(middle, 1, axis=1)], axis=2)
-        number = np.full((count, 3, 4), -1)
+        middle = n + np.arange(k * count).reshape(count, k)
+        centre = np.broadcast_to(n + k * count + np.arange(count)[:, None], (count, k))
+        quads = np.stack([elements, middle, centre, np.roll(middle, 1, axis=1)], axis=2)
+        number = np.full((count, k, 4), -1)
         number[row, corner, 0] = np.arange(len(row))
-        number[row, (corner + 1) % 3, 3] = len(row) + np.arange(len(row))
+        number[row, (corner + 1) % k, 3] = len(row) + np.arange(len(row))
         base = np.concatenate(
             [np.column_stack([span[:, 0], half]), np.column_stack([half, span[:, 1]])]
         )
         sines, _ = self._corners(
             points, quads.reshape(-1, 4), number.reshape(-1, 4), np.tile(edge, 2), base
         )
-        found: Reals = sines.reshape(count, -1).min(axis=1)
+        found: Reals = sines.reshape(count, 4 * k).min(axis=1)
         return found
 
     def corner_angles(self, triangles: Ids) -> Reals:
