@@ -8,6 +8,10 @@ import pytest
 import system_requirements
 from hypothesis import HealthCheck, settings
 
+# One thread each for the small products of the policies, before anything imports PyTorch: more of
+# them only wait for each other, and take the cores from the tests that run beside.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
 HERE = Path(__file__).parent
 MOST_WORKERS = 8
 """Each holds PyTorch, Qt and the kernels, which is about a gigabyte."""

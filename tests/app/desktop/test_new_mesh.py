@@ -2,15 +2,17 @@
 
 import json
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from driving import WAIT
-from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
+from qtpy.QtCore import QMimeData, QPoint, QPointF, QProcess, Qt, QTimer, QUrl
 from qtpy.QtGui import QDropEvent
 from qtpy.QtWidgets import QApplication
 
 from meshwright.desktop.files.new_mesh import NewMeshDialog
+from meshwright.desktop.files.new_mesh import dialog as dialog_module
 from meshwright.desktop.files.new_mesh.found_regions import NONE_CHOSEN
 from meshwright.desktop.files.new_mesh.mesh_process import MeshProcess
 from meshwright.graphics.theme import theme
@@ -30,8 +32,39 @@ REQUEST = {
 }
 
 
+class KeptProcess(MeshProcess):
+    """Leaves its process, if that has nothing to do, to the next one: imports take seconds."""
+
+    idle: ClassVar[list[QProcess]] = []
+
+    def start(self) -> None:
+        if self._process is None and self.idle:
+            process = self.idle.pop()
+            process.setParent(self)
+            self._attach(process)
+        super().start()
+
+    def close(self) -> None:
+        if self._process is not None and self._asked is None:
+            process = self._detach()
+            process.setParent(None)
+            self.idle.append(process)
+        super().close()
+
+
+@pytest.fixture(scope="module")
+def _one_process():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(dialog_module, "MeshProcess", KeptProcess)
+        yield
+    while KeptProcess.idle:
+        process = KeptProcess.idle.pop()
+        process.kill()
+        process.waitForFinished()
+
+
 @pytest.fixture
-def dialog(qtbot):
+def dialog(qtbot, _one_process):
     """The dialog, after the first mesh has been made."""
     made = NewMeshDialog("quad", theme("light"))
     qtbot.addWidget(made)
@@ -638,7 +671,9 @@ def test_dead_process_is_reported_and_replaced(qtbot):
     with qtbot.waitSignal(maker.made, timeout=WAIT) as made:
         maker.ask(REQUEST, at_once=True)
     assert made.args[0].score == 12
+    process = maker._process
     maker.close()
+    assert process.state() == QProcess.ProcessState.NotRunning
 
 
 def test_message_frames_round_trip():

@@ -4,6 +4,7 @@ nbformat and nbclient are imported inside functions: they load the grammars of J
 takes seconds, in every process that collects the tests.
 """
 
+import ast
 import copy
 import itertools
 import re
@@ -26,6 +27,9 @@ ALLOWED_LINKS = {
     "https://en.wikipedia.org/wiki/Gauss%E2%80%93Bonnet_theorem",
 }
 """Pages outside that a lesson may send a reader to."""
+
+LONG = re.compile(r"\b(mw\.compare|mw\.table_row|Trainer|trainer\.improve)\(")
+"""Calls that search, measure or train for many seconds, in cells that no answer has a part in."""
 
 LONGEST_CELL = 10
 WORDS = (500, 1800)
@@ -56,23 +60,39 @@ def tried(cell: Any, code: str, state: str) -> Any:
     return made
 
 
+def is_long(cell: Any) -> bool:
+    return cell.cell_type == "code" and LONG.search(cell.source) is not None
+
+
+def assigned(cell: Any) -> set[str]:
+    """The names that the cell binds, but for those in functions."""
+    nodes = [node for part in ast.parse(cell.source).body for node in ast.walk(part)]
+    return {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+
+
 def blank_then_solved(notebook: Any) -> Any:
     """The cells of a lesson as shipped, then from an empty namespace with wrong answers and with
     solutions: one notebook, so that one kernel is started.
+
+    What cells with a :data:`LONG` call have made stays in the namespace, and they run once.
     """
     from nbformat import v4
 
     cells = []
+    kept: set[str] = set()
     for cell in notebook.cells:
         shipped = copy.deepcopy(cell)
         if exercise_of(cell) is not None:
             shipped.metadata["wanted"] = BLANK
+        elif is_long(cell):
+            kept |= assigned(cell)
         cells.append(shipped)
-    cells.append(v4.new_code_cell("%reset -f"))
+    cells.append(v4.new_code_cell(rf"%reset_selective -f ^(?!({'|'.join(kept)})$)"))
     for cell in notebook.cells:
         about = exercise_of(cell)
         if about is None:
-            cells.append(copy.deepcopy(cell))
+            if not is_long(cell):
+                cells.append(copy.deepcopy(cell))
             continue
         cells += [tried(cell, code, WRONG) for code in about["wrong"]]
         cells.append(tried(cell, about["solution"], RIGHT))

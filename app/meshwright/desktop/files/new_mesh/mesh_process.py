@@ -59,10 +59,7 @@ class MeshProcess(QObject):
         environment.insert("PYTHONPATH", os.pathsep.join(path for path in sys.path if path))
         process.setProcessEnvironment(environment)
         process.setStandardErrorFile(QProcess.nullDevice())
-        process.readyReadStandardOutput.connect(self._on_answer)
-        process.finished.connect(self._on_ended)
-        process.errorOccurred.connect(self._on_ended)
-        self._process, self._received = process, bytearray()
+        self._attach(process)
         process.start(sys.executable, ["-m", mesh_worker.__name__])
 
     def ask(self, request: Mapping[str, Any], at_once: bool = False) -> None:
@@ -106,13 +103,24 @@ class MeshProcess(QObject):
         self.start()
         self._send()
 
-    def _end(self) -> None:
+    def _attach(self, process: QProcess) -> None:
+        process.readyReadStandardOutput.connect(self._on_answer)
+        process.finished.connect(self._on_ended)
+        process.errorOccurred.connect(self._on_ended)
+        self._process, self._received = process, bytearray()
+
+    def _detach(self) -> QProcess | None:
         process, self._process = self._process, None
+        if process is not None:
+            process.readyReadStandardOutput.disconnect(self._on_answer)
+            process.finished.disconnect(self._on_ended)
+            process.errorOccurred.disconnect(self._on_ended)
+        return process
+
+    def _end(self) -> None:
+        process = self._detach()
         if process is None:
             return
-        process.readyReadStandardOutput.disconnect(self._on_answer)
-        process.finished.disconnect(self._on_ended)
-        process.errorOccurred.disconnect(self._on_ended)
         process.kill()
         process.waitForFinished(1000)
         process.deleteLater()
