@@ -301,7 +301,9 @@ class Builder:
                 f"{self._collapsed} quad{'s' if more else ''} with a corner that is given twice "
                 f"{'are' if more else 'is'} read as {'triangles' if more else 'a triangle'}"
             )
-        for name in dict.fromkeys(one[0] for one in (*self._groups, *self._edges, *self._sets)):
+        names = [one[0] for one in self._groups]
+        names += [one[0] for one in self._edges] + [one[0] for one in self._sets]
+        for name in dict.fromkeys(names):
             if safe(name) != " ".join(name.split()):
                 said.append(f"the name {name[:60]!r} is read as {safe(name)[:60]!r}")
         return said
