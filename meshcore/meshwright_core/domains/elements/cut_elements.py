@@ -71,7 +71,25 @@ class CutElements:
 
     def quad_shapes(self, quads: Ids) -> Reals:
         """(m,) the least scaled Jacobian of the four quads of each quad (m, 4)."""
-        return self._cut_shapes(quads, self.side_edges(quads))
+        sides = self.side_edges(quads)
+        bent = (sides >= 0).any(axis=1)
+        found = self._plain_shapes(quads)
+        if bent.any():
+            found[bent] = self._cut_shapes(quads[bent], sides[bent])
+        return found
+
+    def _plain_shapes(self, quads: Ids) -> Reals:
+        """The same for straight sides."""
+        corners = self.points[quads]
+        middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+        centres = np.broadcast_to(middles.mean(axis=1)[:, None], corners.shape)
+        parts = np.stack([corners, middles, centres, np.roll(middles, 1, axis=1)], axis=2)
+        ahead = np.roll(parts, -1, axis=2) - parts
+        back = np.roll(parts, 1, axis=2) - parts
+        area = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
+        lengths = np.linalg.norm(ahead, axis=3) * np.linalg.norm(back, axis=3)
+        found: Reals = (area / np.maximum(lengths, 1e-300)).min(axis=(1, 2))
+        return found
 
     def _cut_shapes(self, elements: Ids, sides: Ids) -> Reals:
         (count, k), n = elements.shape, len(self.points)
