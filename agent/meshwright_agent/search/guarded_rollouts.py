@@ -320,8 +320,8 @@ class GuardedDescent:
     """Rounds of guarded rollouts, from the start and from the best state in turn.
 
     Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), free rollouts
-    from the start, and, where a round has not brought s down, ways down from the best state by
-    annealing. Little of what these reach can be drawn before its strips are divided
+    from the start and the best state, and, where a round has not brought s down, ways down from the
+    best state by annealing. Little of what these reach can be drawn before its strips are divided
     (:mod:`meshwright_agent.search.divided_layouts`).
 
     Args:

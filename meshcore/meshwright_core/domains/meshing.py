@@ -89,9 +89,9 @@ def mesh_domain(
             first, in a way that depends on the seed, so that it chooses otherwise where it can.
         quads: "catmull-clark" cuts each triangle into three quads; by default the triangles of a
             domain with straight sides have no points but its corners, as in the benchmark, and
-            where sides bend well-shaped pairs of triangles are cut into four.
-            "pairing" joins triangles in pairs, and cuts everything once more
-            if some triangle stays alone.
+            in a domain of curves or of regions well-shaped pairs of them are cut into four.
+            "pairing" joins triangles in pairs, and cuts everything once more if some triangle
+            stays alone.
         seconds: processor time that it may take. Left out: 30, and 10 more for each million
             triangles that the bounds ask for. A limit that holds already
             (:func:`meshwright_core.core.time_limit.time_limit`) stays.

@@ -17,6 +17,7 @@ from meshwright_core.domains.elements.side_edges import SAMPLES, STRAIGHT, SideE
 from meshwright_core.domains.elements.triangulation import triangle_areas
 from meshwright_core.geometry.coons import SAMPLES as COONS_SAMPLES
 from meshwright_core.geometry.coons import CurvedElements, curved_corners
+from meshwright_core.geometry.quality import straight_corners
 
 Points = NDArray[np.float64]
 Ids = NDArray[np.int64]
@@ -26,6 +27,7 @@ _HALVINGS = 14
 _TOUCH = 0.03
 """Share of a circle's radius that its distance from sampled sides may be short of it."""
 _SURE = 1e-9
+_UP = np.array([0.0, 0.0, 1.0])
 _SEEN = 0.15
 """Sine of the angle at an end of an edge, from the edge to a point that sees it well."""
 
@@ -84,11 +86,8 @@ class CutElements:
         middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
         centres = np.broadcast_to(middles.mean(axis=1)[:, None], corners.shape)
         parts = np.stack([corners, middles, centres, np.roll(middles, 1, axis=1)], axis=2)
-        ahead = np.roll(parts, -1, axis=2) - parts
-        back = np.roll(parts, 1, axis=2) - parts
-        area = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
-        lengths = np.linalg.norm(ahead, axis=3) * np.linalg.norm(back, axis=3)
-        found: Reals = (area / np.maximum(lengths, 1e-300)).min(axis=(1, 2))
+        sines = straight_corners(parts.reshape(-1, 4, 2), _UP).sine
+        found: Reals = sines.reshape(len(quads), 16).min(axis=1)
         return found
 
     def _cut_shapes(self, elements: Ids, sides: Ids) -> Reals:
