@@ -4,7 +4,8 @@ A candidate is the collapse of a strip or the deletion of a line of regular vert
 to a copy, rejected at once where the degrees alone forbid a good shape, then positioned
 (:mod:`meshwright_core.geometry.layout_positions`) and kept if the layout is better in this order:
 nothing inverted; lower s; worst corner sine, up to a target; smaller sum of the squared
-irregularities; fewer elements. A layout is changed in larger steps by a *kick*: some random
+irregularities; fewer elements. Sines are weighed so that long thin elements count as bad ones
+(:func:`meshwright_core.geometry.element_sines.thinness`). A layout is changed in larger steps by a *kick*: some random
 operations, followed by annealing until s is as low as before. All of it is compiled; every
 operation is logged.
 """
@@ -49,6 +50,7 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
+from meshwright_core.geometry.element_sines import thinness
 from meshwright_core.geometry.layout_positions import layout_bound, position, rails_of
 from meshwright_core.geometry.local_positions import LocalEffort, local_effort, settle
 from meshwright_core.geometry.turning import has_bends
@@ -288,7 +290,7 @@ def _wander(m, h, rng):
 
 @kernel
 def worst_halfedge(m):
-    """The half-edge whose origin is the corner with the smallest sine, by the chords."""
+    """The half-edge whose origin is the corner with the smallest weighed sine, by the chords."""
     worst, where = np.inf, -1
     points = m.points
     for h in range(4 * m.counters[ELEMENT_SLOTS]):
@@ -298,7 +300,8 @@ def worst_halfedge(m):
         t = m.edge[preceding(h, 4), ORIGIN]
         px, py = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
         qx, qy = points[t, 0] - points[o, 0], points[t, 1] - points[o, 1]
-        sine = (px * qy - py * qx) / (np.hypot(px, py) * np.hypot(qx, qy) + 1e-300)
+        p, q = np.hypot(px, py), np.hypot(qx, qy)
+        sine = thinness(p, q) * (px * qy - py * qx) / (p * q + 1e-300)
         if sine < worst:
             worst, where = sine, h
     return where

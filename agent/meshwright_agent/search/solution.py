@@ -13,6 +13,7 @@ from meshwright_agent.search.guarded_coarsening import ALIKE, FINEST, Aims, Coar
 from meshwright_core.core.arrays import MeshArrays
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.element_shapes import element_shapes
+from meshwright_core.geometry.element_sines import THIN
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.mesh import HalfEdgeMesh
@@ -76,13 +77,13 @@ class Solution:
 
     @property
     def rank(self) -> tuple[bool, int, int, int, int, float, int]:
-        """Solutions with a lower rank are better: valid; s; inverted elements; worst scaled
-        Jacobian up to the target; sum of squares; elements, weighed against shape; operations.
+        """Solutions with a lower rank are better: valid; s; inverted elements; worst element up to
+        the target; sum of squares; elements, weighed against shape; operations.
         """
-        aims = self.aims
-        shape = -int(min(self.worst_scaled_jacobian, aims.target) / ALIKE)
+        aims, worst = self.aims, min(self.worst_scaled_jacobian, THIN * self.worst_shape)
+        shape = -int(min(worst, aims.target) / ALIKE)
         spread = self.sum_delta2 if aims.spread else 0
-        weighed = cost(self.worst_scaled_jacobian, self.elements, aims) if self.coarse else 0.0
+        weighed = cost(worst, self.elements, aims) if self.coarse else 0.0
         return (
             self.inverted > 0, self.score, self.inverted, shape, spread, round(weighed, 3),
             len(self.operations),
@@ -162,8 +163,11 @@ def judged(
 
 
 def _is_short(mesh: HalfEdgeMesh, aims: Aims) -> bool:
-    """Whether the worst corner is below the target, if there is one."""
-    return float(scaled_jacobian(mesh).min(initial=1.0)) < aims.target
+    """Whether the worst element is below the target, if there is one."""
+    worst = min(
+        scaled_jacobian(mesh).min(initial=1.0), THIN * element_shapes(mesh).min(initial=1.0)
+    )
+    return bool(worst < aims.target)
 
 
 def _best_positions(reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:

@@ -1,5 +1,7 @@
 """The smallest sine of quads as a compiled search changes them: at corners, and where sides bend at
 all samples of the Coons map (:mod:`meshwright_core.geometry.coons`).
+
+A sine does not see how long and thin an element is, so each is weighed by :func:`thinness`.
 """
 
 from __future__ import annotations
@@ -25,6 +27,21 @@ from meshwright_core.geometry.turning import BENDS, turning_between
 
 MOST_TURN = np.radians(300.0)
 """Radians that one edge may turn: the samples of an element see no more."""
+
+
+THIN = 4.0
+"""Half of P/Q + Q/P, with the lengths P and Q of the sides at a corner, beyond which its sine counts
+less: sides of about 1 to 8."""
+
+
+@bare_kernel
+def thinness(p, q):
+    """The factor that the sine at a corner with sides of lengths p and q is weighed by.
+
+    1 up to :data:`THIN`; beyond, the weighed sine is THIN times the corner's shape
+    2 J / (p^2 + q^2), which falls with the ratio of the sides.
+    """
+    return min(1.0, 2.0 * THIN * p * q / (p * p + q * q + 1e-300))
 
 
 @by_reference
@@ -57,21 +74,22 @@ def gauge() -> Gauge:
 
 @bare_kernel
 def _straight_sine(m, e):
-    """The smallest corner sine of quad e by its chords."""
+    """The smallest weighed sine of quad e at its corners, by its chords."""
     worst = 1.0
     for i in range(4):
         o, s = m.edge[4 * e + i, ORIGIN], m.edge[4 * e + (i + 1) % 4, ORIGIN]
         t = m.edge[4 * e + (i + 3) % 4, ORIGIN]
         px, py = m.points[s, 0] - m.points[o, 0], m.points[s, 1] - m.points[o, 1]
         qx, qy = m.points[t, 0] - m.points[o, 0], m.points[t, 1] - m.points[o, 1]
-        lengths = np.sqrt((px * px + py * py) * (qx * qx + qy * qy))
-        worst = min(worst, (px * qy - py * qx) / lengths if lengths > 0.0 else 0.0)
+        p, q = np.sqrt(px * px + py * py), np.sqrt(qx * qx + qy * qy)
+        sine = (px * qy - py * qx) / (p * q) if p * q > 0.0 else 0.0
+        worst = min(worst, thinness(p, q) * sine)
     return worst
 
 
 @bare_kernel
 def element_sine(m, turning, gauge, e):
-    """The smallest sine of quad e, at its corners and at the samples if a side bends.
+    """The smallest weighed sine of quad e, at its corners and at the samples if a side bends.
 
     0 where a side turns by more than :data:`MOST_TURN`.
     """
@@ -107,8 +125,10 @@ def element_sine(m, turning, gauge, e):
     worst = 1.0
     for s in range(len(gauge.samples.nearest)):
         derivatives(curved, gauge.points, 0, s, gauge.d, gauge.slope, p, q)
-        lengths = np.sqrt(np.dot(p, p) * np.dot(q, q))
-        worst = min(worst, determinant(p, q, normal) / lengths if lengths > 0.0 else 0.0)
+        first, second = np.sqrt(np.dot(p, p)), np.sqrt(np.dot(q, q))
+        lengths = first * second
+        sine = determinant(p, q, normal) / lengths if lengths > 0.0 else 0.0
+        worst = min(worst, thinness(first, second) * sine)
     return worst
 
 

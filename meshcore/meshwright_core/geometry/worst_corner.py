@@ -14,7 +14,8 @@ lengths P and Q of a corner, three functions are minimised by L-BFGS:
 
   for growing p. The first term tends to minus the smallest sine; the second, small one is the mean
   of one over the corners' shapes: it is infinite for a folded corner, so that no step inverts an
-  element, and keeps elements from shrinking, which a sine does not see;
+  element, and keeps elements from shrinking, which a sine does not see. Sines are weighed by
+  :func:`meshwright_core.geometry.element_sines.thinness` here;
 - for the other elements, the same with sines beyond a level left out, and a larger w.
 """
 
@@ -34,6 +35,7 @@ from meshwright_core.geometry.bent_elements import (
     pull_bent,
     set_pull,
 )
+from meshwright_core.geometry.element_sines import THIN, thinness
 from meshwright_core.geometry.foldover_energy import (
     GAP_WEIGHT,
     MEMORY,
@@ -184,33 +186,33 @@ def _pull_side(problem, gradient, c, which, by_length, by_way_x, by_way_y):
     _pull(problem, gradient, o, -gx, -gy)
 
 
-@bare_kernel
-def sine_of(problem, c):
-    """The sine at corner c."""
-    px, py, _ = _side(problem, c, 0)
-    qx, qy, _ = _side(problem, c, 1)
-    return px * qy - py * qx
-
-
-@kernel
-def worst_sine(problem):
-    """The smallest sine at the present points, of corners and of samples of bent elements; 1 if
-    there are none.
-    """
-    worst = 1.0
-    for c in range(len(problem.corners)):
-        worst = min(worst, sine_of(problem, c))
-    for b in range(len(problem.bent.vertices)):
-        for s in range(problem.bent.used[0]):
-            sine, _, _ = bent_sine(problem.bent, b, s)
-            worst = min(worst, sine)
-    return worst
-
-
 @kernel
 def terms(problem):
     """How many sines there are, of corners and of samples."""
     return len(problem.corners) + problem.bent.used[0] * len(problem.bent.vertices)
+
+
+@bare_kernel
+def _term(problem, c):
+    """The sine of term c, first those at corners, then those at samples, and the lengths P, Q."""
+    corners, used = len(problem.corners), problem.bent.used[0]
+    if c >= corners:
+        return bent_sine(problem.bent, (c - corners) // used, (c - corners) % used)
+    px, py, p = _side(problem, c, 0)
+    qx, qy, q = _side(problem, c, 1)
+    return px * qy - py * qx, p, q
+
+
+@kernel
+def worst_sine(problem):
+    """The smallest weighed sine at the present points, of corners and of samples of bent elements;
+    1 if there are none.
+    """
+    worst = 1.0
+    for c in range(terms(problem)):
+        sine, p, q = _term(problem, c)
+        worst = min(worst, thinness(p, q) * sine)
+    return worst
 
 
 @bare_kernel
@@ -270,13 +272,9 @@ def _soft_worst(problem, x, gradient, sines, aim):
     """The objective f of the positions, see the module; infinite where a corner folds."""
     corners, bent, used = len(problem.corners), problem.bent, problem.bent.used[0]
     worst, count = 1.0, len(sines)
-    for c in range(corners):
-        sines[c] = sine_of(problem, c)
-        if not sines[c] > FOLDED:
-            return np.inf, sines[c]
-        worst = min(worst, sines[c])
-    for c in range(corners, count):
-        sines[c], _, _ = bent_sine(bent, (c - corners) // used, (c - corners) % used)
+    for c in range(count):
+        sine, p, q = _term(problem, c)
+        sines[c] = thinness(p, q) * sine
         if not sines[c] > FOLDED:
             return np.inf, sines[c]
         worst = min(worst, sines[c])
@@ -287,21 +285,26 @@ def _soft_worst(problem, x, gradient, sines, aim):
     value = np.log(total) / sharpness - worst
     share = 0.5 * weight / count
     for c in range(count):
-        b, s = (c - corners) // used, (c - corners) % used
-        if c < corners:
-            _, _, p = _side(problem, c, 0)
-            _, _, q = _side(problem, c, 1)
+        sine, p, q = _term(problem, c)
+        ratio = p / q
+        shape = ratio + 1.0 / ratio
+        value += share * shape / sine
+        by_weighed = -np.exp(sharpness * (worst - sines[c])) / total
+        by_sine = -share * shape / (sine * sine)
+        by_shape = share / sine
+        if shape > 2.0 * THIN:
+            by_sine += by_weighed * 2.0 * THIN / shape
+            by_shape -= by_weighed * sines[c] / shape
         else:
-            _, p, q = bent_sine(bent, b, s)
-        sine, ratio = sines[c], p / q
-        value += share * (ratio + 1.0 / ratio) / sine
-        by_sine = -share * (ratio + 1.0 / ratio) / (sine * sine)
-        by_sine -= np.exp(sharpness * (worst - sine)) / total
-        by_ratio = share * (1.0 - 1.0 / (ratio * ratio)) / sine
+            by_sine += by_weighed
+        by_ratio = by_shape * (1.0 - 1.0 / (ratio * ratio))
         if c < corners:
             _back(problem, gradient, c, by_ratio / q, -by_ratio * ratio / q, by_sine)
         else:
-            set_pull(bent, b, s, by_ratio / q, -by_ratio * ratio / q, by_sine)
+            set_pull(
+                bent, (c - corners) // used, (c - corners) % used, by_ratio / q,
+                -by_ratio * ratio / q, by_sine,
+            )  # fmt: skip
     _pull_samples(problem, x, gradient)
     return value, worst
 
@@ -314,13 +317,8 @@ def _foldover(problem, x, gradient, aim):
     total, smallest = 0.0, np.inf
     for c in range(terms(problem)):
         b, s = (c - corners) // used, (c - corners) % used
-        if c < corners:
-            _, _, p = _side(problem, c, 0)
-            _, _, q = _side(problem, c, 1)
-            sine, scale = sine_of(problem, c), problem.scale[c]
-        else:
-            sine, p, q = bent_sine(bent, b, s)
-            scale = bent.scale[b]
+        sine, p, q = _term(problem, c)
+        scale = problem.scale[c] if c < corners else bent.scale[b]
         det, trace = scale * p * q * sine, scale * (p * p + q * q)
         smallest = min(smallest, det)
         root = np.sqrt(eps * eps + det * det)
