@@ -162,6 +162,7 @@ def test_the_policy_is_loaded_once_nobody_has_done_anything_for_a_moment(
 ):
     window = open_window(star)
     idle = window.agent._idle
+    idle.setTimerType(Qt.TimerType.PreciseTimer)
     idle.setInterval(WAIT)
     asked, prepare = [], window.assistant.prepare
     monkeypatch.setattr(
