@@ -56,6 +56,24 @@ def test_alt_goes_to_the_menu_bar(qtbot, open_window, star):
     assert bar.activeAction().text() == "&File"
 
 
+def test_down_after_alt_opens_the_menu_and_arrows_walk_through_the_bar(qtbot, open_window, star):
+    window = open_window(star)
+    bar = window.menuBar()
+    press(qtbot, window, Qt.Key.Key_Alt)
+    qtbot.waitUntil(bar.hasFocus, timeout=WAIT)
+    for key, title in ((None, "&File"), (Qt.Key.Key_Right, "&Edit"), (Qt.Key.Key_Left, "&File")):
+        if key is not None:
+            QTest.keyClick(bar, key)
+        assert bar.activeAction().text() == title
+    QTest.keyClick(bar, Qt.Key.Key_Down)
+    qtbot.waitUntil(lambda: popup() is not None, timeout=WAIT)
+    assert popup().title() == "&File"
+    QTest.keyClick(popup(), Qt.Key.Key_Down)
+    assert popup().activeAction() is not None
+    QTest.keyClick(popup(), Qt.Key.Key_Escape)
+    qtbot.waitUntil(lambda: popup() is None, timeout=WAIT)
+
+
 def test_a_menu_runs_an_action_by_keys(qtbot, open_window, star):
     window = open_window(star)
     press(qtbot, window, Qt.Key.Key_E)

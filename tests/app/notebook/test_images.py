@@ -2,9 +2,13 @@
 
 import io
 import re
+import signal
+import sys
 import xml.etree.ElementTree as ElementTree
 from base64 import b64decode
+from contextlib import nullcontext
 from html.parser import HTMLParser
+from types import SimpleNamespace
 from urllib.parse import unquote
 
 import pytest
@@ -14,7 +18,7 @@ from meshwright.document.document import Document
 from meshwright.document.timeline import NO_MESH
 from meshwright.graphics.export import mimebundle
 from meshwright.notebook import MeshWidget
-from meshwright.notebook.export import images
+from meshwright.notebook.export import film_progress, images
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery, meshing
 
@@ -165,3 +169,59 @@ def test_an_existing_file_is_kept_if_writing_fails(document, tmp_path, monkeypat
     assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 1
     with pytest.raises(MeshError, match=r"^The image cannot be made \(no space left on device\)"):
         images.png(document, SMALL)
+
+
+@pytest.mark.parametrize("ending", [".gif", ".mp4"])
+def test_an_interrupted_film_leaves_the_file_and_the_mesh_as_they_were(
+    document, tmp_path, monkeypatch, ending
+):
+    widget, path = MeshWidget(document), tmp_path / f"star{ending}"
+    export = widget.to_gif if ending == ".gif" else widget.to_mp4
+    path.write_bytes(b"before")
+    document.go_to(1)
+    frames = []
+
+    def report(done, total):
+        frames.append(done)
+        signal.raise_signal(signal.SIGINT)  # what Jupyter's stop button sends
+
+    monkeypatch.setattr("meshwright.notebook.widget.shown_progress", lambda: nullcontext(report))
+    with pytest.raises(KeyboardInterrupt):
+        export(path, 0.1, SMALL)
+    assert frames == [1]
+    assert path.read_bytes() == b"before" and list(tmp_path.iterdir()) == [path]
+    assert document.history.cursor == 1 and len(document.history) == 2
+    monkeypatch.undo()
+    assert export(path, 0.1, SMALL) == path.read_bytes() != b"before"
+    widget.close()
+
+
+def test_the_progress_of_a_film_is_one_line_that_goes_with_the_film(monkeypatch):
+    shown = []
+
+    class Handle:
+        def update(self, line):
+            shown.append(repr(line))
+
+    def display(line, display_id):
+        shown.append(repr(line))
+        return Handle()
+
+    clock = iter([0.0, 0.1, 0.6, 0.7, 0.9])
+    monkeypatch.setattr(film_progress.time, "monotonic", lambda: next(clock))
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: object()))
+    monkeypatch.setitem(sys.modules, "IPython.display", SimpleNamespace(display=display))
+
+    def make_film():
+        with film_progress.shown_progress() as report:
+            for frame in range(1, 5):
+                report(frame, 2000)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        make_film()
+    line = "Film: frame {} of 2,000; interrupt the kernel to stop."
+    assert shown == [line.format(2), line.format(4), ""]
+    monkeypatch.setitem(sys.modules, "IPython", None)
+    with film_progress.shown_progress() as report:
+        assert report is None
