@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from qtpy.QtCore import QSize, Qt
-from qtpy.QtGui import QColor, QIcon, QPixmap
+from qtpy.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt
+from qtpy.QtGui import QColor, QIcon, QPalette, QPixmap
 from qtpy.QtWidgets import (
     QAbstractItemView,
     QDialog,
@@ -14,6 +14,8 @@ from qtpy.QtWidgets import (
     QHeaderView,
     QLineEdit,
     QPushButton,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -42,6 +44,9 @@ _NOTHING = (
 _HINT = "Several names of one side or region are separated by semicolons."
 
 
+_WIDEST = "Name 1,000 edges"
+
+
 class NamesDialog(QDialog):
     """Shows the names of ``document``; every change is one step of its history.
 
@@ -55,11 +60,14 @@ class NamesDialog(QDialog):
         self._document, self._colour_of = document, colour_of
         self._parts: list[NamedPart] = []
         self.setWindowTitle("Names")
-        self.resize(480, 420)
+        self.resize(540, 420)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(2 * GRID, 2 * GRID, 2 * GRID, 2 * GRID)
         layout.setSpacing(GRID)
         self.table = QTableWidget(0, 2)
+        self.table.setObjectName("Table")
+        self.table.setShowGrid(False)
+        self.table.setItemDelegate(_NoName(self.table))
         self.table.setHorizontalHeaderLabels(["Name", "Of"])
         header = self.table.horizontalHeader()
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
@@ -82,6 +90,7 @@ class NamesDialog(QDialog):
         self.regions = QPushButton()
         for part in (self.sides, self.regions):
             part.setAutoDefault(False)
+            part.setMinimumWidth(part.fontMetrics().horizontalAdvance(_WIDEST) + 4 * GRID)
         self.sides.clicked.connect(self._on_sides)
         self.regions.clicked.connect(self._on_regions)
         line.addWidget(self.name, 1)
@@ -194,6 +203,19 @@ class NamesDialog(QDialog):
         else:
             self.name.clear()
             self.fill()
+
+
+class _NoName(QStyledItemDelegate):
+    """Shows "no name" where a name is missing."""
+
+    def initStyleOption(  # noqa: N802
+        self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
+    ) -> None:
+        super().initStyleOption(option, index)
+        if not option.text:
+            option.text = "no name"
+            muted = option.palette.color(QPalette.ColorRole.PlaceholderText)
+            option.palette.setColor(QPalette.ColorRole.Text, muted)
 
 
 def _name(count: int, noun: str) -> str:
