@@ -17,10 +17,12 @@ from PIL import Image
 from meshwright.document.document import Document
 from meshwright.document.timeline import NO_MESH
 from meshwright.graphics.export import mimebundle
+from meshwright.graphics.theme import theme
 from meshwright.notebook import MeshWidget
 from meshwright.notebook.export import film_progress, images
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery, meshing
+from meshwright_core.io import mesh_files
 
 SMALL = (160, 120)
 
@@ -132,9 +134,46 @@ def test_a_widget_exports_the_same(document, tmp_path):
     widget.close()
 
 
+def test_a_picture_may_show_a_half_edge(document):
+    widget = MeshWidget(document)
+    h = document.mesh.halfedge(*document.mesh.elements()[3][:2])
+    plain, drawn = widget.to_svg(size=(800, 600)), widget.to_svg(size=(800, 600), halfedge=h)
+    arrow = theme("light").arrow
+    assert drawn.count(arrow) == plain.count(arrow) + 2
+    assert widget.to_png(size=SMALL, halfedge=h) != widget.to_png(size=SMALL)
+    widget.close()
+
+
+def test_a_widget_saves_its_history(document, tmp_path):
+    widget = MeshWidget(document)
+    path = widget.save(tmp_path / "star.meshwright")
+    widget.undo()
+    assert widget.save() == path
+    again = Document()
+    again.open(path)
+    assert repr(again.history) == repr(document.history)
+    widget.save(str(tmp_path / "star.vtk"))
+    assert mesh_files.read(tmp_path / "star.vtk").n_elements == document.mesh.n_elements
+    widget.close()
+
+
+def test_a_history_prints_its_steps(document):
+    title = document.history.last.title
+    assert repr(document.history) == (
+        "2 of 2 steps done; s 12 at first\n"
+        f"     1  {title}  s {document.history[0].after}  by you\n"
+        f"\u2192    2  {title}  s {document.history[1].after}  by you"
+    )
+    document.undo()
+    assert repr(document.history).splitlines()[1].startswith("\u2192    1")
+    assert repr(Document().history) == "0 of 0 steps done; s 0 at first"
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [
+        (lambda d, at: images.png(d, halfedge=9999), "The mesh has no half-edge 9999"),
+        (lambda d, at: images.svg(d, halfedge="a"), "A half-edge is a whole number, not 'a'"),
         (lambda d, at: images.png(d, (0, 100)), "A size is two whole numbers"),
         (lambda d, at: images.png(d, (True, 100)), "A size is two whole numbers"),
         (lambda d, at: images.png(d, "large"), "A size is two whole numbers"),
