@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshwright.assistant.torch_threads import one_thread
-from meshwright.document.position_repair import settle
+from meshwright.document.position_repair import settle, square_up
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.policy_files import Policy
     from meshwright_core import HalfEdgeMesh
 
+FEW = 300
+"""Up to so many blocks, ends of lines are squared up."""
 PREFERENCES = ("blocks", "balanced", "shape")
 
 
@@ -46,4 +48,6 @@ def decomposed(
     result = mesh.copy()
     if not found.carry_out(result):
         settle(result)
+    if result.n_elements <= FEW:
+        square_up(result)
     return result
