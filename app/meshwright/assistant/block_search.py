@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from meshwright_agent.policy.policy_files import Policy
     from meshwright_core import HalfEdgeMesh
 
-FEW = 300
-"""Up to so many blocks, ends of lines are squared up."""
 PREFERENCES = ("blocks", "balanced", "shape")
 
 
@@ -48,6 +46,5 @@ def decomposed(
     result = mesh.copy()
     if not found.carry_out(result):
         settle(result)
-    if result.n_elements <= FEW:
-        square_up(result)
+    square_up(result)
     return result
