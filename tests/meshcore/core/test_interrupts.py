@@ -10,14 +10,6 @@ from meshwright_core.core.interrupts import interrupts_held
 from meshwright_core.core.linking import EntryPoint
 
 
-@pytest.fixture(autouse=True)
-def _interruptible():
-    """A process that a shell has started in the background ignores Ctrl-C."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
 @kernel
 def doubled(x):
     return 2 * x
