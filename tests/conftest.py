@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,14 @@ def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginMa
     if system_requirements.missing_qt():
         pluginmanager.unregister(name="pytest-qt")
         pluginmanager.set_blocked("pytest-qt")
+
+
+def pytest_configure() -> None:
+    """Let Ctrl-C interrupt: a process that a shell has started in the background ignores it, and
+    tests send it to themselves and to processes that they start.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.hookimpl(tryfirst=True)

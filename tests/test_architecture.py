@@ -34,6 +34,10 @@ def brought_along(statement: str) -> set[str]:
         ("import meshwright_core", (*HEAVY, *DRAWING, *READERS, "meshwright_agent", "meshwright")),
         ("from meshwright_core.domains import gallery, meshing", (*HEAVY, *DRAWING)),
         ("import meshwright_agent", (*DRAWING, "meshwright")),
+        (  # PyTorch's compiler, which takes seconds, and brings this along
+            "from meshwright_agent.policy import policy_files; policy_files.load('quad')",
+            ("sympy", *DRAWING),
+        ),
         ("import meshwright.document.document", (*HEAVY, *DRAWING, "meshwright_agent")),
         ("import meshwright.assistant.assistant", ("torch", *DRAWING)),
         (

@@ -58,9 +58,36 @@ print_compiled()
 """
 
 CORE = """
+import numpy as np
+from meshwright.document.document import Document
+from meshwright.document.operation_preview import choices, ghost
+from meshwright.document.shape_change import shape_change
+from meshwright.graphics.mesh_figure import figure
 from meshwright_core import warm_up
+from meshwright_core.domains import gallery, meshing
+from meshwright_core.geometry import quality
+from meshwright_core.operations.catalogue import of_kind
 
 warm_up.exercise()
+for name, kind in (("star", "tri"), ("star", "quad"), ("two-materials", "quad")):
+    mesh = meshing.mesh_domain(gallery.shape(name), kind)
+    document = Document(mesh, name)
+    for info in of_kind(kind):
+        for h in range(4 * mesh.n_elements):
+            if mesh.live(h) and mesh.check(info.operation, h):
+                choices(mesh, h)
+                ghost(mesh, info.operation, h)
+                if info.is_local:
+                    shape_change(mesh, info.operation, h)
+                document.submit(info.operation, h)
+                break
+    movable = mesh.vertices()[~mesh.geometric()[mesh.vertices()]]
+    for vertex in (movable[mesh.boundary()[movable]], movable[~mesh.boundary()[movable]]):
+        document.move(vertex[:1], mesh.points[vertex[:1]] + 0.01)
+    document.smooth()
+    document.go_to(0)
+    quality.scaled_jacobian(mesh)
+    figure(mesh)
 print_compiled()
 """
 

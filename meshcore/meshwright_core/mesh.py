@@ -200,7 +200,7 @@ class HalfEdgeMesh(MeshView):
                 f"{operation} at half-edge {h} is not allowed: {self.check(operation, h).reason}"
             )
         self._count_edit(undone)
-        self._archive.future.clear()
+        self._archive.replace_future()
         touched = done.touched[: done.touched_count]
         if done.touched_count > catalogue.FEW:
             trace = self._arrays.trace
@@ -434,7 +434,7 @@ class HalfEdgeMesh(MeshView):
 
     def _make_room(self, entries: int) -> None:
         self._count_edit(self.can_redo)
-        self._archive.future.clear()
+        self._archive.replace_future()
         while not entry(journal.has_room, 4)(self._arrays, self.k, 0, 0, entries):
             self._enlarge()
 
@@ -457,7 +457,7 @@ class HalfEdgeMesh(MeshView):
     def undone_steps(self) -> int:
         """Undone steps that can be redone."""
         counters = self._arrays.counters
-        return int(counters[STEP_END] - counters[STEP]) + sum(map(len, self._archive.future))
+        return int(counters[STEP_END] - counters[STEP]) + self._archive.undone
 
     @property
     def in_transaction(self) -> bool:
@@ -504,7 +504,7 @@ class HalfEdgeMesh(MeshView):
         """Remove the undone steps from the history and return them, for :meth:`graft_redo`."""
         self._refuse_in_transaction()
         cut = (*cut_undone(self._arrays), *self._archive.future)
-        self._archive.future.clear()
+        self._archive.replace_future()
         return cut
 
     def graft_redo(self, undone: Sequence[Steps]) -> None:
@@ -513,7 +513,7 @@ class HalfEdgeMesh(MeshView):
         They must have been cut from this mesh, or a copy of it, in exactly its present state.
         """
         self.cut_redo()
-        self._archive.future[:] = undone
+        self._archive.replace_future(undone)
 
     def last_step(self) -> Steps:
         """The last done step in the form of :meth:`graft_redo` after an undo; MeshError if none."""

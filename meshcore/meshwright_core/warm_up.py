@@ -13,21 +13,26 @@ import numpy as np
 
 from meshwright_core.analysis.cleanable_lines import cleanable_lines
 from meshwright_core.core.compilation import cache_folder, cache_root
+from meshwright_core.core.composite_curves import curve_length, nearest_parameters
+from meshwright_core.geometry.coons import at_corners, curved_corners
+from meshwright_core.geometry.curved_elements import curved_elements
 from meshwright_core.geometry.edge_curves import curved_edge_polylines, edge_points
 from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.io.history_checks import require_history
 from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import CODES, Operation, score_change
 
 _KEPT_SECONDS = 30 * 24 * 3600
 _WARM_MARK = "warm"
 
 
 def exercise() -> None:
-    """Check, apply, relax, undo and redo on two tiny meshes; these few compile everything."""
+    """Check, apply, relax, undo and redo on tiny meshes; these few compile everything."""
     points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     triangles = HalfEdgeMesh.from_elements(points, [[0, 1, 2], [0, 2, 3]])
+    score_change(triangles.arrays, CODES[3][Operation.FLIP], triangles.halfedge(0, 2))
     triangles.apply("flip", triangles.halfedge(0, 2))
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(3.0), np.arange(3.0)))
     corners = np.array([0, 1, 3, 4])
@@ -36,6 +41,12 @@ def exercise() -> None:
     halves = HalfEdgeMesh.from_elements(places, elements, regions=[0, 1, 0, 1])
     halves.move([4], halves.points[[4]], halves.parameters()[[4]])
     halves.off_curve()
+    ids = halves.element_ids()
+    bent = curved_elements(halves, ids, halves.elements())  # none; the types are what counts
+    curved_corners(bent, halves.points, np.zeros((len(ids), 3)))
+    curve_length(bent.curves, 0)
+    nearest_parameters(bent.curves, 0, halves.points[:1])
+    at_corners(bent, halves.points, np.array([0.0, 0.0, 1.0]))
     quads = HalfEdgeMesh.from_elements(places, elements)
     quads.move([4], np.array([[3.0, 3.0, 0.0]]))
     relax(quads, [4])

@@ -182,6 +182,18 @@ def _own_settings(tmp_path_factory: pytest.TempPathFactory) -> None:
     QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, folder)
 
 
+@pytest.fixture(scope="session")
+def _application(qapp: Any, _own_settings: None) -> None:
+    """The application is set up as Meshwright does it, and the kernels are loaded, once: Qt applies
+    a style to all widgets there are, also to those of a window that has just been closed.
+    """
+    from meshwright.desktop.main_window.startup import application
+    from meshwright_core import warm_up
+
+    warm_up.warm()
+    application()
+
+
 def _without_question(window: Any) -> None:
     """After a test, no dialog or worker is left to answer."""
     if window.isVisible():
@@ -189,7 +201,7 @@ def _without_question(window: Any) -> None:
 
 
 @pytest.fixture
-def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterator[Callable]:
+def open_window(qtbot: Any, greedy: type[Greedy], _application: None) -> Iterator[Callable]:
     """Opens a window on a mesh, with :class:`Greedy` as its policy; closed after the test."""
     from driving import WAIT
     from qtpy.QtCore import QTimer
@@ -197,13 +209,9 @@ def open_window(qtbot: Any, greedy: type[Greedy], _own_settings: None) -> Iterat
     from meshwright.assistant.assistant import Assistant
     from meshwright.desktop.application.main_thread import Dispatcher
     from meshwright.desktop.application.settings import Settings
-    from meshwright.desktop.main_window.startup import application
     from meshwright.desktop.main_window.window import MainWindow
     from meshwright.document.document import Document
-    from meshwright_core import warm_up
 
-    warm_up.warm()
-    application()
     Settings().clear()
     windows = []
 

@@ -80,7 +80,8 @@ class PolicyNetwork(nn.Module):
         widths = [architecture.embedding, *[width] * task.blocks]
         self.blocks = nn.ModuleList(Block(task.k, a, b) for a, b in pairwise(widths))
         self.head = nn.Linear(width, task.operations)
-        nn.init.normal_(self.head.weight, std=0.01)
+        if not self.head.weight.is_meta:  # drawing normally on "meta" imports PyTorch's compiler
+            nn.init.normal_(self.head.weight, std=0.01)
         nn.init.zeros_(self.head.bias)
         self.beta = nn.Parameter(torch.tensor(float(architecture.prior_weight)))
         bias = torch.zeros(task.operations)

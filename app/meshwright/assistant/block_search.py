@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshwright.assistant.torch_threads import one_thread
-from meshwright.document.position_repair import settle
+from meshwright.document.position_repair import settle, square_up
 
 if TYPE_CHECKING:
     from meshwright_agent.policy.policy_files import Policy
@@ -46,4 +46,5 @@ def decomposed(
     result = mesh.copy()
     if not found.carry_out(result):
         settle(result)
+    square_up(result)
     return result

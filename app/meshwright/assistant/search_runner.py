@@ -182,8 +182,17 @@ class SearchRunner:
                 start, before = self.target, operations
             usual = effort.seconds or 0.0
             seconds = (usual if self.shape is None else max(usual, LAYOUT_SECONDS)) * 2.0**lost
+        if operations:
+            self._square_up(self.target)
         self._note_end(lost)
         return operations
+
+    def _square_up(self, target: HalfEdgeMesh) -> None:
+        """Square up the ends of lines in a result of few elements."""
+        from meshwright.document.position_repair import square_up  # imports scipy
+
+        if target.k == 4 and square_up(target):
+            self.shape = ShapeGoal.of(target, self._effort)
 
     def _is_done(self, mesh: HalfEdgeMesh) -> bool:
         """Whether s = s*, nothing is inverted and the wanted shape is reached, and nothing beyond

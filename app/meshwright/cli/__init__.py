@@ -144,13 +144,19 @@ def _noted_interrupts() -> Iterator[threading.Event]:
         yield noted
         return
 
+    main_thread = threading.get_ident()
+
     def note(number: int, frame: FrameType | None) -> None:
         noted.set()
         raise KeyboardInterrupt
 
     def repeat_interrupt() -> None:
-        if not left.is_set():
+        if left.is_set():
+            return
+        if sys.platform == "win32":
             _thread.interrupt_main()
+        else:  # a true signal also ends what the main thread waits for
+            signal.pthread_kill(main_thread, signal.SIGINT)
 
     def report_unraisable(unraisable: Any) -> None:
         if not isinstance(unraisable.exc_value, KeyboardInterrupt):

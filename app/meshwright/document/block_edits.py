@@ -34,8 +34,8 @@ def set_count(document: Document, structure: BlockStructure, chord: int, count: 
     if count is not None and not 1 <= count <= MOST_ACROSS:
         raise MeshError(f"A number of cells must be 1 to {MOST_ACROSS:,}.")
     plan = document.need_mesh().grid_plan.with_count(chord_edges(structure, chord), count)
-    title = "Cells by size" if count is None else f"{count} cells"
-    change_plan(document, plan, f"{title} across chord {chord}", structure)
+    title = "cells by size" if count is None else f"{count} cells"
+    change_plan(document, plan, f"Chord {chord}: {title}", structure)
 
 
 def set_grading(
@@ -45,8 +45,8 @@ def set_grading(
     if grading is not None and not (grading.first or grading.last):
         grading = None
     plan = document.need_mesh().grid_plan.with_grading(chord_edges(structure, chord), grading)
-    what = "Even cells" if grading is None else "Grading"
-    change_plan(document, plan, f"{what} across chord {chord}", structure)
+    what = "even cells" if grading is None else "grading"
+    change_plan(document, plan, f"Chord {chord}: {what}", structure)
 
 
 def set_side_count(

@@ -11,6 +11,9 @@ from meshwright_core.history.packed_steps import Steps
 YOU = "you"
 """Author of the user's own steps; the steps of a policy carry the policy's name."""
 
+SHOWN = 10
+"""Steps before and after the present one that a history prints."""
+
 
 class HistoryStep(Struct, array_like=True, frozen=True, forbid_unknown_fields=True):
     """One step of the mesh.
@@ -71,6 +74,20 @@ class History:
         history._rows, history._cursor, history._branches = list(rows), cursor, branches
         history._serial, history._made = serial, made
         return history
+
+    def __repr__(self) -> str:
+        """The last steps that are done and the next ones, one a line; an arrow marks the state."""
+        low = max(0, self._cursor - SHOWN)
+        rows = self._rows[low : self._cursor + SHOWN]
+        width = max((len(row.title) for row in rows), default=0)
+        branches = f", {len(self._branches)} branches" if self._branches else ""
+        lines = [
+            f"{self._cursor} of {len(self._rows)} steps done{branches}; s {self._score} at first"
+        ]
+        for number, row in enumerate(rows, low + 1):
+            mark = "\u2192" if number == self._cursor else " "
+            lines.append(f"{mark} {number:4}  {row.title:{width}}  s {row.after}  by {row.by}")
+        return "\n".join(lines)
 
     def __len__(self) -> int:
         return len(self._rows)

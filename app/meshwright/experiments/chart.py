@@ -156,10 +156,9 @@ def _own_settings() -> Iterator[None]:
     """matplotlib's defaults for the time of a drawing, whatever settings a notebook has made."""
     from matplotlib import rc_context, rcParams, rcParamsDefault
 
+    defaults: Any = rcParamsDefault  # mypy takes ten seconds for its keys, 300 literals
     with rc_context():
-        rcParams.update(
-            {name: rcParamsDefault[name] for name in rcParamsDefault if name != "backend"}
-        )
+        rcParams.update({name: defaults[name] for name in defaults if name != "backend"})
         rcParams["font.family"] = [FONT]
         rcParams["lines.solid_capstyle"] = "round"
         rcParams["lines.solid_joinstyle"] = "round"

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshwright.assistant.torch_threads import one_thread
-from meshwright.experiments.halfedge_arrow import arrow
 from meshwright.experiments.mesh_thumbnail import MARGIN, given_mesh, thumbnail
 from meshwright.experiments.picture import Picture, shifted
 from meshwright.experiments.rollouts import known_policy, require_kind
 from meshwright.experiments.template_figure import template_figure
 from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Text
+from meshwright.graphics.halfedge_arrow import arrow
 from meshwright.graphics.markers import label
 from meshwright.graphics.mesh_figure import below_edges
 from meshwright.graphics.theme import LIGHT, Theme

@@ -12,8 +12,8 @@ from functools import cache
 
 import numpy as np
 
-from meshwright.experiments.halfedge_arrow import arrow
 from meshwright.graphics.drawing import Disc, Drawing, Line, Polygon, Segments, Text
+from meshwright.graphics.halfedge_arrow import arrow
 from meshwright.graphics.markers import label
 from meshwright.graphics.theme import Theme
 

@@ -16,12 +16,14 @@ from meshwright.graphics.drawing import (
     Disc,
     Drawing,
     Line,
+    Polygon,
     Segments,
     Square,
     Text,
     hatching,
     text_width,
 )
+from meshwright.graphics.halfedge_arrow import arrow
 from meshwright.graphics.markers import PIN, READABLE, Markers, label, markers
 from meshwright.graphics.theme import Theme, region_fills, region_swatches, theme
 from meshwright.graphics.viewport import Viewport
@@ -51,7 +53,8 @@ class FigureOptions:
     stands above the mesh, ``curve`` below it; ``changes`` are edges that the last step added and
     removed. ``theme`` and ``colours`` are as for :func:`meshwright.graphics.theme.theme`. ``unit``
     scales lines and letters; 0: in proportion to the size. ``measure`` colours the elements by
-    ``"jacobian"`` or ``"shape"``, with a legend; empty: not.
+    ``"jacobian"`` or ``"shape"``, with a legend; empty: not. ``halfedge`` is drawn as an arrow on
+    its side of the edge; -1: none.
     """
 
     size: tuple[int, int] = (960, 720)
@@ -63,6 +66,7 @@ class FigureOptions:
     colours: str = "vermilion"
     unit: float = 0.0
     measure: str = ""
+    halfedge: int = -1
 
     @property
     def palette(self) -> Theme:
@@ -147,6 +151,11 @@ def figure(
     for rim in rims:
         drawing.add(Line(view.to_screen(_ring(lines.chained(rim))), colours.boundary, thick))
     _add_markers(drawing, marks, view, colours, unit, options.numbers)
+    if options.halfedge >= 0:
+        corners = mesh.points[mesh.corners(np.array([options.halfedge // mesh.k]))[0], :2]
+        tail, neck, point = arrow(view.to_screen(corners) / unit, options.halfedge % mesh.k)
+        shaft = Line(unit * np.array([tail, neck]), colours.arrow, 2.6 * unit)
+        drawing.add(shaft, Polygon(unit * point, colours.arrow))
     if options.score:
         _add_head(drawing, mesh, moment, colours, unit)
         _add_legend(drawing, mesh, moment, colours, unit)

@@ -262,10 +262,13 @@ QHeaderView::section {{ padding: 4px 12px; }}
 #LicenceText {{ background: {t.background}; border: 1px solid {t.line}; border-radius: 6px;
                padding: 4px; font-family: monospace; font-size: 12px; }}
 QCheckBox {{ spacing: 8px; }}
+QCheckBox:disabled {{ color: {t.faint}; }}
 QCheckBox::indicator, #Table::indicator {{ width: 16px; height: 16px; border-radius: 4px;
                        border: 1px solid {t.faint}; background: {t.raised}; }}
 QCheckBox::indicator:checked, #Table::indicator:checked {{
     background: {t.accent}; border-color: {t.accent}; image: url({icons}/check-{t.name}.svg); }}
+QCheckBox::indicator:disabled {{ border-color: {t.line}; background: transparent; }}
+QCheckBox::indicator:checked:disabled {{ background: {t.faint}; }}
 QCheckBox::indicator:hover, QCheckBox:focus::indicator {{ border-color: {t.accent}; }}
 QPushButton#Segment {{ border-radius: 0; padding: 6px 16px; }}
 QPushButton#Segment:checked {{ background: {t.accent_soft}; border-color: {t.accent};

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from reprlib import repr as shortened
@@ -328,13 +329,24 @@ class MeshWidget(anywidget.AnyWidget):
         """The recording of the history as one HTML page that needs neither Python nor network."""
         return self._do(lambda: html_page.page(self.document, str(title), path))
 
-    def to_png(self, path: File = None, size: tuple[int, int] = SIZE) -> bytes:
-        """An image of the mesh in its present state, ``size`` in pixels."""
-        return self._do(lambda: images.png(self.document, size, path, self._export_theme))
+    def save(self, path: str | os.PathLike[str] | None = None) -> Path:
+        """Write the mesh to ``path``, or to where it came from; returns where it is now.
 
-    def to_svg(self, path: File = None, size: tuple[int, int] = SIZE) -> str:
+        A project, ``.meshwright``, holds the history with its branches too.
+        """
+        return self._do(lambda: self.document.save(None if path is None else Path(path)))
+
+    def to_png(self, path: File = None, size: tuple[int, int] = SIZE, halfedge: int = -1) -> bytes:
+        """An image of the mesh in its present state, ``size`` in pixels; with an arrow for
+        ``halfedge``.
+        """
+        theme = self._export_theme
+        return self._do(lambda: images.png(self.document, size, path, theme, halfedge))
+
+    def to_svg(self, path: File = None, size: tuple[int, int] = SIZE, halfedge: int = -1) -> str:
         """The same image as SVG."""
-        return self._do(lambda: images.svg(self.document, size, path, self._export_theme))
+        theme = self._export_theme
+        return self._do(lambda: images.svg(self.document, size, path, theme, halfedge))
 
     def to_gif(
         self, path: File = None, seconds: float = SECONDS, size: tuple[int, int] = SIZE

@@ -49,7 +49,7 @@ class OutlineArea:
             loops, curves = np.array(boundary.loops, np.int64), boundary.curves
             span = np.zeros((len(loops), 2))
             span[:, 1] = boundary.lengths()[loops]
-            starts = place_all(curves, loops, span[:, 0])
+            starts = place_all(curves, loops, np.zeros(len(loops)))
             ends = np.stack([starts, starts], axis=1)
             area = bulges(curves, loops, span, ends, NODES, WEIGHTS).sum(axis=0)
             cls._known[boundary] = area

@@ -134,9 +134,8 @@ class Measure:
         curved = curved_elements(mesh, self.ids, self._elements, halfedges)
         if len(curved.element):
             self._curved = curved.element
-            self._corners = curved_corners(
-                curved, self._points, np.broadcast_to(found, (len(self.ids), 3))
-            )
+            normals = reference_normals(self._points, self._elements, found)
+            self._corners = curved_corners(curved, self._points, normals)
 
     def of(self, part: slice) -> Corners:
         """The corners of the elements `part`, a slice of them without a step."""

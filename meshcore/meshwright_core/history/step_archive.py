@@ -32,36 +32,52 @@ ENTRIES = 1 << 17
 
 
 class Archive:
-    """Packed steps on both sides of those that a journal holds."""
+    """Packed steps on both sides of those that a journal holds.
+
+    Attributes:
+        done: how many steps of the past there are.
+        undone: how many of the future.
+    """
 
     def __init__(self, past: Sequence[Steps] = (), future: Sequence[Steps] = ()) -> None:
-        self.past = list(past)
-        self.future = list(future)
+        self._past = list(past)
+        self._future = list(future)
+        # kept, because they are asked for in each step
+        self.done = sum(map(len, self._past))
+        self.undone = sum(map(len, self._future))
 
     @property
-    def done(self) -> int:
-        """Steps of the past."""
-        return sum(map(len, self.past))
+    def past(self) -> Sequence[Steps]:
+        """Done steps before the journal's first."""
+        return self._past
 
     @property
-    def undone(self) -> int:
-        """Steps of the future."""
-        return sum(map(len, self.future))
+    def future(self) -> Sequence[Steps]:
+        """Undone steps after the journal's last."""
+        return self._future
 
     def copy(self) -> Archive:
         """Another archive of the same steps."""
-        return Archive(self.past, self.future)
+        return Archive(self._past, self._future)
+
+    def replace_future(self, future: Sequence[Steps] = ()) -> None:
+        """Forget the steps of the future, and take these instead."""
+        self._future = list(future)
+        self.undone = sum(map(len, self._future))
 
     def fetch_past(self, m: MeshArrays) -> MeshArrays:
         """Move the last steps of the past to the front of the journal; there must be some."""
-        piece = self.past.pop()
+        piece = self._past.pop()
+        self.done -= len(piece)
         rows, entries = held(m)
         return with_journal(m, *_joined(piece, rows, entries), int(m.counters[STEP]) + len(piece))
 
     def fetch_future(self, m: MeshArrays) -> MeshArrays:
         """Move the first steps of the future to the end of the journal; there must be some."""
         rows, entries = held(m)
-        more_rows, more_entries = unpack(self.future.pop(0), len(entries))
+        piece = self._future.pop(0)
+        self.undone -= len(piece)
+        more_rows, more_entries = unpack(piece, len(entries))
         rows, entries = np.concatenate([rows, more_rows]), np.concatenate([entries, more_entries])
         return with_journal(m, rows, entries, int(m.counters[STEP]))
 
@@ -77,8 +93,10 @@ class Archive:
         if first == 0 and last == end:
             return m
         rows, entries = held(m)
-        self.past += pieces(rows[:first], entries, PIECE)
-        self.future[:0] = pieces(rows[last:], entries, PIECE)
+        self._past += pieces(rows[:first], entries, PIECE)
+        self._future[:0] = pieces(rows[last:], entries, PIECE)
+        self.done += first
+        self.undone += end - last
         kept = rows[first:last].copy()
         start = int(kept[0, STEP_START])
         stop = int(kept[-1, STEP_STOP])
@@ -89,8 +107,8 @@ class Archive:
         """All done and all undone steps, those of the journal among them; nothing changes."""
         rows, entries = held(m)
         step = int(m.counters[STEP])
-        done = self.past + pieces(rows[:step], entries, PIECE)
-        return done, pieces(rows[step:], entries, PIECE) + self.future
+        done = self._past + pieces(rows[:step], entries, PIECE)
+        return done, pieces(rows[step:], entries, PIECE) + self._future
 
 
 def held(m: MeshArrays) -> tuple[np.ndarray, np.ndarray]:

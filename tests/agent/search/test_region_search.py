@@ -76,8 +76,8 @@ def test_a_search_ends_early_at_the_lower_bound():
 
 
 def test_a_very_irregular_region_is_improved_patch_by_patch(monkeypatch):
-    mesh = meshing.mesh_domain(gallery.shape("gear"), "tri", max_edge=0.05)
-    elements = region(mesh, 12)
+    mesh = meshing.mesh_domain(gallery.shape("gear"), "tri", max_edge=0.07)
+    elements = region(mesh, 9)
     monkeypatch.setattr("meshwright_agent.search.region_search.MANY", 8)
     halfedges, ends = outside_of(mesh, elements)
     found = solve_within(mesh, policy_files.load("tri"), elements, rollouts=2, seed=2)

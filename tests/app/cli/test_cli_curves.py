@@ -120,7 +120,7 @@ def test_a_mesh_is_put_on_its_geometry(run, here):
 
 def test_arcs_are_found_in_the_boundary_of_a_mesh(run):
     pytest.importorskip("meshwright_core.curves.fitting")
-    angles = np.radians(np.linspace(-90, 90, 13))
+    angles = np.radians(np.linspace(-90, 90, 7))
     arc = np.column_stack((np.cos(angles), np.sin(angles)))
     outline = np.vstack(([4, 1] + arc, [0, 1] - arc))
     mesh = meshing.mesh_domain(Domain(outline), "quad", max_edge=1.0)

@@ -12,6 +12,7 @@ from meshwright.cli import training_progress
 from meshwright.experiments import evaluation_table
 from meshwright_agent.evaluation import paper_results
 from meshwright_agent.policy import policy_files
+from meshwright_agent.training import trainer
 
 
 @pytest.fixture
@@ -24,6 +25,50 @@ def small_table(monkeypatch):
 
 
 _TWO = (paper_results.ReturnStatistics(0.992, 0.02), paper_results.ReturnStatistics(0.95, 0.05))
+
+
+TINY = """
+sides = [8, 8]
+pool = 4
+iterations = 1
+evaluate_every = 1
+evaluation_meshes = 1
+table_meshes = 1
+
+[task]
+kind = "quad"
+blocks = 2
+candidates = 8
+steps = 0.5
+
+[architecture]
+width = 8
+embedding = 4
+
+[ppo]
+environments = 2
+horizon = 3
+minibatch = 6
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("more", "tables"), [((), 1), (("--no-table",), 0)])
+def test_a_training_can_leave_out_the_table(more, tables, tmp_path, monkeypatch, capfd):
+    asked = []
+    monkeypatch.setattr(trainer, "paper_table", lambda *given: asked.append(given) or [])
+    monkeypatch.setattr(
+        trainer,
+        "evaluate",
+        lambda *_: {"single_mean": 0.0, "best_mean": 0.0, "at_optimum": 0.0, "seconds": 1.0},
+    )
+    (tmp_path / "tiny.toml").write_text(TINY)
+    folder = tmp_path / "runs" / "quad"  # is made
+    words = ["train", "--kind", "quad", "--config", str(tmp_path / "tiny.toml")]
+    assert cli.main([*words, "-o", str(folder), *more, "--json"]) == 0
+    assert len(asked) == tables
+    assert json.loads(capfd.readouterr().out)["iteration"] == 1
+    assert ("table" in policy_files.load(folder).header) == bool(tables)
 
 
 @pytest.mark.slow

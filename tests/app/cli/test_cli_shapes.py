@@ -66,7 +66,9 @@ def test_mesh_of_regions(run):
         assert json.loads(out)["area"] == pytest.approx(area, rel=1e-6)
         meshwright_core.read("out.vtk").validate()
     code, _, err = run("mesh", "parts.svg", "-o", "out.vtk", "--region", "lid")
-    assert code == 2 and "no region 'lid'; there are 1 'steel', 2 'copper', 3 'lug'" in err
+    assert (
+        code == 2 and "no region 'lid'; the drawing has 'steel' (1), 'copper' (2), 'lug' (3)" in err
+    )
 
 
 def test_gaps_are_closed_as_wide_as_one_asks(run, tmp_path):

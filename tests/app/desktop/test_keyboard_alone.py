@@ -2,13 +2,14 @@
 
 import pytest
 from driving import WAIT, press
-from qtpy.QtCore import Qt
-from qtpy.QtGui import QAccessible
+from qtpy.QtCore import QEvent, Qt
+from qtpy.QtGui import QAccessible, QKeyEvent
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication, QWidget
 
 from meshwright.desktop.actions import registry
 from meshwright.desktop.editing.spoken_halfedge import NOTHING, spoken
+from meshwright.desktop.editing.unused_keys import INACTIVE, ON_CANVAS
 from meshwright.desktop.help.command_palette import PaletteEntry, rank
 from meshwright.desktop.widgets.action_set import with_mnemonics
 
@@ -54,6 +55,24 @@ def test_alt_goes_to_the_menu_bar(qtbot, open_window, star):
     press(qtbot, window, Qt.Key.Key_Alt)
     qtbot.waitUntil(bar.hasFocus, timeout=WAIT)
     assert bar.activeAction().text() == "&File"
+
+
+def test_down_after_alt_opens_the_menu_and_arrows_walk_through_the_bar(qtbot, open_window, star):
+    window = open_window(star)
+    bar = window.menuBar()
+    press(qtbot, window, Qt.Key.Key_Alt)
+    qtbot.waitUntil(bar.hasFocus, timeout=WAIT)
+    for key, title in ((None, "&File"), (Qt.Key.Key_Right, "&Edit"), (Qt.Key.Key_Left, "&File")):
+        if key is not None:
+            QTest.keyClick(bar, key)
+        assert bar.activeAction().text() == title
+    QTest.keyClick(bar, Qt.Key.Key_Down)
+    qtbot.waitUntil(lambda: popup() is not None, timeout=WAIT)
+    assert popup().title() == "&File"
+    QTest.keyClick(popup(), Qt.Key.Key_Down)
+    assert popup().activeAction() is not None
+    QTest.keyClick(popup(), Qt.Key.Key_Escape)
+    qtbot.waitUntil(lambda: popup() is None, timeout=WAIT)
 
 
 def test_a_menu_runs_an_action_by_keys(qtbot, open_window, star):
@@ -160,3 +179,21 @@ def test_the_canvas_tells_what_the_keyboard_points_at(qtbot, open_window, star):
     assert window.hover.current.info.title in said[-1]
     press(qtbot, window, Qt.Key.Key_Escape)
     assert seen.text(QAccessible.Text.Description) == NOTHING
+
+
+@pytest.mark.parametrize(
+    ("key", "modifier", "why"),
+    [
+        (Qt.Key.Key_O, Qt.KeyboardModifier.ControlModifier, "Open " + INACTIVE),
+        (
+            Qt.Key.Key_Return,
+            Qt.KeyboardModifier.NoModifier,
+            "Apply previewed operation " + ON_CANVAS,
+        ),
+    ],
+)
+def test_a_key_that_reaches_no_action_says_what_it_needs(open_window, star, key, modifier, why):
+    """As in a window without the focus, whose shortcuts Qt does not look for."""
+    window = open_window(star)
+    window.unused_keys.explain(QKeyEvent(QEvent.Type.KeyPress, key, modifier))
+    assert window.status.message == why

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from driving import WAIT, press
+from driving import WAIT, point_at, press
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QFileDialog
 
@@ -155,6 +155,33 @@ def test_progress_runs_while_something_runs_and_stops_with_it(qtbot, open_window
     qtbot.wait(150)
     assert window.document.history.cursor == kept
     assert not window.agent_panel._clock.isActive()
+
+
+def test_the_policy_is_loaded_once_nobody_has_done_anything_for_a_moment(
+    qtbot, open_window, star, monkeypatch
+):
+    window = open_window(star)
+    idle = window.agent._idle
+    idle.setTimerType(Qt.TimerType.PreciseTimer)
+    idle.setInterval(WAIT)
+    asked, prepare = [], window.assistant.prepare
+    monkeypatch.setattr(
+        window.assistant, "prepare", lambda: (asked.append(window.assistant.policy), prepare())
+    )
+    window.agent.prepare_while_idle(window.readiness)
+    for halfedge in (0, 8):  # each time the mouse moves on, the wait begins anew
+        qtbot.wait(100)
+        before = idle.remainingTime()
+        point_at(qtbot, window, halfedge)
+        assert idle.remainingTime() > before and not asked
+    idle.setInterval(50)
+    point_at(qtbot, window, 0)
+    qtbot.waitUntil(lambda: asked == ["greedy"], timeout=WAIT)
+    qtbot.waitUntil(lambda: not window.assistant.loading, timeout=WAIT)
+    assert window.assistant._worker.has("greedy")
+    assert window.assistant.state is State.IDLE and not window.document.history.cursor
+    point_at(qtbot, window, 8)
+    assert not idle.isActive() and len(asked) == 1
 
 
 def policy_file(path, kind):

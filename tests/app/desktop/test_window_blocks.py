@@ -9,6 +9,7 @@ from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
 
 from meshwright.desktop.blocks.export_blocks_dialog import DIVIDE, BlockExport, ExportBlocksDialog
+from meshwright.graphics.theme import GRID
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.blocks.structure import BlockStructure
 from meshwright_core.core.grid_plan import GridPlan, Wall
@@ -93,7 +94,7 @@ def test_a_count_typed_for_a_clicked_chord_holds_on_all_its_edges_in_one_step(qt
     assert [counts(window)[edge] for edge in edges] == [17, 17, 17]
     assert [drawn(window)[edge] for edge in edges] == [17, 17, 17]
     assert counts(window)[1, 2] != 17
-    assert document.history.last.title.startswith("17 cells across chord")
+    assert document.history.last.title.endswith(": 17 cells")
     window.actions_by_id["undo"].trigger()
     assert counts(window)[0, 1] != 17
     window.actions_by_id["redo"].trigger()
@@ -275,6 +276,9 @@ def test_the_dialog_lists_sides_by_their_drawn_names_and_finds_what_was_kept_by_
     dialog.sides["a"].count.setValue(4)
     assert dialog.plan.walls == (("bolt hole", 0.02, 1.3),)
     assert dialog.plan.side_counts == {"bolt hole": 9, "a": 4}
+    dialog.show()
+    gap = dialog.order_box.x() - dialog.format_box.geometry().right()
+    assert gap >= GRID  # they do not touch
 
 
 def test_a_cancelled_export_writes_nothing(qtbot, shown, tmp_path):

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from driving import WAIT, find, point_at, press
+from driving import WAIT, beside, find, point_at, press
 from qtpy.QtCore import QPoint, Qt
 
 from meshwright.assistant.assistant import State
 from meshwright.desktop.actions import registry
 from meshwright.desktop.help.tour import STEPS
 from meshwright.document.shape_change import shape_change
+from meshwright.graphics.picking import Picker
 from meshwright_core.geometry import quality
 
 NONE = Qt.KeyboardModifier.NoModifier
@@ -94,6 +95,29 @@ def test_the_preference_is_kept_and_passed_to_the_search(qtbot, open_window, sta
     assert open_window(star.copy()).agent_panel.preference == "shape"
 
 
+def test_keep_the_size_is_switched_by_mouse_and_keys_kept_and_passed_on(qtbot, open_window, star):
+    window = open_window(star)
+    panel, efforts = window.agent_panel, []
+    window.assistant.search = efforts.append
+
+    def switched() -> bool:
+        qtbot.mouseClick(panel.complete, Qt.MouseButton.LeftButton)
+        qtbot.mouseClick(panel.search, Qt.MouseButton.LeftButton)
+        first, second = efforts[-2:]
+        assert first.keep_size == second.keep_size == panel.keep_size.isChecked()
+        return first.keep_size
+
+    assert not switched()
+    qtbot.mouseClick(panel.keep_size, Qt.MouseButton.LeftButton, pos=QPoint(8, 8))
+    assert switched()
+    assert open_window(star.copy()).agent_panel.keep_size.isChecked()
+    window.activateWindow()
+    qtbot.waitUntil(window.isActiveWindow, timeout=WAIT)
+    panel.keep_size.setFocus()
+    qtbot.keyClick(panel.keep_size, Qt.Key.Key_Space)
+    assert not switched()
+
+
 def test_complete_score_and_shape_are_in_sight_at_880_pixels(qtbot, open_window, star):
     window = open_window(star)
     window.resize(1100, 880)
@@ -124,6 +148,34 @@ def test_a_result_is_gone_to_with_a_bar_and_skipped_by_a_click(
     qtbot.mouseClick(panel.skip, Qt.MouseButton.LeftButton)
     assert window.assistant.state is State.IDLE and window.document.at_optimum
     assert not panel.skip.isVisible()
+
+
+def test_taking_over_on_the_way_to_a_result_keeps_the_hover(qtbot, open_window, star, monkeypatch):
+    from meshwright.assistant import result_walk
+
+    monkeypatch.setattr(result_walk, "SLICE", -1.0)
+    monkeypatch.setattr(result_walk, "LONGEST", -1.0)
+    window = open_window(star)
+    document, canvas = window.document, window.canvas
+    halfedge = find(star, "flip_left")
+    point_at(qtbot, window, halfedge)
+    mouse = beside(window, halfedge)
+
+    def hovered() -> bool:
+        edges = Picker(star, canvas.edges)
+        return document.hover == edges.halfedge(*canvas.viewport.to_plane(mouse.x(), mouse.y()))
+
+    press(qtbot, window, Qt.Key.Key_Return, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(lambda: window.assistant.state is State.GOING, timeout=WAIT)
+    qtbot.waitUntil(lambda: document.history.cursor >= 1, timeout=WAIT)
+    before = document.hover
+    assert before >= 0 and not document.at_optimum
+    press(qtbot, window, Qt.Key.Key_F)
+    assert window.assistant.state is State.IDLE
+    assert document.history.last.by == "you" and document.history.last.halfedge == before
+    qtbot.waitUntil(hovered, timeout=WAIT)
+    assert document.hover >= 0
+    qtbot.waitUntil(lambda: any(row.change for row in window.hover.panel.rows), timeout=WAIT)
 
 
 def test_the_panel_asks_to_go_on(qtbot, open_window, star):

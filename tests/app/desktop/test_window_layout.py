@@ -47,3 +47,17 @@ def test_large_numbers_fit_the_score_panel(qtbot, open_window, star, monkeypatch
         assert panel.score.text() == numbers
         assert area.widget().minimumSizeHint().width() <= area.viewport().width()
     monkeypatch.undo()
+
+
+@pytest.mark.parametrize("size", [(880, 560), (1280, 800)])
+def test_the_page_of_keys_is_as_wide_as_its_columns(qtbot, open_window, star, size):
+    window = open_window(star)
+    window.resize(*size)
+    qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
+    window.actions_by_id["help"].trigger()
+    page = window.help.keys
+    qtbot.waitUntil(page.isVisible, timeout=WAIT)
+    area = page.findChild(QScrollArea)
+    assert area.widget().minimumSizeHint().width() <= area.viewport().width()
+    assert page.width() <= window.width()
+    page.accept()

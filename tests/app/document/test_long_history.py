@@ -9,6 +9,7 @@ import pytest
 
 from meshwright.document.document import Document
 from meshwright_core import HalfEdgeMesh, warm_up
+from meshwright_core.core.arrays import ELEMENT_SLOTS
 from meshwright_core.domains import gallery, meshing
 from meshwright_core.operations.catalogue import of_kind
 
@@ -33,7 +34,7 @@ def work(document: Document, operations: int, rng: np.random.Generator, most: in
     infos = [info.operation for info in of_kind(mesh.kind) if info.operation.value in LOCAL]
     until, size = document.history.cursor + operations, mesh.n_elements
     while document.history.cursor < until:
-        h = int(rng.integers(mesh.k * len(mesh.arrays.element_mark)))
+        h = int(rng.integers(mesh.k * mesh.arrays.counters[ELEMENT_SLOTS]))
         operation = infos[rng.integers(len(infos))]
         if not mesh.live(h) or not document.check(operation, h):
             continue

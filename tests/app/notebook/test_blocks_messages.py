@@ -53,7 +53,7 @@ def test_a_number_is_a_step_of_the_document(port):
     ends, chord = shown["ends"][0], shown["chord"][0]
     port.ask("chord_count", ends=ends, count=7)
     document = port.session.document
-    assert document.history.last.title == f"7 cells across chord {chord}"
+    assert document.history.last.title == f"Chord {chord}: 7 cells"
     [shown] = port.ask("blocks")
     assert shown["counts"][chord] == 7 and shown["set"] == [chord]
     port.ask("chord_count", ends=ends[::-1], count=None)

@@ -2,9 +2,13 @@
 
 import io
 import re
+import signal
+import sys
 import xml.etree.ElementTree as ElementTree
 from base64 import b64decode
+from contextlib import nullcontext
 from html.parser import HTMLParser
+from types import SimpleNamespace
 from urllib.parse import unquote
 
 import pytest
@@ -13,10 +17,12 @@ from PIL import Image
 from meshwright.document.document import Document
 from meshwright.document.timeline import NO_MESH
 from meshwright.graphics.export import mimebundle
+from meshwright.graphics.theme import theme
 from meshwright.notebook import MeshWidget
-from meshwright.notebook.export import images
+from meshwright.notebook.export import film_progress, images
 from meshwright_core import MeshError
 from meshwright_core.domains import gallery, meshing
+from meshwright_core.io import mesh_files
 
 SMALL = (160, 120)
 
@@ -128,9 +134,46 @@ def test_a_widget_exports_the_same(document, tmp_path):
     widget.close()
 
 
+def test_a_picture_may_show_a_half_edge(document):
+    widget = MeshWidget(document)
+    h = document.mesh.halfedge(*document.mesh.elements()[3][:2])
+    plain, drawn = widget.to_svg(size=(800, 600)), widget.to_svg(size=(800, 600), halfedge=h)
+    arrow = theme("light").arrow
+    assert drawn.count(arrow) == plain.count(arrow) + 2
+    assert widget.to_png(size=SMALL, halfedge=h) != widget.to_png(size=SMALL)
+    widget.close()
+
+
+def test_a_widget_saves_its_history(document, tmp_path):
+    widget = MeshWidget(document)
+    path = widget.save(tmp_path / "star.meshwright")
+    widget.undo()
+    assert widget.save() == path
+    again = Document()
+    again.open(path)
+    assert repr(again.history) == repr(document.history)
+    widget.save(str(tmp_path / "star.vtk"))
+    assert mesh_files.read(tmp_path / "star.vtk").n_elements == document.mesh.n_elements
+    widget.close()
+
+
+def test_a_history_prints_its_steps(document):
+    title = document.history.last.title
+    assert repr(document.history) == (
+        "2 of 2 steps done; s 12 at first\n"
+        f"     1  {title}  s {document.history[0].after}  by you\n"
+        f"\u2192    2  {title}  s {document.history[1].after}  by you"
+    )
+    document.undo()
+    assert repr(document.history).splitlines()[1].startswith("\u2192    1")
+    assert repr(Document().history) == "0 of 0 steps done; s 0 at first"
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [
+        (lambda d, at: images.png(d, halfedge=9999), "The mesh has no half-edge 9999"),
+        (lambda d, at: images.svg(d, halfedge="a"), "A half-edge is a whole number, not 'a'"),
         (lambda d, at: images.png(d, (0, 100)), "A size is two whole numbers"),
         (lambda d, at: images.png(d, (True, 100)), "A size is two whole numbers"),
         (lambda d, at: images.png(d, "large"), "A size is two whole numbers"),
@@ -165,3 +208,59 @@ def test_an_existing_file_is_kept_if_writing_fails(document, tmp_path, monkeypat
     assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 1
     with pytest.raises(MeshError, match=r"^The image cannot be made \(no space left on device\)"):
         images.png(document, SMALL)
+
+
+@pytest.mark.parametrize("ending", [".gif", ".mp4"])
+def test_an_interrupted_film_leaves_the_file_and_the_mesh_as_they_were(
+    document, tmp_path, monkeypatch, ending
+):
+    widget, path = MeshWidget(document), tmp_path / f"star{ending}"
+    export = widget.to_gif if ending == ".gif" else widget.to_mp4
+    path.write_bytes(b"before")
+    document.go_to(1)
+    frames = []
+
+    def report(done, total):
+        frames.append(done)
+        signal.raise_signal(signal.SIGINT)  # what Jupyter's stop button sends
+
+    monkeypatch.setattr("meshwright.notebook.widget.shown_progress", lambda: nullcontext(report))
+    with pytest.raises(KeyboardInterrupt):
+        export(path, 0.1, SMALL)
+    assert frames == [1]
+    assert path.read_bytes() == b"before" and list(tmp_path.iterdir()) == [path]
+    assert document.history.cursor == 1 and len(document.history) == 2
+    monkeypatch.undo()
+    assert export(path, 0.1, SMALL) == path.read_bytes() != b"before"
+    widget.close()
+
+
+def test_the_progress_of_a_film_is_one_line_that_goes_with_the_film(monkeypatch):
+    shown = []
+
+    class Handle:
+        def update(self, line):
+            shown.append(repr(line))
+
+    def display(line, display_id):
+        shown.append(repr(line))
+        return Handle()
+
+    clock = iter([0.0, 0.1, 0.6, 0.7, 0.9])
+    monkeypatch.setattr(film_progress.time, "monotonic", lambda: next(clock))
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: object()))
+    monkeypatch.setitem(sys.modules, "IPython.display", SimpleNamespace(display=display))
+
+    def make_film():
+        with film_progress.shown_progress() as report:
+            for frame in range(1, 5):
+                report(frame, 2000)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        make_film()
+    line = "Film: frame {} of 2,000; interrupt the kernel to stop."
+    assert shown == [line.format(2), line.format(4), ""]
+    monkeypatch.setitem(sys.modules, "IPython", None)
+    with film_progress.shown_progress() as report:
+        assert report is None

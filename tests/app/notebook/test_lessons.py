@@ -1,5 +1,8 @@
 """Every lesson runs from top to bottom in a kernel, blank and solved, and is fit to be read.
 
+One kernel runs all of them, each from an empty namespace in an empty folder: starting one and
+importing PyTorch in it takes longer than most lessons.
+
 nbformat and nbclient are imported inside functions: they load the grammars of JSON schemas, which
 takes seconds, in every process that collects the tests.
 """
@@ -8,6 +11,7 @@ import ast
 import copy
 import itertools
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +32,11 @@ ALLOWED_LINKS = {
 }
 """Pages outside that a lesson may send a reader to."""
 
-LONG = re.compile(r"\b(mw\.compare|mw\.table_row|Trainer|trainer\.improve)\(")
+LONG = re.compile(
+    r"\b(mw\.compare|mw\.table_row|Trainer|trainer\.improve)\("
+    r"|^(?P<made>\w+) = mw\.MeshWidget\([^\n]*\n(?P=made)\.complete\(",
+    re.MULTILINE,
+)
 """Calls that search, measure or train for many seconds, in cells that no answer has a part in."""
 
 LONGEST_CELL = 10
@@ -103,18 +111,28 @@ def blank_then_solved(notebook: Any) -> Any:
     return made
 
 
+@pytest.fixture(scope="module")
+def kernel() -> Iterator[Any]:
+    """The manager of a running kernel."""
+    from jupyter_client.manager import KernelManager
+
+    manager = KernelManager(kernel_name="python3")
+    manager.start_kernel()
+    try:
+        yield manager
+    finally:
+        manager.shutdown_kernel(now=True)
+
+
 @every_lesson
-def test_runs_blank_and_solved(lesson: Lesson, tmp_path: Path):
+def test_runs_blank_and_solved(lesson: Lesson, kernel: Any, tmp_path: Path):
     from nbclient import NotebookClient
+    from nbformat import v4
 
     notebook = blank_then_solved(book(lesson))
-    client = NotebookClient(
-        notebook,
-        timeout=120,
-        kernel_name="python3",
-        resources={"metadata": {"path": str(tmp_path)}},
-    )
-    client.execute()  # an error in a cell is raised here
+    notebook.cells.insert(0, v4.new_code_cell(f"%reset -f\n%cd -q {tmp_path}"))
+    NotebookClient(notebook, km=kernel, timeout=120).execute()  # an error in a cell is raised here
+    assert notebook.cells.pop(0).outputs == []
     for cell in notebook.cells:
         wanted = cell.metadata.get("wanted")
         answers = [out.data[MIME] for out in cell.outputs if MIME in out.get("data", {})]

@@ -1,6 +1,7 @@
 """Checks of blank, wrong and right answers; listing and copying of lessons."""
 
 import json
+import math
 import subprocess
 import sys
 
@@ -22,7 +23,9 @@ from meshwright.teaching.exercises.example_meshes import PATCHES
 from meshwright.teaching.exercises.exercise import MODULES, NoAnswer, WrongAnswer, declare
 from meshwright.teaching.exercises.result import MIME
 from meshwright.teaching.lessons import ExerciseCell
-from meshwright_core import MeshError
+from meshwright_core import HalfEdgeMesh, MeshError
+from meshwright_core.analysis.blocks import block_count
+from meshwright_core.core.irregularity import desired_on_boundary
 from meshwright_core.geometry import quality
 
 NAMES = [cell.name for lesson in lessons.shipped() for cell in lesson.exercises()]
@@ -102,6 +105,113 @@ def test_answers_are_escaped_in_html():
 def test_minus_signs_in_sentences():
     assert "\u22124" in Answer("2.1", "wrong", "It was -4, not non-negative.")._repr_html_()
     assert "non-negative" in Answer("2.1", "wrong", "It was -4, not non-negative.")._repr_html_()
+
+
+HALVES = (45, 135, 225, 315)
+
+
+@pytest.mark.parametrize("angle", HALVES)
+def test_halves_go_up_in_the_desired_degree(angle):
+    """Lesson 2: one function that takes one of the halves down is told about it."""
+    right = exercise("2.2")
+
+    def desired(theta):
+        return max(math.floor(theta / 90 + 0.5) + 1, 2)
+
+    assert right.check(desired).passed
+    assert desired(angle) == desired_on_boundary(np.array([float(angle)]), 4)[0]
+    down = right.check(lambda theta: max(desired(theta) - (theta == angle), 1))
+    assert down.state == "wrong"
+    assert f"At {angle} degrees" in down.sentence and "halves go up" in down.sentence
+
+
+def test_pythons_round_is_told_about_halves():
+    answer = exercise("2.2").check(lambda theta: max(round(theta / 90) + 1, 2))
+    assert answer.state == "wrong" and "halves go up" in answer.sentence
+
+
+@pytest.mark.parametrize(("angle", "degree"), [(150, 4), (270, 6), (90, 3), (30, 2)])
+def test_halves_go_up_in_triangles_too(angle, degree):
+    """Lesson 2 says so of 150 and 270 degrees."""
+    assert desired_on_boundary(np.array([float(angle)]), 3)[0] == degree
+
+
+def squares(places, n=3):
+    """Unit squares at the lower left corners `places`, each divided into n x n quads."""
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    inside = np.array([(i, j) for i in range(n) for j in range(n)])
+    quads = np.array([n * np.array(place) + cell + corners for place in places for cell in inside])
+    points, rows = np.unique(quads.reshape(-1, 2), axis=0, return_inverse=True)
+    return HalfEdgeMesh.from_elements(points / n, rows.reshape(-1, 4))
+
+
+U = [(0, 1), (0, 0), (1, 0), (2, 0), (2, 1)]
+
+
+@pytest.mark.parametrize(
+    ("places", "inwards", "shared", "blocks"),
+    [
+        ([(0, 0), (1, 0), (0, 1)], 1, 0, 3),
+        ([(0, 0), (1, 0), (2, 0), (1, 1)], 2, 1, 4),
+        (U, 2, 0, 5),
+    ],
+    ids=["L", "T", "U"],
+)
+def test_blocks_are_counted_without_a_mesh_as_lesson_5_says(places, inwards, shared, blocks):
+    mesh = squares(places)
+    assert mesh.score == 0
+    assert block_count(mesh) == 1 + 2 * inwards - shared == blocks
+
+
+def test_the_least_number_of_blocks_holds_for_a_score_of_0_only():
+    """A U of three quads that meet along lines between its corners is one bent block; exercise 5.3
+    counts five.
+    """
+    assert exercise("5.3").check(block_count(squares(U))).passed
+    points = [(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)]
+    mitred = HalfEdgeMesh.from_elements(points, [(0, 5, 6, 7), (0, 1, 4, 5), (1, 2, 3, 4)])
+    assert mitred.optimum == 0 < mitred.score
+    assert block_count(mitred) == 1
+    asked = next(
+        cell for cell in lesson_texts("05-block-decomposition") if "Count blocks without" in cell
+    )
+    assert "if *s* is to be 0" in asked and "there may be fewer" in asked
+
+
+def lesson_texts(name):
+    lesson = next(lesson for lesson in lessons.shipped() if lesson.name == name)
+    cells = json.loads(lesson.path.read_text(encoding="utf-8"))["cells"]
+    return ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown"]
+
+
+def test_lines_of_a_regular_rectangle_come_out_across_and_never_at_the_side():
+    """The reason for exercise 4.4: the lines from below end above, in their order."""
+    mesh = patch("wide grid")
+    assert mesh.score == 0
+    points, boundary = mesh.points, mesh.boundary()
+    for vertex in np.flatnonzero(boundary & (points[:, 1] == 0) & ~mesh.geometric()):
+        (h,) = (h for h in mesh.outgoing(vertex) if not boundary[mesh.target(h)])
+        while not boundary[mesh.target(h)]:
+            h = mesh.next(mesh.twin(mesh.next(h)))  # straight on
+        assert points[mesh.target(h), 0] == points[vertex, 0]
+        assert points[mesh.target(h), 1] == points[:, 1].max()
+    # and what no flip, split or collapse can change, at any of their places
+    mesh = patch("three to one")
+    before = np.sort(points_of(mesh), axis=0)
+    rng = np.random.default_rng(0)
+    for _ in range(60):
+        operation = ("flip_left", "flip_right", "split", "collapse")[rng.integers(4)]
+        places = [h for h in range(4 * mesh.arrays.edge.shape[0]) if mesh.live(h)]
+        h = int(rng.choice(places))
+        if mesh.check(operation, h):
+            mesh.apply(operation, h)
+    assert mesh.steps > 10 and np.array_equal(np.sort(points_of(mesh), axis=0), before)
+    assert exercise("4.4").check(False).passed
+
+
+def points_of(mesh):
+    """The vertices on the boundary."""
+    return mesh.points[mesh.boundary() & (mesh.degree() > 0)]
 
 
 def test_unknown_exercise():

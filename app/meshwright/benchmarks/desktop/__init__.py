@@ -34,7 +34,8 @@ def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[
     at the first paint), ``answers`` by number of quads (``hover_ms``: mouse move to painted
     half-edge, with the slowest; ``operation_ms``: key to the frame on the screen, split into the
     ``document``'s share, ``prepare`` (scene and overlay), ``frame`` (VTK) and ``show`` (Qt composes
-    the window); ``frames_per_hover``, which should be 0),
+    the window), and apart the ``first`` operation and its ``undo``; ``frames_per_hover``, which
+    should be 0),
     ``play`` (operations and frames a second while the agent plays, and how long the window takes to
     answer a mouse move meanwhile), ``million`` (seconds to open, milliseconds to hover and edit).
     Raises RuntimeError without a display.

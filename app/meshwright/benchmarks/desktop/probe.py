@@ -183,7 +183,9 @@ _steps = itertools.count(1)
 
 
 def _operate(app: Any, window: Any) -> dict[str, float]:
-    """Medians in milliseconds from a key to the drawn operation, in total and by part."""
+    """Medians in milliseconds from a key to the drawn operation, in total and by part; besides
+    ``first``, the first operation, and ``undo``, the first undo, both in total.
+    """
     from qtpy.QtCore import QPoint, Qt
     from qtpy.QtTest import QTest
 
@@ -202,24 +204,38 @@ def _operate(app: Any, window: Any) -> dict[str, float]:
             marks.setdefault("shown", _now())
 
     canvas.plotter.frameSwapped.connect(swapped)
+
+    def pressed(key: Any, modifier: Any = Qt.KeyboardModifier.NoModifier) -> float | None:
+        """Seconds from the key to the picture; None if it has changed nothing."""
+        cursor, at = document.history.cursor, _now()
+        marks.clear()
+        QTest.keyClick(canvas.plotter, key, modifier)
+        if document.history.cursor == cursor:
+            return None
+        _spin(app, lambda: "shown" in marks)
+        marks["key"] = at
+        return marks["shown"] - at
+
+    undo = None
     for i in range(OPERATIONS):
         QTest.mouseMove(canvas.plotter, QPoint(200 + 23 * i, 240 + 7 * i))
         _spin(app, lambda: document.hover >= 0)
         app.processEvents()
-        cursor, at = document.history.cursor, _now()
-        marks.clear()
-        QTest.keyClick(canvas.plotter, Qt.Key.Key_F)
-        if document.history.cursor == cursor:
+        whole = pressed(Qt.Key.Key_F)
+        if whole is None:
             continue
-        _spin(app, lambda: "shown" in marks)
-        spans["whole"].append(marks["shown"] - at)
-        spans["document"].append(marks["document"] - at)
+        spans["whole"].append(whole)
+        spans["document"].append(marks["document"] - marks["key"])
         spans["prepare"].append(marks["StartEvent"] - marks["document"])
         spans["frame"].append(marks["EndEvent"] - marks["StartEvent"])
         spans["show"].append(marks["shown"] - marks["EndEvent"])
+        if undo is None:
+            undo = pressed(Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     for tag in observers:
         canvas.plotter.ren_win.RemoveObserver(tag)
-    return {name: 1000.0 * median(times) for name, times in spans.items()}
+    seconds = {name: median(times) for name, times in spans.items()}
+    seconds |= {"first": spans["whole"][0], "undo": undo or 0.0}
+    return {name: 1000.0 * taken for name, taken in seconds.items()}
 
 
 def _now() -> float:

@@ -14,7 +14,7 @@ from typing import Any
 from meshwright.benchmarks.notebook.chromium import browser
 from meshwright.benchmarks.notebook.jupyterlab import LabNotebook
 from meshwright.benchmarks.notebook.probe import NOTING, WidgetProbe
-from meshwright.benchmarks.notebook.servers import jupyterlab
+from meshwright.benchmarks.notebook.servers import jupyterlab, need
 from meshwright.console import Update, no_update
 
 SUMMARY = "the notebook's widget in JupyterLab: click to redrawn, panning, bytes sent"
@@ -39,6 +39,7 @@ def run(seed: int = 0, quick: bool = False, update: Update = no_update) -> dict[
     """
     sizes = SIZES[:2] if quick else SIZES
     results: dict[str, Any] = {}
+    need("playwright", "Playwright")  # before a server starts
     with jupyterlab() as server, browser() as chromium:
         page = chromium.new_page(viewport=WINDOW)
         page.add_init_script(NOTING)

@@ -21,7 +21,7 @@ from meshwright_core.operations.catalogue import Operation, OperationInfo, of_ki
 HEIGHT = 26
 SHAPE_GAP = 28
 """Pixels at the right of the change of shape, for the change of s."""
-POINT = "Point at a half-edge to see its operations and how each changes s."
+POINT = "Point at a half-edge to see how each operation changes s."
 ARMED = "{}: click half-edges to apply it; Esc cancels."
 EMPTY = "Operations are listed here when there is a mesh."
 

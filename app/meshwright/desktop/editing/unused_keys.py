@@ -12,6 +12,7 @@ from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import Theme
 
+INACTIVE = "works while the window is active: click it first."
 ON_CANVAS = "works while the mesh has the keyboard focus: click it, or press Escape."
 _SILENT = (
     Qt.Key.Key_Shift,
@@ -60,7 +61,8 @@ class UnusedKeys(Controller):
             return
         title = entry.title.rstrip("\u2026")
         if self._actions[entry.id].isEnabled():
-            self._status.show_message(f"{title} {ON_CANVAS}")
+            why = ON_CANVAS if entry.on_canvas else INACTIVE
+            self._status.show_message(f"{title} {why}")
         else:
             self._status.show_message(f"{title}: {entry.requirement}")
 

@@ -18,8 +18,8 @@ from meshwright.desktop.widgets.action_set import ActionEntry, key_text
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
-WIDE = 1240
-"""Width in pixels from which there are four columns; otherwise there are three."""
+MOST_COLUMNS = 4
+"""There are as many columns as fit the window, up to this number."""
 Block = tuple[str, list[tuple[str, str, str]]]
 """A heading, and for each line the keys, the title of the action, and its tooltip."""
 
@@ -42,19 +42,14 @@ class ShortcutsDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle("Keyboard and mouse")
-        body = QWidget()
-        body.setObjectName("SidebarBody")
-        columns = QHBoxLayout(body)
-        columns.setContentsMargins(4 * GRID, 3 * GRID, 4 * GRID, 2 * GRID)
-        columns.setSpacing(3 * GRID)
         room = parent.window().size()
-        for blocks in spread(key_blocks(groups), 4 if room.width() >= WIDE else 3):
-            column = QVBoxLayout()
-            column.setSpacing(2 * GRID)
-            for title, lines in blocks:
-                column.addLayout(_block(title, lines))
-            column.addStretch(1)
-            columns.addLayout(column, 1)
+        most = room.width() - 4 * GRID - 2 * GRID
+        blocks = key_blocks(groups)
+        for count in range(MOST_COLUMNS, 0, -1):
+            body = _body(spread(blocks, count))
+            if body.sizeHint().width() <= most or count == 1:
+                break
+            body.deleteLater()
         area = QScrollArea()
         area.setWidgetResizable(True)
         area.setFrameShape(QFrame.Shape.NoFrame)
@@ -77,6 +72,23 @@ class ShortcutsDialog(QDialog):
         wanted = body.sizeHint()
         width = min(max(wanted.width() + 2 * GRID, 880), room.width() - 4 * GRID)
         self.resize(width, min(wanted.height() + 10 * GRID, room.height() - 8 * GRID))
+
+
+def _body(columns: Sequence[Sequence[Block]]) -> QWidget:
+    """The page in columns."""
+    made = QWidget()
+    made.setObjectName("SidebarBody")
+    row = QHBoxLayout(made)
+    row.setContentsMargins(4 * GRID, 3 * GRID, 4 * GRID, 2 * GRID)
+    row.setSpacing(3 * GRID)
+    for blocks in columns:
+        column = QVBoxLayout()
+        column.setSpacing(2 * GRID)
+        for title, lines in blocks:
+            column.addLayout(_block(title, lines))
+        column.addStretch(1)
+        row.addLayout(column, 1)
+    return made
 
 
 def key_blocks(groups: Sequence[tuple[str, Sequence[ActionEntry]]]) -> list[Block]:

@@ -50,7 +50,7 @@ class ExportController(ExportTask):
         colours = self._settings.colours
         measure = self._settings.choice(COLOUR_BY, ("", *MEASURES))  # as in the view
         order = replace(self._order, theme=self._theme.name, colours=colours, measure=measure)
-        dialog = ExportDialog(film, order, self._parent)
+        dialog = ExportDialog(film, order, self._parent, document.hover)
         accepted = bool(dialog.exec())
         self._order = dialog.order
         dialog.deleteLater()

@@ -49,7 +49,14 @@ class ExportDialog(ExportFrame):
     state where ``film`` stands.
     """
 
-    def __init__(self, film: Film, order: ExportOptions, parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        film: Film,
+        order: ExportOptions,
+        parent: QWidget | None = None,
+        pointed_at: int = -1,
+    ) -> None:
+        """`pointed_at`: the half-edge that a picture may show, -1 for none."""
         super().__init__("Export video or image", parent)
         self._film = film
         self._state = film.state
@@ -57,6 +64,8 @@ class ExportDialog(ExportFrame):
         if len(film.rows) == 0 and order.moving:
             order = replace(order, ending=".png")  # there is nothing to animate
         self.order = order
+        self._pointed_at = pointed_at
+        self.halfedge = QCheckBox("Half-edge pointed at")
         self._group = QButtonGroup(self)
         self.formats: dict[str, QPushButton] = {}
         self.size_box = QComboBox()
@@ -97,6 +106,10 @@ class ExportDialog(ExportFrame):
             self.parts[name] = QCheckBox(title)
             self.parts[name].setChecked(getattr(order, name))
             self.parts[name].toggled.connect(self._on_changed)
+        self.halfedge.setToolTip(
+            "In images: point at a half-edge, by mouse or keys, then open this dialog by its keys"
+        )
+        self.halfedge.toggled.connect(self._on_changed)
         self._group.buttonClicked.connect(self._on_changed)
         for box in (self.size_box, self.theme_box):
             box.currentIndexChanged.connect(self._on_changed)
@@ -132,6 +145,7 @@ class ExportDialog(ExportFrame):
         fields.addSpacing(GRID)
         for box in self.parts.values():
             fields.addWidget(box)
+        fields.addWidget(self.halfedge)
         fields.addStretch(1)
         self.length.setWordWrap(True)
         self.length.setMinimumHeight(36)
@@ -162,8 +176,10 @@ class ExportDialog(ExportFrame):
             curve=self.parts["curve"].isChecked(),
             numbers=self.parts["numbers"].isChecked(),
             changes=self.parts["changes"].isChecked(),
+            halfedge=self._pointed_at if self.halfedge.isChecked() else -1,
         )
         moving = self.order.moving
+        self.halfedge.setEnabled(not moving and self._pointed_at >= 0)
         for part in (*self._pace, self.seconds, self.every):
             part.setVisible(moving)
         self.every.setSuffix(" step" if self.every.value() == 1 else " steps")
@@ -171,6 +187,11 @@ class ExportDialog(ExportFrame):
         self.length.setText(self._words())
         self.export.setEnabled(not moving or len(self._film.rows) > 0)
         self._later.start()
+
+    def done(self, result: int) -> None:
+        """Close; the preview is not drawn any more."""
+        self._later.stop()
+        super().done(result)
 
     def _words(self) -> str:
         """Number of frames and duration of the video, or the state of the image."""

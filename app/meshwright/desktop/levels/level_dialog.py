@@ -25,7 +25,7 @@ from meshwright.puzzles.level import Level
 from meshwright.puzzles.progress import MOST_STARS, LevelProgress
 
 COLUMNS = 4
-CARD = QSize(184, 200)
+CARD = QSize(184, 212)
 PICTURE = QSize(168, 120)
 STORY = (
     "Each level is a mesh with a goal and a par: reach the lowest score with as few operations as"
@@ -145,6 +145,7 @@ class LevelCard(QPushButton):
         self.picture = named("", "Picture")
         self.picture.setPixmap(picture(level.name, theme, self.devicePixelRatioF()))
         self.title = named(f"{level.number}  {level.title}", "CardTitle")
+        self.title.setWordWrap(True)
         self.stars = StarRating(theme, 14)
         self.stars.count = best.stars
         column.addWidget(self.picture)

@@ -56,7 +56,7 @@ from meshwright.desktop.quality.colour_controller import ColourController
 from meshwright.desktop.quality.quality_controller import QualityController
 from meshwright.desktop.widgets.action_set import ActionSet, with_mnemonics
 from meshwright.desktop.widgets.basic import NoticeBar
-from meshwright.desktop.widgets.event_filters import PanelInput
+from meshwright.desktop.widgets.event_filters import MENU_KEYS, OwnKeys, PanelInput
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.document.document import Document
 from meshwright.graphics.theme import style_sheet, theme
@@ -310,6 +310,7 @@ class MainWindow(QMainWindow):
         _column(whole, self.levels.bar, below).setStretchFactor(below, 1)
         self.setCentralWidget(whole)
         PanelInput(whole, self.canvas.focus)
+        OwnKeys(self.menuBar(), MENU_KEYS)
 
     def _make_sidebar(self) -> Sidebar:
         settings, quality = self.settings, self.quality.quality

@@ -1,7 +1,7 @@
 """Icons as SVG strokes on a grid of 20, drawn in the colours of the theme."""
 
 from qtpy.QtCore import QByteArray, QSize, Qt
-from qtpy.QtGui import QIcon, QPainter, QPixmap
+from qtpy.QtGui import QIcon, QPainter, QPixmap, QPixmapCache
 from qtpy.QtSvg import QSvgRenderer
 
 from meshwright.graphics.icon_paths import STROKES, WINDOW_STROKES
@@ -12,7 +12,15 @@ _STROKES = {**STROKES, **WINDOW_STROKES}
 
 
 def pixmap(name: str, colour: str, size: int = SIZE, ratio: float = 1.0) -> QPixmap:
-    """One icon in one colour; ``size`` in logical pixels."""
+    """One icon in one colour; ``size`` in logical pixels. Each is drawn once and shared."""
+    key, drawn = f"meshwright {name} {colour} {size} {ratio}", QPixmap()
+    if not QPixmapCache.find(key, drawn):
+        drawn = _drawn(name, colour, size, ratio)
+        QPixmapCache.insert(key, drawn)
+    return drawn
+
+
+def _drawn(name: str, colour: str, size: int, ratio: float) -> QPixmap:
     svg = (
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20" fill="none" '
         f'stroke="{colour}" stroke-width="1.5" stroke-linecap="round" stroke-linejoin="round">'

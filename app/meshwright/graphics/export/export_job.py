@@ -42,6 +42,8 @@ class ExportOptions:
     changes: bool = True
     colours: str = "vermilion"
     measure: str = ""
+    halfedge: int = -1
+    """Drawn in pictures, not in films: other states may not have it."""
 
     @property
     def moving(self) -> bool:
@@ -60,6 +62,7 @@ class ExportOptions:
             changes=self.changes,
             colours=self.colours,
             measure=self.measure,
+            halfedge=-1 if self.moving else self.halfedge,
         )
 
     def stride(self, film: Film) -> int:

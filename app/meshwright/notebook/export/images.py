@@ -29,21 +29,30 @@ File = str | os.PathLike[str] | None
 
 
 def png(
-    document: Document, size: tuple[int, int] = SIZE, path: File = None, theme: str = "light"
+    document: Document,
+    size: tuple[int, int] = SIZE,
+    path: File = None,
+    theme: str = "light",
+    halfedge: int = -1,
 ) -> bytes:
     """An image of the present state as PNG, ``size`` in pixels; also written to ``path``.
 
+    ``halfedge`` is shown as an arrow, -1 for none.
     This and all others raise MeshError where there is no mesh, a number is out of range, or
     ``path`` cannot be written; an existing file is unchanged then.
     """
-    return _made(document, ".png", size, path, theme)
+    return _made(document, ".png", size, path, theme, halfedge=halfedge)
 
 
 def svg(
-    document: Document, size: tuple[int, int] = SIZE, path: File = None, theme: str = "light"
+    document: Document,
+    size: tuple[int, int] = SIZE,
+    path: File = None,
+    theme: str = "light",
+    halfedge: int = -1,
 ) -> str:
     """An image of the present state as SVG; also written to ``path``."""
-    return _made(document, ".svg", size, path, theme).decode("utf-8")
+    return _made(document, ".svg", size, path, theme, halfedge=halfedge).decode("utf-8")
 
 
 def gif(
@@ -82,10 +91,15 @@ def _made(
     theme: str,
     seconds: float = SECONDS,
     progress: ReportProgress | None = None,
+    halfedge: int = -1,
 ) -> bytes:
     """The bytes of an image or animation; without ``path`` through a temporary folder."""
     options = ExportOptions(
-        ending, _checked_size(size), _checked_theme(theme), seconds=_checked_seconds(seconds)
+        ending,
+        _checked_size(size),
+        _checked_theme(theme),
+        seconds=_checked_seconds(seconds),
+        halfedge=_checked_halfedge(document, halfedge),
     )
     if path is not None:
         _check_ending(path, ending)
@@ -113,6 +127,15 @@ def _checked_size(size: Any) -> tuple[int, int]:
             f"A size is two whole numbers of pixels from {SMALLEST} to {LARGEST:,}, not {size!r}."
         )
     return int(sides[0]), int(sides[1])
+
+
+def _checked_halfedge(document: Document, halfedge: Any) -> int:
+    mesh = document.mesh
+    if not is_whole_number(halfedge):
+        raise MeshError(f"A half-edge is a whole number, not {halfedge!r}.")
+    if mesh is not None and halfedge != -1 and not mesh.live(int(halfedge)):
+        raise MeshError(f"The mesh has no half-edge {halfedge}.")
+    return int(halfedge)
 
 
 def _checked_theme(theme: str) -> str:

@@ -160,8 +160,8 @@ class DrawingReport:
             elif 1 <= number <= len(self.regions):
                 chosen.add(number - 1)
             else:
-                there = listed([f"{i} {r.name!r}" for i, r in enumerate(self.regions, 1)])
-                raise MeshError(f"there is no region {key[:40]!r}; there are {there}")
+                there = listed([f"{r.name!r} ({i})" for i, r in enumerate(self.regions, 1)])
+                raise MeshError(f"there is no region {key[:40]!r}; the drawing has {there}")
         return [self.regions[i] for i in sorted(chosen)]
 
     def _apart(self, groups: list[list[int]]) -> str:

@@ -40,6 +40,8 @@ WORKING = "Making the mesh\u2026"
 NOTHING = "The mesh is shown here as soon as there is a shape."
 NO_MESH = "There is no mesh to show: see below."
 MAKE, OPEN = "Make mesh", "Open mesh"
+FRAME = 48
+"""Pixels of the height of a screen that title bars take."""
 
 
 class _Restorable(Protocol):
@@ -67,7 +69,8 @@ class NewMeshDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle("New mesh")
-        self.resize(1120, 720)
+        room = self.screen().availableSize().height() - FRAME
+        self.resize(1120, min(720, room))  # the layout asks for no less than it needs
         self.made: NewMesh | None = None
         self.maker = MeshProcess(self)
         self.maker.start()

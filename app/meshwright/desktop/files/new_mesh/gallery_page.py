@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 from qtpy.QtCore import Qt
@@ -11,6 +12,13 @@ from qtpy.QtWidgets import QVBoxLayout
 from meshwright.desktop.files.new_mesh.page_base import Page, Pictures, words_of
 from meshwright.graphics.theme import Theme
 from meshwright_core.domains import gallery
+from meshwright_core.domains.domain import Domain
+
+
+@cache
+def _drawn() -> dict[str, Domain]:
+    """The shapes as the pictures show them, made once; nobody may change them."""
+    return gallery.gallery()
 
 
 class GalleryPage(Page):
@@ -43,7 +51,7 @@ class GalleryPage(Page):
     def fill(self) -> None:
         """Draw the pictures."""
         if self.shapes.count() == 0:
-            for name, domain in gallery.gallery().items():
+            for name, domain in _drawn().items():
                 self.shapes.add(words_of(name), name, domain, self._theme)
             self.shapes.setCurrentRow(0)
         self.shapes.setFocus()

@@ -222,7 +222,9 @@ def test_names_of_layers():
     assert [r.name for r in report.regions] == ["cut 1", "cut 2", "other"]
     assert [r.layer for r in report.regions] == ["cut", "cut", "other"]
     assert [r.name for r in report.chosen("cut 1, other")] == ["cut 1", "other"]
-    with pytest.raises(MeshError, match="no region 'lid'; there are 1 'cut 1', 2 'cut 2'"):
+    with pytest.raises(
+        MeshError, match=r"no region 'lid'; the drawing has 'cut 1' \(1\), 'cut 2' \(2\)"
+    ):
         report.chosen("lid")
 
 
