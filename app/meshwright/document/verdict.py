@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from meshwright.document.quality_summary import shape_in_order, shape_words
+from meshwright.document.quality_summary import decimal, shape_in_order, shape_words
 from meshwright_core import HalfEdgeMesh
+from meshwright_core.geometry.element_sines import THIN
 
 
 @dataclass(frozen=True)
@@ -35,20 +36,25 @@ def gap_words(score: int, optimum: int, name: str = "it") -> str:
 
 
 def findings(
-    mesh: HalfEdgeMesh, worst: float, bound: float, inverted: int
-) -> tuple[Finding, Finding, Finding]:
-    """Shape, inverted elements and largest |delta| of ``mesh``, in words.
+    mesh: HalfEdgeMesh, worst: float, flattest: float, bound: float, inverted: int
+) -> tuple[Finding, ...]:
+    """Shape, inverted elements and largest |delta| of ``mesh``, in words; long thin elements too
+    if there are any, by the measure of searches.
 
     Args:
         mesh: the mesh.
         worst: its worst scaled Jacobian.
+        flattest: its worst element shape.
         bound: q*.
         inverted: number of its inverted elements.
     """
     delta = largest_delta(mesh)
     least = 1 if mesh.optimum else 0
-    return (
+    said = (
         Finding(f"Shape {shape_words(worst, bound)}", shape_in_order(worst, bound)),
         Finding(f"{inverted:,} inverted" if inverted else "Nothing inverted", not inverted),
         Finding(f"Largest |\u0394| {delta}", delta <= least),
     )
+    if inverted or shape_in_order(THIN * flattest, bound):
+        return said
+    return (*said, Finding(f"Long thin elements: shape {decimal(flattest)}", False))

@@ -13,7 +13,8 @@ from meshwright.graphics.theme import GRID, Theme
 
 PROOF = "s = s*: no connectivity is better under these desired degrees."
 TITLE = "Optimal connectivity"
-_LINES = 3
+_LINES = 4
+"""The most findings."""
 
 
 class OptimumBadge(QFrame):
@@ -54,9 +55,10 @@ class OptimumBadge(QFrame):
         _paint(self.title, self.warns)
         for number, line in enumerate(self.lines):
             one = findings[number] if number < len(findings) else Finding("\u2026", True)
+            line.setVisible(number < max(len(findings), 1))
             line.setText(one.text if one.in_order else f"\u26a0 {one.text}")
             _paint(line, not one.in_order)
-        said = "; ".join(line.text() for line in self.lines)
+        said = "; ".join(line.text() for line in self.lines[: max(len(findings), 1)])
         self.setAccessibleName(f"{TITLE}: {said}")
         self.set_theme(self._theme)
 

@@ -166,9 +166,10 @@ class ScorePanel(QWidget):
             return
         worst, count = fresh.jacobian.worst, len(fresh.inverted)
         self.shape.show_value(shape_words(worst, fresh.bound), leads=True, warns=worst <= 0.0)
-        self.flattest.show_value(decimal(fresh.shape.worst), leads=True)
+        flattest = fresh.shape.worst
+        self.flattest.show_value(decimal(flattest), leads=True, warns=flattest <= 0.0)
         self.inverted.show_value(f"{count:,}", leads=count > 0, warns=count > 0)
-        self.optimal.show_findings(findings(mesh, worst, fresh.bound, count))
+        self.optimal.show_findings(findings(mesh, worst, flattest, fresh.bound, count))
 
     def _choose(self, measure: str) -> None:
         if self._monitor.summary is not None:

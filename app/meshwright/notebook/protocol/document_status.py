@@ -109,14 +109,15 @@ class DocumentStatus:
         worst = int(ids[np.argmin(quality.jacobian[ids])])
         flattest = int(ids[np.argmin(quality.shape[ids])])
         lowest, bound = float(quality.jacobian[worst]), self._shape_bound(mesh)
-        said = findings(mesh, lowest, bound, len(quality.inverted))
+        thinnest = float(quality.shape[flattest])
+        said = findings(mesh, lowest, thinnest, bound, len(quality.inverted))
         return {
             "shape": {
                 "words": shape_words(lowest, bound),
-                "flattest": decimal(float(quality.shape[flattest])),
+                "flattest": decimal(thinnest),
                 "worst_scaled_jacobian": round(lowest, 4),
                 "shape_bound": round(bound, 4),
-                "worst_shape": round(float(quality.shape[flattest]), 4),
+                "worst_shape": round(thinnest, 4),
                 "elements": [worst, flattest],
             },
             "findings": [[one.text, one.in_order] for one in said],
