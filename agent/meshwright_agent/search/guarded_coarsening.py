@@ -5,9 +5,9 @@ to a copy, rejected at once where the degrees alone forbid a good shape, then po
 (:mod:`meshwright_core.geometry.layout_positions`) and kept if the layout is better in this order:
 nothing inverted; lower s; worst corner sine, up to a target; smaller sum of the squared
 irregularities; fewer elements. Sines are weighed so that long thin elements count as bad ones
-(:func:`meshwright_core.geometry.element_sines.thinness`). A layout is changed in larger steps by a *kick*: some random
-operations, followed by annealing until s is as low as before. All of it is compiled; every
-operation is logged.
+(:func:`meshwright_core.geometry.element_sines.thinness`). A layout is changed in larger steps by a
+*kick*: some random operations, followed by annealing until s is as low as before. All of it is
+compiled; every operation is logged.
 """
 
 from __future__ import annotations

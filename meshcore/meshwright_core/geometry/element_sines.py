@@ -30,8 +30,8 @@ MOST_TURN = np.radians(300.0)
 
 
 THIN = 4.0
-"""Half of P/Q + Q/P, with the lengths P and Q of the sides at a corner, beyond which its sine counts
-less: sides of about 1 to 8."""
+"""Half of P/Q + Q/P, with the lengths P and Q of the sides at a corner, beyond which its sine
+counts less: sides of about 1 to 8."""
 
 
 @bare_kernel
