@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import Aims, Coarsener, Layout
-from meshwright_core.geometry.quality import scaled_jacobian
+from meshwright_agent.search.solution import weighed_worst
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.mesh import HalfEdgeMesh
@@ -162,7 +162,7 @@ class LayoutSearch:
         if not layout.key[1] and placed is not None:
             # raising the corners has folded a quad along a curve: keep what is valid
             self.coarsener.place(layout, placed)
-            layout.key[1] = max(float(scaled_jacobian(placed).min()), 1e-3)
+            layout.key[1] = max(weighed_worst(placed), 1e-3)
         if not (coarsen and layout.key[1]):
             self._insert(layout)
             return

@@ -77,10 +77,11 @@ class Solution:
 
     @property
     def rank(self) -> tuple[bool, int, int, int, int, float, int]:
-        """Solutions with a lower rank are better: valid; s; inverted elements; worst element up to
-        the target; sum of squares; elements, weighed against shape; operations.
+        """Solutions with a lower rank are better: valid; s; inverted elements; weighed worst scaled
+        Jacobian up to the target; sum of squares; elements, weighed against shape; operations.
         """
-        aims, worst = self.aims, min(self.worst_scaled_jacobian, THIN * self.worst_shape)
+        aims = self.aims
+        worst = min(self.worst_scaled_jacobian, THIN * self.worst_shape)  # as in weighed_worst
         shape = -int(min(worst, aims.target) / ALIKE)
         spread = self.sum_delta2 if aims.spread else 0
         weighed = cost(worst, self.elements, aims) if self.coarse else 0.0
@@ -164,10 +165,15 @@ def judged(
 
 def _is_short(mesh: HalfEdgeMesh, aims: Aims) -> bool:
     """Whether the worst element is below the target, if there is one."""
-    worst = min(
-        scaled_jacobian(mesh).min(initial=1.0), THIN * element_shapes(mesh).min(initial=1.0)
-    )
-    return bool(worst < aims.target)
+    return weighed_worst(mesh) < aims.target
+
+
+def weighed_worst(mesh: HalfEdgeMesh) -> float:
+    """The worst scaled Jacobian, or :data:`THIN` times the worst element shape if that is less: the
+    measure of :func:`meshwright_core.geometry.element_sines.thinness` for a whole mesh.
+    """
+    jacobian, shape = scaled_jacobian(mesh), element_shapes(mesh)
+    return float(min(jacobian.min(initial=1.0), THIN * shape.min(initial=1.0)))
 
 
 def _best_positions(reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:

@@ -53,12 +53,13 @@ class OptimumBadge(QFrame):
         self._findings = tuple(findings)
         _paint(self, self.warns)
         _paint(self.title, self.warns)
-        for number, line in enumerate(self.lines):
-            one = findings[number] if number < len(findings) else Finding("\u2026", True)
-            line.setVisible(number < max(len(findings), 1))
+        shown = self._findings or (Finding("\u2026", True),)
+        for line, one in zip(self.lines, shown, strict=False):
             line.setText(one.text if one.in_order else f"\u26a0 {one.text}")
             _paint(line, not one.in_order)
-        said = "; ".join(line.text() for line in self.lines[: max(len(findings), 1)])
+        for number, line in enumerate(self.lines):
+            line.setVisible(number < len(shown))
+        said = "; ".join(line.text() for line in self.lines[: len(shown)])
         self.setAccessibleName(f"{TITLE}: {said}")
         self.set_theme(self._theme)
 
