@@ -23,14 +23,7 @@ from meshwright_agent.policy.inference import tensors
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations, copy_mesh
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.divided_layouts import (
-    collapse_chords,
-    drawn_divided,
-    ways_down,
-)
 from meshwright_agent.search.guarded_coarsening import candidates
-from meshwright_agent.search.leaps import leap
-from meshwright_agent.search.search_worker import RolloutBatch, Worker
 from meshwright_core.core.arrays import (
     ELEMENT_SLOTS,
     ELEMENTS,
@@ -41,16 +34,12 @@ from meshwright_core.core.arrays import (
     copied,
 )
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry.layout_positions import layout_bound, rails_of
+from meshwright_core.geometry.layout_positions import rails_of
 from meshwright_core.geometry.local_positions import LocalEffort, local_effort, settle
-from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrite
 from meshwright_core.operations.refusals import ALLOWED
 
-TOGETHER, ELEMENTS_EACH = 2, 200
-"""The most rollouts side by side, and elements of all of them together: on a large mesh one comes
-further in the same time."""
 STALLED = 40
 """Decisions without a lower s after which a rollout ends."""
 TRIES = 6
@@ -62,24 +51,11 @@ STUCK = 20
 GOAL = 0.1
 """Sine of the worst corner up to which what an operation changes is raised: more takes most of the
 time, and what can be drawn remains the same."""
-FREE_WORK, MOST_FREE = 1500, 16
-"""Free rollouts from a state between two rounds of guarded ones, in its elements and in number."""
-COARSE = 120
-"""Elements down to which these are coarsened first."""
-FREE_DRAWN = ((4, 1), (1, 2))
-"""How many of their results are given positions, with how many attempts; then again."""
-LARGEST_STUCK = 250
-"""Elements up to which the best state, where a round has not helped, is divided after leaps and
-annealing."""
-ANNEALED_DRAWN = 6
-"""Results of annealing that are given positions."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1
 """Least sine of a corner around a strip that is collapsed."""
 _LONGEST_PASS = 200
-_SLICE = 20
-"""Strips that are collapsed between two looks at the clock."""
 
 
 @kernel
@@ -148,6 +124,8 @@ class DrawnState:
     elements: int
     arrays: MeshArrays
     """Connectivity and positions."""
+    tries: int = 0
+    """How often something was tried from it."""
 
     @classmethod
     def of(cls, operations: Operations, arrays: MeshArrays) -> DrawnState:
@@ -197,7 +175,7 @@ class GuardedRollouts:
         mesh: HalfEdgeMesh,
         policy: Policy,
         rng: np.random.Generator,
-        count: int = TOGETHER,
+        count: int = 1,
         max_steps: int | None = None,
         ceiling: int | None = None,
     ) -> None:
@@ -314,178 +292,3 @@ class GuardedRollouts:
             weights[action] = 0.0
             self._blocked[b][kind, h] = int(self._batch.steps[b]) + FORGET
         self._idle[b] += 1
-
-
-class GuardedDescent:
-    """Rounds of guarded rollouts, from the start and from the best state in turn.
-
-    Between them leaps from the best state (:mod:`meshwright_agent.search.leaps`), free rollouts
-    from the start and the best state, and, where a round has not brought s down, ways down from the
-    best state by annealing. Little of what these reach can be drawn before its strips are divided
-    (:mod:`meshwright_agent.search.divided_layouts`).
-
-    Args:
-        mesh: the start, without inverted elements; it is not changed.
-        policy: for quad meshes.
-        max_steps: length of a rollout, by default that of the policy's task.
-        seed: of the random choices.
-
-    Attributes:
-        states: those of the lowest s, the best first.
-        rollouts: how many were made.
-    """
-
-    def __init__(
-        self, mesh: HalfEdgeMesh, policy: Policy, max_steps: int | None, seed: int
-    ) -> None:
-        """Nothing is done yet."""
-        self._mesh, self._policy, self._max_steps = mesh, policy, max_steps
-        # by the start of the descent: by those of its rounds the meshes would grow without end
-        self._ceiling = policy.task.bounds(mesh.n_elements)[1]
-        self._rng = np.random.default_rng(seed)
-        self.states: list[DrawnState] = []
-        self.rollouts = self._rounds = 0
-
-    @property
-    def score(self) -> int:
-        """The lowest s."""
-        return self.states[0].score if self.states else self._mesh.score
-
-    @property
-    def elements(self) -> int:
-        """Of the best state."""
-        return self.states[0].elements if self.states else self._mesh.n_elements
-
-    def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
-        """Go on until s*, until `stop`, or for at most so many rollouts."""
-        begun, optimum = self.rollouts, self._mesh.optimum
-        together = max(1, min(TOGETHER, ELEMENTS_EACH // self._mesh.n_elements))
-
-        def granted(wanted: int) -> int:
-            return wanted if most is None else min(wanted, most - (self.rollouts - begun))
-
-        while self.score > optimum and not stop() and (count := granted(together)) > 0:
-            before = self.score
-            self._round(count, stop)
-            small = self.elements <= LARGEST_STUCK
-            stuck = small and self._rounds > 1 and self.score == before
-            while self.states and self.score > optimum and not stop():
-                if not (self._leap(stop, stuck) or (stuck and self._anneal(stop))):
-                    break
-            if self.score <= optimum or stop():
-                break
-            free = FREE_WORK // max(self._mesh.n_elements, self.elements)
-            if (count := granted(max(2, min(MOST_FREE, free)))) > 0:
-                self._free(count, stop)
-
-    def _leap(self, stop: Callable[[], bool], divide: bool) -> bool:
-        """Leap from the best state; returns whether that has led to lower s.
-
-        divide: whether what cannot be drawn as it is is divided.
-        """
-        best = self.states[0]
-        found = leap(best.mesh(self._mesh), self._policy, self._rng, stop, self._ceiling, divide)
-        if found is None:
-            return False
-        operations, arrays = found
-        self.states = [self._thinned(DrawnState.of(best.operations + operations, arrays), stop)]
-        return True
-
-    def _anneal(self, stop: Callable[[], bool]) -> bool:
-        """Anneal from the best state, to s* or else to any lower s, and divide what that leads to;
-        returns whether something could be drawn.
-        """
-        best = self.states[0]
-        before = best.mesh(self._mesh)
-        for goal in sorted({self._mesh.optimum, best.score - 1}):
-            ways = ways_down(before, goal, self._rng, stop)
-            drawn = self._first_drawn(
-                [(replayed(before, way), best.operations + way) for way in ways], ANNEALED_DRAWN, 1,
-                stop,
-            )  # fmt: skip
-            if drawn is not None:
-                self.states = [self._thinned(drawn, stop)]
-                return True
-        return False
-
-    def _thinned(self, state: DrawnState, stop: Callable[[], bool]) -> DrawnState:
-        """The state thinned out, if it has become larger than the start."""
-        if state.elements <= self._mesh.n_elements:
-            return state
-        arrays, made = copied(state.arrays), list(state.operations)
-        arrays.counters[JOURNALLING] = 0
-        trial, rails = copied(arrays), rails_of(self._mesh, len(arrays.vertex))
-        active = np.zeros(len(arrays.points), np.bool_)
-        log = np.zeros((_SLICE, 2), np.int32)
-        count = len(log)
-        while count == len(log) and not stop():
-            count = thin_out(arrays, trial, rails, thinning_effort(), active, log, self._rng)
-            made += [(NAMES[code], h) for code, h in log[:count].tolist()]
-        return DrawnState.of(made, arrays)
-
-    def _first_drawn(
-        self,
-        reached: list[tuple[HalfEdgeMesh, Operations]],
-        most: int,
-        attempts: int,
-        stop: Callable[[], bool],
-    ) -> DrawnState | None:
-        """The first of some states, with what leads to them, that can be drawn divided.
-
-        Positions take long: of those whose degrees permit any at most so many are tried.
-        """
-        angle = corner_angles(self._mesh)  # no vertex that operations add is a corner
-
-        def usable(mesh: HalfEdgeMesh) -> bool:
-            return bool(layout_bound(mesh.arrays, angle) > THIN_LEAST)
-
-        for after, operations in [pair for pair in reached if usable(pair[0])][:most]:
-            if stop():
-                break
-            collapses = collapse_chords(after, COARSE, self._rng, usable)
-            divisions, drawn = drawn_divided(after, stop, attempts)
-            if drawn:
-                return DrawnState.of(operations + collapses + divisions, after.arrays)
-        return None
-
-    def _free(self, count: int, stop: Callable[[], bool]) -> None:
-        """So many free rollouts from the start and from the best state, first from what has fewer
-        elements. The first that is at s* and can be drawn becomes the best; the coarsest few are
-        tried.
-        """
-        begun = [(state.operations, state.mesh(self._mesh)) for state in self.states[:1]]
-        begun.append(([], self._mesh))
-        for before, mesh in sorted(begun, key=lambda pair: pair[1].n_elements):
-            if stop():
-                return
-            batch = RolloutBatch(mesh, self._policy, self._max_steps, self._mesh.optimum)
-            Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
-            self.rollouts += count
-            for most, attempts in FREE_DRAWN:
-                reached = [
-                    (replayed(mesh, one.operations), before + one.operations) for one in batch.found
-                ]
-                reached.sort(key=lambda pair: pair[0].n_elements)
-                drawn = self._first_drawn(reached, most, attempts, stop)
-                if drawn is not None:
-                    self.states = [self._thinned(drawn, stop)]
-                    return
-
-    def _round(self, count: int, stop: Callable[[], bool]) -> None:
-        """So many rollouts from the start or from the best state, in turn."""
-        before: Operations = []
-        start = self._mesh
-        if self.states and self._rounds % 2:
-            before, start = self.states[0].operations, self.states[0].mesh(self._mesh)
-        batch = GuardedRollouts(
-            start, self._policy, self._rng, count, self._max_steps, self._ceiling
-        )
-        batch.run(stop)
-        self._rounds += 1
-        self.rollouts += count
-        for state in batch.found:
-            if state.score < start.score:
-                state.operations = before + state.operations
-                self.states.append(state)
-        self.states.sort(key=lambda state: state.rank)
-        self.states = [state for state in self.states if state.score == self.score]

@@ -28,7 +28,8 @@ from meshwright_agent.search.coarsening import replayed, undrawable
 from meshwright_agent.search.divided_layouts import FINEST
 from meshwright_agent.search.drawn_patches import improve_drawn
 from meshwright_agent.search.guarded_coarsening import Layout
-from meshwright_agent.search.guarded_rollouts import THIN_EVERY, GuardedDescent
+from meshwright_agent.search.guarded_descent import GuardedDescent
+from meshwright_agent.search.guarded_rollouts import THIN_EVERY
 from meshwright_agent.search.layout_matching import matched_vertices
 from meshwright_agent.search.layout_search import LayoutSearch, Preference, has_layouts
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large

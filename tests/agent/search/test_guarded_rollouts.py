@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from meshwright_agent.policy import policy_files
-from meshwright_agent.search.guarded_rollouts import GuardedDescent, GuardedRollouts
+from meshwright_agent.search.guarded_descent import GuardedDescent
+from meshwright_agent.search.guarded_rollouts import GuardedRollouts
 from meshwright_core.domains import gallery
 from meshwright_core.domains.meshing import mesh_domain
 from meshwright_core.geometry.quality import inverted

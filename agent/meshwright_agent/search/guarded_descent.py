@@ -1,0 +1,244 @@
+"""How s* is reached on domains with curved sides: guarded rollouts, and what goes on from the best
+of them.
+
+Guarded rollouts (:mod:`meshwright_agent.search.guarded_rollouts`) are cheap, and most end a little
+above s*, each in another state. From there a leap (:mod:`meshwright_agent.search.leaps`) or a way
+down by annealing often leads on; so does a free rollout from the start, though little of what it
+reaches can be drawn before its strips are divided
+(:mod:`meshwright_agent.search.divided_layouts`). What works differs from part to part, so all of it
+takes turns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from meshwright_agent.policy.policy_files import Policy
+from meshwright_agent.search.annealing import Operations
+from meshwright_agent.search.coarsening import replayed
+from meshwright_agent.search.divided_layouts import collapse_chords, drawn_divided, ways_down
+from meshwright_agent.search.guarded_rollouts import (
+    THIN_LEAST,
+    DrawnState,
+    GuardedRollouts,
+    thin_out,
+    thinning_effort,
+)
+from meshwright_agent.search.leaps import leap
+from meshwright_agent.search.search_worker import RolloutBatch, Worker
+from meshwright_core.core.arrays import JOURNALLING, copied
+from meshwright_core.geometry.layout_positions import layout_bound, rails_of
+from meshwright_core.geometry.shape_bound import corner_angles
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import NAMES
+
+TOGETHER, ELEMENTS_EACH = 2, 200
+"""The most guarded rollouts side by side, and elements of all of them together: on a large mesh one
+comes further in the same time."""
+ROUNDS = 4
+"""Guarded rollouts from the start in each turn."""
+CONTINUED = 2
+"""Guarded rollouts from a state: from most states none leads on, from some nearly all do."""
+CONTINUED_STATES = 2
+"""States from which these are made in each turn, as long as none leads on."""
+KEPT = 12
+"""States of the lowest s that are kept."""
+FREE_WORK, MOST_FREE = 1500, 16
+"""Free rollouts from a state in each turn, in its elements and in number."""
+COARSE = 120
+"""Elements down to which these are coarsened first."""
+FREE_DRAWN = ((4, 1), (1, 2))
+"""How many of their results are given positions, with how many attempts; then again."""
+LARGEST_ANNEALED = 250
+"""Elements up to which a state is annealed."""
+ANNEALED_DRAWN = 6
+"""Results of annealing that are given positions."""
+_SLICE = 20
+"""Strips that are collapsed between two looks at the clock."""
+
+
+class GuardedDescent:
+    """A descent to s* through states without inverted elements.
+
+    Each turn makes guarded rollouts from the start; goes on from the states of the lowest s that
+    were tried least, the coarsest first, by guarded rollouts, leaps and annealing; and makes free
+    rollouts from the start and from the best state.
+
+    Args:
+        mesh: the start, without inverted elements; it is not changed.
+        policy: for quad meshes.
+        max_steps: length of a rollout, by default that of the policy's task.
+        seed: of the random choices.
+
+    Attributes:
+        states: the best ones, the best first.
+        rollouts: how many were made.
+    """
+
+    def __init__(
+        self, mesh: HalfEdgeMesh, policy: Policy, max_steps: int | None, seed: int
+    ) -> None:
+        """Nothing is done yet."""
+        self._mesh, self._policy, self._max_steps = mesh, policy, max_steps
+        # by the start of the descent: by those of its rounds the meshes would grow without end
+        self._ceiling = policy.task.bounds(mesh.n_elements)[1]
+        self._rng = np.random.default_rng(seed)
+        self.states: list[DrawnState] = []
+        self.rollouts = 0
+
+    @property
+    def score(self) -> int:
+        """The lowest s."""
+        return self.states[0].score if self.states else self._mesh.score
+
+    def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
+        """Go on until s*, until `stop`, or for at most so many rollouts."""
+        begun, optimum = self.rollouts, self._mesh.optimum
+        together = max(1, min(TOGETHER, ELEMENTS_EACH // self._mesh.n_elements))
+
+        def over() -> bool:
+            return self.score <= optimum or stop()
+
+        def granted(wanted: int) -> int:
+            return wanted if most is None else min(wanted, most - (self.rollouts - begun))
+
+        while not over() and granted(1) > 0:
+            for _ in range(ROUNDS // together):
+                if not over() and (count := granted(together)) > 0:
+                    self._round(DrawnState.of([], self._mesh.arrays), count, stop)
+            before, tried = self.score, 0
+            while self.states and tried < CONTINUED_STATES and not over():
+                self._go_on(granted(CONTINUED), stop)
+                before, tried = self.score, 0 if self.score < before else tried + 1
+            while self.states and not over() and self._anneal(stop):
+                pass
+            smallest = min([self._mesh.n_elements, *(state.elements for state in self.states[:1])])
+            free = FREE_WORK // max(smallest, 1)
+            if not over() and (count := granted(max(2, min(MOST_FREE, free)))) > 0:
+                self._free(count, stop)
+
+    def _note(self, state: DrawnState) -> None:
+        """Add a state to those found."""
+        self.states = sorted([*self.states, state], key=lambda one: one.rank)
+        self.states = [one for one in self.states if one.score == self.score][:KEPT]
+
+    def _round(self, begin: DrawnState, count: int, stop: Callable[[], bool]) -> None:
+        """So many guarded rollouts from a state."""
+        batch = GuardedRollouts(
+            begin.mesh(self._mesh), self._policy, self._rng, count, self._max_steps, self._ceiling
+        )
+        batch.run(stop)
+        self.rollouts += count
+        for state in batch.found:
+            if state.score < begin.score:
+                self._note(replace(state, operations=begin.operations + state.operations))
+
+    def _go_on(self, rollouts: int, stop: Callable[[], bool]) -> None:
+        """At most so many guarded rollouts from a state, then a leap unless they lead on."""
+        state = self._least_tried(self.states)
+        for _ in range(rollouts):
+            if self.score == state.score and not stop():
+                self._round(state, 1, stop)
+        if self.score == state.score and not stop():
+            self._leap(state, stop)
+
+    @staticmethod
+    def _least_tried(states: list[DrawnState]) -> DrawnState:
+        """The state from which something was tried least often, which is counted."""
+        state = min(states, key=lambda one: (one.tries, one.rank))
+        state.tries += 1
+        return state
+
+    def _leap(self, state: DrawnState, stop: Callable[[], bool]) -> None:
+        """Leap from a state to lower s."""
+        mesh = state.mesh(self._mesh)
+        found = leap(mesh, self._policy, self._rng, stop, self._ceiling, divide=True)
+        if found is not None:
+            operations, arrays = found
+            self._note(self._thinned(DrawnState.of(state.operations + operations, arrays), stop))
+
+    def _anneal(self, stop: Callable[[], bool]) -> bool:
+        """Anneal from a state, to s* or else to any lower s, and divide what that leads to; returns
+        whether something could be drawn.
+        """
+        small = [state for state in self.states if state.elements <= LARGEST_ANNEALED]
+        if not small:
+            return False
+        state = self._least_tried(small)
+        before = state.mesh(self._mesh)
+        for goal in sorted({self._mesh.optimum, state.score - 1}):
+            ways = ways_down(before, goal, self._rng, stop)
+            drawn = self._first_drawn(
+                [(replayed(before, way), state.operations + way) for way in ways], ANNEALED_DRAWN,
+                1, stop,
+            )  # fmt: skip
+            if drawn is not None:
+                self._note(self._thinned(drawn, stop))
+                return True
+        return False
+
+    def _thinned(self, state: DrawnState, stop: Callable[[], bool]) -> DrawnState:
+        """The state thinned out, if it has become larger than the start."""
+        if state.elements <= self._mesh.n_elements:
+            return state
+        arrays, made = copied(state.arrays), list(state.operations)
+        arrays.counters[JOURNALLING] = 0
+        trial, rails = copied(arrays), rails_of(self._mesh, len(arrays.vertex))
+        active = np.zeros(len(arrays.points), np.bool_)
+        log = np.zeros((_SLICE, 2), np.int32)
+        count = len(log)
+        while count == len(log) and not stop():
+            count = thin_out(arrays, trial, rails, thinning_effort(), active, log, self._rng)
+            made += [(NAMES[code], h) for code, h in log[:count].tolist()]
+        return DrawnState.of(made, arrays)
+
+    def _first_drawn(
+        self,
+        reached: list[tuple[HalfEdgeMesh, Operations]],
+        most: int,
+        attempts: int,
+        stop: Callable[[], bool],
+    ) -> DrawnState | None:
+        """The first of some states, with what leads to them, that can be drawn divided.
+
+        Positions take long: of those whose degrees permit any at most so many are tried.
+        """
+        angle = corner_angles(self._mesh)  # no vertex that operations add is a corner
+
+        def usable(mesh: HalfEdgeMesh) -> bool:
+            return bool(layout_bound(mesh.arrays, angle) > THIN_LEAST)
+
+        for after, operations in [pair for pair in reached if usable(pair[0])][:most]:
+            if stop():
+                break
+            collapses = collapse_chords(after, COARSE, self._rng, usable)
+            divisions, drawn = drawn_divided(after, stop, attempts)
+            if drawn:
+                return DrawnState.of(operations + collapses + divisions, after.arrays)
+        return None
+
+    def _free(self, count: int, stop: Callable[[], bool]) -> None:
+        """So many free rollouts from the start and from the best state, first from what has fewer
+        elements. The first that is at s* and can be drawn becomes the best; the coarsest few are
+        tried.
+        """
+        begun = [(state.operations, state.mesh(self._mesh)) for state in self.states[:1]]
+        begun.append(([], self._mesh))
+        for before, mesh in sorted(begun, key=lambda pair: pair[1].n_elements):
+            if stop():
+                return
+            batch = RolloutBatch(mesh, self._policy, self._max_steps, self._mesh.optimum)
+            Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
+            self.rollouts += count
+            for most, attempts in FREE_DRAWN:
+                reached = [
+                    (replayed(mesh, one.operations), before + one.operations) for one in batch.found
+                ]
+                reached.sort(key=lambda pair: pair[0].n_elements)
+                drawn = self._first_drawn(reached, most, attempts, stop)
+                if drawn is not None:
+                    self._note(self._thinned(drawn, stop))
+                    return
