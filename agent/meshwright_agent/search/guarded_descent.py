@@ -145,6 +145,12 @@ class GuardedDescent:
         if self.score == state.score and not stop():
             self._leap(state, stop)
 
+    def gather(self, stop: Callable[[], bool]) -> None:
+        """Guarded rollouts from the start until `stop`: further states of the lowest s."""
+        start = DrawnState.of([], self._mesh.arrays)
+        while start.score > self.score and len(self.states) < KEPT and not stop():
+            self._round(start, 1, stop)
+
     @staticmethod
     def _least_tried(states: list[DrawnState]) -> DrawnState:
         """The state from which something was tried least often, which is counted."""

@@ -75,6 +75,8 @@ DESCENT = 0.7
 """Share of the time after which no more guarded rollouts are made."""
 DRAWN = 2
 """States found by guarded rollouts whose layouts are searched."""
+GATHERED = 0.15
+"""Share of the time in which more of them are looked for once there is one at s*."""
 PATCHING, SMOOTHING = 0.75, 0.9
 """Shares of the time after which no more patches are improved, and none smoothed, on a large
 mesh: what follows takes the longer the more was done."""
@@ -178,6 +180,8 @@ def _search_layouts(
     if bends:
         share = None if search.wanted is None else search.book(search.wanted) / workers
         side_by_side(len(descents), lambda i: _descend(search, descents[i], share))
+        if timed and any(descent.score == mesh.optimum for descent in descents):
+            side_by_side(len(descents), lambda i: descents[i].gather(lambda: search.over(GATHERED)))
     drawn = min((descent.score for descent in descents), default=mesh.score)
     if search.score > mesh.optimum and drawn == mesh.score:
         search.look(workers, share=OPENING)
