@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.guarded_coarsening import Aims, Coarsener, Layout
-from meshwright_agent.search.solution import weighed_worst
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.geometry.smoothing import relax
+from meshwright_core.geometry.weighed_shapes import weighed_worst
 from meshwright_core.mesh import HalfEdgeMesh
 
 LAYOUTS = 800

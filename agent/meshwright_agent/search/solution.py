@@ -16,6 +16,7 @@ from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.element_sines import THIN
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
+from meshwright_core.geometry.weighed_shapes import weighed_worst
 from meshwright_core.mesh import HalfEdgeMesh
 
 RELAXED = 2_000
@@ -166,14 +167,6 @@ def judged(
 def _is_short(mesh: HalfEdgeMesh, aims: Aims) -> bool:
     """Whether the worst element is below the target, if there is one."""
     return weighed_worst(mesh) < aims.target
-
-
-def weighed_worst(mesh: HalfEdgeMesh) -> float:
-    """The worst scaled Jacobian, or :data:`THIN` times the worst element shape if that is less: the
-    measure of :func:`meshwright_core.geometry.element_sines.thinness` for a whole mesh.
-    """
-    jacobian, shape = scaled_jacobian(mesh), element_shapes(mesh)
-    return float(min(jacobian.min(initial=1.0), THIN * shape.min(initial=1.0)))
 
 
 def _best_positions(reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:

@@ -29,7 +29,11 @@ def nothing_left(mesh: HalfEdgeMesh, effort: Effort | None) -> str:
 
 
 def shape_wanted(goal: ShapeGoal) -> str:
-    """``shape .31 of the .50 wanted``."""
+    """``shape .31 of the .50 wanted``, or, where only the ratio of sides is bad, ``long thin
+    elements of shape .02``.
+    """
+    if goal.corners_reached and not goal.reached:
+        return f"long thin elements of shape {decimal(goal.flattest)}"
     return f"shape {decimal(goal.worst)} of the {decimal(goal.aim)} wanted"
 
 

@@ -100,5 +100,5 @@ class RunProgress:
         gap = self._start - self._optimum
         share = min(1.0, (self._start - self.best) / gap) if gap else 1.0
         if self.shape is not None:
-            share = (share + min(1.0, max(self.shape.worst, 0.0) / self.shape.aim)) / 2.0
+            share = (share + min(1.0, max(self.shape.weighed, 0.0) / self.shape.aim)) / 2.0
         return share

@@ -14,8 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshwright.document.verdict import largest_delta
 from meshwright_core import HalfEdgeMesh, Operation
 from meshwright_core.core.arrays import FLAGS, LOCKED
+from meshwright_core.geometry.element_shapes import element_shapes
+from meshwright_core.geometry.element_sines import THIN
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
 
 if TYPE_CHECKING:
@@ -40,15 +43,30 @@ NEAR = 1e-3
 
 @dataclass(frozen=True)
 class ShapeGoal:
-    """The worst scaled Jacobian of a quad mesh, and the one that a search aims at."""
+    """The worst scaled Jacobian of a quad mesh, the one that a search aims at, and the worst
+    element shape, by which a search sees long thin elements.
+    """
 
     worst: float
     aim: float
+    flattest: float = 1.0
+
+    @property
+    def weighed(self) -> float:
+        """The worst element as searches weigh it
+        (:mod:`meshwright_core.geometry.weighed_shapes`).
+        """
+        return min(self.worst, THIN * self.flattest)
+
+    @property
+    def corners_reached(self) -> bool:
+        """Whether the corners alone reach the aim, up to rounding."""
+        return self.worst >= self.aim - NEAR
 
     @property
     def reached(self) -> bool:
         """Whether the aim is reached, up to rounding."""
-        return self.worst >= self.aim - NEAR
+        return self.weighed >= self.aim - NEAR
 
     @classmethod
     def of(cls, mesh: HalfEdgeMesh, effort: Effort) -> ShapeGoal | None:
@@ -64,7 +82,8 @@ class ShapeGoal:
         if effort.elements is not None or not (effort.keep_size or has_layouts(mesh)):
             return None
         aims = Preference(effort.prefer).aims(attainable_bound(mesh), shape_bound(mesh))
-        return cls(float(scaled_jacobian(mesh).min(initial=1.0)), aims.target)
+        worst, flattest = scaled_jacobian(mesh), element_shapes(mesh)
+        return cls(float(worst.min(initial=1.0)), aims.target, float(flattest.min(initial=1.0)))
 
 
 @dataclass(frozen=True)
@@ -174,7 +193,9 @@ class SearchRunner:
             lost = 0 if won and found.operations else lost + 1
             if self._enough.is_set() or not effort.until_done or seconds is None:
                 break
-            if lost >= PATIENCE or self._is_done(self.target):
+            if lost >= PATIENCE:
+                break
+            if self._is_done(self.target) and not self._is_uneven(best):
                 break
             if best.perfect and lost:  # others of the same s are found from the start
                 start, before = self._mesh, []
@@ -202,6 +223,13 @@ class SearchRunner:
             return False
         self.shape = ShapeGoal.of(mesh, self._effort)
         return self.shape is None or self.shape.reached
+
+    def _is_uneven(self, best: Solution) -> bool:
+        """Whether the first round has left vertices irregular by 2 or more, and the search aims at
+        less: a second one often finds it.
+        """
+        assert self.target is not None
+        return self._rounds == 1 and best.aims.spread and largest_delta(self.target) > 1
 
     def _note_end(self, lost: int) -> None:
         """Say why a search in rounds has ended, where it was not stopped and more is wanted."""

@@ -7,9 +7,10 @@ import numpy as np
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.composite_curves import place_all
 from meshwright_core.geometry.movable_part import chosen, elements_at
-from meshwright_core.geometry.quality import inverted, scaled_jacobian
+from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.smoothing import relax, smooth
 from meshwright_core.geometry.untangling import untangle
+from meshwright_core.geometry.weighed_shapes import weighed_shapes
 
 FEW = 300
 """Elements of a mesh that counts as one of blocks."""
@@ -59,10 +60,10 @@ def square_up(mesh: HalfEdgeMesh) -> int:
     """Move vertices along the boundary to where the one edge from there inside meets it at a right
     angle; returns how many.
 
-    Each stays between its neighbours, and moves only where the worst scaled Jacobian of the
-    elements at it does not fall; in a mesh of more than :data:`FEW` elements nothing moves. A
-    search often ends just beside such positions, and the lines of a grid between parallel sides
-    would be oblique. Writes to the mesh's journal.
+    Each stays between its neighbours, and moves only where the worst element at it does not become
+    worse, in its corners or as a long thin one; in a mesh of more than :data:`FEW` elements nothing
+    moves. A search often ends just beside such positions, and the lines of a grid between parallel
+    sides would be oblique. Writes to the mesh's journal.
     """
     moved = 0
     if mesh.n_elements > FEW:
@@ -87,7 +88,7 @@ def square_up(mesh: HalfEdgeMesh) -> int:
 
 def _worst(mesh: HalfEdgeMesh, elements: np.ndarray) -> float:
     rows = np.isin(mesh.element_ids(), elements)
-    return float(scaled_jacobian(mesh)[rows].min())
+    return float(weighed_shapes(mesh)[rows].min())
 
 
 def _move(

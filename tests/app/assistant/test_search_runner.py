@@ -5,11 +5,14 @@ from threading import Event
 import numpy as np
 import pytest
 
+from meshwright.assistant import search_runner
+from meshwright.assistant.outcome import shape_wanted
 from meshwright.assistant.search_runner import PREFERENCES, Effort, SearchRunner, ShapeGoal
 from meshwright_agent.policy.policy_files import load
 from meshwright_agent.search import layout_search
 from meshwright_agent.search.layout_search import Preference
 from meshwright_agent.search.solution import Solution, judged
+from meshwright_core import HalfEdgeMesh
 from meshwright_core.domains import meshing
 from meshwright_core.domains.domain import Domain
 from meshwright_core.geometry.quality import scaled_jacobian
@@ -133,6 +136,31 @@ def test_the_solver_mends_a_bad_shape_at_the_optimum(dented):
     # where both are reached nothing is searched, unless fewer blocks are asked for
     again = SearchRunner(runner.target, None, 0, effort, Event(), print)
     assert again.step() == [] and "nothing better" in again.reason
+
+
+@pytest.mark.parametrize(("delta", "count"), [(1, 1), (2, 2)])
+def test_complete_looks_once_more_where_a_vertex_is_irregular_by_two(
+    dented, monkeypatch, delta, count
+):
+    asked = []
+
+    def one(self, start, seconds, done):
+        self._rounds += 1
+        asked.append(seconds)
+        return judged(Solution([], 0, start.optimum, 0, aims=Preference().aims(1.0, 1.0)), start)
+
+    monkeypatch.setattr(SearchRunner, "_round", one)
+    monkeypatch.setattr(search_runner, "largest_delta", lambda mesh: delta)
+    SearchRunner(dented, None, 0, Effort(until_done=True), Event(), lambda *a: None).step()
+    assert len(asked) == count
+
+
+def test_long_thin_elements_are_not_the_wanted_shape():
+    points = [(0, 0), (1, 0), (1, 0.01), (0, 0.01)]
+    goal = ShapeGoal.of(HalfEdgeMesh.from_elements(points, [(0, 1, 2, 3)]), Effort())
+    assert goal.worst == pytest.approx(1.0)
+    assert not goal.reached
+    assert shape_wanted(goal) == "long thin elements of shape .02"
 
 
 def test_a_shape_is_wanted_of_plane_quads_that_are_not_too_many(star):

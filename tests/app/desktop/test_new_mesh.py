@@ -15,7 +15,7 @@ from meshwright.desktop.files.new_mesh import NewMeshDialog
 from meshwright.desktop.files.new_mesh import dialog as dialog_module
 from meshwright.desktop.files.new_mesh.found_regions import NONE_CHOSEN
 from meshwright.desktop.files.new_mesh.mesh_process import MeshProcess
-from meshwright.graphics.theme import theme
+from meshwright.graphics.theme import GRID, theme
 from meshwright.sources import mesh_worker, new_mesh
 from meshwright.sources.new_mesh import Answer, NewMesh
 from meshwright_core import read, write
@@ -410,7 +410,8 @@ def test_coordinates_are_typed_in_the_table(qtbot, dialog, pen):
 def test_a_plate_with_three_holes_is_drawn_by_tools_and_numbers(qtbot, dialog, pen):
     draw = dialog.draw
     key(qtbot, draw.area, Qt.Key.Key_R)
-    assert draw.tools.key == "rectangle" and "opposite corners" in draw.hint.text()
+    assert draw.tools.key == "rectangle" and "width height" in draw.hint.text()
+    assert "Click to place" not in dialog.status.text()
     pen.click(-0.8, -0.4)
     pen.point(0.1, 0.1)
     qtbot.keyClicks(draw.area, "1.65 0.8")
@@ -446,6 +447,30 @@ def test_a_plate_with_three_holes_is_drawn_by_tools_and_numbers(qtbot, dialog, p
     assert np.allclose(draw.sketch.loops[1].corners, [(-0.6, 0.0), (-0.4, 0.0)])
     enter(qtbot, table, 0, 3, "1")
     assert "only arcs have a radius" in dialog.status.text().lower()
+
+
+def test_the_drawing_area_stays_where_it_is_while_a_circle_is_drawn(qtbot, dialog, pen):
+    draw = dialog.draw
+    before = draw.area.geometry()
+    for tool in draw.tools.buttons.values():
+        tool.click()
+        QApplication.processEvents()
+        assert draw.area.geometry() == before
+    draw.tools.buttons["circle"].click()
+    pen.click(0.0, 0.0)
+    qtbot.keyClicks(draw.area, "0.5")
+    assert draw.area.geometry() == before
+    key(qtbot, draw.area, Qt.Key.Key_Return)
+    wait_for_mesh(qtbot, dialog)
+    assert draw.area.geometry() == before
+
+
+def test_the_dialog_fits_a_screen_of_900_by_600(qtbot, dialog):
+    for page in dialog.tabs.buttons:
+        dialog.show_page(page)
+        QApplication.processEvents()
+        assert dialog.minimumSizeHint().width() <= 900 - GRID
+        assert dialog.minimumSizeHint().height() <= 600 - dialog_module.FRAME
 
 
 def test_an_arc_is_drawn_and_measured(qtbot, dialog, pen):

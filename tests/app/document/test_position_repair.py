@@ -44,3 +44,14 @@ def test_nothing_moves_where_an_element_would_become_worse():
     assert scaled_jacobian(mesh).min() >= shape
     assert np.array_equal(mesh.points[:4], before[:4])
     mesh.validate()
+
+
+def test_no_element_becomes_long_and_thin():
+    """The foot of the left line inside lies close to the end of the other one."""
+    points = [(0, 0), (1, 0), (2, 0), (4, 0), (4, 1), (2.98, 1), (1.98, 1), (0, 1)]
+    corners = np.isin(np.arange(8), (0, 3, 4, 7))
+    mesh = HalfEdgeMesh.from_elements(points, [(0, 1, 6, 7), (1, 2, 5, 6), (2, 3, 4, 5)], corners)
+    for vertex in (2, 5, 6):
+        mesh.set_pinned(vertex)
+    assert square_up(mesh) == 0
+    assert mesh.points[1].tolist() == [1.0, 0.0, 0.0]

@@ -12,7 +12,7 @@ from meshwright.sources.drawing_tools import short
 from meshwright.sources.polygon_sketch import Sketch
 from meshwright_core.errors import sentence
 
-WIDTH, RADIUS_WIDTH = 30 * GRID, 7 * GRID
+WIDTH = 34 * GRID
 NEW = "New"
 RADIUS = 3
 """The column of the radii."""
@@ -21,8 +21,8 @@ NOT_A_NUMBER = "{text!r} is not a number."
 
 class CoordinateTable(QTableWidget):
     """The corners of a :class:`meshwright.sources.polygon_sketch.Sketch`, one per row, and an empty
-    row for the next corner while a loop is open. A fourth column is shown while there are arcs: the
-    radius of the edge that begins at the corner.
+    row for the next corner while a loop is open. The fourth column is the radius of the arc that
+    begins at the corner.
 
     ``picked(loop, corner)`` when a row is selected; ``message(sentence)`` for the status line.
     """
@@ -33,13 +33,14 @@ class CoordinateTable(QTableWidget):
     def __init__(self, sketch: Sketch, parent: QWidget | None = None) -> None:
         super().__init__(0, 4, parent)
         self.setObjectName("Table")
+        self.setFixedWidth(WIDTH)  # always the same, or the drawing beside it would jump
         self.setAccessibleName("Coordinates of the corners")
         self.verticalHeader().hide()
         self.verticalHeader().setDefaultSectionSize(28)
         header = self.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
-        header.resizeSection(0, 12 * GRID)
+        header.resizeSection(0, 10 * GRID)
         header.setHighlightSections(False)
         left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
         titles = (("Corner", left), ("x", right), ("y", right), ("R", right))
@@ -79,9 +80,6 @@ class CoordinateTable(QTableWidget):
     def _fill(self) -> None:
         corners = self.sketch.corners()
         self._rows = [(i, j) for i, j, _ in corners]
-        curved = any(loop.curved for loop in self.sketch.loops)
-        self.setColumnHidden(RADIUS, not curved)
-        self.setFixedWidth(WIDTH + (RADIUS_WIDTH if curved else 0))
         with QSignalBlocker(self):
             self.setRowCount(len(corners) + (1 if self.sketch.open else 0))
             for row, (i, j, place) in enumerate(corners):

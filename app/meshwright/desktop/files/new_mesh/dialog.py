@@ -69,8 +69,9 @@ class NewMeshDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle("New mesh")
-        room = self.screen().availableSize().height() - FRAME
-        self.resize(1120, min(720, room))  # the layout asks for no less than it needs
+        room = self.screen().availableSize()
+        # the layout asks for no less than it needs
+        self.resize(min(1120, room.width() - GRID), min(720, room.height() - FRAME))
         self.made: NewMesh | None = None
         self.maker = MeshProcess(self)
         self.maker.start()

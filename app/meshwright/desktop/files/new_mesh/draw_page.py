@@ -17,6 +17,7 @@ from meshwright.desktop.widgets import icons
 from meshwright.desktop.widgets.basic import named
 from meshwright.desktop.widgets.number_box import DecimalBox
 from meshwright.graphics.theme import GRID, Theme
+from meshwright.sources.drawing_tools import ARC, LINE
 from meshwright.sources.polygon_sketch import Sketch
 from meshwright.sources.snapping import Snapper
 
@@ -29,15 +30,16 @@ TOOLS = (
     ("circle", "Circle"),
     ("measure", "Measure"),
 )
+HINT_LINES = 2
 HINTS = {
     "line": "Click to add a corner, or type its distance or \u201cx y\u201d. Drag a corner to move "
     "it, click an edge to insert one. Right click or Backspace undoes.",
     "arc": "Click where the arc ends, then a point on it, or type its radius. Right click or "
     "Backspace undoes.",
-    "rectangle": "Click two opposite corners, or type \u201cwidth height\u201d after the first. "
-    "Inside the outline it is a hole.",
-    "circle": "Click the centre, then a point on the circle, or type its radius. Inside the "
-    "outline it is a hole.",
+    "rectangle": "Click a corner, or type it (\u201cx y\u201d); then the opposite one, or "
+    "\u201cwidth height\u201d. Inside the outline it is a hole.",
+    "circle": "Click the centre, or type it (\u201cx y\u201d); then a point on the circle, or its "
+    "radius. Inside the outline it is a hole.",
     "measure": "Click two points: the distance between them is shown.",
 }
 """How each tool works."""
@@ -56,6 +58,9 @@ class DrawPage(Page):
             self.tools.buttons[name].setToolTip(f"{title}  ({key}): {HINTS[name]}")
         self.hint = named("", "Hint")
         self.hint.setWordWrap(True)
+        self.hint.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+        # always the same height, or the drawing above it would jump
+        self.hint.setFixedHeight(HINT_LINES * self.hint.fontMetrics().lineSpacing())
         self.hole = _button("Add hole", "Start a hole: click its corners inside the outline")
         self.undo = _button("", "Undo the last change (Ctrl+Z)")
         self.redo = _button("", "Redo the change that was undone last (Ctrl+Shift+Z)")
@@ -86,26 +91,35 @@ class DrawPage(Page):
         tools.setSpacing(GRID)
         tools.addWidget(self.tools)
         tools.addStretch(1)
-        for button in (self.hole, self.undo, self.redo, self.clear, self.fit):
+        for button in (self.undo, self.redo):
             tools.addWidget(button)
         snapping = QHBoxLayout()
         snapping.setSpacing(GRID)
-        snapping.addWidget(self.hint, 1)
         snapping.addWidget(named("Snap to", "Label"))
         for part in (
             self.to_grid, self.step, self.to_points, self.to_middles, self.to_angles
         ):  # fmt: skip
             snapping.addWidget(part)
+        snapping.addStretch(1)
+        for_all = QHBoxLayout()
+        for_all.setSpacing(GRID)
+        for button in (self.hole, self.clear, self.fit):
+            for_all.addWidget(button)
+        beside = QVBoxLayout()
+        beside.setSpacing(GRID)
+        beside.addWidget(self.table, 1)
+        beside.addLayout(for_all)
         both = QHBoxLayout()
         both.setSpacing(GRID)
         both.addWidget(self.area, 1)
-        both.addWidget(self.table)
+        both.addLayout(beside)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(GRID)
         layout.addLayout(tools)
         layout.addLayout(both, 1)
         layout.addLayout(snapping)
+        layout.addWidget(self.hint)
 
     def _connect(self) -> None:
         self.sketch.changed.connect(self._on_sketch_changed)
@@ -159,7 +173,11 @@ class DrawPage(Page):
 
     @property
     def words(self) -> str:
-        """What is wrong with the shape, or what to do next."""
+        """What is wrong with the shape, or what to do next. How a rectangle or circle begins the
+        hint tells.
+        """
+        if self.tools.key not in (LINE, ARC) and not self.sketch.loops[-1].corners:
+            return ""
         return self.sketch.words
 
     @property
@@ -200,10 +218,12 @@ class DrawPage(Page):
     def _on_tool(self, name: str) -> None:
         self.area.use(name)
         self.area.setFocus()
+        self.changed.emit()
 
     def _on_tool_picked(self, name: str) -> None:
         self.tools.key = name
         self._on_hinted("")
+        self.changed.emit()
 
     def _on_hinted(self, words: str) -> None:
         self.hint.setText(words or HINTS[self.tools.key])

@@ -61,7 +61,7 @@ class DrawingArea(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)
         self.setCursor(Qt.CursorShape.CrossCursor)
-        self.setMinimumSize(320, 240)
+        self.setMinimumSize(232, 200)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.sketch = sketch
         self.pencil = Pencil(sketch)

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from qtpy.QtCore import Qt
-from qtpy.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
+from qtpy.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent, QResizeEvent
 from qtpy.QtWidgets import (
     QDoubleSpinBox,
     QFileDialog,
     QFrame,
     QGridLayout,
     QHBoxLayout,
+    QLabel,
     QLineEdit,
     QPushButton,
     QVBoxLayout,
@@ -33,6 +34,8 @@ from meshwright_core.io import drawings, mesh_files
 NO_FILE = "Choose a file, or drop one here."
 MESH_WORDS = "A mesh is opened unchanged."
 SHAPE_WORDS = "The shape in the file is meshed, between its true curves."
+ROOM_FOR_HINTS = 600
+"""Width of the page, in pixels, from which on options have their hints beside them."""
 FITS = (("", "As drawn"), ("arcs", "Arcs"), ("splines", "Splines"))
 """What polylines are taken for."""
 
@@ -55,6 +58,7 @@ class FilePage(Page):
         self.found = FoundRegions(theme)
         self.words_label = named(NO_FILE, "Hint")
         self.words_label.setWordWrap(True)
+        self._hints: list[QLabel] = []
         self._arrange()
         self.path.editingFinished.connect(self._on_path)
         self.choose.clicked.connect(self._ask)
@@ -92,6 +96,12 @@ class FilePage(Page):
         layout.addWidget(self.found)
         layout.addStretch(1)
 
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Leave the hints to the tooltips where there is no room for them."""
+        super().resizeEvent(event)
+        for words in self._hints:
+            words.setVisible(self.width() >= ROOM_FOR_HINTS)
+
     def _readings(self) -> QWidget:
         readings = QWidget()
         grid = QGridLayout(readings)
@@ -120,6 +130,8 @@ class FilePage(Page):
             grid.addWidget(field, row, 1)
             words = named(hint, "Hint")
             words.setWordWrap(True)
+            field.setToolTip(hint)
+            self._hints.append(words)
             grid.addWidget(words, row, 2)
         grid.setColumnStretch(2, 1)
         return readings

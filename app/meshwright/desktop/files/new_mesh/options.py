@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from qtpy.QtCore import Qt, Signal
+from qtpy.QtCore import QSize, Qt, Signal
 from qtpy.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
 from meshwright.desktop.files.new_mesh.controls import OptionalNumber, SegmentedButtons, heading
@@ -32,7 +32,7 @@ class Options(QWidget):
 
     def __init__(self, kind: str, theme: Theme) -> None:
         super().__init__()
-        self.setFixedWidth(WIDTH)
+        self.setMaximumWidth(WIDTH)
         self.preview = Preview(theme)
         self.kind = SegmentedButtons(KINDS, "Elements", kind or "quad")
         self.rule = SegmentedButtons(RULES, "Quads by")
@@ -55,6 +55,10 @@ class Options(QWidget):
         self.size_of.changed.connect(self.changed.emit)
         self.quality.changed.connect(self.changed.emit)
         self._on_kind_changed()
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """As wide as it may be; less where the dialog has no room."""
+        return QSize(WIDTH, super().sizeHint().height())
 
     def _arrange(self) -> None:
         layout = QVBoxLayout(self)

@@ -64,8 +64,6 @@ class RandomPage(Page):
     def _arrange(self) -> None:
         line = QHBoxLayout()
         line.setSpacing(GRID)
-        line.addWidget(self.kind)
-        line.addSpacing(GRID)
         line.addWidget(named("Sides", "Label"))
         line.addWidget(self.sides)
         line.addSpacing(GRID)
@@ -76,6 +74,7 @@ class RandomPage(Page):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(2 * GRID)
+        layout.addWidget(self.kind)
         layout.addLayout(line)
         layout.addWidget(self.pictures, 1)
 
