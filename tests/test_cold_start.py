@@ -38,6 +38,11 @@ from meshwright_core.blocks.grid import block_grid
 from meshwright_core.blocks.sizing import Sizing, WallLayer
 from meshwright_core.domains.meshing import benchmark_mesh
 
+with open("plate.svg", "w") as file:
+    file.write(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 60"><path fill-rule="evenodd" '
+        'd="M0 0H100V60H0ZM40 30A10 10 0 1 0 60 30A10 10 0 1 0 40 30Z"/></svg>'
+    )
 for kind in ("quad", "tri"):
     policy = load(shipped(kind)[0])
     mesh = benchmark_mesh(kind, 10, np.random.default_rng(1))
@@ -52,7 +57,10 @@ for kind in ("quad", "tri"):
     solve_within(large, policy, large.element_ids()[:20], seconds=0.5)
     improve_large(large, policy, max_steps=60)
     meshwright.solve(mesh, seconds=0.5)
+    plate = ["improve", "plate.svg", "-o", "plate.vtk", "--kind", kind, "--search", "2"]
+    assert main(plate) == 0
     if kind == "quad":
+        assert main([*plate, "--elements-shape", "0.3"]) == 0
         block_grid(mesh, Sizing(divide=11, walls=(WallLayer("all", 1e-3),)))
 print_compiled()
 """

@@ -42,7 +42,8 @@ from meshwright_agent.search.search_worker import (
 )
 from meshwright_agent.search.shortening import shorten as shorter
 from meshwright_agent.search.solution import Solution, judged
-from meshwright_core.domains.meshing import benchmark_mesh
+from meshwright_core.domains.gallery import shape
+from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.turning import has_bends
@@ -432,8 +433,18 @@ def _warm_up(policy: Policy) -> None:
         found = Solution(seeker.pool[0].operations(), 0, 0, 0, coarse=True)
         assert judged(found, mesh).rank
         GuardedDescent(mesh, policy, 2 * THIN_EVERY, 0).run(lambda: False, 2)
+        _warm_up_curves()
     batch = Batch(task, [mesh], 1, np.random.default_rng(0), endless=False)
     batch.step(batch.observe(), np.array([-1]))
+
+
+def _warm_up_curves() -> None:
+    """Kick and judge layouts whose sides bend; all else is the same as for straight sides."""
+    plate = mesh_domain(shape("plate-with-round-hole"), "quad")
+    seeker = LayoutSearch(plate, Preference())
+    seeker.add([], True, lambda: False)
+    seeker.run(lambda: False, 16)
+    assert not judged(Solution([], 0, 0, 0), plate).inverted
 
 
 def prepare(policy: Policy) -> None:
