@@ -38,7 +38,7 @@ from meshwright_core.operations.catalogue import NAMES
 TOGETHER, ELEMENTS_EACH = 2, 200
 """The most guarded rollouts side by side, and elements of all of them together: on a large mesh one
 comes further in the same time."""
-ROUNDS = 4
+ROUNDS = 6
 """Guarded rollouts from the start in each turn."""
 CONTINUED = 2
 """Guarded rollouts from a state: from most states none leads on, from some nearly all do."""
@@ -65,7 +65,7 @@ class GuardedDescent:
 
     Each turn makes guarded rollouts from the start; goes on from the states of the lowest s that
     were tried least, the coarsest first, by guarded rollouts, leaps and annealing; and makes free
-    rollouts from the start and from the best state.
+    rollouts from the best state or the start, in turn.
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -83,6 +83,7 @@ class GuardedDescent:
     ) -> None:
         """Nothing is done yet."""
         self._mesh, self._policy, self._max_steps = mesh, policy, max_steps
+        self._start = DrawnState.of([], mesh.arrays)
         # by the start of the descent: by those of its rounds the meshes would grow without end
         self._ceiling = policy.task.bounds(mesh.n_elements)[1]
         self._rng = np.random.default_rng(seed)
@@ -105,20 +106,22 @@ class GuardedDescent:
         def granted(wanted: int) -> int:
             return wanted if most is None else min(wanted, most - (self.rollouts - begun))
 
+        turn = 0
         while not over() and granted(1) > 0:
+            turn += 1
             for _ in range(ROUNDS // together):
                 if not over() and (count := granted(together)) > 0:
-                    self._round(DrawnState.of([], self._mesh.arrays), count, stop)
+                    self._round(self._start, count, stop)
             before, tried = self.score, 0
             while self.states and tried < CONTINUED_STATES and not over():
                 self._go_on(granted(CONTINUED), stop)
                 before, tried = self.score, 0 if self.score < before else tried + 1
             while self.states and not over() and self._anneal(stop):
                 pass
-            smallest = min([self._mesh.n_elements, *(state.elements for state in self.states[:1])])
-            free = FREE_WORK // max(smallest, 1)
-            if not over() and (count := granted(max(2, min(MOST_FREE, free)))) > 0:
-                self._free(count, stop)
+            begin = self.states[0] if self.states and turn % 2 else self._start
+            free = max(2, min(MOST_FREE, FREE_WORK // begin.elements))
+            if not over() and (count := granted(free)) > 0:
+                self._free(begin, count, stop)
 
     def _note(self, state: DrawnState) -> None:
         """Add a state to those found."""
@@ -147,9 +150,8 @@ class GuardedDescent:
 
     def gather(self, stop: Callable[[], bool]) -> None:
         """Guarded rollouts from the start until `stop`: further states of the lowest s."""
-        start = DrawnState.of([], self._mesh.arrays)
-        while start.score > self.score and len(self.states) < KEPT and not stop():
-            self._round(start, 1, stop)
+        while self._start.score > self.score and len(self.states) < KEPT and not stop():
+            self._round(self._start, 1, stop)
 
     @staticmethod
     def _least_tried(states: list[DrawnState]) -> DrawnState:
@@ -226,25 +228,21 @@ class GuardedDescent:
                 return DrawnState.of(operations + collapses + divisions, after.arrays)
         return None
 
-    def _free(self, count: int, stop: Callable[[], bool]) -> None:
-        """So many free rollouts from the start and from the best state, first from what has fewer
-        elements. The first that is at s* and can be drawn becomes the best; the coarsest few are
-        tried.
+    def _free(self, begin: DrawnState, count: int, stop: Callable[[], bool]) -> None:
+        """So many free rollouts from a state. The first that is at s* and can be drawn becomes the
+        best; the coarsest few are tried.
         """
-        begun = [(state.operations, state.mesh(self._mesh)) for state in self.states[:1]]
-        begun.append(([], self._mesh))
-        for before, mesh in sorted(begun, key=lambda pair: pair[1].n_elements):
-            if stop():
+        mesh = begin.mesh(self._mesh)
+        batch = RolloutBatch(mesh, self._policy, self._max_steps, self._mesh.optimum)
+        Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
+        self.rollouts += count
+        for most, attempts in FREE_DRAWN:
+            reached = [
+                (replayed(mesh, one.operations), begin.operations + one.operations)
+                for one in batch.found
+            ]
+            reached.sort(key=lambda pair: pair[0].n_elements)
+            drawn = self._first_drawn(reached, most, attempts, stop)
+            if drawn is not None:
+                self._note(self._thinned(drawn, stop))
                 return
-            batch = RolloutBatch(mesh, self._policy, self._max_steps, self._mesh.optimum)
-            Worker(batch, int(self._rng.integers(1 << 31)), stop).roll(count)
-            self.rollouts += count
-            for most, attempts in FREE_DRAWN:
-                reached = [
-                    (replayed(mesh, one.operations), before + one.operations) for one in batch.found
-                ]
-                reached.sort(key=lambda pair: pair[0].n_elements)
-                drawn = self._first_drawn(reached, most, attempts, stop)
-                if drawn is not None:
-                    self._note(self._thinned(drawn, stop))
-                    return

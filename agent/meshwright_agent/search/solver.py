@@ -72,7 +72,7 @@ TRIED = 24
 COARSEST = 0.5
 """Share of the time for the polish that coarsening without regard to shape takes where nothing
 that rollouts found at s* can be drawn."""
-DESCENT = 0.7
+DESCENT = 0.85
 """Share of the time after which no more guarded rollouts are made."""
 DRAWN = 2
 """States found by guarded rollouts whose layouts are searched."""
