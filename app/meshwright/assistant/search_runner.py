@@ -34,6 +34,8 @@ SIZE_SECONDS = 10.0
 """Time of *Complete* where the elements keep their size."""
 PATIENCE = 2
 """Rounds without success after which *Complete* ends."""
+MANY_BLOCKS = 30
+"""Blocks beyond which *Complete* does not end with its first, short round."""
 NOTHING_BETTER = "nothing better was found in {:.0f} s"
 PREFERENCES = ("blocks", "balanced", "shape")
 """What counts at s*: few blocks, a good worst corner, or both."""
@@ -195,7 +197,7 @@ class SearchRunner:
                 break
             if lost >= PATIENCE:
                 break
-            if self._is_done(self.target) and not self._is_uneven(best):
+            if self._is_done(self.target) and not self._deserves_more(best):
                 break
             if best.perfect and lost:  # others of the same s are found from the start
                 start, before = self._mesh, []
@@ -224,12 +226,15 @@ class SearchRunner:
         self.shape = ShapeGoal.of(mesh, self._effort)
         return self.shape is None or self.shape.reached
 
-    def _is_uneven(self, best: Solution) -> bool:
-        """Whether the first round has left vertices irregular by 2 or more, and the search aims at
-        less: a second one often finds it.
+    def _deserves_more(self, best: Solution) -> bool:
+        """Whether a second round often finds more than the first one has found: it has left
+        vertices irregular by 2 or more, or many blocks, where the search aims at less.
         """
         assert self.target is not None
-        return self._rounds == 1 and best.aims.spread and largest_delta(self.target) > 1
+        uneven = best.aims.spread and largest_delta(self.target) > 1
+        searched = best.coarse and self.shape is not None
+        many = searched and self.target.n_elements > MANY_BLOCKS
+        return self._rounds == 1 and (uneven or many)
 
     def _note_end(self, lost: int) -> None:
         """Say why a search in rounds has ended, where it was not stopped and more is wanted."""

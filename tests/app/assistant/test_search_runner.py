@@ -155,6 +155,21 @@ def test_complete_looks_once_more_where_a_vertex_is_irregular_by_two(
     assert len(asked) == count
 
 
+@pytest.mark.parametrize(("most", "count"), [(9, 1), (8, 2)])
+def test_complete_looks_once_more_where_many_blocks_are_left(dented, monkeypatch, most, count):
+    asked = []
+
+    def one(self, start, seconds, done):
+        self._rounds += 1
+        asked.append(seconds)
+        return judged(Solution([], 0, start.optimum, 0, aims=Preference().aims(1.0, 1.0)), start)
+
+    monkeypatch.setattr(SearchRunner, "_round", one)
+    monkeypatch.setattr(search_runner, "MANY_BLOCKS", most)
+    SearchRunner(dented, None, 0, Effort(until_done=True), Event(), lambda *a: None).step()
+    assert len(asked) == count
+
+
 def test_long_thin_elements_are_not_the_wanted_shape():
     points = [(0, 0), (1, 0), (1, 0.01), (0, 0.01)]
     goal = ShapeGoal.of(HalfEdgeMesh.from_elements(points, [(0, 1, 2, 3)]), Effort())
