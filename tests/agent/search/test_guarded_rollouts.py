@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from meshwright_agent.policy import policy_files
-from meshwright_agent.search.guarded_descent import GuardedDescent
 from meshwright_agent.search.guarded_rollouts import GuardedRollouts
 from meshwright_core.domains import gallery
 from meshwright_core.domains.meshing import mesh_domain
@@ -32,29 +31,3 @@ def test_all_states_found_are_valid_and_lower(start, policy):
         assert reached.score == state.score <= start.score
         assert reached.n_elements == state.elements
     assert rollouts.best.score < start.score
-
-
-def test_the_start_is_not_changed(start, policy):
-    before = start.points.copy(), start.score, start.n_elements
-    GuardedDescent(start, policy, 12, 3).run(lambda: False, 4)
-    assert (start.points == before[0]).all()
-    assert (start.score, start.n_elements) == before[1:]
-
-
-def test_rounds_with_the_same_seed_find_the_same(start, policy):
-    descents = [GuardedDescent(start, policy, 12, 5) for _ in range(2)]
-    for descent in descents:
-        descent.run(lambda: False, 6)
-    first, second = descents
-    assert first.score == second.score < start.score
-    assert [state.operations for state in first.states] == [
-        state.operations for state in second.states
-    ]
-    assert (first.states[0].arrays.points == second.states[0].arrays.points).all()
-
-
-def test_a_descent_ends_when_it_is_stopped(start, policy):
-    descent = GuardedDescent(start, policy, None, 0)
-    descent.run(lambda: True)
-    assert not descent.states
-    assert descent.score == start.score
