@@ -1,6 +1,7 @@
 """The suites of ``meshwright bench`` run, and report numbers by name."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 
@@ -100,7 +101,21 @@ def test_gmsh_meshes_a_part_with_about_as_many_quads():
     domain = random_parts.parts(2, (8, 24), 1)[1]
     columns = gmsh_peer.measured(domain, 200)
     for way in gmsh_peer.WAYS:
-        assert columns[f"{way}: elements"] == 0 or 50 < columns[f"{way}: elements"] < 800
+        assert 100 < columns[f"{way}: elements"] < 400
+
+
+def test_peer_takes_the_size_that_gives_the_nearest_number(monkeypatch):
+    domain = random_parts.parts(2, (8, 24), 1)[1]
+    counts, tried = [None, 5, 90, 120, 500], []
+
+    def meshed(domain, size, options):
+        tried.append(size)
+        count = counts[len(tried) - 1]
+        return None if count is None else SimpleNamespace(n_elements=count)
+
+    monkeypatch.setattr(gmsh_peer, "meshed", meshed)
+    assert gmsh_peer.nearest(domain, 100, {}).n_elements == 90
+    assert len(tried) == 4 and tried == sorted(tried, reverse=True)
 
 
 def test_seconds_option_is_refused_by_suites_without_search(capsys):
