@@ -16,6 +16,7 @@ from meshwright_agent.search import solver
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.layout_search import Preference
 from meshwright_agent.search.size_keeping import keep_size
+from meshwright_agent.search.solver import Found
 from meshwright_core.analysis.element_division import divided, divisions
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry import smoothing
@@ -98,12 +99,14 @@ def improve(
     seed: int = 0,
     workers: int = 1,
     progress: Callable[[int, int], None] | None = None,
+    found: Found | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Improved:
     """The improved mesh; `mesh` is not changed.
 
     A mesh without inverted elements never becomes one with them. Arguments as for
-    :func:`meshwright_agent.search.solver.solve`.
+    :func:`meshwright_agent.search.solver.solve`; `found` is not called where elements keep their
+    size, and before any are divided.
     """
     if seconds is not None:
         solver.prepare(policy)
@@ -121,24 +124,24 @@ def improve(
         )  # fmt: skip
     dividing = wishes.elements_shape is not None and mesh.kind == "quad"
     searching = seconds if seconds is None or not dividing else (1.0 - DIVIDING) * seconds
-    found = solver.solve(
+    best = solver.solve(
         mesh, policy, rollouts=rollouts, seconds=searching, max_steps=max_steps, seed=seed,
         workers=workers, prefer=wishes.prefer, min_shape=wishes.min_shape, progress=progress,
-        cancelled=cancelled,
+        found=found, cancelled=cancelled,
     )  # fmt: skip
     reached = mesh.copy()
-    if not found.carry_out(reached):
+    if not best.carry_out(reached):
         relaxed = reached.copy()
         smoothing.relax(relaxed)
         if len(inverted(relaxed)) <= len(inverted(reached)):
             reached = relaxed
-    divided_mesh, reason = None, found.reason
+    divided_mesh, reason = None, best.reason
     if dividing and wishes.elements_shape is not None:
         divided_mesh, reason = _divided_for(reached, wishes.elements_shape, reason)
     return Improved(
-        reached if divided_mesh is None else divided_mesh, list(found.operations), valid,
-        found.method, divided_mesh is not None, False, found.rollouts,
-        time.perf_counter() - began, reason, found.aims.target,
+        reached if divided_mesh is None else divided_mesh, list(best.operations), valid,
+        best.method, divided_mesh is not None, False, best.rollouts,
+        time.perf_counter() - began, reason, best.aims.target,
     )  # fmt: skip
 
 

@@ -49,6 +49,30 @@ def test_a_solution_replays_to_its_score(policy):
     assert [best for _, best in reported] == sorted((best for _, best in reported), reverse=True)
 
 
+@pytest.mark.parametrize("workers", [1, 2])
+def test_every_better_answer_is_reported_and_the_last_one_is_given(policy, workers):
+    """The answer has the positions of the last report, or others that are about as good."""
+    mesh, reported = start(policy.kind), []
+    answer = solve(
+        mesh, policy, rollouts=4, workers=workers, found=lambda *state: reported.append(state)
+    )
+    assert len(reported) == len(set(reported)) >= 1
+    assert [s for s, _, _ in reported] == sorted((s for s, _, _ in reported), reverse=True)
+    assert all(0.0 < worst <= 1.0 and elements > 0 for _, worst, elements in reported)
+    score, worst, elements = reported[-1]
+    assert (score, elements) == (answer.score, answer.elements)
+    assert answer.worst_scaled_jacobian >= worst - 0.02
+
+
+def test_answers_of_patches_are_reported(monkeypatch):
+    mesh, reported = start("quad", 30), []
+    monkeypatch.setattr(solver, "is_large", lambda mesh: mesh.score > 10)
+    policy = policy_files.load("quad")
+    answer = solve(mesh, policy, rollouts=2, found=lambda *state: reported.append(state))
+    assert answer.method == "patches"
+    assert mesh.score > reported[0][0] >= reported[-1][0] == answer.score
+
+
 def test_best_of_k_plays_at_most_k_rollouts(policy):
     mesh = start(policy.kind, 20)
     found = solve(mesh, policy, rollouts=3, max_steps=5)
