@@ -175,7 +175,7 @@ def samples(curves: Sequence[Curve], turn_degrees: float) -> list[Points]:
 
 
 def sampled_chains(chains: Sequence[Sequence[Curve]], turn_degrees: float = 5.0) -> list[Points]:
-    """(n, 2) points along each closed chain of curves, at least three; the last is not the first."""
+    """(n, 2) points along each closed chain of curves, at least three, the first one once."""
     rows = [points[:-1] for points in samples([c for chain in chains for c in chain], turn_degrees)]
     stops = np.cumsum([0, *map(len, chains)]).tolist()
     found = [np.concatenate(rows[low:high]) for low, high in pairwise(stops)]
