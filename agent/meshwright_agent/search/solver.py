@@ -86,8 +86,8 @@ PATCH_SLICE = 0.15
 PER_IRREGULAR = 50
 """Steps of a rollout per irregular vertex that is left on a large mesh after the patches."""
 
-Found = Callable[[int, float, int], None]
-"""Called with s, worst scaled Jacobian and number of elements of a state."""
+Found = Callable[[Solution], None]
+"""Called with an answer, its mesh in `reached`."""
 
 
 def solve(
@@ -135,7 +135,7 @@ def solve(
         progress: called with (rollouts done, lowest s) after rollouts and whenever s falls, from
             the worker threads.
         found: called, likewise, for each state that is better than all before it and would be the
-            answer if the search ended there: with (s, worst scaled Jacobian, elements).
+            answer if the search ended there.
         cancelled: polled; the search ends with the best result so far when it is true.
     """
     require_kind(policy, mesh.kind)
@@ -415,7 +415,7 @@ def _patch_by_patch(
         mesh, lambda: past(SMOOTHING), placed=placed.arrays, reached=reached.copy(),
     )  # fmt: skip
     if found is not None:
-        found(best.score, best.worst_scaled_jacobian, best.elements)
+        found(best)
     remaining = None if seconds is None else seconds - (time.perf_counter() - began)
     over = (remaining is not None and remaining <= 0.0) or (cancelled is not None and cancelled())
     if not is_large(reached) and not over:
@@ -560,7 +560,7 @@ class _Search:
     def report(self, best: Solution) -> None:
         """Report an answer that is better than all before it."""
         if self._found is not None:
-            self._found(best.score, best.worst_scaled_jacobian, best.elements)
+            self._found(best)
 
     def report_layout(self, layout: Layout, coarsener: Coarsener) -> None:
         """Report the best layout of a thread if it is better than those of all threads before."""
@@ -570,10 +570,16 @@ class _Search:
             if self._layout is not None and not coarsener.better(layout, self._layout):
                 return
             self._layout = layout
-            reached = replayed(self.mesh, layout.operations())
-            reached.move(*coarsener.positions(layout))
-            worst = float(scaled_jacobian(reached).min(initial=1.0))
-            self._found(reached.score, worst, reached.n_elements)
+            operations, (ids, *places) = layout.operations(), coarsener.positions(layout)
+            reached = replayed(self.mesh, operations)
+            reached.move(ids, *places)
+            best = Solution(
+                operations, reached.score, reached.optimum, len(inverted(reached)),
+                elements=reached.n_elements, method="layouts", aims=coarsener.aims,
+                worst_scaled_jacobian=float(scaled_jacobian(reached).min(initial=1.0)),
+                vertices=ids, positions=places[0], parameters=places[1], reached=reached,
+            )  # fmt: skip
+            self._found(best)
 
     def look(self, workers: int, past_optimum: bool = False, share: float = 1.0 - POLISH) -> None:
         """Search until the optimum, the end of that share of the time, or the last rollout.

@@ -88,8 +88,8 @@ def solved(
     answers: list[tuple[float, int, float]] = []
     began = time.perf_counter()
 
-    def found(score: int, worst: float, _elements: int) -> None:
-        answers.append((time.perf_counter() - began, score, worst))
+    def found(best: Solution) -> None:
+        answers.append((time.perf_counter() - began, best.score, best.worst_scaled_jacobian))
 
     answer = improvement.improve(before, policy, wishes, seconds=seconds, seed=seed, found=found)
     took = time.perf_counter() - began
