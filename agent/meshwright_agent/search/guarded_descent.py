@@ -19,7 +19,13 @@ import numpy as np
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.divided_layouts import collapse_chords, drawn_divided, ways_down
+from meshwright_agent.search.divided_layouts import (
+    FINEST,
+    collapse_chords,
+    divide_chords,
+    drawn_divided,
+    ways_down,
+)
 from meshwright_agent.search.guarded_rollouts import (
     THIN_LEAST,
     DrawnState,
@@ -40,12 +46,14 @@ TOGETHER, ELEMENTS_EACH = 2, 200
 comes further in the same time."""
 ROUNDS = 6
 """Guarded rollouts from the start in each turn."""
-CONTINUED = 2
-"""Guarded rollouts from a state: from most states none leads on, from some nearly all do."""
+CONTINUED = 1, 2
+"""Guarded rollouts from a state as it is, and divided: from most states none leads on, from some
+nearly all do."""
 CONTINUED_STATES = 2
 """States from which these are made in each turn, as long as none leads on."""
 KEPT = 12
-"""States of the lowest s that are kept."""
+"""States that are kept, of the lowest s and up to `ABOVE` more."""
+ABOVE = 4
 FREE_WORK, MOST_FREE = 1500, 16
 """Free rollouts from a state in each turn, in its elements and in number."""
 COARSE = 120
@@ -114,7 +122,7 @@ class GuardedDescent:
                     self._round(self._start, count, stop)
             before, tried = self.score, 0
             while self.states and tried < CONTINUED_STATES and not over():
-                self._go_on(granted(CONTINUED), stop)
+                self._go_on(granted, stop)
                 before, tried = self.score, 0 if self.score < before else tried + 1
             while self.states and not over() and self._anneal(stop):
                 pass
@@ -126,26 +134,34 @@ class GuardedDescent:
     def _note(self, state: DrawnState) -> None:
         """Add a state to those found."""
         self.states = sorted([*self.states, state], key=lambda one: one.rank)
-        self.states = [one for one in self.states if one.score == self.score][:KEPT]
+        self.states = [one for one in self.states if one.score <= self.score + ABOVE][:KEPT]
 
-    def _round(self, begin: DrawnState, count: int, stop: Callable[[], bool]) -> None:
-        """So many guarded rollouts from a state."""
+    def _round(
+        self, begin: DrawnState, count: int, stop: Callable[[], bool], divide: bool = False
+    ) -> None:
+        """So many guarded rollouts from a state, or from what its strips cut in two make of it."""
+        mesh = begin.mesh(self._mesh)
+        before = begin.operations + (divide_chords(mesh) if divide else [])
         batch = GuardedRollouts(
-            begin.mesh(self._mesh), self._policy, self._rng, count, self._max_steps, self._ceiling
-        )
+            mesh, self._policy, self._rng, count, self._max_steps,
+            max(self._ceiling, mesh.n_elements),
+        )  # fmt: skip
         batch.run(stop)
         self.rollouts += count
         for state in batch.found:
             if state.score < begin.score:
-                self._note(replace(state, operations=begin.operations + state.operations))
+                self._note(replace(state, operations=before + state.operations))
 
-    def _go_on(self, rollouts: int, stop: Callable[[], bool]) -> None:
-        """At most so many guarded rollouts from a state, then a leap unless they lead on."""
+    def _go_on(self, granted: Callable[[int], int], stop: Callable[[], bool]) -> None:
+        """Guarded rollouts from a state, then from it divided, then a leap, until one leads on."""
         state = self._least_tried(self.states)
-        for _ in range(rollouts):
-            if self.score == state.score and not stop():
-                self._round(state, 1, stop)
-        if self.score == state.score and not stop():
+        before = self.score
+        divisible = 4 * state.elements <= FINEST
+        for divide, rollouts in enumerate(CONTINUED if divisible else CONTINUED[:1]):
+            for _ in range(granted(rollouts)):
+                if self.score == before and not stop():
+                    self._round(state, 1, stop, bool(divide))
+        if self.score == before and not stop():
             self._leap(state, stop)
 
     def gather(self, stop: Callable[[], bool]) -> None:
@@ -155,8 +171,10 @@ class GuardedDescent:
 
     @staticmethod
     def _least_tried(states: list[DrawnState]) -> DrawnState:
-        """The state from which something was tried least often, which is counted."""
-        state = min(states, key=lambda one: (one.tries, one.rank))
+        """The state from which something was tried least often, which is counted; a state of an s
+        higher by two counts as tried once more.
+        """
+        state = min(states, key=lambda one: (one.score // 2 + one.tries, one.rank))
         state.tries += 1
         return state
 
