@@ -1,8 +1,8 @@
 """Makes every picture that README shows, from the program itself, into docs/images/.
 
     python docs/make_pictures.py              all of them
-    python docs/make_pictures.py operations   only these: demo, operations, gallery, parts,
-                                              curves, window
+    python docs/make_pictures.py operations   only these: demo, operations, gallery,
+                                              gallery-blocks, parts, curves, window
 
 Only the window needs a display; with a virtual screen run
 ``xvfb-run -s "-screen 0 1920x1200x24" python docs/make_pictures.py window``.
@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw
 
-from meshwright.graphics.drawing import raster
+from meshwright.graphics.drawing import Drawing, Text, raster
 from meshwright.graphics.export.filmstrip import side_by_side
 from meshwright.graphics.mesh_figure import FigureOptions, figure, fitted
 from meshwright.graphics.theme import LIGHT
@@ -27,7 +27,8 @@ from meshwright_core import HalfEdgeMesh, Operation
 from meshwright_core.analysis import blocks
 from meshwright_core.domains import gallery, random_parts
 from meshwright_core.domains.meshing import mesh_domain
-from meshwright_core.geometry import smoothing
+from meshwright_core.geometry import quality, smoothing
+from meshwright_core.geometry.shape_bound import shape_bound
 from meshwright_core.operations.catalogue import CATALOGUE, OperationInfo
 
 IMAGES = Path(__file__).parent / "images"
@@ -35,6 +36,8 @@ RENDER = 1500
 """Size in pixels of the square figure from whose middle the picture is cropped."""
 PANEL = (560, 460)
 GAP = 120
+TILE, CAPTION = (360, 300), 30
+"""Size of a shape of the gallery, and height of the text below it."""
 PARTS_SEED, PARTS_SECONDS = 1, 10.0
 CURVED = (
     "plate-with-round-hole", "filleted-bracket", "duct-bend", "nozzle",
@@ -169,15 +172,50 @@ def make_operations() -> None:
 
 def make_gallery() -> None:
     """Every shape of the gallery as a quad mesh, as generated, in rows of five."""
-    tiles = [
-        plain(mesh_domain(domain, "quad"), (360, 300)) for domain in gallery.gallery().values()
-    ]
-    columns = 5
+    tiles = [plain(mesh_domain(domain, "quad"), TILE) for domain in gallery.gallery().values()]
+    save(in_rows(tiles), IMAGES / "gallery.png")
+
+
+def make_gallery_blocks() -> None:
+    """The same as blocks, with s, the worst scaled Jacobian, their bounds, and how many."""
+    from meshwright_agent.policy import policy_files
+    from meshwright_agent.search.solver import solve
+
+    policy = policy_files.load(policy_files.shipped("quad")[0])
+    tiles = []
+    for domain in gallery.gallery().values():
+        mesh = mesh_domain(domain, "quad")
+        bound = shape_bound(mesh)
+        if not solve(mesh, policy, seconds=PARTS_SECONDS).carry_out(mesh):
+            smoothing.relax(mesh)
+        worst, count = quality.scaled_jacobian(mesh).min(), blocks.block_count(mesh)
+        words = (
+            f"s {mesh.score} of {mesh.optimum}   shape {worst:.2f} of {bound:.2f}   "
+            f"{count} block{'s'[: count > 1]}"
+        )
+        tiles.append(captioned(with_blocks(mesh, TILE), words))
+        sys.stdout.write(f"{domain.name}: {words}, {len(quality.inverted(mesh))} inverted\n")
+    save(in_rows(tiles), IMAGES / "gallery-blocks.png")
+
+
+def in_rows(tiles: list[Any], columns: int = 5) -> Any:
+    """Return one image of tiles of equal size."""
+    width, height = tiles[0].size
     rows = math.ceil(len(tiles) / columns)
-    whole = Image.new("RGB", (columns * 360, rows * 300), LIGHT.background)
+    whole = Image.new("RGB", (columns * width, rows * height), LIGHT.background)
     for number, tile in enumerate(tiles):
-        whole.paste(tile, (number % columns * 360, number // columns * 300))
-    save(whole, IMAGES / "gallery.png")
+        whole.paste(tile, (number % columns * width, number // columns * height))
+    return whole
+
+
+def captioned(image: Any, words: str) -> Any:
+    """Return the image with a line of text below it."""
+    line = Drawing((image.width, CAPTION), LIGHT.background)
+    line.add(Text(words, (image.width / 2, CAPTION / 2), 13.0, LIGHT.text, "middle"))
+    whole = Image.new("RGB", (image.width, image.height + CAPTION), LIGHT.background)
+    whole.paste(image, (0, 0))
+    whole.paste(raster(line), (0, image.height))
+    return whole
 
 
 def make_parts() -> None:
@@ -283,6 +321,7 @@ MAKERS: dict[str, Callable[[], None]] = {
     "demo": make_demo,
     "operations": make_operations,
     "gallery": make_gallery,
+    "gallery-blocks": make_gallery_blocks,
     "parts": make_parts,
     "curves": make_curves,
     "window": make_window,

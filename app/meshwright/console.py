@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import math
 import sys
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Protocol, TextIO
@@ -41,6 +42,12 @@ class Report:
     def __init__(self, as_json: bool = False) -> None:
         """as_json: write the result as one JSON object rather than as text."""
         self.as_json = as_json
+        self._began = time.perf_counter()
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since the command began."""
+        return time.perf_counter() - self._began
 
     @property
     def out(self) -> TextIO:

@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations
@@ -154,6 +153,8 @@ def improve_within(
 
 def near(mesh: HalfEdgeMesh, reached: HalfEdgeMesh, bad: np.ndarray) -> np.ndarray:
     """Ids of the elements of a mesh near the elements `bad` of what has become of it."""
+    from scipy.spatial import cKDTree  # here: it takes a quarter of a second
+
     centres = reached.points[reached.corners(bad)].mean(axis=1)
     own = mesh.points[mesh.elements()].mean(axis=1)
     away, _ = cKDTree(centres).query(own)

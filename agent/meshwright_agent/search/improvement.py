@@ -14,8 +14,11 @@ from typing import TYPE_CHECKING
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solver
 from meshwright_agent.search.annealing import Operations
+from meshwright_agent.search.guarded_coarsening import ALIKE
 from meshwright_agent.search.layout_search import Preference
 from meshwright_agent.search.size_keeping import keep_size
+from meshwright_agent.search.solution import Solution
+from meshwright_agent.search.solver import Found
 from meshwright_core.analysis.element_division import divided, divisions
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry import smoothing
@@ -32,6 +35,9 @@ SKEWEST = 0.97
 """The largest shape that chords are divided for."""
 DIVIDING = 0.1
 """Share of the time that is kept for dividing chords and smoothing what comes of it."""
+OTHERS = 8
+"""The last answers of the search that are divided, too: often one that was found just before takes
+far fewer elements."""
 
 
 @dataclass(frozen=True)
@@ -98,12 +104,14 @@ def improve(
     seed: int = 0,
     workers: int = 1,
     progress: Callable[[int, int], None] | None = None,
+    found: Found | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Improved:
     """The improved mesh; `mesh` is not changed.
 
     A mesh without inverted elements never becomes one with them. Arguments as for
-    :func:`meshwright_agent.search.solver.solve`.
+    :func:`meshwright_agent.search.solver.solve`; `found` is not called where elements keep their
+    size, and before any are divided.
     """
     if seconds is not None:
         solver.prepare(policy)
@@ -121,35 +129,78 @@ def improve(
         )  # fmt: skip
     dividing = wishes.elements_shape is not None and mesh.kind == "quad"
     searching = seconds if seconds is None or not dividing else (1.0 - DIVIDING) * seconds
-    found = solver.solve(
+    answers: list[Solution] = []
+
+    def note(answer: Solution) -> None:
+        if dividing:
+            answers.append(answer)
+            del answers[:-OTHERS]
+        if found is not None:
+            found(answer)
+
+    best = solver.solve(
         mesh, policy, rollouts=rollouts, seconds=searching, max_steps=max_steps, seed=seed,
         workers=workers, prefer=wishes.prefer, min_shape=wishes.min_shape, progress=progress,
-        cancelled=cancelled,
+        found=note, cancelled=cancelled,
     )  # fmt: skip
     reached = mesh.copy()
-    if not found.carry_out(reached):
+    if not best.carry_out(reached):
         relaxed = reached.copy()
         smoothing.relax(relaxed)
         if len(inverted(relaxed)) <= len(inverted(reached)):
             reached = relaxed
-    divided_mesh, reason = None, found.reason
+    chosen, answer, fault = best, reached, ""
     if dividing and wishes.elements_shape is not None:
-        divided_mesh, reason = _divided_for(reached, wishes.elements_shape, reason)
+        others = [
+            (one, one.reached) for one in reversed(answers)
+            if one.score == best.score and not one.inverted and one.reached is not None
+        ]  # fmt: skip
+        chosen, answer, fault = _divided_for(
+            [(best, reached), *others], wishes.elements_shape,
+            lambda: seconds is not None and time.perf_counter() - began > seconds,
+        )  # fmt: skip
     return Improved(
-        reached if divided_mesh is None else divided_mesh, list(found.operations), valid,
-        found.method, divided_mesh is not None, False, found.rollouts,
-        time.perf_counter() - began, reason, found.aims.target,
+        answer, list(chosen.operations), valid, best.method,
+        answer.n_elements > chosen.elements, False, best.rollouts,
+        time.perf_counter() - began, best.reason + fault, best.aims.target,
     )  # fmt: skip
 
 
 def _divided_for(
-    blocks: HalfEdgeMesh, least: float, reason: str
-) -> tuple[HalfEdgeMesh | None, str]:
-    """The blocks divided until every element has a shape of `least`, or as far as their skewness
-    permits; None where no division is needed or possible. And the reason for the end.
+    answers: list[tuple[Solution, HalfEdgeMesh]], least: float, over: Callable[[], bool]
+) -> tuple[Solution, HalfEdgeMesh, str]:
+    """The answer that is best after dividing, its mesh then, and what is wrong with it, in words.
+
+    answers: with their meshes, the best first, whose worst corner, up to the target, no other falls
+    short of. Better is what has elements of shape `least`; then fewer elements. over: whether no
+    more of them shall be tried.
     """
+    first, blocks = answers[0]
     if len(inverted(blocks)):
-        return None, f"{reason}; blocks with inverted elements are not divided"
+        return first, blocks, "; blocks with inverted elements are not divided"
+    worst = min(first.worst_scaled_jacobian, first.aims.target)
+    best, mesh, shape = first, *_divided(blocks, least)
+    for answer, other in answers[1:]:
+        if over():
+            break
+        if answer.worst_scaled_jacobian < worst - ALIKE:
+            continue
+        trial, reached = _divided(other, least)
+        rank, usual = (
+            (-min(reached, least), trial.n_elements),
+            (-min(shape, least), mesh.n_elements),
+        )
+        if rank < usual:
+            best, mesh, shape = answer, trial, reached
+    if shape < least:
+        return best, mesh, f"; dividing does not raise the worst shape beyond {shape:.2f}"
+    return best, mesh, ""
+
+
+def _divided(blocks: HalfEdgeMesh, least: float) -> tuple[HalfEdgeMesh, float]:
+    """The blocks divided until every element has a shape of `least`, or as far as their skewness
+    permits, and the worst shape; the blocks themselves where no division is needed or possible.
+    """
     best, shape, pieces = blocks, float(element_shapes(blocks).min(initial=1.0)), None
     for excess in EXCESS:
         if shape >= least:
@@ -165,9 +216,7 @@ def _divided_for(
             worst = float(element_shapes(trial).min(initial=1.0))
             if worst > shape + 1e-9:
                 best, shape = trial, worst
-    if shape < least:
-        reason = f"{reason}; dividing does not raise the worst shape beyond {shape:.2f}"
-    return (None if best is blocks else best), reason
+    return best, shape
 
 
 def _positions(mesh: HalfEdgeMesh) -> list[HalfEdgeMesh]:

@@ -101,6 +101,7 @@ class LayoutSearch:
         seed: of all random choices.
         floor: least number of elements.
         room: elements that added layouts may have, if that is more than twice those of the start.
+        found: called with each layout that is better than all before it.
     """
 
     def __init__(
@@ -110,9 +111,10 @@ class LayoutSearch:
         seed: int = 0,
         floor: int = 1,
         room: int = 0,
+        found: Callable[[Layout], None] | None = None,
     ) -> None:
         """Prepare the arrays; the pool is empty."""
-        self._mesh, self.optimum = mesh, mesh.optimum
+        self._mesh, self.optimum, self._found = mesh, mesh.optimum, found
         self.aims = preference.aims(attainable_bound(mesh), shape_bound(mesh))
         self.coarsener = Coarsener(mesh, self.aims, seed, floor, room=room)
         self.pool: list[Layout] = []
@@ -188,6 +190,8 @@ class LayoutSearch:
     def _note(self, layout: Layout) -> None:
         if self.best is None or self.coarsener.better(layout, self.best):
             self.best, self.idle, self._served = layout, 0, 0
+            if self._found is not None:
+                self._found(layout)
 
     def _coarsen(self, layout: Layout, stop: Callable[[], bool], aims: Aims | None = None) -> None:
         while not stop():

@@ -46,17 +46,17 @@ ENOUGH = int(20 * USUAL)
 SWEEPS = (4, 20)
 """Sweeps of smoothing after a division; the best mesh counts. More of them follow the sizes of the
 given mesh less."""
-LAYOUT_SHARE = 0.7
-"""Share of the time for the search of blocks, of what dividing leaves of it."""
+LAYOUT_SHARE, HARD_SHARE = 0.7, 0.3
+"""Share of the time for the search of blocks, of what dividing leaves of it; and where the coarse
+mesh that it begins with is more irregular than the given one, so that there is more to do."""
 DIVIDED, AFTER_SEARCH, SMOOTHED, UNITS_A_SWEEP = 15.0, 6.0, 20.0, 1.0
 """Time of some work, in units of the time to measure all elements once: dividing blocks with few
 sweeps of smoothing; measuring what a search has found; smoothing and untangling; a sweep."""
-FIRST_RUN, ATTEMPTS = 0.4, 6
-"""Share of the time that is left for each run on a large mesh in place, and the most of them."""
+FIRST_RUN, SMALL_RUN, ATTEMPTS = 0.4, 0.6, 6
+"""Share of the time that is left for each run in place, for the first one on meshes that are not
+large, and the most of them."""
 FEW = 4
 """Bad elements that are untangled together."""
-PARTS = 12
-"""The most states on the way to the end of a search that are tried as answers."""
 LOSS = 1e-6
 """Loss of the worst scaled Jacobian that is within rounding."""
 
@@ -192,11 +192,11 @@ def keep_size(
     enough = best.method == "blocks" and best.mesh.score == mesh.optimum and -rank[2] >= ENOUGH
     if not enough and not clock.over(AFTER_SEARCH):
         free = clock.left(AFTER_SEARCH)
-        if free is not None and is_large(mesh):
-            free *= FIRST_RUN
+        if free is not None:
+            free *= FIRST_RUN if is_large(mesh) else SMALL_RUN
         found = search(mesh, policy, seconds=free, coarsen=False, progress=progress)
         done += found.rollouts
-        if is_large(mesh):
+        if is_large(mesh) or fit.valid:
             made, operations, obstacle = _patches_that_fit(mesh, policy, found, fit, clock, seed)
         else:
             made, operations, obstacle = _in_place(mesh, found, fit, clock)
@@ -294,7 +294,8 @@ def _by_blocks(
         return None, None
     begin = mesh if start is None else start
     left = clock.left(DIVIDED)
-    found = search(begin, policy, seconds=None if left is None else LAYOUT_SHARE * left)
+    share = LAYOUT_SHARE if begin.score <= mesh.score else HARD_SHARE
+    found = search(begin, policy, seconds=None if left is None else share * left)
     layout = begin.copy()
     if not found.carry_out(layout) or (clock.cancelled and mesh.n_elements > LAYOUTS):
         return None, found
@@ -353,8 +354,10 @@ def _placed(made: HalfEdgeMesh, fit: Fit, clock: _Clock) -> HalfEdgeMesh:
 def _patches_that_fit(
     mesh: HalfEdgeMesh, policy: Policy, found: Solution, fit: Fit, clock: _Clock, seed: int
 ) -> tuple[HalfEdgeMesh, Operations, str]:
-    """As :func:`_in_place` for large meshes. Where a result fits, the search goes on from there;
-    where it has bad elements, the patches are improved again without those around them.
+    """The mesh after operations that fit, these, and what is wrong with others.
+
+    Where what was found fits, the search goes on from there, patch by patch; where it has bad
+    elements, the patches are improved again without those around them.
     """
     reached, more = mesh.copy(), list(found.operations)
     if found.reached is not None:
@@ -368,6 +371,8 @@ def _patches_that_fit(
         faults, bad = fit.faults(reached), fit.bad(reached)
         if faults:
             obstacle = last = faults[0]
+            if not attempt and not is_large(mesh):
+                best, chosen, _ = _in_place(mesh, found, fit, clock)
             if not len(bad):
                 break
             barred = np.union1d(barred, near(best, reached, bad))
@@ -425,13 +430,14 @@ def _in_place(
     for operation, h in found.operations:
         work.apply(operation, h)
         scores.append(work.score)
-    several = np.unique(scores)
-    for score in several[:: max(1, len(several) // PARTS)].tolist():
-        if score >= best.score or clock.over(SMOOTHED):
-            break
-        length = scores.index(score)
-        part = replayed(mesh, found.operations[:length])
+    lower = [i for i, score in enumerate(scores) if score < min(scores[:i], default=mesh.score)]
+    fits, fails = -1, len(lower) - 1  # places in this list; the fewer operations, the rarer faults
+    while fails - fits > 1 and not clock.over(SMOOTHED):
+        place = (fits + fails) // 2
+        part = replayed(mesh, found.operations[: lower[place]])
         smoothing.relax(part)
-        if not fit.faults(part):
-            best, chosen = part, found.operations[:length]
+        if fit.faults(part):
+            fails = place
+        else:
+            fits, best, chosen = place, part, found.operations[: lower[place]]
     return best, chosen, faults[0]

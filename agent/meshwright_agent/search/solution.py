@@ -9,11 +9,12 @@ import numpy as np
 
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.guarded_coarsening import ALIKE, FINEST, Aims, Coarsener, cost
+from meshwright_agent.search.guarded_coarsening import ALIKE, Aims, cost
 from meshwright_core.core.arrays import MeshArrays
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.element_sines import THIN
+from meshwright_core.geometry.max_min_positions import max_min_positions
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.geometry.weighed_shapes import weighed_worst
@@ -21,8 +22,6 @@ from meshwright_core.mesh import HalfEdgeMesh
 
 RELAXED = 2_000
 """Elements up to which a mesh is smoothed as a whole before it is judged."""
-FINE_STEPS = 150
-"""Steps of each stage of the max-min positions of an answer."""
 NEAR = 40
 """Vertices of a larger mesh that are smoothed at a time."""
 AVERAGED, SWEEPS = 4, 5
@@ -195,8 +194,7 @@ def _best_positions(reached: HalfEdgeMesh, stop: Callable[[], bool]) -> None:
 
 def _raise_worst(mesh: HalfEdgeMesh) -> None:
     """Give a plane quad mesh its max-min positions."""
-    coarsener = Coarsener(mesh, FINEST, ceiling=1)
-    mesh.move(*coarsener.positions(coarsener.layout([], steps=FINE_STEPS)))
+    mesh.move(*max_min_positions(mesh))
 
 
 def mesh_at(mesh: HalfEdgeMesh, points: np.ndarray, parameters: np.ndarray) -> HalfEdgeMesh:

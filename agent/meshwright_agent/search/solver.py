@@ -27,7 +27,7 @@ from meshwright_agent.search.coarsening import coarsen as coarser
 from meshwright_agent.search.coarsening import replayed, undrawable
 from meshwright_agent.search.divided_layouts import FINEST
 from meshwright_agent.search.drawn_patches import improve_drawn
-from meshwright_agent.search.guarded_coarsening import Layout
+from meshwright_agent.search.guarded_coarsening import Coarsener, Layout
 from meshwright_agent.search.guarded_descent import GuardedDescent
 from meshwright_agent.search.guarded_rollouts import THIN_EVERY
 from meshwright_agent.search.layout_matching import matched_vertices
@@ -45,7 +45,7 @@ from meshwright_agent.search.solution import Solution, judged
 from meshwright_core.domains.gallery import shape
 from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
 from meshwright_core.geometry import smoothing
-from meshwright_core.geometry.quality import inverted
+from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.turning import has_bends
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -86,6 +86,9 @@ PATCH_SLICE = 0.15
 PER_IRREGULAR = 50
 """Steps of a rollout per irregular vertex that is left on a large mesh after the patches."""
 
+Found = Callable[[Solution], None]
+"""Called with an answer, its mesh in `reached`."""
+
 
 def solve(
     mesh: HalfEdgeMesh,
@@ -101,6 +104,7 @@ def solve(
     prefer: str = "balanced",
     min_shape: float | None = None,
     progress: Callable[[int, int], None] | None = None,
+    found: Found | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Solution:
     """The best state found from `mesh`, which is not changed.
@@ -130,6 +134,8 @@ def solve(
             `prefer`.
         progress: called with (rollouts done, lowest s) after rollouts and whenever s falls, from
             the worker threads.
+        found: called, likewise, for each state that is better than all before it and would be the
+            answer if the search ended there.
         cancelled: polled; the search ends with the best result so far when it is true.
     """
     require_kind(policy, mesh.kind)
@@ -139,19 +145,21 @@ def solve(
     if is_large(mesh):
         go_on = partial(
             solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten,
-            prefer=prefer, min_shape=min_shape,
+            prefer=prefer, min_shape=min_shape, found=found,
         )  # fmt: skip
-        return _patch_by_patch(mesh, policy, seconds, max_steps, seed, progress, cancelled, go_on)
-    search = _Search(mesh, policy, rollouts, seconds, max_steps, seed, progress, cancelled)
+        return _patch_by_patch(
+            mesh, policy, seconds, max_steps, seed, progress, found, cancelled, go_on
+        )
+    search = _Search(mesh, policy, rollouts, seconds, max_steps, seed, progress, found, cancelled)
     best = search.nothing(coarsen)
     if has_layouts(mesh):
-        found = _search_layouts(search, preference, workers, coarsen, shorten)
+        answer = _search_layouts(search, preference, workers, coarsen, shorten)
     else:
-        found = _search_states(search, best, workers, coarsen, shorten)
-    best = min(best, found, key=lambda solution: solution.rank)
-    if found.inverted and not best.operations:
+        answer = _search_states(search, best, workers, coarsen, shorten)
+    best = min(best, answer, key=lambda solution: solution.rank)
+    if answer.inverted and not best.operations:
         # what was found cannot be drawn: as much of it as can be
-        best = min(best, _valid_part(search, found), key=lambda solution: solution.rank)
+        best = min(best, _valid_part(search, answer), key=lambda solution: solution.rank)
     best.rollouts, best.seconds = search.done, time.perf_counter() - search.began
     best.reason = best.reason or search.reason(best)
     return best
@@ -191,8 +199,11 @@ def _search_layouts(
     total = 0 if not coarsen else None if timed else KICKS_EACH * search.wanted_rollouts
     room = FINEST if descents else 0
     seekers = [
-        LayoutSearch(mesh, preference, search.seed + 7919 * i, room=room) for i in range(workers)
-    ]
+        LayoutSearch(
+            mesh, preference, search.seed + 7919 * i, room=room,
+            found=lambda layout: search.report_layout(layout, seekers[0].coarsener),
+        ) for i in range(workers)
+    ]  # fmt: skip
 
     def stop() -> bool:
         return search.over(1.0 - FINISH)
@@ -322,6 +333,8 @@ def _search_states(
             one = search.finished(candidate, coarsen, shorten, best)
             if found is best or one.rank < found.rank:
                 found = one
+                if one.rank < best.rank:
+                    search.report(one)
             if found.perfect or search.over(1.0):
                 break
         again = True
@@ -359,6 +372,7 @@ def _patch_by_patch(
     max_steps: int | None,
     seed: int,
     progress: Callable[[int, int], None] | None,
+    found: Found | None,
     cancelled: Callable[[], bool] | None,
     go_on: Callable[..., Solution],
 ) -> Solution:
@@ -400,6 +414,8 @@ def _patch_by_patch(
         ),
         mesh, lambda: past(SMOOTHING), placed=placed.arrays, reached=reached.copy(),
     )  # fmt: skip
+    if found is not None:
+        found(best)
     remaining = None if seconds is None else seconds - (time.perf_counter() - began)
     over = (remaining is not None and remaining <= 0.0) or (cancelled is not None and cancelled())
     if not is_large(reached) and not over:
@@ -466,6 +482,7 @@ class _Search:
         max_steps: int | None,
         seed: int,
         progress: Callable[[int, int], None] | None,
+        found: Found | None,
         cancelled: Callable[[], bool] | None,
     ) -> None:
         self.began = time.perf_counter()
@@ -473,8 +490,9 @@ class _Search:
         self.seconds, self.max_steps = seconds, max_steps
         self.annealing = rollouts is None and seconds is not None
         self.wanted = 1 if rollouts is None and seconds is None else rollouts
-        self._progress, self._cancelled = progress, cancelled
+        self._progress, self._found, self._cancelled = progress, found, cancelled
         self._lock = threading.Lock()
+        self._layout: Layout | None = None
         self.score, self.done, self._begun = mesh.score, 0, 0
         self.best = Candidate([], mesh.score, "none")
         self._candidates: list[Candidate] = []
@@ -538,6 +556,30 @@ class _Search:
             done, score = self.done, self.score
         if self._progress is not None:
             self._progress(done, score)
+
+    def report(self, best: Solution) -> None:
+        """Report an answer that is better than all before it."""
+        if self._found is not None:
+            self._found(best)
+
+    def report_layout(self, layout: Layout, coarsener: Coarsener) -> None:
+        """Report the best layout of a thread if it is better than those of all threads before."""
+        if self._found is None:
+            return
+        with self._lock:
+            if self._layout is not None and not coarsener.better(layout, self._layout):
+                return
+            self._layout = layout
+            operations, (ids, *places) = layout.operations(), coarsener.positions(layout)
+            reached = replayed(self.mesh, operations)
+            reached.move(ids, *places)
+            best = Solution(
+                operations, reached.score, reached.optimum, len(inverted(reached)),
+                elements=reached.n_elements, method="layouts", aims=coarsener.aims,
+                worst_scaled_jacobian=float(scaled_jacobian(reached).min(initial=1.0)),
+                vertices=ids, positions=places[0], parameters=places[1], reached=reached,
+            )  # fmt: skip
+            self._found(best)
 
     def look(self, workers: int, past_optimum: bool = False, share: float = 1.0 - POLISH) -> None:
         """Search until the optimum, the end of that share of the time, or the last rollout.

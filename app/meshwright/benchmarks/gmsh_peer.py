@@ -1,7 +1,9 @@
 """Gmsh's quad meshes of a domain with about as many elements, for comparison in benchmarks.
 
-Two of its ways: quasi-structured, and blossom with full-quad recombination. Needs the module
-`gmsh`, which nothing else does; without it there is nothing to compare.
+Two of its ways: quasi-structured, and blossom with full-quad recombination, each with the size of
+elements that gives a number near to the wanted one. Both need more elements than blocks do; what
+counts then is their coarsest mesh. Needs the module `gmsh`, which nothing else does; without it
+there is nothing to compare.
 """
 
 from __future__ import annotations
@@ -24,6 +26,8 @@ WAYS: dict[str, dict[str, float]] = {
     "blossom": {"Mesh.RecombinationAlgorithm": 3},
 }
 """Name of each way, and the options that choose it."""
+SIZES = tuple(4.0 / math.sqrt(2.0) ** i for i in range(10))
+"""Sizes that are tried, the coarsest first, relative to the side of a square of the mean area."""
 
 
 def available() -> bool:
@@ -37,7 +41,7 @@ def measured(domain: Domain, elements: int) -> dict[str, Any]:
         return {}
     found: dict[str, Any] = {}
     for way, options in WAYS.items():
-        mesh = meshed(domain, math.sqrt(domain.area / max(elements, 1)), options)
+        mesh = nearest(domain, elements, options)
         if mesh is None:
             found |= {f"{way}: elements": 0, f"{way}: s": -1, f"{way}: worst shape": -1.0}
             continue
@@ -47,6 +51,20 @@ def measured(domain: Domain, elements: int) -> dict[str, Any]:
         valid = not len(quality.inverted(mesh))
         found[f"{way}: worst shape"] = round(float(shapes.min()), 3) if valid else -1.0
     return found
+
+
+def nearest(domain: Domain, elements: int, options: dict[str, float]) -> HalfEdgeMesh | None:
+    """Of the meshes of all sizes that with about so many elements; None if none can be made."""
+    best, off = None, math.inf
+    for size in SIZES:
+        mesh = meshed(domain, size * math.sqrt(domain.area / max(elements, 1)), options)
+        if mesh is None:
+            continue
+        if abs(math.log(mesh.n_elements / elements)) < off:
+            best, off = mesh, abs(math.log(mesh.n_elements / elements))
+        if mesh.n_elements >= elements:
+            break
+    return best
 
 
 def meshed(domain: Domain, size: float, options: dict[str, float]) -> HalfEdgeMesh | None:

@@ -1,11 +1,14 @@
 """The solver on the gallery and on random straight-sided parts, as quads, one core.
 
-Each shape is meshed as ``meshwright mesh`` does by default and improved for so many seconds. Gmsh
-stands beside it where its module is installed. Part i of a row depends on the seed and on i alone.
+Each shape is meshed as ``meshwright mesh`` does by default and improved for so many seconds. *First
+usable* is the seconds until the search had an answer at s*, without inverted elements and with a
+worst scaled Jacobian of 0.3 or more; *last better* those until it had the best one. Beside random
+parts stands Gmsh where its module is installed. Part i of a row depends on the seed and on i alone.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from statistics import median
 from typing import Any
@@ -53,7 +56,7 @@ def run(
 ) -> dict[str, Any]:
     """Improve the gallery and so many parts of each row; quick: two of each, a tenth of the time.
 
-    Where the module `gmsh` can be imported its meshes of about as many quads stand beside them.
+    Where the module `gmsh` can be imported its meshes of about as many quads stand beside parts.
     """
     policy = policy_files.load(policy_files.shipped("quad")[0])
     policy_files.decide_on_one_thread()
@@ -70,7 +73,8 @@ def run(
             name = domain.name if group == "gallery" else f"{number} {domain.name}"
             update(number, f"{group}: {name}")
             rows[name] = solved(domain, policy, time_each, seed, wishes)
-            rows[name] |= gmsh_peer.measured(domain, rows[name]["elements"])
+            if group != "gallery":  # which has curves
+                rows[name] |= gmsh_peer.measured(domain, rows[name]["elements"])
         found[group] = {**summary(list(rows.values())), "shapes": rows}
     return found
 
@@ -81,9 +85,15 @@ def solved(
     """Return one row of the table."""
     before = meshing.mesh_domain(domain, "quad")
     places, bound = corners(before), shape_bound(before)
+    answers: list[tuple[float, int, float]] = []
     began = time.perf_counter()
-    answer = improvement.improve(before, policy, wishes, seconds=seconds, seed=seed)
+
+    def found(best: Solution) -> None:
+        answers.append((time.perf_counter() - began, best.score, best.worst_scaled_jacobian))
+
+    answer = improvement.improve(before, policy, wishes, seconds=seconds, seed=seed, found=found)
     took = time.perf_counter() - began
+    usable = [when for when, score, worst in answers if score == before.optimum and worst >= USABLE]
     mesh = answer.mesh
     mesh.validate()
     return {
@@ -102,6 +112,8 @@ def solved(
         "inverted": len(quality.inverted(mesh)),
         "kept": corners(mesh) == places and mesh.optimum == before.optimum,
         "operations": len(answer.operations),
+        "first usable": round(usable[0], 2) if usable else None,
+        "last better": round(answers[-1][0], 2) if answers else None,
         "seconds": round(took, 2),
     }
 
@@ -152,9 +164,20 @@ def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
         "worst SJ, median": median(row["worst SJ"] for row in rows),
         "share of q*, median": median(row["worst SJ"] / max(row["q*"], 1e-9) for row in rows),
         "operations, median": median(row["operations"] for row in rows),
+        "first usable, seconds, median": reached_by(0.5, rows, "first usable"),
+        "first usable, seconds, 90 %": reached_by(0.9, rows, "first usable"),
+        "last better, seconds, median": reached_by(0.5, rows, "last better"),
+        "last better, seconds, 90 %": reached_by(0.9, rows, "last better"),
         "seconds, median": median(row["seconds"] for row in rows),
     }
     return found | gmsh_peer.summary(rows, USABLE)
+
+
+def reached_by(share: float, rows: list[dict[str, Any]], column: str) -> float | None:
+    """Seconds after which that share of all rows have what the column dates; None if fewer have."""
+    seconds = sorted(row[column] for row in rows if row[column] is not None)
+    wanted = max(1, math.ceil(share * len(rows) - 1e-9))
+    return seconds[wanted - 1] if wanted <= len(seconds) else None
 
 
 def text(results: dict[str, Any]) -> str:
@@ -166,15 +189,21 @@ def text(results: dict[str, Any]) -> str:
         lines = [
             f"{name}: {value} of {found['meshes']}"
             for name, value in found.items()
-            if isinstance(value, int) and name != "meshes"
+            if isinstance(value, int) and name != "meshes" and "," not in name
         ]
-        lines += [f"{name}: {value:.3g}" for name, value in found.items() if "," in name]
+        lines += [
+            f"{name}: {shown(value) if value is None else format(value, '.3g')}"
+            for name, value in found.items()
+            if "," in name
+        ]
         tables.append("\n".join([group, aligned(rows), *lines]))
     return "\n\n".join(tables)
 
 
 def shown(value: Any) -> str:
     """Return a cell of the table."""
+    if value is None:
+        return "never"
     return ("no", "yes")[value] if isinstance(value, bool) else f"{value}"
 
 

@@ -473,13 +473,17 @@ class Document:
         return self.auto_smooth and (self.plane or self.smooth_surfaces)
 
     def smooth(self, by: str = YOU, vertices: np.ndarray | None = None) -> None:
-        """Smooth and untangle the whole mesh, or ``vertices`` (n,) alone, as one step."""
+        """Smooth and untangle the whole mesh, or ``vertices`` (n,) alone, as one step.
+
+        Few quads in the plane that would become badly shaped get the positions whose worst element
+        is best.
+        """
+        from meshwright.document.position_repair import smooth_all, tidy  # imports scipy
+
         mesh = self._need()
         if vertices is None:
-            self._do("smooth", "Smooth", -1, by, lambda: _relax(mesh, None))
+            self._do("smooth", "Smooth", -1, by, lambda: smooth_all(mesh))
         else:
-            from meshwright.document.position_repair import tidy  # imports scipy
-
             chosen = vertices
             self._do("smooth", "Smooth here", -1, by, lambda: tidy(mesh, chosen))
 

@@ -6,14 +6,19 @@ import numpy as np
 
 from meshwright_core import HalfEdgeMesh
 from meshwright_core.core.composite_curves import place_all
+from meshwright_core.geometry.max_min_positions import max_min_positions
 from meshwright_core.geometry.movable_part import chosen, elements_at
 from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.smoothing import relax, smooth
 from meshwright_core.geometry.untangling import untangle
-from meshwright_core.geometry.weighed_shapes import weighed_shapes
+from meshwright_core.geometry.weighed_shapes import weighed_shapes, weighed_worst
 
 FEW = 300
 """Elements of a mesh that counts as one of blocks."""
+POOR, FAIR = 0.3, 0.5
+"""Weighed sines of the worst element below which it is better to look further, and to worry."""
+CLOSE = 0.9
+"""How much of it is kept is not worse."""
 
 
 def tidy(mesh: HalfEdgeMesh, vertices: np.ndarray) -> None:
@@ -54,6 +59,28 @@ def settle(mesh: HalfEdgeMesh) -> list[int]:
     relax(mesh)
     still_inverted = inverted(mesh)
     return [int(row) for row in np.flatnonzero(np.isin(mesh.element_ids(), still_inverted))]
+
+
+def smooth_all(mesh: HalfEdgeMesh) -> None:
+    """Smooth and untangle the whole mesh, writing to its journal.
+
+    Averages spoil blocks, which are coarse: where they leave an element of at most :data:`FEW`
+    plane quads badly shaped, in its corners or as a long thin one, or clearly worse than before
+    unless it is still :data:`FAIR`, the vertices get the positions whose worst element is best.
+    """
+    before = mesh.copy()
+    relax(mesh)
+    if mesh.k != 4 or mesh.n_elements > FEW or mesh.points[mesh.vertices(), 2].any():
+        return
+    enough = max(POOR, min(FAIR, CLOSE * weighed_worst(before)))
+    if weighed_worst(mesh) >= enough:
+        return
+    relaxed, kept = mesh.copy(), before.copy()
+    for placed in (relaxed, kept):
+        placed.move(*max_min_positions(placed))
+    best = max((mesh, relaxed, kept, before), key=lambda m: (-len(inverted(m)), weighed_worst(m)))
+    ids = mesh.vertices()
+    mesh.move(ids, best.points[ids], best.arrays.parameter[ids])
 
 
 def square_up(mesh: HalfEdgeMesh) -> int:

@@ -20,6 +20,14 @@ from meshwright_core.core.arrays import TWIN
 
 CLOSE_EDGES = 2.5
 """Pixels between the lines of coloured elements below which they are left out."""
+FAR_EDGES, NEAR_EDGES = 2.0, 8.0
+"""Pixels between lines below which they are as pale and thin as they get, and beyond which they are
+as dark and thick.
+"""
+PALE = 0.35
+"""The share of the colour of lines in that of the palest ones; the rest is that of the elements."""
+DISC_SHARE = 0.6
+"""Diameter of discs seen from far, in mean distances between them, at most."""
 SAMPLE = 500
 """Number of edges whose lengths are looked at."""
 CROWD = 1200
@@ -143,19 +151,26 @@ class Scene:
         camera.is_set = True  # otherwise PyVista resets it to an oblique view at the first frame
 
     def _fit_to_distance(self, pixels: float) -> None:
-        """Seen from far, discs shrink so that none hides its neighbours, and the lines between
-        coloured elements go: otherwise their colour would be all that is seen.
+        """Seen from far, discs shrink so that the mesh is seen between them, and lines become pale
+        and thin: otherwise their colours would be all that is seen, in holes too. Lines between
+        coloured elements go.
         """
         self._pixels = pixels
-        room = self._room * pixels
+        room, edge = DISC_SHARE * self._room * pixels, self._edge * pixels
         for value, actor in self._discs.items():
             usual = 3.0 + 2.0 * abs(value)
             actor.GetProperty().SetPointSize(self._width * min(usual, max(1.0, room)))
+        shown = self.edges_shown and (not self._tinted or edge >= CLOSE_EDGES)
+        colour = _mixed(self._theme.fill, self._theme.edge, _nearness(edge, PALE))
         if self._surface is not None:
-            close = not self._tinted or self._edge * pixels >= CLOSE_EDGES
-            self._surface.GetProperty().SetEdgeVisibility(self.edges_shown and close)
+            look = self._surface.GetProperty()
+            look.SetEdgeVisibility(shown)
+            look.SetEdgeColor(*colour)
         if self._curved is not None:
-            self._curved[1].SetVisibility(self.edges_shown)
+            self._curved[1].SetVisibility(shown)
+            self._curved[1].GetProperty().SetColor(*colour)
+        if self._outline is not None:
+            self._outline.GetProperty().SetLineWidth(self._width * (1.0 + _nearness(edge, 0.0)))
 
     def show_crowd(self, mesh: HalfEdgeMesh, crowd: bool) -> None:
         """Set whether VTK draws the discs of irregular vertices (``crowd``) or the caller."""
@@ -277,6 +292,19 @@ class Scene:
 
 
 _TINT = "tint"
+
+
+def _nearness(edge: float, least: float) -> float:
+    """From ``least`` for lines ``edge`` pixels apart that are seen from far, to 1 from near by."""
+    near = (edge - FAR_EDGES) / (NEAR_EDGES - FAR_EDGES)
+    return least + (1.0 - least) * min(max(near, 0.0), 1.0)
+
+
+def _mixed(ground: str, line: str, share: float) -> tuple[float, float, float]:
+    """The colour between two, each written #rrggbb, as three numbers up to 1."""
+    pairs = zip(bytes.fromhex(ground[1:]), bytes.fromhex(line[1:]), strict=True)
+    red, green, blue = (((1.0 - share) * a + share * b) / 255.0 for a, b in pairs)
+    return red, green, blue
 
 
 def _usual_edge(mesh: HalfEdgeMesh) -> float:

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 MOST = 200_000
 """Elements that a division may lead to."""
+_FIRST, _SECOND = (0, 0, 2, 2), (3, 1, 1, 3)
+"""Sides of each corner of an element that its first chord crosses, and that its second does."""
 _SAMPLES = 33
 """Places at which the size along an edge is looked up."""
 
@@ -58,17 +60,16 @@ def divisions(mesh: HalfEdgeMesh, least: float) -> np.ndarray:
     crossing = chords(mesh)
     corners = mesh.points[mesh.elements()]
     side = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-    # of the two opposite sides the one that makes the ratio worse counts
+    # the pieces at a corner have its angle and are as long as its own two sides permit
+    ratio = side[:, _FIRST] / np.maximum(side[:, _SECOND], 1e-300)
     pieces = np.ones(int(crossing.max(initial=0)) + 1, np.int64)
-    sine = np.maximum(scaled_jacobian(mesh), 1e-6)
-    wanted = np.minimum(least / sine, 0.98)
+    wanted = np.minimum(least / np.maximum(_corner_sines(mesh, corners, side), 1e-6), 0.98)
     # 2 sine / (r + 1 / r) >= least for the ratio r of the sides
     largest = 1.0 / wanted + np.sqrt(1.0 / wanted**2 - 1.0)
+    high, low = (ratio / largest).max(axis=1), (ratio * largest).min(axis=1)
     while True:
-        first = side[:, (0, 2)] / pieces[crossing[:, 0]][:, None]
-        second = side[:, (1, 3)] / pieces[crossing[:, 1]][:, None]
-        long_first = first.max(axis=1) / np.maximum(second.min(axis=1), 1e-300) / largest
-        long_second = second.max(axis=1) / np.maximum(first.min(axis=1), 1e-300) / largest
+        now = pieces[crossing[:, 1]] / pieces[crossing[:, 0]]
+        long_first, long_second = high * now, 1.0 / np.maximum(low * now, 1e-300)
         worst = np.maximum(long_first, long_second)
         # where both directions are too long in turn no division helps
         worst[(long_first > 1.0) & (long_second > 1.0)] = 0.0
@@ -78,6 +79,20 @@ def divisions(mesh: HalfEdgeMesh, least: float) -> np.ndarray:
         pieces[crossing[e, 0 if long_first[e] >= long_second[e] else 1]] += 1
         if int(pieces[crossing].prod(axis=1).sum()) > MOST:
             raise MeshError(f"A shape of {least:g} takes more than {MOST:,} elements.")
+
+
+def _corner_sines(mesh: HalfEdgeMesh, corners: np.ndarray, side: np.ndarray) -> np.ndarray:
+    """(m, 4) sine of each corner; where sides bend, the least one of the element for all four.
+
+    corners: (m, 4, 3) places; side: (m, 4) lengths of the sides, each from its corner on.
+    """
+    ahead = np.roll(corners, -1, axis=1) - corners
+    back = np.roll(-ahead, 1, axis=1)
+    area = np.linalg.norm(np.cross(ahead, back), axis=2)
+    sines = area / np.maximum(side * np.roll(side, 1, axis=1), 1e-300)
+    least = scaled_jacobian(mesh)[:, None]
+    found: np.ndarray = np.where(np.abs(sines.min(axis=1)[:, None] - least) < 1e-9, sines, least)
+    return found
 
 
 def divided(

@@ -9,7 +9,6 @@ mesh again, which carry their names.
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from meshwright_core.core.projected_seats import projected_seats
 from meshwright_core.domains.domain import Domain
@@ -59,6 +58,8 @@ def _take_corners(coarse: HalfEdgeMesh, mesh: HalfEdgeMesh) -> bool:
     """Give the coarse mesh the corners of the other with their desired degrees; whether each of
     them has a vertex there. Smooth joints of the polylines are no corners.
     """
+    from scipy.spatial import cKDTree  # here: it takes a quarter of a second
+
     corners = np.flatnonzero(mesh.boundary() & mesh.geometric())
     found = np.flatnonzero(coarse.boundary() & coarse.geometric())
     size = float(np.ptp(mesh.points[mesh.vertices()], axis=0).max())

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from meshwright_core.core.composite_curves import nearest_between, place_all
 from meshwright_core.core.irregularity import desired_between, usual_desired_degree
@@ -153,6 +152,8 @@ class _Placement:
 
     def _matched(self, loops: list[Ids], curves: list[int]) -> list[int]:
         """The curve of each loop, so that all of them are near; by boxes first."""
+        from scipy.optimize import linear_sum_assignment  # here: it takes a quarter of a second
+
         boxes = np.array([_box(self._points[loop]) for loop in loops])
         there = np.array([_box(self._sampled(curve)) for curve in curves])
         apart = np.abs(boxes[:, None] - there[None]).sum(axis=2)

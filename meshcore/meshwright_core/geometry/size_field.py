@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from meshwright_core.geometry.edge_curves import element_areas
 
@@ -32,6 +31,8 @@ class SizeField:
 
     def __init__(self, mesh: HalfEdgeMesh) -> None:
         """Take the sizes of all elements at their centres."""
+        from scipy.spatial import cKDTree  # here: it takes a quarter of a second
+
         sizes = element_sizes(mesh)
         self.largest = float(sizes.max())
         self._log = np.log(np.maximum(sizes, 1e-9 * self.largest + 1e-300))

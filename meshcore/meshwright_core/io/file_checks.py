@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from meshwright_core.errors import MeshError
+from meshwright_core.errors import MeshError, sentence
 from meshwright_core.io.atomic_write import reason
 
 
@@ -23,7 +23,10 @@ def naming(path: Path) -> Iterator[None]:
     except OSError as error:
         raise MeshError(f"{path}: it cannot be read ({reason(error)}).") from error
     except ValueError as error:
-        raise MeshError(f"{str(path)!r} is no name for a file.") from error
+        if "\0" in str(path) or isinstance(error, UnicodeEncodeError):
+            raise MeshError(f"{str(path)!r} is no name for a file.") from error
+        said = sentence(" ".join(str(error).split())).rstrip(".")
+        raise MeshError(f"{path}: it cannot be read ({said}).") from error
 
 
 def size_of(path: Path) -> int:

@@ -1,19 +1,23 @@
 """Improved meshes of elements of the same size, and answers as they were asked for."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from meshwright_agent.policy import policy_files
-from meshwright_agent.search.improvement import Wishes, improve
+from meshwright_agent.search.improvement import Wishes, _divided_for, improve
 from meshwright_agent.search.layout_search import Preference
 from meshwright_agent.search.patchwise import is_large
 from meshwright_agent.search.size_keeping import Fit
+from meshwright_agent.search.solution import Solution
+from meshwright_core.analysis.element_division import divided
 from meshwright_core.domains.gallery import shape
 from meshwright_core.domains.meshing import grid, mesh_domain
 from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
+from meshwright_core.mesh import HalfEdgeMesh
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +76,23 @@ def test_every_element_gets_the_wanted_shape(policies):
     found = improve(mesh, policies["quad"], Wishes(elements_shape=0.6), rollouts=4)
     assert element_shapes(found.mesh).min() >= 0.6
     assert found.mesh.score == found.mesh.optimum
+
+
+@pytest.mark.parametrize(
+    ("worst", "over", "elements"), [(1.0, False, 3), (1.0, True, 27), (0.2, False, 27)]
+)
+def test_of_several_answers_the_one_counts_that_takes_the_fewest_elements(worst, over, elements):
+    """A long quad cut lengthwise takes more than the quad itself, which may have a worse corner."""
+    whole = HalfEdgeMesh.from_elements([(0, 0), (10, 0), (10, 1), (0, 1)], [[0, 1, 2, 3]])
+    cut = divided(whole, np.array([1, 3]))
+    answer = Solution(
+        [], 0, 0, 0, elements=3, worst_scaled_jacobian=1.0, aims=Preference().aims(1.0, 1.0)
+    )
+    other = replace(answer, elements=1, worst_scaled_jacobian=worst)
+    best, mesh, fault = _divided_for([(answer, cut), (other, whole)], 0.5, lambda: over)
+    assert (best is other) == (elements == 3)
+    assert (mesh.n_elements, fault) == (elements, "")
+    assert element_shapes(mesh).min() >= 0.5
 
 
 @pytest.mark.parametrize("wishes", [Wishes(), Wishes(keep_size=True)])

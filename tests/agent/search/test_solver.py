@@ -15,6 +15,7 @@ from meshwright_core.domains import gallery
 from meshwright_core.domains.domain import Domain
 from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
 from meshwright_core.geometry.edge_curves import element_areas
+from meshwright_core.geometry.quality import scaled_jacobian
 from meshwright_core.geometry.smoothing import relax
 
 
@@ -47,6 +48,34 @@ def test_a_solution_replays_to_its_score(policy):
     assert found.score < mesh.score and found.optimum == mesh.optimum
     assert found.rollouts == reported[-1][0]
     assert [best for _, best in reported] == sorted((best for _, best in reported), reverse=True)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_every_better_answer_is_reported_and_the_last_one_is_given(policy, workers):
+    """The answer has the positions of the last report, or others that are about as good."""
+    mesh, reported = start(policy.kind), []
+    answer = solve(mesh, policy, rollouts=4, workers=workers, found=reported.append)
+    assert [one.score for one in reported] == sorted((one.score for one in reported), reverse=True)
+    for one in reported:
+        reached = mesh.copy()
+        assert one.carry_out(reached)
+        assert (reached.score, reached.n_elements) == (one.score, one.elements)
+        assert scaled_jacobian(reached).min() == pytest.approx(one.worst_scaled_jacobian)
+        assert (
+            reached.points[reached.vertices()] == one.reached.points[one.reached.vertices()]
+        ).all()
+    last = reported[-1]
+    assert (last.score, last.elements) == (answer.score, answer.elements)
+    assert answer.worst_scaled_jacobian >= last.worst_scaled_jacobian - 0.02
+
+
+def test_answers_of_patches_are_reported(monkeypatch):
+    mesh, reported = start("quad", 30), []
+    monkeypatch.setattr(solver, "is_large", lambda mesh: mesh.score > 10)
+    policy = policy_files.load("quad")
+    answer = solve(mesh, policy, rollouts=2, found=reported.append)
+    assert answer.method == "patches"
+    assert mesh.score > reported[0].score >= reported[-1].score == answer.score
 
 
 def test_best_of_k_plays_at_most_k_rollouts(policy):

@@ -1,12 +1,13 @@
 """The suites of ``meshwright bench`` run, and report numbers by name."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 
 from meshwright import benchmarks, cli
-from meshwright.benchmarks import ablation, block_cells, gmsh_peer
-from meshwright_core.domains.random_parts import parts
+from meshwright.benchmarks import ablation, block_cells, gmsh_peer, parts
+from meshwright_core.domains import random_parts
 
 
 def test_suites_are_listed(capsys):
@@ -53,6 +54,19 @@ def test_parts_suite_prints_a_table(capsys):
             assert 1 <= row["blocks"] <= row["elements"]
             assert (row["worst SJ"] > 0) == (row["worst shape"] > 0) == (row["inverted"] == 0)
             assert 0 < row["q*"] <= 1
+            usable = row["s"] == row["s*"] and row["worst SJ"] >= parts.USABLE
+            assert row["first usable"] is not None or not usable
+            assert row["last better"] is not None
+            assert (row["first usable"] or 0.0) <= row["last better"]
+
+
+def test_share_of_rows_that_have_something_by_a_time():
+    rows = [{"at": at} for at in (3.0, 1.0, None, 2.0)]
+    assert [parts.reached_by(share, rows, "at") for share in (0.25, 0.5, 0.75, 0.9)] == [
+        1.0, 2.0, 3.0, None,
+    ]  # fmt: skip
+    group = {"meshes": 1, "at, seconds, 90 %": None, "shapes": {"a": {"first usable": None}}}
+    assert "90 %: never" in parts.text({"group": group})
 
 
 def test_block_cells_suite_prints_a_row_for_each_number_of_cells(capsys):
@@ -84,10 +98,24 @@ def test_options_of_the_search_are_refused_by_suites_without():
 
 @pytest.mark.skipif(not gmsh_peer.available(), reason="needs the module gmsh (pip install gmsh)")
 def test_gmsh_meshes_a_part_with_about_as_many_quads():
-    domain = parts(2, (8, 24), 1)[1]
+    domain = random_parts.parts(2, (8, 24), 1)[1]
     columns = gmsh_peer.measured(domain, 200)
     for way in gmsh_peer.WAYS:
-        assert columns[f"{way}: elements"] == 0 or 50 < columns[f"{way}: elements"] < 800
+        assert 100 < columns[f"{way}: elements"] < 400
+
+
+def test_peer_takes_the_size_that_gives_the_nearest_number(monkeypatch):
+    domain = random_parts.parts(2, (8, 24), 1)[1]
+    counts, tried = [None, 5, 90, 120, 500], []
+
+    def meshed(domain, size, options):
+        tried.append(size)
+        count = counts[len(tried) - 1]
+        return None if count is None else SimpleNamespace(n_elements=count)
+
+    monkeypatch.setattr(gmsh_peer, "meshed", meshed)
+    assert gmsh_peer.nearest(domain, 100, {}).n_elements == 90
+    assert len(tried) == 4 and tried == sorted(tried, reverse=True)
 
 
 def test_seconds_option_is_refused_by_suites_without_search(capsys):

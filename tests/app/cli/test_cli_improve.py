@@ -7,6 +7,7 @@ import pytest
 import meshwright as mw
 import meshwright_core
 from meshwright import cli
+from meshwright.cli.commands.improve import search_time
 from meshwright_core.geometry.element_shapes import element_shapes
 
 pytestmark = pytest.mark.usefixtures("prepared_agent")
@@ -106,3 +107,10 @@ def test_the_same_in_python():
     assert abs(kept.mesh.n_elements / mesh.n_elements - 1) <= 0.25
     with pytest.raises(mw.MeshError, match="prefer must be one of"):
         mw.solve(mesh, prefer="few")
+
+
+@pytest.mark.parametrize(
+    ("wanted", "loading", "left"), [(None, 3, None), (10, 0.4, 10), (10, 3, 8), (4, 30, 2)]
+)
+def test_long_loading_is_taken_off_the_time_of_the_search(wanted, loading, left):
+    assert search_time(wanted, loading) == left

@@ -1,14 +1,28 @@
 """The tour: five callouts that confirm the user's actions and leave the focus with the canvas."""
 
 import pytest
-from driving import WAIT, find, point_at, press
-from qtpy.QtCore import QPoint, QRect, Qt
+from driving import WAIT, beside, point_at, press
+from qtpy.QtCore import QMargins, QPoint, QRect, Qt
 
+from meshwright.desktop.help.callout import TIP
+from meshwright.desktop.help.help_controller import PASSED_BY
 from meshwright.desktop.help.tour import STEPS
 
 
 def click(qtbot, button):
     qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+
+
+def find(window, operation) -> int:
+    """A half-edge that the operation may be applied to, and that the tour does not cover."""
+    mesh, canvas = window.document.mesh, window.canvas.plotter
+    card = window.help.tour.callout.geometry()
+    return next(
+        h
+        for e in mesh.element_ids().tolist()
+        for h in range(mesh.k * e, mesh.k * e + mesh.k)
+        if mesh.check(operation, h) and not card.contains(canvas.mapTo(window, beside(window, h)))
+    )
 
 
 def test_unguided_window_shows_no_tour(open_window, star):
@@ -63,7 +77,7 @@ def test_tour_confirms_actions_and_leaves_the_focus_with_the_canvas(qtbot, open_
     callout = window.help.tour.callout
     assert window.canvas.plotter.hasFocus()
     assert not callout.done.isVisible()
-    halfedge = find(star, "flip_left")
+    halfedge = find(window, "flip_left")
     point_at(qtbot, window, halfedge)
     assert callout.done.isVisible()
     click(qtbot, callout.next)
@@ -103,3 +117,55 @@ def test_tour_does_not_point_at_hidden_widgets(open_window, star):
     button = window.toolbar.widgetForAction(window.actions_by_id["undo"])
     assert last.target(window.help.places) != timeline
     assert last.target(window.help.places).size() == button.size()
+
+
+@pytest.mark.parametrize("size", [(960, 620), (1280, 800), (1900, 1000)])
+def test_callouts_stand_on_the_canvas_and_cover_no_panel(qtbot, open_window, star, size):
+    window = open_window(star)
+    window.resize(*size)
+    qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
+    window.help.show_tour()
+    callout = window.help.tour.callout
+    places = window.help.places
+    for step in STEPS:
+        card = callout.geometry().marginsRemoved(QMargins(TIP, TIP, TIP, TIP))
+        assert not any(places.rect(column).intersects(card) for column in places.columns), step
+        click(qtbot, callout.next)
+
+
+def test_tour_ends_when_one_goes_on_without_it(open_window, star):
+    window = open_window(star)
+    window.help.show_tour()
+    window.actions_by_id["blocks.view"].trigger()
+    assert window.help.tour is None
+    assert window.status.message == PASSED_BY
+
+
+def test_tour_stays_while_one_does_what_it_is_about(qtbot, open_window, star):
+    window = open_window(star)
+    window.help.show_tour()
+    click(qtbot, window.help.tour.callout.next)
+    halfedge = find(window, "flip_left")
+    for _ in range(3):
+        point_at(qtbot, window, halfedge)
+        press(qtbot, window, Qt.Key.Key_F)
+        window.actions_by_id["undo"].trigger()
+    assert window.help.tour.at == 1
+    click(qtbot, window.help.tour.callout.next)
+    click(qtbot, window.help.tour.callout.next)
+    window.actions_by_id["agent.watch"].trigger()
+    assert STEPS[window.help.tour.at].menu == "Agent"
+    click(qtbot, window.help.tour.callout.next)
+    for action in ("history.first", "history.last", "history.back", "history.forward"):
+        window.actions_by_id[action].trigger()
+    assert STEPS[window.help.tour.at].menu == "History"
+
+
+def test_tour_ends_after_some_operations_beside_it(qtbot, open_window, star):
+    window = open_window(star)
+    window.help.show_tour()
+    for _ in range(3):
+        assert window.help.tour is not None
+        point_at(qtbot, window, find(window, "flip_left"))
+        press(qtbot, window, Qt.Key.Key_F)
+    assert window.help.tour is None

@@ -14,6 +14,8 @@ from meshwright.assistant.assistant import State
 from meshwright.desktop.actions import registry
 from meshwright.desktop.application.readiness import PREPARING
 from meshwright.desktop.editing.edit_controller import POINT_FIRST
+from meshwright.desktop.main_window.window import MainWindow
+from meshwright.document.document import Document
 from meshwright_core.operations.catalogue import of_kind
 
 
@@ -319,3 +321,17 @@ def test_qt_calls_keep_the_reference_count_of_none(qtbot):
         "[w.update() for _ in range(100000)]\n"
     )
     assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0
+
+
+@pytest.mark.usefixtures("_application")
+def test_native_window_stays_the_same_when_the_canvas_is_built(qtbot):
+    """Clicks on a native window that Qt replaces are lost."""
+    window = MainWindow(Document(), ready=True)
+    qtbot.addWidget(window)
+    window.show()
+    assert not window.canvas.built
+    shown = int(window.winId())
+    with qtbot.waitSignal(window.opened, timeout=WAIT):
+        pass
+    assert int(window.winId()) == shown
+    window.close()

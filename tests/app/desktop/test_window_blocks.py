@@ -123,6 +123,15 @@ def test_a_grading_makes_the_first_cells_thin_and_even_cells_return(qtbot, shown
     assert window.document.mesh.grid_plan.empty
 
 
+def test_panels_agree_on_the_numbers_of_quads_and_blocks(qtbot, shown):
+    window = shown(rows_of_blocks())
+    elements, values = window.quality.score.elements, window.blocks.panel.values
+    quads = window.document.mesh.n_elements
+    qtbot.waitUntil(lambda: elements.text == f"{quads} quads in 1 block", timeout=WAIT)
+    assert values["quads"].text.split(",")[0] == f"{quads}"
+    assert values["blocks"].text == "1"
+
+
 def test_blocks_are_selected_and_lead_to_their_chords(qtbot, shown):
     window = shown(rows_of_blocks())
     click(qtbot, window, (1.5, 1.5))

@@ -138,6 +138,21 @@ def test_boundary_vertices_stay_on_their_side(qtbot, open_window, grid):
     assert grid.points[2, 0] == pytest.approx(2.3, abs=0.02)
 
 
+def test_a_vertex_beside_one_short_edge_is_dragged_and_dense_ones_pan(qtbot, open_window, grid):
+    points = grid.points.copy()
+    points[1, 0] = 0.1  # about eight pixels from the corner
+    mesh = HalfEdgeMesh.from_elements(points, grid.elements())
+    window = open_window(mesh)
+    centre = window.canvas.viewport.centre
+    drag(qtbot, window, (0.1, 0), (0.6, 0))
+    assert mesh.points[1, 0] == pytest.approx(0.6, abs=0.02)
+    assert window.canvas.viewport.centre == centre
+    window.canvas.see(window.canvas.viewport.zoomed(0.1, 0, 0))
+    drag(qtbot, window, (2, 2), (4, 4))
+    assert len(window.document.history) == 1
+    assert window.canvas.viewport.centre != centre
+
+
 def test_dragging_fixed_vertices_shows_a_reason(qtbot, open_window, grid):
     window = open_window(grid)
     before = grid.points.copy()

@@ -52,6 +52,22 @@ def test_lines_between_coloured_elements_go_from_far(scene):
     assert not scene._surface.GetProperty().GetEdgeVisibility()
 
 
+def test_lines_are_paler_and_thinner_from_far(scene):
+    mesh = meshing.mesh_domain(gallery.shape("plate-with-round-hole"), "quad")
+    scene.show(mesh, TrueEdges(mesh))
+    view = Viewport(size=(400, 400)).fitted(mesh.points[:, :2])
+    inner, curved, outline = scene._surface, scene._curved[1], scene._outline
+    scene.look(view)
+    dark = sum(inner.GetProperty().GetEdgeColor())
+    assert outline.GetProperty().GetLineWidth() == pytest.approx(2.0)
+    scene.look(Viewport(view.centre, view.pixels / 100, view.size))
+    pale = sum(inner.GetProperty().GetEdgeColor())
+    assert dark + 0.3 < pale == pytest.approx(sum(curved.GetProperty().GetColor()))
+    assert outline.GetProperty().GetLineWidth() == pytest.approx(1.0)
+    scene.look(view)
+    assert sum(inner.GetProperty().GetEdgeColor()) == pytest.approx(dark)
+
+
 def test_sizes_of_discs_are_known_once_they_are_no_crowd(scene):
     mesh = meshing.mesh_domain(gallery.shape("star"), "quad")
     scene.show(mesh, TrueEdges(mesh))

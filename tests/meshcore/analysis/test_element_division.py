@@ -28,6 +28,21 @@ def test_a_long_quad_is_divided_along_its_length_only():
     assert (fine.score, fine.optimum) == (mesh.score, mesh.optimum)
 
 
+@pytest.mark.parametrize(
+    ("places", "wanted"),
+    [
+        ([(0, 0), (6, 0), (2, 2), (0, 2)], [1, 1]),  # its sharpest corner is not its longest
+        ([(0, 0), (6, 0), (5, 1), (0, 1)], [1, 1]),
+        ([(0, 0), (8, 0), (1, 3), (-2, 3)], [1, 2]),
+    ],
+)
+def test_each_corner_is_judged_by_its_own_angle_and_sides(places, wanted):
+    quad = HalfEdgeMesh.from_elements(places, [[0, 1, 2, 3]])
+    count = divisions(quad, 0.3)
+    assert count.tolist() == wanted
+    assert element_shapes(divided(quad, count)).min() >= 0.3
+
+
 def test_curves_are_kept():
     ring = round_ring(4)
     fine = divided(ring, np.full(int(chords(ring).max()) + 1, 3))

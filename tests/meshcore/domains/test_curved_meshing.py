@@ -13,6 +13,7 @@ from meshwright_core.domains import curved_shapes, gallery, meshing
 from meshwright_core.domains.curved_parts import curved_part, curved_suite
 from meshwright_core.domains.domain import Domain
 from meshwright_core.geometry.edge_curves import element_areas
+from meshwright_core.geometry.quality import scaled_jacobian
 
 CURVED = [name for name in gallery.names() if gallery.shape(name).sides is not None]
 WAYS = [
@@ -161,6 +162,23 @@ def test_a_point_of_a_flat_triangle_is_not_inserted_twice():
     mesh.validate()
     assert mesh.optimum == part.optimum("quad")
     assert element_areas(mesh).sum() == pytest.approx(part.area, rel=1e-12)
+
+
+@pytest.mark.parametrize("rows", [(10, 20), (10, 20, 30, 40, 50)])
+def test_no_slivers_along_a_row_of_small_holes(rows):
+    holes = [circle(10 + 10 * i, y, 3) for i in range(40) for y in rows]
+    domain = Domain.from_curves([ring((0, 0), (410, 0), (410, 60), (0, 60)), *holes])
+    mesh = meshing.mesh_domain(domain, "quad")
+    assert_meshes(domain, mesh)
+    assert scaled_jacobian(mesh).min() > 0.05
+    assert mesh.n_elements < 24 * len(holes)
+
+
+def test_long_thin_regions_are_not_cut_along_their_walls():
+    layers = [(name, [ring((0, y), (1000, y), (1000, y + 2), (0, y + 2))])
+              for name, y in (("steel", 0), ("copper", 2), ("glass", 4))]  # fmt: skip
+    domain = Domain.from_regions(layers)
+    assert meshing.mesh_domain(domain, "quad").n_elements <= 3 * 6
 
 
 def test_flattened_domain_has_the_corners():

@@ -35,6 +35,9 @@ DESCRIPTION = (
 ROLLOUTS = 10
 CHECKED = 20_000
 """Elements up to which all invariants of the answer are checked; that of more takes seconds."""
+LOADING, LEAST = 1.0, 0.5
+"""Seconds from the beginning of the command to the search that are not taken off its time; and the
+least share of the time that is left to it."""
 PICTURE_SIZE = (1200, 900)
 STILL_INVERTED = 3
 """The exit code where elements were inverted before and still are."""
@@ -57,7 +60,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--search",
         metavar="SECONDS",
         type=inputs.positive_float,
-        help="run the policy repeatedly for this time and keep the best",
+        help="run the policy repeatedly for this time and keep the best; what loading takes beyond "
+        "a second is taken off, up to half of the time",
     )
     parser.add_argument(
         "--steps", metavar="N", type=inputs.positive_int, help="at most N operations in a run"
@@ -114,10 +118,11 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
     wishes = _wishes(arguments, start)
     policy = inputs.read_policy(arguments.policy, start.kind)
 
+    inverted_before = len(quality.inverted(start))
+    seconds = search_time(arguments.search, report.seconds)
     inputs.prepare_agent(report)
     began = time.perf_counter()
-    inverted_before = len(quality.inverted(start))
-    improved = _search(arguments, report, start, policy, wishes)
+    improved = _search(arguments, report, start, policy, wishes, seconds)
     mesh = improved.mesh
     if mesh.n_elements <= CHECKED:
         mesh.validate()
@@ -174,6 +179,15 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
     count = _counted(len(inverted), "is", "are")
     report.note(f"meshwright improve: {output}: {count} still inverted")
     return STILL_INVERTED
+
+
+def search_time(wanted: float | None, loading: float) -> float | None:
+    """Seconds of a search of so many `wanted` ones, so that the whole command takes little longer:
+    `loading` is what it took until then. None where there is no limit.
+    """
+    if wanted is None:
+        return None
+    return round(max(wanted - max(loading - LOADING, 0.0), LEAST * wanted), 2)
 
 
 def _wishes(arguments: argparse.Namespace, start: HalfEdgeMesh) -> Wishes:
@@ -234,6 +248,7 @@ def _search(
     mesh: HalfEdgeMesh,
     policy: Any,
     wishes: Wishes,
+    seconds: float | None,
 ) -> Improved:
     from meshwright_agent.search import improvement
 
@@ -244,7 +259,7 @@ def _search(
             policy,
             wishes,
             rollouts=rollouts,
-            seconds=arguments.search,
+            seconds=seconds,
             max_steps=arguments.steps,
             seed=arguments.seed,
             progress=lambda done, best: update(done, f"s = {best}, s* = {mesh.optimum}"),

@@ -119,7 +119,7 @@ class BlocksController(Controller):
         self._canvas.show_edges(not shown)
         if shown:
             self._refresh()
-            self._status.show_message("Blocks: click an edge to select its chord, or a block.")
+            self._status.show_message("Blocks: click an edge to select its chord, or a quad.")
         else:
             self.job.stop()
             self.planned = self._bent = self._bent_of = None
@@ -155,6 +155,8 @@ class BlocksController(Controller):
 
     def _refresh(self) -> None:
         """Show blocks and numbers, and compute the fine grid."""
+        from meshwright_core.analysis.blocks import block_count  # brings in parts of scipy
+
         planned = self.planned
         assert planned is not None
         structure = planned.structure
@@ -169,7 +171,8 @@ class BlocksController(Controller):
             )
         )  # fmt: skip
         values = self.panel.values
-        values["blocks"].text = f"{len(structure.corners):,}, {structure.chord_count:,}"
+        values["quads"].text = f"{len(structure.corners):,}, {structure.chord_count:,}"
+        values["blocks"].text = f"{block_count(self._document.need_mesh()):,}"
         values["cells"].text = f"{planned.cells:,}" if planned.cells else "\u2013"
         plan = self._document.need_mesh().grid_plan
         self.panel.show_size(plan.size, float(np.median(structure.lengths)) / 5.0)

@@ -24,7 +24,7 @@ from meshwright.graphics.theme import GRID, Theme
 from meshwright_core.blocks.sizing import STEEPEST
 from meshwright_core.core.grid_plan import Grading
 
-POINT = "Click an edge to select its chord, or a block; drag an edge to slide its line."
+POINT = "Click an edge to select its chord, or a quad; drag an edge to slide its line."
 TOOLS = (
     ("blocks.insert", "Insert"),
     ("blocks.collapse", "Collapse"),
@@ -45,7 +45,7 @@ class ChordShown:
     chord: int
     colour: str
     edges: int
-    blocks: int
+    quads: int
     count: int
     """0 where wishes contradict each other."""
     pinned: bool
@@ -95,7 +95,8 @@ class BlocksPanel(QWidget):
         self.values = {
             name: ValueLine(title, words)
             for name, title, words in (
-                ("blocks", "Blocks, chords", "Quads of the mesh, and strips of them"),
+                ("quads", "Quads, chords", "Each quad is exported as a block; chords are strips"),
+                ("blocks", "Regular blocks", "Quads that form one regular grid count as one"),
                 ("cells", "Cells", "Cells of the fine grid"),
                 ("worst", "Worst cell", "Smallest scaled Jacobian of a cell"),
                 ("aspect", "Aspect ratio", "Largest one of a cell"),
@@ -209,8 +210,8 @@ class BlocksPanel(QWidget):
         self._title.setText(f"Chord {shown.chord}")
         how = "cells set" if shown.pinned else "cells by size"
         edges = "1 edge" if shown.edges == 1 else f"{shown.edges} edges"
-        blocks = "1 block" if shown.blocks == 1 else f"{shown.blocks} blocks"
-        self._say(f"{edges}, {blocks}; {how}")
+        quads = "1 quad" if shown.quads == 1 else f"{shown.quads} quads"
+        self._say(f"{edges}, {quads}; {how}")
         self.free.setEnabled(shown.pinned)
         fields = (self.count, self.first, self.last, self.ratio)
         blockers = [QSignalBlocker(box) for box in fields]
@@ -227,7 +228,7 @@ class BlocksPanel(QWidget):
         """Show the selected block with the chords that cross it."""
         self.show_chord(None)
         self._title.show()
-        self._title.setText(f"Block {block}")
+        self._title.setText(f"Quad {block}")
         self._say(f"{shape[0]} \u00d7 {shape[1]} cells, crossed by two chords:")
         self._links = chords
         for link, chord, colour in zip(self.crossing, chords, colours, strict=True):

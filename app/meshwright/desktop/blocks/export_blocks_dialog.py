@@ -297,8 +297,8 @@ class ExportBlocksDialog(ExportFrame):
             self._warn(True)
             return
         cells = int(counts[self._structure.crossing].prod(axis=1).sum())
-        blocks = plural(len(self._structure.corners), "block")
-        self.note.setText(f"{blocks}, {cells:,} cells.")
+        quads = len(self._structure.corners)
+        self.note.setText(f"{plural(quads, 'quad')}, each a block; {cells:,} cells.")
         self._warn(False)
 
     def _warn(self, warns: bool) -> None:

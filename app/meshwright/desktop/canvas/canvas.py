@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from qtpy.QtCore import QEvent, QObject, QPoint, QPointF, Qt, QTimer, Signal
 from qtpy.QtGui import QResizeEvent
+from qtpy.QtOpenGLWidgets import QOpenGLWidget
 from qtpy.QtWidgets import QVBoxLayout, QWidget
 
 from meshwright.desktop.canvas.gestures import Gesture
@@ -73,6 +74,10 @@ class Canvas(QWidget):
         self._point_again.timeout.connect(self._on_point_again)
         self._layout = QVBoxLayout(self)
         self._layout.setContentsMargins(0, 0, 0, 0)
+        # the first OpenGL widget in a window that is shown makes Qt replace the native window, and
+        # clicks made until then are lost with it; a hidden one from the start prevents that
+        self._surface = QOpenGLWidget(self)
+        self._surface.hide()
         self._connections = Connections()
         self._connections.add(document.replaced, self._on_replaced)
         self._connections.add(document.changed, self._on_changed)

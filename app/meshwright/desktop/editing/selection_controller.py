@@ -33,9 +33,11 @@ EDIT, BOX, LASSO = "edit", "box", "lasso"
 REACH = 10.0
 """Distance in pixels at which a drag grabs a vertex."""
 SHARE = 0.3
-"""A drag grabs a vertex only within this fraction of its shortest edge."""
+"""A drag grabs a vertex only within this fraction of its shortest edge,"""
+LEAST_REACH = 4.0
+"""or within so many pixels: short edges are among those that one wants to mend by hand."""
 ROOM = 16.0
-"""A drag pans if the shortest edge of the vertex is shorter than this in pixels."""
+"""A drag pans if half of the edges of the vertex are shorter than this in pixels."""
 
 
 class SelectionController(Controller):
@@ -153,8 +155,8 @@ class SelectionController(Controller):
         return self._grab(at)
 
     def _grab(self, at: QPointF) -> Gesture | None:
-        """The drag of the vertex at ``at``; None if there is none, or if its edges are too
-        short.
+        """The drag of the vertex at ``at``; None if there is none, or if most of its
+        edges are too short.
         """
         canvas, mesh = self._canvas, self._document.mesh
         vertex = canvas.vertex_at(at)
@@ -163,9 +165,10 @@ class SelectionController(Controller):
         place = mesh.points[vertex]
         x, y = canvas.viewport.to_screen(place).tolist()
         around = mesh.points[mesh.neighbours(vertex)] - place
-        shortest = float(np.hypot(around[:, 0], around[:, 1]).min()) * canvas.viewport.pixels
+        lengths = np.hypot(around[:, 0], around[:, 1]) * canvas.viewport.pixels
         away = float(np.hypot(x - at.x(), y - at.y()))
-        if shortest < ROOM or away > min(REACH, SHARE * shortest):
+        reach = min(REACH, max(LEAST_REACH, SHARE * float(lengths.min())))
+        if np.median(lengths) < ROOM or away > reach:
             return None
         reason = refusal(mesh, vertex)
         if reason:

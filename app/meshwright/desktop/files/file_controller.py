@@ -413,9 +413,10 @@ def straightened(document: Document, path: Path) -> str:
     away = largest_chord_distance(document.mesh)
     if away < FLAT:
         return ""
+    finer = "a finer mesh comes" if document.mesh.k == 3 else "the cells of Export blocks come"
     return (
         f"{path.name} has straight edges: they lie up to {100 * away:.2g} % of the mesh's size off"
-        " the curves. A project keeps the curves; a finer mesh comes closer to them."
+        f" the curves. A project keeps the curves; {finer} closer to them."
     )
 
 

@@ -11,7 +11,7 @@ from meshwright.desktop.widgets.event_filters import PanelInput
 from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 320
-_TIP = 12
+TIP = 12
 """Length and half width of the arrow in pixels."""
 _GAP = 6
 """Pixels between the arrow's tip and what it points at."""
@@ -99,21 +99,26 @@ class Callout(QWidget):
         self.setAccessibleName(heading)
         self.setAccessibleDescription(text)
 
-    def point_at(self, target: QRect, sides: Sequence[str]) -> None:
+    def point_at(self, target: QRect, sides: Sequence[str], within: QRect) -> None:
         """Move beside ``target``, a rectangle in the parent's pixels: to the first of ``sides``
-        ("left", "right", "above", "below") with enough room, else to the one with most room.
+        ("left", "right", "above", "below") with enough room in the rectangle ``within``; where none
+        has, in the whole parent, and there at last to the side with most room.
         """
         self._card.adjustSize()
-        width, height = self._card.width() + 2 * _TIP, self._card.height() + 2 * _TIP
+        width, height = self._card.width() + 2 * TIP, self._card.height() + 2 * TIP
         self.resize(width, height)
-        room = self._window.rect()
-        rooms = {
-            "left": target.left() - room.left() - width,
-            "right": room.right() - target.right() - width,
-            "above": target.top() - room.top() - height,
-            "below": room.bottom() - target.bottom() - height,
-        }
-        fitting = [side for side in sides if rooms[side] >= _GAP]
+        for room in (within, self._window.rect()):
+            across = room.width() >= width + 2 * GRID
+            along = room.height() >= height + 2 * GRID
+            rooms = {
+                "left": target.left() - room.left() - width if along else 0,
+                "right": room.right() - target.right() - width if along else 0,
+                "above": target.top() - room.top() - height if across else 0,
+                "below": room.bottom() - target.bottom() - height if across else 0,
+            }
+            fitting = [side for side in sides if rooms[side] >= _GAP]
+            if fitting:
+                break
         self._side = fitting[0] if fitting else max(rooms, key=lambda side: rooms[side])
         middle = target.center()
         if self._side in ("left", "right"):
@@ -128,7 +133,7 @@ class Callout(QWidget):
             x = min(max(tip_x - width // 2, room.left() + GRID), room.right() - width - GRID)
         self.move(x, y)
         self._tip = QPointF(QPoint(tip_x, tip_y) - QPoint(x, y))
-        self._card.move(_TIP, _TIP)
+        self._card.move(TIP, TIP)
         self.show()
         self.raise_()
         self.update()
@@ -157,13 +162,13 @@ class Callout(QWidget):
         tip, path = self._tip, QPainterPath()
         if self._side in ("left", "right"):
             x = card.right() - 2 if self._side == "left" else card.left() + 2
-            y = min(max(tip.y(), card.top() + 2 * _TIP), card.bottom() - 2 * _TIP)
-            ends = (QPointF(x, y - _TIP), QPointF(x, y + _TIP))
+            y = min(max(tip.y(), card.top() + 2 * TIP), card.bottom() - 2 * TIP)
+            ends = (QPointF(x, y - TIP), QPointF(x, y + TIP))
             tip = QPointF(tip.x(), y)
         else:
             y = card.bottom() - 2 if self._side == "above" else card.top() + 2
-            x = min(max(tip.x(), card.left() + 2 * _TIP), card.right() - 2 * _TIP)
-            ends = (QPointF(x - _TIP, y), QPointF(x + _TIP, y))
+            x = min(max(tip.x(), card.left() + 2 * TIP), card.right() - 2 * TIP)
+            ends = (QPointF(x - TIP, y), QPointF(x + TIP, y))
             tip = QPointF(x, tip.y())
         path.moveTo(tip)
         path.lineTo(ends[0])

@@ -16,6 +16,7 @@ from meshwright_core.domains import gallery, meshing
 
 SHAPE = "star"
 """The shape of the gallery that the tour loads if there is no mesh."""
+PASSED_BY = "The tour is over; Help > Show the tour starts it again."
 
 
 class HelpController(Controller):
@@ -76,13 +77,17 @@ class HelpController(Controller):
             self._document.replace(meshing.mesh_domain(gallery.shape(SHAPE), "quad"), SHAPE)
         self._awaits_mesh = False
         self._settings.toured = True
-        self.tour = Tour(self._document, self.places, self._theme)
+        self.tour = Tour(self._document, self.places, self._actions, self._theme)
+        self.tour.passed_by.connect(self._on_tour_passed_by)
         self.tour.ended.connect(self._on_tour_ended)
 
     def end_tour(self) -> None:
         """End the tour, if it is shown."""
         if self.tour is not None:
             self.tour.end()
+
+    def _on_tour_passed_by(self) -> None:
+        self._status.show_message(PASSED_BY)
 
     def _on_tour_ended(self) -> None:
         self.tour = None

@@ -13,6 +13,7 @@ from qtpy.QtWidgets import QWidget
 from meshwright.desktop.canvas.canvas import Canvas
 from meshwright.desktop.controller import Connections
 from meshwright.desktop.help.callout import Callout
+from meshwright.desktop.widgets.action_set import ActionSet
 from meshwright.document.document import Document
 from meshwright.graphics.theme import Theme
 
@@ -42,10 +43,12 @@ class TourPlaces:
         return QRect(widget.mapTo(self.window, QPoint(0, 0)), widget.size())
 
     def panel(self, panel: QWidget) -> QRect | None:
-        """The visible part of a panel in one of the columns."""
+        """The visible part of a panel in one of the columns, as wide as the column."""
         column = next(column for column in self.columns if column.isAncestorOf(panel))
         whole, seen = self.rect(panel), self.rect(column)
-        return whole.intersected(seen) if whole is not None and seen is not None else None
+        if whole is None or seen is None:
+            return None
+        return QRect(seen.x(), whole.y(), seen.width(), whole.height()).intersected(seen)
 
     def halfedge(self) -> QRect | None:
         """A few pixels around the middle of an edge at the right of the visible mesh."""
@@ -79,6 +82,8 @@ class TourStep:
     """The panel that it is about, which is unfolded."""
     sides: tuple[str, ...] = ("left", "right")
     """On which side of the place the callout stands, best first."""
+    menu: str = ""
+    """The menu of the actions that it is about."""
 
 
 STEPS = (
@@ -112,6 +117,7 @@ STEPS = (
         "stop at any time: its operations are kept.",
         lambda places: places.panel(places.agent),
         panel=lambda places: places.agent,
+        menu="Agent",
     ),
     TourStep(
         "Go back at any time",
@@ -119,28 +125,41 @@ STEPS = (
         "back, and continue editing from there. Ctrl+K finds every command, F1 lists all keys.",
         lambda places: places.first_visible(places.history),
         sides=("above", "right", "below"),
+        menu="History",
     ),
 )
+
+
+WORK = ("Blocks", "Agent", "Levels")
+"""Menus whose actions show that the user has begun to work."""
+ENOUGH = 3
+"""So many operations applied beside the second step show it, too."""
 
 
 class Tour(QObject):
     """Shows ``steps`` one after the other until the last, or until it is skipped: ``ended()``.
 
-    The first two steps are confirmed when the user hovers a half-edge and applies an operation.
+    The first two steps are confirmed when the user hovers a half-edge and applies an operation. The
+    tour also ends when the user works on without it, so that its card is not in the way:
+    ``passed_by()`` precedes ``ended()`` then.
     """
 
     ended = Signal()
+    passed_by = Signal()
 
     def __init__(
         self,
         document: Document,
         places: TourPlaces,
+        actions: ActionSet,
         theme: Theme,
         steps: tuple[TourStep, ...] = STEPS,
     ) -> None:
         super().__init__(places.window)
         self._document, self._places, self._steps = document, places, steps
+        self._actions = actions
         self._at = 0
+        self._applied = 0
         self._did = [False] * len(steps)
         self.callout = Callout(theme, places.window)
         self.callout.step_requested.connect(self._on_step_requested)
@@ -150,6 +169,7 @@ class Tour(QObject):
         self._connections.add(document.hover_changed, self._on_hover_changed)
         self._connections.add(document.history_changed, self._on_history_changed)
         self._connections.add(document.replaced, self._on_replaced)
+        actions.triggered.connect(self._on_action)
         order = (places.canvas.plotter, *self.callout.buttons)
         for before, after in pairwise(order):
             QWidget.setTabOrder(before, after)
@@ -167,6 +187,7 @@ class Tour(QObject):
     def end(self) -> None:
         """Remove the callout, and emit ``ended``."""
         self._places.window.removeEventFilter(self)
+        self._actions.triggered.disconnect(self._on_action)
         self._connections.close()
         self.callout.hide()
         self.callout.deleteLater()
@@ -191,8 +212,22 @@ class Tour(QObject):
             self._do(0)
 
     def _on_history_changed(self) -> None:
-        if self._document.history.cursor > 0:
-            self._do(1)
+        if self._document.history.cursor == 0:
+            return
+        self._do(1)
+        if self._at != 1 and not self._steps[self._at].menu:
+            self._applied += 1
+            if self._applied == ENOUGH:
+                self._pass_by()
+
+    def _on_action(self, action_id: str) -> None:
+        menu = self._actions.entry(action_id).menu
+        if menu in WORK and menu != self._steps[self._at].menu:
+            self._pass_by()
+
+    def _pass_by(self) -> None:
+        self.passed_by.emit()
+        self.end()
 
     def _on_replaced(self) -> None:
         self._show()
@@ -218,4 +253,5 @@ class Tour(QObject):
         if target is None:
             target = self._places.rect(self._places.pages) or self._places.window.rect()
             target = QRect(target.center(), target.center())
-        self.callout.point_at(target, step.sides)
+        canvas = self._places.rect(self._places.pages) or self._places.window.rect()
+        self.callout.point_at(target, step.sides, canvas)

@@ -74,7 +74,9 @@ class ScorePanel(QWidget):
         self.tally = IrregularityChart(theme)
         self.gained = ValueLine("Normalised return", "(start \u2212 best) / (start \u2212 optimum)")
         self.way = ValueLine("Start and best", "Score at the start, and the lowest score since")
-        self.elements = ValueLine("Elements", "Elements; quads form blocks, each a regular grid")
+        self.elements = ValueLine(
+            "Elements", "Elements; quads that form one regular grid count as one block"
+        )
         self.inverted = ValueLink("Inverted elements", "Reversed orientation; click to go to them")
         self._arrange()
         self.tally.chosen.connect(self.delta_chosen)

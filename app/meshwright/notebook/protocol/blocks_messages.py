@@ -134,7 +134,7 @@ def blocks_packet(
         "set": sorted(planned.pinned()),
         "wrong": sorted({*planned.chords, *wrong}),
         "problem": sentence(planned.problem) if planned.problem else "",
-        "blocks": len(structure.corners),
+        "quads": len(structure.corners),
         "cells": planned.cells,
         "colours": {
             theme.name: chord_colours(structure.chord_count, theme) for theme in (LIGHT, DARK)

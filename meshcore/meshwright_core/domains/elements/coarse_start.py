@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from copy import copy
 from typing import NamedTuple
 
@@ -42,6 +43,15 @@ _BEND = np.radians(2.0)
 """An edge that turns by less is not cut for the sake of a triangle's shape."""
 
 
+_SHARP = 0.03
+"""Sine of the angle at the tip of a sliver, at most."""
+_BLUNT = 0.06
+"""That sine at the far end of a part of an edge that is cut because of slivers, about."""
+_SLIVER_ROUNDS = 2
+"""Rounds in which edges are cut for the sake of slivers."""
+_NO_CUTS = (np.empty(0, int), np.empty(0, int))
+
+
 class CoarseTriangles(NamedTuple):
     """Triangles on the edges of sides and on further points."""
 
@@ -76,7 +86,8 @@ def coarse(edges: SideEdges, size: float, seed: int) -> CoarseTriangles:
 
     Edges are flipped, points inserted and edges of sides cut while a triangle has an inverted quad,
     in two ways: with points where that helps, and with cuts there. What is best of all that is
-    tried has the fewest bad triangles, then the fewest triangles.
+    tried has the fewest bad triangles, then the fewest triangles. A long edge of a side beside
+    which there are many small things is cut too: triangles from its ends would be slivers.
 
     Args:
         edges: of the sides; they are cut as needed.
@@ -86,7 +97,7 @@ def coarse(edges: SideEdges, size: float, seed: int) -> CoarseTriangles:
     best = (_MANY_BAD, 0)
     for insert in (True, False):
         trial, inner, settled = copy(edges), np.empty((0, 2)), 0
-        for _ in range(_ROUNDS):
+        for turn in range(_ROUNDS):
             check_time()
             chord_conflicts.settle(trial, settled)
             settled = len(trial.side)
@@ -94,7 +105,10 @@ def coarse(edges: SideEdges, size: float, seed: int) -> CoarseTriangles:
             shape = CutElements(trial, points)
             walls = edge_keys(trial.ends, len(points))
             quality = _flipped(shape, triangles, walls)
-            bad = int((quality < GOOD).sum())
+            at_slivers, counts = _NO_CUTS
+            if turn < _SLIVER_ROUNDS:
+                at_slivers, counts = _cuts_at_slivers(trial, points, triangles, walls)
+            bad = int((quality < GOOD).sum()) + len(at_slivers)
             if (bad, len(triangles)) < best:
                 best = (bad, len(triangles))
                 found = CoarseTriangles(copy(trial), points, triangles.copy(), regions)
@@ -102,9 +116,11 @@ def coarse(edges: SideEdges, size: float, seed: int) -> CoarseTriangles:
                 break
             more, cuts = _remedy(shape, triangles, walls, quality, insert)
             inner = np.vstack([inner, more])
-            if len(cuts):
-                settled -= len(cuts)
-                trial.cut(cuts)
+            cuts = np.setdiff1d(cuts, at_slivers)
+            if len(cuts) or len(at_slivers):
+                settled -= len(cuts) + len(at_slivers)
+                twice = np.full(len(cuts), 2)
+                trial.cut(np.append(cuts, at_slivers), np.append(twice, counts))
         unchanged = len(found.points) == len(edges.curve)
         if best[0] == 0 and (unchanged or len(edges.side) > _MANY):
             break
@@ -161,6 +177,53 @@ def _flipped(shape: CutElements, triangles: Ids, walls: Ids) -> Reals:
         if not done:
             break
     return quality
+
+
+def _cuts_at_slivers(
+    edges: SideEdges, points: Points, triangles: Ids, walls: Ids
+) -> tuple[Ids, Ids]:
+    """Edges of sides to cut, and in how many parts, where slivers fan out from an end of theirs.
+
+    Such a sliver has no edge of a side but its shortest one: a thin triangle along a wall is as
+    thin as the domain there.
+    """
+    corners = points[triangles]
+    sides = np.roll(corners, -1, axis=1) - corners
+    lengths = np.hypot(sides[..., 0], sides[..., 1])
+    rows = np.arange(len(triangles))
+    short = np.argmin(lengths, axis=1)
+    one, other = (short + 1) % 3, (short + 2) % 3
+    a, b = sides[rows, one], sides[rows, other]
+    sine = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    thin = sine < _SHARP * lengths[rows, one] * lengths[rows, other]
+    for side in (one, other):
+        ends = np.column_stack([triangles[rows, side], triangles[rows, (side + 1) % 3]])
+        thin &= ~np.isin(edge_keys(ends, len(points)), walls)
+    if not thin.any():
+        return _NO_CUTS
+    leaving: dict[int, list[int]] = {}
+    for edge, both in enumerate(edges.ends.tolist()):
+        for vertex in both:
+            leaving.setdefault(vertex, []).append(edge)
+    reaches: dict[int, list[float]] = {}
+    for row in np.flatnonzero(thin).tolist():
+        tip = int(triangles[row, other[row]])
+        way = 0.5 * (corners[row, short[row]] + corners[row, one[row]]) - points[tip]
+        for edge in leaving.get(tip, []):
+            # from the tip along the edge; the sine falls with the square of the distance
+            along = points[edges.ends[edge].sum() - tip] - points[tip]
+            length = float(np.hypot(*along))
+            height = abs(float(along[0] * way[1] - along[1] * way[0])) / length
+            # beside the edge, and not beyond its other end
+            if height < float(along @ way) / length < length:
+                base = float(lengths[row, short[row]])
+                reaches.setdefault(edge, []).append(math.sqrt(height * base / _BLUNT) / length)
+    cuts = []
+    for edge, found in reaches.items():
+        count = min(len(found) + 1.0, 1.0 / max(float(np.median(found)), 1e-9))
+        cuts.append((edge, max(2, math.ceil(count))))
+    table = np.array(cuts, int).reshape(-1, 2)
+    return table[:, 0], table[:, 1]
 
 
 def _remedy(

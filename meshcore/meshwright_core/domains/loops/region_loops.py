@@ -204,8 +204,9 @@ class RegionLoops:
         lines = sampled_chains([curves[i] for i in order])
         rings, outlines = _rings(lines), sum(area > 0.0 for area in areas)
         holes = rings[outlines:]
-        starts = shapely.points(np.array([line[0] for line in lines[outlines:]]).reshape(-1, 2))
-        inner = holes[shapely.contains(shapely.polygons(rings[0]), starts)]
+        # a point in the hole: those of its rim may lie on the outline
+        within = shapely.point_on_surface(shapely.polygons(holes))
+        inner = holes[shapely.contains(shapely.polygons(rings[0]), within)]
         spot = shapely.make_valid(shapely.polygons(rings[0], inner)).representative_point()
         corners = sum(
             1

@@ -22,6 +22,8 @@ round their numbers, and an arc that is meant to be tangent seldom is so to the 
 GAP = 1e-6
 """Gap between two pieces that is closed, relative to the size of the domain."""
 _NO_AREA = 1e-12
+_FEW = 5
+"""Samples of each curve of a chain that hardly turns."""
 
 
 @dataclass(frozen=True)
@@ -173,7 +175,17 @@ def samples(curves: Sequence[Curve], turn_degrees: float) -> list[Points]:
 
 
 def sampled_chains(chains: Sequence[Sequence[Curve]], turn_degrees: float = 5.0) -> list[Points]:
-    """(n, 2) points along each closed chain of curves, the last one not repeated."""
+    """(n, 2) points along each closed chain of curves, at least three, the first one once."""
     rows = [points[:-1] for points in samples([c for chain in chains for c in chain], turn_degrees)]
     stops = np.cumsum([0, *map(len, chains)]).tolist()
-    return [np.concatenate(rows[low:high]) for low, high in pairwise(stops)]
+    found = [np.concatenate(rows[low:high]) for low, high in pairwise(stops)]
+    return [
+        points if len(points) > 2 else _evenly(chain)
+        for points, chain in zip(found, chains, strict=True)
+    ]
+
+
+def _evenly(chain: Sequence[Curve]) -> Points:
+    """Some points along each of a few curves that hardly turn, the ends of the chain once."""
+    parts = [np.linspace(0.0, sample_parameters(curve, 360.0)[-1], _FEW) for curve in chain]
+    return np.concatenate([points[:-1] for points in points_at(chain, parts)])

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from meshwright_core import MeshError
 from meshwright_core.domains import meshing
 from meshwright_core.domains.domain import Domain
-from meshwright_core.io import drawings
+from meshwright_core.io import drawings, file_checks
 
 
 def dxf(*entities: str, sections: str = "") -> str:
@@ -326,6 +326,40 @@ def test_files_that_cannot_be_read(tmp_path):
         drawings.read_domain(tmp_path / "folder.svg")
     with pytest.raises(MeshError, match="no name for a file"):
         drawings.read_domain("a\0.dxf")
+
+
+def test_an_error_of_a_reader_does_not_blame_the_name_of_the_file(tmp_path):
+    said = r"part\.dxf: it cannot be read \(Numbers are odd\)"
+    with pytest.raises(MeshError, match=said), file_checks.naming(tmp_path / "part.dxf"):
+        raise ValueError("numbers are odd.")
+
+
+def test_a_circle_of_no_radius_is_a_point(opened):
+    domain = opened("points.dxf", dxf(*SQUARE, "CIRCLE 8 0 10 2 20 2 40 0", CIRCLE))
+    assert domain.area == pytest.approx(16 - math.pi)
+
+
+@pytest.mark.parametrize("second", ["bowed", "straight"])
+def test_two_sides_that_hardly_turn_enclose_a_shape(opened, second):
+    a, b = (0.0, 0.0), (100.0, 0.0)
+    far, near = 50 / math.sin(0.02), 0.02
+    arc = f"ARC 8 0 10 50 20 {-far * math.cos(near)} 40 {far} 50 {90 - math.degrees(near)} 51"
+    arc += f" {90 + math.degrees(near)}"
+    other = line(a, b)
+    if second == "bowed":
+        other = f"ARC 8 0 10 50 20 {far * math.cos(near)} 40 {far} 50 {270 - math.degrees(near)}"
+        other += f" 51 {270 + math.degrees(near)}"
+    domain = opened("lens.dxf", dxf(arc, other))
+    half = far**2 * (near - math.sin(near) * math.cos(near))
+    assert domain.area == pytest.approx(half * (2 if second == "bowed" else 1), rel=1e-9)
+    assert domain.optimum("quad") == 2
+
+
+def test_a_hole_that_touches_the_outline_from_inside_is_no_overlap(opened):
+    touching = dxf("CIRCLE 8 0 10 0 20 0 40 10", "CIRCLE 8 0 10 1 20 0 40 9")
+    with pytest.raises(MeshError, match=r"near to each other|touch"):
+        meshing.mesh_domain(opened("touching.dxf", touching), "quad")
+    assert opened("touching.dxf", touching, region="1").area == pytest.approx(81 * math.pi)
 
 
 def test_too_much_is_refused(refused):

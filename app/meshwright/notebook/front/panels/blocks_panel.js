@@ -133,7 +133,7 @@ export class BlocksPanel {
       return;
     }
     const cells = blocks.counts ? `, ${counted(blocks.cells, "cell")}` : "";
-    setText(this._words, blocks.problem || `${counted(blocks.blocks, "block")}${cells}. ${
+    setText(this._words, blocks.problem || `${counted(blocks.quads, "quad")}${cells}. ${
       chord < 0 ? "Click a number to change it." : `Chord ${chord}${
         blocks.set.includes(chord) ? ", set by hand." : "."}`}`);
     const known = chord >= 0 && blocks.counts;

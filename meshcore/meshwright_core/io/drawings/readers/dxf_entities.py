@@ -75,6 +75,8 @@ def _round(entity: Any) -> Iterator[Curve | None]:
     """A circle or an arc of one."""
     side = mirror(entity)
     radius = float(entity.dxf.radius)
+    if radius == 0.0:  # a point, as is a line of no length
+        return
     if not 0.0 < radius < LARGEST:
         raise MeshError(f"it has the radius {radius:g}")
     start, sweep = 0.0, 2 * math.pi

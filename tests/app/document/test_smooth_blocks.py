@@ -1,0 +1,68 @@
+"""Smoothing of coarse quads keeps the shape of the worst element."""
+
+import numpy as np
+import pytest
+
+import meshwright as mw
+from meshwright.document.document import Document
+from meshwright_core import warm_up
+from meshwright_core.errors import MeshError
+from meshwright_core.geometry import smoothing
+from meshwright_core.geometry.max_min_positions import max_min_positions
+from meshwright_core.geometry.quality import inverted
+from meshwright_core.geometry.weighed_shapes import weighed_worst
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _kernels():
+    warm_up.warm()
+
+
+def blocks():
+    """Blocks of a star as a search leaves them: at the optimum, with the best positions."""
+    return mw.solve(mw.mesh("star"), seconds=2, seed=1).mesh
+
+
+def test_smoothing_does_not_spoil_blocks():
+    mesh = blocks()
+    before = weighed_worst(mesh)
+    averaged = mesh.copy()
+    smoothing.relax(averaged)
+    assert weighed_worst(averaged) < 0.5 < before
+    document = Document(mesh, "blocks")
+    document.smooth()
+    assert weighed_worst(mesh) >= 0.9 * before
+    document.undo()
+    assert weighed_worst(mesh) == before
+
+
+def test_smoothing_mends_blocks_that_a_drag_has_spoilt():
+    mesh = blocks()
+    good = weighed_worst(mesh)
+    free = np.flatnonzero(~mesh.boundary() & (mesh.degree() > 0))
+    shaken = np.zeros((len(free), 3))
+    shaken[:, :2] = 0.03 * np.random.default_rng(3).normal(size=(len(free), 2))
+    mesh.move(free, mesh.points[free] + shaken)
+    document = Document(mesh, "blocks")
+    document.smooth()
+    assert weighed_worst(mesh) > 0.9 * min(good, 0.5)
+
+
+def test_max_min_positions_raise_the_worst_element_and_move_no_pinned_vertex():
+    mesh = mw.mesh("star")
+    pinned = int(np.flatnonzero(~mesh.boundary() & (mesh.degree() > 0))[0])
+    mesh.set_pinned(pinned, True)
+    points = mesh.points.copy()
+    ids, places, parameters = max_min_positions(mesh)
+    assert np.array_equal(mesh.points, points)
+    assert pinned not in ids
+    assert not mesh.geometric()[ids].any()
+    before = weighed_worst(mesh)
+    mesh.move(ids, places, parameters)
+    assert weighed_worst(mesh) > before
+    assert not len(inverted(mesh))
+
+
+def test_triangles_have_no_max_min_positions():
+    with pytest.raises(MeshError, match="Only quads"):
+        max_min_positions(mw.mesh("star", kind="tri"))
