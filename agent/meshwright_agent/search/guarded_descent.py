@@ -114,12 +114,12 @@ class GuardedDescent:
         def granted(wanted: int) -> int:
             return wanted if most is None else min(wanted, most - (self.rollouts - begun))
 
-        turn = 0
+        turn, divisible = 0, 4 * self._mesh.n_elements <= FINEST
         while not over() and granted(1) > 0:
             turn += 1
-            for _ in range(ROUNDS // together):
+            for i in range(ROUNDS // together):
                 if not over() and (count := granted(together)) > 0:
-                    self._round(self._start, count, stop)
+                    self._round(self._start, count, stop, divide=i % 2 == 1 and divisible)
             before, tried = self.score, 0
             while self.states and tried < CONTINUED_STATES and not over():
                 self._go_on(granted, stop)
@@ -156,8 +156,8 @@ class GuardedDescent:
         """Guarded rollouts from a state, then from it divided, then a leap, until one leads on."""
         state = self._least_tried(self.states)
         before = self.score
-        divisible = 4 * state.elements <= FINEST
-        for divide, rollouts in enumerate(CONTINUED if divisible else CONTINUED[:1]):
+        ways = CONTINUED if 4 * state.elements <= FINEST else CONTINUED[:1]
+        for divide, rollouts in enumerate(ways):
             for _ in range(granted(rollouts)):
                 if self.score == before and not stop():
                     self._round(state, 1, stop, bool(divide))
