@@ -68,6 +68,7 @@ def dialog(qtbot, _one_process):
     """The dialog, after the first mesh has been made."""
     made = NewMeshDialog("quad", theme("light"))
     qtbot.addWidget(made)
+    made.resize(1120, 720)  # Qt's offscreen platform has a screen of 800 by 800 pixels only
     made.show()
     made.activateWindow()
     qtbot.waitUntil(made.isActiveWindow, timeout=WAIT)

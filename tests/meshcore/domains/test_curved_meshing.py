@@ -174,6 +174,15 @@ def test_no_slivers_along_a_row_of_small_holes(rows):
     assert mesh.n_elements < 24 * len(holes)
 
 
+def test_no_element_is_inverted_beside_a_ring_of_holes_along_an_arc():
+    around = np.linspace(0.0, 2 * math.pi, 60, endpoint=False)
+    holes = [circle(85 * math.cos(a), 85 * math.sin(a), 3) for a in around]
+    domain = Domain.from_curves([circle(0, 0, 100), *holes])
+    mesh = meshing.mesh_domain(domain, "quad")
+    assert_meshes(domain, mesh)
+    assert scaled_jacobian(mesh).min() > 0
+
+
 def test_long_thin_regions_are_not_cut_along_their_walls():
     layers = [(name, [ring((0, y), (1000, y), (1000, y + 2), (0, y + 2))])
               for name, y in (("steel", 0), ("copper", 2), ("glass", 4))]  # fmt: skip

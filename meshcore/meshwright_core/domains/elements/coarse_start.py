@@ -27,7 +27,9 @@ GOOD = 0.01
 """Scaled Jacobian that the quads of a triangle with curved sides should have at least."""
 PAIRED = 0.2
 """Scaled Jacobian of the quads of a pair of triangles, at least."""
-_ROUNDS = 10
+_ROUNDS, _MOST_ROUNDS = 10, 20
+_PATIENCE = 4
+"""Rounds without a better result after which there are no more than usual."""
 _SWEEPS = 8
 _MANY_BAD = 1 << 60
 _MANY = 400
@@ -97,7 +99,10 @@ def coarse(edges: SideEdges, size: float, seed: int) -> CoarseTriangles:
     best = (_MANY_BAD, 0)
     for insert in (True, False):
         trial, inner, settled = copy(edges), np.empty((0, 2)), 0
-        for turn in range(_ROUNDS):
+        better = 0
+        for turn in range(_MOST_ROUNDS):
+            if turn >= max(_ROUNDS, better + _PATIENCE):
+                break
             check_time()
             chord_conflicts.settle(trial, settled)
             settled = len(trial.side)
@@ -110,7 +115,7 @@ def coarse(edges: SideEdges, size: float, seed: int) -> CoarseTriangles:
                 at_slivers, counts = _cuts_at_slivers(trial, points, triangles, walls)
             bad = int((quality < GOOD).sum()) + len(at_slivers)
             if (bad, len(triangles)) < best:
-                best = (bad, len(triangles))
+                best, better = (bad, len(triangles)), turn
                 found = CoarseTriangles(copy(trial), points, triangles.copy(), regions)
             if not bad or (best[0] == 0 and len(triangles) > best[1]):
                 break
