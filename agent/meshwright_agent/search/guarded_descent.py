@@ -2,7 +2,8 @@
 of them.
 
 Guarded rollouts (:mod:`meshwright_agent.search.guarded_rollouts`) are cheap, and most end a little
-above s*, each in another state. From there a leap (:mod:`meshwright_agent.search.leaps`) or a way
+above s*, each in another state. With all strips cut in two there is room for more operations, so
+that a rollout from there often goes on. A leap (:mod:`meshwright_agent.search.leaps`) or a way
 down by annealing often leads on; so does a free rollout from the start, though little of what it
 reaches can be drawn before its strips are divided
 (:mod:`meshwright_agent.search.divided_layouts`). What works differs from part to part, so all of it
@@ -60,6 +61,8 @@ COARSE = 120
 """Elements down to which these are coarsened first."""
 FREE_DRAWN = ((4, 1), (1, 2))
 """How many of their results are given positions, with how many attempts; then again."""
+RARELY = 2
+"""Of so many turns one anneals and makes free rollouts: on most parts neither leads on."""
 LARGEST_ANNEALED = 250
 """Elements up to which a state is annealed."""
 ANNEALED_DRAWN = 6
@@ -71,9 +74,10 @@ _SLICE = 20
 class GuardedDescent:
     """A descent to s* through states without inverted elements.
 
-    Each turn makes guarded rollouts from the start; goes on from the states of the lowest s that
-    were tried least, the coarsest first, by guarded rollouts, leaps and annealing; and makes free
-    rollouts from the best state or the start, in turn.
+    Each turn makes guarded rollouts from the start, every second time with its strips cut in two,
+    and goes on from the states of the lowest s that were tried least by guarded rollouts, as they
+    are and divided, and leaps. Some turns also anneal, and make free rollouts from the best state
+    or the start.
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -82,7 +86,7 @@ class GuardedDescent:
         seed: of the random choices.
 
     Attributes:
-        states: the best ones, the best first.
+        states: the best ones, those of the lowest s first, and of these the coarsest.
         rollouts: how many were made.
     """
 
@@ -102,6 +106,11 @@ class GuardedDescent:
     def score(self) -> int:
         """The lowest s."""
         return self.states[0].score if self.states else self._mesh.score
+
+    @property
+    def lowest(self) -> list[DrawnState]:
+        """The states of the lowest s, the coarsest first."""
+        return [state for state in self.states if state.score == self.score]
 
     def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
@@ -124,9 +133,11 @@ class GuardedDescent:
             while self.states and tried < CONTINUED_STATES and not over():
                 self._go_on(granted, stop)
                 before, tried = self.score, 0 if self.score < before else tried + 1
+            if turn % RARELY:
+                continue
             while self.states and not over() and self._anneal(stop):
                 pass
-            begin = self.states[0] if self.states and turn % 2 else self._start
+            begin = self.states[0] if self.states and turn % (2 * RARELY) else self._start
             free = max(2, min(MOST_FREE, FREE_WORK // begin.elements))
             if not over() and (count := granted(free)) > 0:
                 self._free(begin, count, stop)
@@ -166,7 +177,7 @@ class GuardedDescent:
 
     def gather(self, stop: Callable[[], bool]) -> None:
         """Guarded rollouts from the start until `stop`: further states of the lowest s."""
-        while self._start.score > self.score and len(self.states) < KEPT and not stop():
+        while self._start.score > self.score and len(self.lowest) < KEPT and not stop():
             self._round(self._start, 1, stop)
 
     @staticmethod
