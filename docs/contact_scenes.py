@@ -253,7 +253,8 @@ def new_mesh(page: str, theme: str) -> Image.Image:
         dialog.show_page(page)
         if page == "draw":
             draw(stage, dialog.draw.area)
-        stage.rest(2.0)
+        stage.until(lambda: dialog.made is not None)
+        stage.rest(0.5)
         taken.append(stage.picture_of(dialog))
 
     stage.during(stage.window.files.new, act, 1.0)

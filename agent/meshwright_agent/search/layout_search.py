@@ -45,8 +45,9 @@ PROPOSALS = 200
 """The most proposals of a kick, relative to the number of elements."""
 SLICE = 4000
 """Elements positioned between two looks at the clock: some tens of milliseconds."""
-STALE = 400
-"""Kicks without an improvement after which other starts are asked for, below the target."""
+STALE, STALE_ABOVE = 400, 50
+"""Kicks without an improvement after which other starts are asked for, below the target, and where
+s* is not reached and all sides are straight, so that many layouts can be drawn."""
 PATIENCE = 4000
 """Kicks without an improvement after which the search gives up, once the target is reached."""
 
@@ -123,8 +124,9 @@ class LayoutSearch:
 
     @property
     def goal_reached(self) -> bool:
-        """Whether the best layout has the target shape."""
-        return self.best is not None and self.best.key[1] >= self.aims.target
+        """Whether the best layout has the target shape, at s*."""
+        best = self.best
+        return best is not None and best.key[1] >= self.aims.target and best.key[0] <= self.optimum
 
     @property
     def exhausted(self) -> bool:
@@ -134,7 +136,13 @@ class LayoutSearch:
     @property
     def needs_layouts(self) -> bool:
         """Whether other starts are called for, as nothing has come of kicks lately."""
-        return self.idle >= STALE and not self.goal_reached and self.idle // STALE > self._served
+        return not self.goal_reached and self._stale > self._served
+
+    @property
+    def _stale(self) -> int:
+        """How often other starts should have been asked for since the best layout was found."""
+        low = self.best is not None and self.best.key[0] <= self.optimum
+        return self.idle // (STALE if low or self.coarsener.bends else STALE_ABOVE)
 
     def valid_at(self, score: int) -> bool:
         """Whether the best layout has no inverted element and this s."""
@@ -153,7 +161,7 @@ class LayoutSearch:
         placed: the same state of the mesh, with valid positions. unfold: whether it is smoothed and
         untangled where it is folded and no positions are given, which may take seconds.
         """
-        self._served = self.idle // STALE
+        self._served = self._stale
         layout = self.coarsener.layout(operations, placed=placed)
         if not layout.key[1] and placed is None and unfold and not (self.pool and stop()):
             reached = replayed(self._mesh, operations)

@@ -4,7 +4,7 @@ Quad meshes go by way of blocks: the domain is meshed coarsely, decomposed into 
 the chords of the blocks are divided to the sizes of the given mesh. Otherwise, or where that has
 folds or worse corners than permitted, the mesh is changed in place: operations of a search that
 does not coarsen, as many of them as fit. What fits is the same in both cases: no inverted element,
-about as many elements, no worse a worst corner than before or than the target.
+about as many elements, no worse a worst corner, nor a worst shape, than before or than the target.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from meshwright_core.domains.coarse_remesh import coarse_mesh, on_curves_of
 from meshwright_core.domains.meshing import grid
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry import smoothing
+from meshwright_core.geometry.element_shapes import element_shapes
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.geometry.size_field import SizeField
@@ -70,12 +71,14 @@ class Fit:
     """Of the given mesh."""
     floor: float
     """Least worst scaled Jacobian."""
+    shape_floor: float
+    """Least worst shape, which sees the ratio of the sides."""
     valid: bool
     """Whether it must be without inverted elements, as the given mesh is."""
 
     @classmethod
     def of(cls, mesh: HalfEdgeMesh, preference: Preference) -> Fit:
-        """For answers to `mesh`: the floor is its own worst corner, or the target if that is less.
+        """For answers to `mesh`: the floors are its worst element, or the target if that is less.
 
         With s > s* the best that s* permits may be less than what the mesh has; it counts only
         up to the target then.
@@ -83,7 +86,9 @@ class Fit:
         target = preference.aims(attainable_bound(mesh), shape_bound(mesh)).target
         worst = float(scaled_jacobian(mesh).min(initial=1.0))
         sound = not len(inverted(mesh))
-        return cls(SizeField(mesh), mesh.n_elements, min(worst, target), sound)
+        shape = float(element_shapes(mesh).min(initial=1.0))
+        floors = min(worst, target), min(shape, target)
+        return cls(SizeField(mesh), mesh.n_elements, *floors, sound)
 
     def faults(self, mesh: HalfEdgeMesh) -> tuple[str, ...]:
         """What is wrong with an answer, in words; nothing if it fits."""
@@ -93,13 +98,18 @@ class Fit:
             found.append(f"{bad:,} elements would be inverted")
         if worst < self.floor - LOSS and (self.valid or worst <= 0.0):
             found.append(f"the worst scaled Jacobian would fall to {worst:.2f}")
+        else:
+            shape = float(element_shapes(mesh).min(initial=1.0))
+            if shape < self.shape_floor - LOSS and (self.valid or shape <= 0.0):
+                found.append(f"the worst shape would fall to {shape:.2f}")
         if abs(mesh.n_elements - self.elements) > max(MOST_OFF * self.elements, 1.0):
             found.append(f"there would be {mesh.n_elements:,} elements")
         return tuple(found)
 
     def bad(self, mesh: HalfEdgeMesh) -> np.ndarray:
-        """Ids, ascending, of the elements that are inverted or worse than the floor."""
+        """Ids, ascending, of the elements that are inverted or worse than the floors."""
         worse = scaled_jacobian(mesh) < self.floor - LOSS
+        worse |= element_shapes(mesh) < self.shape_floor - LOSS
         found: np.ndarray = np.union1d(inverted(mesh), mesh.element_ids()[worse])
         return found
 
@@ -190,20 +200,23 @@ def keep_size(
             if (other := fit.rank(made)) < rank:
                 best, rank = replace(best, mesh=made, method="blocks"), other
     enough = best.method == "blocks" and best.mesh.score == mesh.optimum and -rank[2] >= ENOUGH
-    if not enough and not clock.over(AFTER_SEARCH):
+    made, operations, obstacle, ended = mesh, list[Any](), "", ""
+    if not enough and fit.valid and not is_large(mesh) and not clock.over(AFTER_SEARCH):
+        made, operations, obstacle = _patches_that_fit(mesh, policy, None, fit, clock, seed)
+    if not enough and made.score > mesh.optimum and not clock.over(AFTER_SEARCH):
         free = clock.left(AFTER_SEARCH)
         if free is not None:
             free *= FIRST_RUN if is_large(mesh) else SMALL_RUN
-        found = search(mesh, policy, seconds=free, coarsen=False, progress=progress)
-        done += found.rollouts
+        found = search(made, policy, seconds=free, coarsen=False, progress=progress)
+        done, ended = done + found.rollouts, found.reason if seconds is None else ""
         if is_large(mesh) or fit.valid:
-            made, operations, obstacle = _patches_that_fit(mesh, policy, found, fit, clock, seed)
+            made, more, obstacle = _patches_that_fit(made, policy, found, fit, clock, seed)
         else:
-            made, operations, obstacle = _in_place(mesh, found, fit, clock)
-        obstacles += [obstacle] if obstacle else []
-        if (other := fit.rank(made)) < rank:
-            best = replace(best, mesh=made, operations=operations, method="in place")
-            best.reason = found.reason if seconds is None else ""
+            made, more, obstacle = _in_place(made, found, fit, clock)
+        operations = operations + more
+    obstacles += [obstacle] if obstacle else []
+    if not enough and (other := fit.rank(made)) < rank:
+        best = replace(best, mesh=made, operations=operations, method="in place", reason=ended)
     if best.method == "none" and not clock.over(SMOOTHED):
         smoothed = _smoothed(mesh)
         if fit.rank(smoothed) < rank:
@@ -299,6 +312,8 @@ def _by_blocks(
     layout = begin.copy()
     if not found.carry_out(layout) or (clock.cancelled and mesh.n_elements > LAYOUTS):
         return None, found
+    if layout.score > mesh.score and fit.valid:
+        return None, found
     best = None
     for total in _totals(fit.elements):
         if best is not None and clock.over(DIVIDED):
@@ -352,26 +367,35 @@ def _placed(made: HalfEdgeMesh, fit: Fit, clock: _Clock) -> HalfEdgeMesh:
 
 
 def _patches_that_fit(
-    mesh: HalfEdgeMesh, policy: Policy, found: Solution, fit: Fit, clock: _Clock, seed: int
+    mesh: HalfEdgeMesh, policy: Policy, found: Solution | None, fit: Fit, clock: _Clock, seed: int
 ) -> tuple[HalfEdgeMesh, Operations, str]:
     """The mesh after operations that fit, these, and what is wrong with others.
 
     Where what was found fits, the search goes on from there, patch by patch; where it has bad
-    elements, the patches are improved again without those around them.
+    elements, the patches are improved again without those around them. found: to begin with; None
+    for patches from the first on.
     """
-    reached, more = mesh.copy(), list(found.operations)
-    if found.reached is not None:
-        reached = found.reached.copy()
-    else:
-        found.carry_out(reached)
     best, chosen, obstacle, last = mesh.copy(), list[Any](), "", ""
     barred = np.zeros(0, np.int64)
+
+    def run(attempt: int, allowed: np.ndarray) -> tuple[HalfEdgeMesh, Operations]:
+        left = clock.left(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
+        made = improve_within(
+            best, policy, allowed, seconds=None if left is None else FIRST_RUN * left,
+            seed=seed + attempt, cancelled=lambda: clock.cancelled,
+        )  # fmt: skip
+        return made.mesh.copy(), made.steps()
+
+    if found is None:
+        reached, more = run(ATTEMPTS, best.element_ids())
+    else:
+        reached, more = _reached(mesh, found), list(found.operations)
     for attempt in range(ATTEMPTS):
         _mend(reached, fit, clock)
         faults, bad = fit.faults(reached), fit.bad(reached)
         if faults:
             obstacle = last = faults[0]
-            if not attempt and not is_large(mesh):
+            if not attempt and found is not None and not is_large(mesh):
                 best, chosen, _ = _in_place(mesh, found, fit, clock)
             if not len(bad):
                 break
@@ -385,23 +409,30 @@ def _patches_that_fit(
         late = clock.over(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
         if best.score == best.optimum or not len(allowed) or late:
             break
-        left = clock.left(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
-        run = improve_within(
-            best, policy, allowed, seconds=None if left is None else FIRST_RUN * left,
-            seed=seed + attempt, cancelled=lambda: clock.cancelled,
-        )  # fmt: skip
-        reached, more = run.mesh.copy(), run.steps()
+        reached, more = run(attempt, allowed)
     return best, chosen, last or (obstacle if best.score == mesh.score else "")
 
 
+def _reached(mesh: HalfEdgeMesh, found: Solution) -> HalfEdgeMesh:
+    """A mesh after the operations of a solution, at its positions."""
+    if found.reached is not None:
+        return found.reached.copy()
+    reached = mesh.copy()
+    found.carry_out(reached)
+    return reached
+
+
 def _mend(mesh: HalfEdgeMesh, fit: Fit, clock: _Clock) -> None:
-    """Smooth a large mesh, then untangle around what is inverted or worse than the floor."""
+    """Smooth a mesh, where fewer elements are bad then, and untangle around those that are left."""
     if not fit.faults(mesh) or clock.over(UNITS_A_SWEEP * SWEEPS[-1]):
         return
-    moved = smoothing.smooth(mesh, iterations=SWEEPS[-1])
+    bad, smooth = fit.bad(mesh), mesh.copy()
+    moved = smoothing.smooth(smooth, iterations=SWEEPS[-1])
     if len(moved[0]):
-        mesh.move(*moved)
-    bad = fit.bad(mesh)
+        smooth.move(*moved)
+        if len(left := fit.bad(smooth)) < len(bad):
+            mesh.move(*moved)
+            bad = left
     for start in range(0, len(bad), FEW):
         if clock.over(AFTER_SEARCH):
             break
@@ -415,11 +446,7 @@ def _in_place(
     """The mesh after as many operations of a solution as fit, these, and what is wrong with the
     others.
     """
-    if found.reached is not None:
-        reached = found.reached.copy()
-    else:
-        reached = mesh.copy()
-        found.carry_out(reached)
+    reached = _reached(mesh, found)
     faults = fit.faults(reached)
     if not faults:
         return reached, found.operations, ""

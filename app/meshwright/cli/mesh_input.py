@@ -5,10 +5,11 @@ of a drawing.
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from meshwright.cli import arguments as inputs
-from meshwright.console import UserError
+from meshwright.console import Report, UserError
 
 if TYPE_CHECKING:
     from meshwright_core import HalfEdgeMesh
@@ -101,10 +102,11 @@ def is_mesh(word: str) -> bool:
     return resolve.names_file(word) and not is_drawing(word)
 
 
-def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
+def read_mesh(arguments: argparse.Namespace, report: Report) -> HalfEdgeMesh:
     """Return the mesh in a mesh file, on its geometry, or the mesh of a drawing or a shape.
 
-    Raises UserError with the reason.
+    ``report`` notes what was mended in a drawing, and what was left out. Raises UserError with the
+    reason.
     """
     word = arguments.input
     if not is_mesh(word):
@@ -116,7 +118,9 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
                 raise UserError(f"--{name}: this is for mesh files, and {word} is a shape")
         domain, kind = read_domain(word, arguments), arguments.kind or "quad"
         seconds = arguments.time_limit
-        return inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed, seconds)
+        mesh = inputs.make_mesh(domain, kind, arguments.max_edge, arguments.seed, seconds)
+        note_mended(word, arguments, report)
+        return mesh
     for option in ("kind", "max_edge", "region", "gap", "curve_step", "time_limit"):
         drawn = option in ("region", "gap", "time_limit") and arguments.geometry is not None
         if getattr(arguments, option) is not None and not drawn:
@@ -124,7 +128,9 @@ def read_mesh(arguments: argparse.Namespace) -> HalfEdgeMesh:
             raise UserError(f"--{name}: this is for drawings, and {word} is a mesh")
     mesh = inputs.read_mesh(word, arguments.corner_angle, arguments.part, arguments.to_quads)
     if arguments.geometry is not None:
-        return _on_drawing(word, mesh, read_domain(arguments.geometry, arguments))
+        mesh = _on_drawing(word, mesh, read_domain(arguments.geometry, arguments))
+        note_mended(arguments.geometry, arguments, report)
+        return mesh
     if arguments.fit_arcs:
         return _with_arcs(word, mesh, arguments.corner_angle)
     return mesh
@@ -141,6 +147,21 @@ def read_domain(word: str, arguments: argparse.Namespace) -> Domain:
         "arcs" if arguments.fit_arcs else None,
         arguments.time_limit,
     )
+
+
+def note_mended(word: str, arguments: argparse.Namespace, report: Report) -> None:
+    """Note what was mended in a DXF or SVG drawing that has just been read, and what was left out;
+    other inputs are passed over.
+    """
+    if Path(word).suffix.lower() not in (".dxf", ".svg"):
+        return
+    from meshwright_core.core.irregularity import CORNER_ANGLE
+    from meshwright_core.io import drawings
+
+    angle = CORNER_ANGLE if arguments.corner_angle is None else arguments.corner_angle
+    found = drawings.read_regions(word, angle, arguments.gap)  # known from the last reading
+    for sentence in (*found.repairs, *found.ignored):
+        report.note(f"{word}: {sentence}")
 
 
 def _on_drawing(word: str, mesh: HalfEdgeMesh, domain: Domain) -> HalfEdgeMesh:

@@ -320,6 +320,7 @@ QPushButton#LevelCard:focus {{ border: 2px solid {t.accent}; }}
 
 #Timeline {{ background: {t.panel}; border: 0; border-top: 1px solid {t.line}; }}
 #LeftColumn {{ background: {t.panel}; border: 0; border-right: 1px solid {t.line}; }}
+#LeftHead {{ background: {t.panel}; border: 0; }}
 #HistoryPanel {{ background: transparent; border: 0; }}
 #ExportBar {{ background: {t.panel}; border: 0; border-top: 1px solid {t.line}; }}
 #History {{ background: transparent; border: 0; }}

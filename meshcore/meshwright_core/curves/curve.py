@@ -122,14 +122,22 @@ class Curve:
 
     @classmethod
     def arc_through(cls, a: ArrayLike, middle: ArrayLike, b: ArrayLike) -> Curve:
-        """The arc from a over `middle` to b; a segment if they lie on a line."""
+        """The arc from a over `middle` to b; a segment if they lie on a line, or if `middle` is one
+        of the ends; a whole circle if only the ends coincide.
+
+        Raises MeshError if `middle` lies on the line beyond the ends.
+        """
         p, m, q = (np.array(x, np.float64) for x in (a, middle, b))
+        if (p == m).all() or (m == q).all():
+            return cls.line(p, q)
         if (p == q).all():
             return cls.arc(0.5 * (p + m), 0.5 * float(np.hypot(*(m - p))),
                            float(np.arctan2(*(p - m)[::-1])), 2.0 * math.pi)  # fmt: skip
         # the angle at the middle point is pi less half of the sweep
         u, v = p - m, q - m
         angle = float(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v))
+        if angle == 0.0:
+            raise MeshError("an arc has its middle on a line with its ends, beyond them")
         half_sweep = math.copysign(math.pi, angle) - angle
         return cls.arc_by_bulge(p, q, -math.tan(0.5 * half_sweep))
 

@@ -5,7 +5,7 @@ import pytest
 
 from meshwright_agent.policy import policy_files
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.layout_search import LayoutSearch, Preference
+from meshwright_agent.search.layout_search import PATIENCE, STALE_ABOVE, LayoutSearch, Preference
 from meshwright_agent.search.shortening import shorten
 from meshwright_agent.search.solver import prepare, solve
 from meshwright_core.domains.meshing import mesh_domain
@@ -67,6 +67,18 @@ def test_the_same_number_of_rollouts_gives_the_same_answer(policy):
     first, second = (solve(mesh, policy, rollouts=2, seed=4) for _ in range(2))
     assert first.operations == second.operations
     assert np.array_equal(first.positions, second.positions)
+
+
+def test_above_the_optimum_other_starts_are_soon_asked_for_whatever_the_shape():
+    """The first rollouts may come too late where the machine stands still for a while."""
+    seeker = LayoutSearch(part(), Preference("blocks"))
+    seeker.add([], False, never)
+    assert seeker.best.key[0] > seeker.optimum and seeker.best.key[1] >= seeker.aims.target
+    assert not seeker.needs_layouts
+    seeker.idle = STALE_ABOVE
+    assert seeker.needs_layouts
+    seeker.idle = PATIENCE
+    assert not seeker.exhausted
 
 
 def test_an_answer_is_placed_as_it_was_judged(policy):

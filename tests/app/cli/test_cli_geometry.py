@@ -67,6 +67,18 @@ def test_bad_drawing(here, capsys, name, words):
     assert not (here / "out.vtk").exists()
 
 
+def test_what_is_mended_or_left_out_is_noted(here, capsys):
+    body = '<rect width="9" height="9"/><rect width="9" height="9"/><path d="M 20 0 L 20 5"/>'
+    (here / "twice.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{body}</svg>')
+    assert cli.main(["mesh", "twice.svg", "-o", "twice.vtk"]) == 0
+    notes = capsys.readouterr().err.splitlines()
+    assert any("twice.svg: " in note and "drawn more than once" in note for note in notes)
+    assert any("left out, the first at (20, 0)" in note for note in notes)
+    (here / "once.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{body[:28]}</svg>')
+    assert cli.main(["mesh", "once.svg", "-o", "once.vtk"]) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_a_mesh_is_no_drawing(here, capsys):
     (here / "part.svg").write_text(SVG)
     assert cli.main(["mesh", "part.svg", "-o", "out.vtk"]) == 0

@@ -128,8 +128,7 @@ def test_panels_agree_on_the_numbers_of_quads_and_blocks(qtbot, shown):
     elements, values = window.quality.score.elements, window.blocks.panel.values
     quads = window.document.mesh.n_elements
     qtbot.waitUntil(lambda: elements.text == f"{quads} quads in 1 block", timeout=WAIT)
-    assert values["quads"].text.split(",")[0] == f"{quads}"
-    assert values["blocks"].text == "1"
+    assert values["quads"].text.startswith(f"{quads}, 1, ")
 
 
 def test_blocks_are_selected_and_lead_to_their_chords(qtbot, shown):

@@ -5,7 +5,9 @@ from driving import WAIT
 from qtpy.QtWidgets import QScrollArea
 
 from meshwright.desktop.actions import registry
+from meshwright.desktop.blocks.blocks_panel import BUTTON
 from meshwright.desktop.history.history_panel import ROW
+from meshwright.desktop.main_window.left_column import LEAST
 
 
 @pytest.mark.parametrize("size", [(880, 560), (1280, 800)])
@@ -34,6 +36,30 @@ def test_the_history_shows_whole_lines_only(qtbot, open_window, star):
         assert shown.viewport().height() % ROW == 0
         assert shown.rowViewportPosition(shown.rowAt(0)) == 0
         assert shown.visualRect(panel.model.index(30)).bottom() < shown.viewport().height()
+
+
+@pytest.mark.parametrize("size", [(900, 600), (1280, 800)])
+def test_the_tools_of_a_chord_keep_their_size_and_scroll_in_a_low_window(
+    qtbot, open_window, star, size
+):
+    window = open_window(star)
+    window.resize(*size)
+    qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
+    panel = window.blocks.panel
+    window.actions_by_id["blocks.view"].trigger()
+    window.actions_by_id["blocks.next"].trigger()
+    qtbot.waitUntil(panel.count.isVisible, timeout=WAIT)
+    area = window.left.area
+    qtbot.waitUntil(lambda: panel.count.height() >= panel.count.minimumSizeHint().height())
+    for tool in panel.tools.values():
+        assert tool.height() >= BUTTON
+    assert panel.export.mapTo(area.widget(), panel.export.rect().topRight()).x() < area.width()
+    bar = area.verticalScrollBar()
+    qtbot.waitUntil(lambda: (bar.maximum() > 0) == (size[1] < 700), timeout=WAIT)
+    bar.setValue(bar.maximum())
+    shown = panel.export.mapTo(area, panel.export.rect().bottomLeft()).y()
+    assert 0 < shown < area.height()
+    assert window.playback.panel.height() >= LEAST
 
 
 def test_large_numbers_fit_the_score_panel(qtbot, open_window, star, monkeypatch):

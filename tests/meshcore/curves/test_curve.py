@@ -102,6 +102,10 @@ def test_bulges_agree_with_centre_and_radius() -> None:
     flat = CURVES["flat arc"]
     assert flat.point(flat.length / 2)[1] == pytest.approx(-5e-10, rel=1e-9)
     assert Curve.arc_through([0, 0], [1, 0], [2, 0]).kind == "line"
+    for end in ([0, 0], [2, 0]):  # as some programs write a segment
+        assert Curve.arc_through([0, 0], end, [2, 0]).kind == "line"
+    with pytest.raises(MeshError, match="beyond them"):
+        Curve.arc_through([0, 0], [3, 0], [2, 0])
 
 
 def test_splines_agree_with_scipy() -> None:

@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
     sizing, extrusion = grid_options.sizing(arguments), grid_options.extrusion(arguments)
     if arguments.kind == "tri":
         raise UserError("--kind tri: blocks are of quads")
-    start = mesh_input.read_mesh(arguments)
+    start = mesh_input.read_mesh(arguments, report)
     if start.kind != "quad":
         raise UserError(f"{arguments.input}: a mesh of triangles has no blocks")
     began = time.perf_counter()

@@ -113,7 +113,7 @@ def run(arguments: argparse.Namespace, report: Report) -> int | None:
     mesh_output.checked_mesh_output(arguments.output)
     png = checked_output(arguments.png, (".png",), "--png") if arguments.png else None
     film = checked_output(arguments.film, (".gif", ".mp4"), "--film") if arguments.film else None
-    start = mesh_input.read_mesh(arguments)
+    start = mesh_input.read_mesh(arguments, report)
     output = mesh_output.checked_mesh_output(arguments.output, start.kind)
     wishes = _wishes(arguments, start)
     policy = inputs.read_policy(arguments.policy, start.kind)

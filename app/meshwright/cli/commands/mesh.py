@@ -55,6 +55,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         )
         small = mesh.n_elements <= SMOOTHED
         inverted = settle(mesh) if small or len(quality.inverted(mesh)) else []
+    mesh_input.note_mended(arguments.shape, arguments, report)
     mesh_output.write_mesh(output, mesh)
     values = {
         "command": "mesh",

@@ -171,8 +171,8 @@ class BlocksController(Controller):
             )
         )  # fmt: skip
         values = self.panel.values
-        values["quads"].text = f"{len(structure.corners):,}, {structure.chord_count:,}"
-        values["blocks"].text = f"{block_count(self._document.need_mesh()):,}"
+        blocks = block_count(self._document.need_mesh())
+        values["quads"].text = f"{len(structure.corners):,}, {blocks:,}, {structure.chord_count:,}"
         values["cells"].text = f"{planned.cells:,}" if planned.cells else "\u2013"
         plan = self._document.need_mesh().grid_plan
         self.panel.show_size(plan.size, float(np.median(structure.lengths)) / 5.0)

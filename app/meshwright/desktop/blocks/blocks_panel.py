@@ -95,8 +95,12 @@ class BlocksPanel(QWidget):
         self.values = {
             name: ValueLine(title, words)
             for name, title, words in (
-                ("quads", "Quads, chords", "Each quad is exported as a block; chords are strips"),
-                ("blocks", "Regular blocks", "Quads that form one regular grid count as one"),
+                (
+                    "quads",
+                    "Quads, blocks, chords",
+                    "Each quad is exported as a block of its own; as in the score panel, those that"
+                    " form one regular grid are counted as one block. Chords are strips of quads",
+                ),
                 ("cells", "Cells", "Cells of the fine grid"),
                 ("worst", "Worst cell", "Smallest scaled Jacobian of a cell"),
                 ("aspect", "Aspect ratio", "Largest one of a cell"),

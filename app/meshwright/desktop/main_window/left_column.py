@@ -1,12 +1,47 @@
 """The column left of the canvas: operations, and below them the history."""
 
-from qtpy.QtWidgets import QFrame, QVBoxLayout, QWidget
+from qtpy.QtCore import QEvent, QObject, QSize, Qt
+from qtpy.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from meshwright.desktop.main_window.sidebar import Section
 from meshwright.desktop.widgets.basic import rule
 from meshwright.graphics.theme import GRID, Theme
 
 WIDTH = 240
+LEAST = 94
+"""Pixels of height that the part below keeps where the window is low."""
+
+
+class HeadArea(QScrollArea):
+    """As high as ``head`` where there is room; else it scrolls."""
+
+    def __init__(self, head: QWidget) -> None:
+        super().__init__()
+        self._head = head
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        self.setWidget(head)
+        head.setObjectName("LeftHead")
+        head.setMinimumWidth(1)  # the column decides, not the hints of number boxes
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """The size of the head."""
+        width, head = self.width(), self._head
+        height = head.heightForWidth(width) if head.hasHeightForWidth() else -1
+        return QSize(head.sizeHint().width(), max(height, head.minimumSizeHint().height()))
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802
+        """A few lines."""
+        return QSize(0, LEAST)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Follow what the head shows."""
+        if watched is self._head and event.type() == QEvent.Type.LayoutRequest:
+            self.updateGeometry()
+        return super().eventFilter(watched, event)
 
 
 class LeftColumn(QFrame):
@@ -26,8 +61,12 @@ class LeftColumn(QFrame):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
-        layout.addWidget(head)
+        self.area = HeadArea(head)
+        layout.addWidget(self.area)
         layout.addWidget(rule())
+        # the head shrinks only when the rest has its least height
+        rest.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Ignored)
+        rest.setMinimumHeight(LEAST)
         layout.addWidget(rest, 100)
         layout.addStretch(1)  # takes the height while ``rest`` is hidden
 
