@@ -61,8 +61,6 @@ COARSE = 120
 """Elements down to which these are coarsened first."""
 FREE_DRAWN = ((4, 1), (1, 2))
 """How many of their results are given positions, with how many attempts; then again."""
-RARELY = 2
-"""Of so many turns one anneals and makes free rollouts: on most parts neither leads on."""
 LARGEST_ANNEALED = 250
 """Elements up to which a state is annealed."""
 ANNEALED_DRAWN = 6
@@ -74,10 +72,9 @@ _SLICE = 20
 class GuardedDescent:
     """A descent to s* through states without inverted elements.
 
-    Each turn makes guarded rollouts from the start, every second time with its strips cut in two,
-    and goes on from the states of the lowest s that were tried least by guarded rollouts, as they
-    are and divided, and leaps. Some turns also anneal, and make free rollouts from the best state
-    or the start.
+    Each turn makes guarded rollouts from the start, some of them with its strips cut in two; goes
+    on from the states of low s that were tried least by guarded rollouts, from the state as it is
+    and divided, and by leaps; anneals; and makes free rollouts from the best state or the start.
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -128,16 +125,14 @@ class GuardedDescent:
             turn += 1
             for i in range(ROUNDS // together):
                 if not over() and (count := granted(together)) > 0:
-                    self._round(self._start, count, stop, divide=i % 2 == 1 and divisible)
+                    self._round(self._start, count, stop, divide=i == 1 and divisible)
             before, tried = self.score, 0
             while self.states and tried < CONTINUED_STATES and not over():
                 self._go_on(granted, stop)
                 before, tried = self.score, 0 if self.score < before else tried + 1
-            if turn % RARELY:
-                continue
             while self.states and not over() and self._anneal(stop):
                 pass
-            begin = self.states[0] if self.states and turn % (2 * RARELY) else self._start
+            begin = self.states[0] if self.states and turn % 2 else self._start
             free = max(2, min(MOST_FREE, FREE_WORK // begin.elements))
             if not over() and (count := granted(free)) > 0:
                 self._free(begin, count, stop)

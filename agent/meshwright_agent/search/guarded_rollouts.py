@@ -51,9 +51,8 @@ STUCK = 20
 GOAL = 0.1
 """Sine of the worst corner up to which what an operation changes is raised: more takes most of the
 time, and what can be drawn remains the same."""
-TEMPERATURE = 1.5
-"""By which the policy's logits are divided: the guard strikes out what the policy is surest of more
-often than not, and rollouts that differ more reach s* on more parts."""
+TEMPERATURE = 1.2
+"""By which the policy's logits are divided: rollouts that differ more reach s* on more parts."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1

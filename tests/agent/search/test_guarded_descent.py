@@ -64,7 +64,7 @@ def test_more_states_of_the_lowest_s_are_gathered(start, policy):
 
 def test_rollouts_from_divided_states_are_drawn(start, policy):
     divisions = divide_chords(start.copy())
-    descent = GuardedDescent(start, policy, 12, 4)
+    descent = GuardedDescent(start, policy, None, 4)
     descent._round(descent._start, 2, lambda: False, divide=True)
     assert descent.states
     for state in descent.states:
