@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.guarded_coarsening import Aims, Coarsener, Layout
+from meshwright_agent.search.guarded_coarsening import EVALUATED, Aims, Coarsener, Layout
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.geometry.weighed_shapes import weighed_worst
@@ -121,6 +121,8 @@ class LayoutSearch:
         self.pool: list[Layout] = []
         self.best: Layout | None = None
         self.kicks = self.idle = self._served = 0
+        self.layouts = self.evaluated = 0
+        """What kicks have led to, and moves of coarsening whose positions were found."""
 
     @property
     def goal_reached(self) -> bool:
@@ -202,9 +204,11 @@ class LayoutSearch:
                 self._found(layout)
 
     def _coarsen(self, layout: Layout, stop: Callable[[], bool], aims: Aims | None = None) -> None:
+        before = int(layout.record.state[EVALUATED])
         while not stop():
             if self.coarsener.coarsen(layout, max(1, SLICE // int(layout.key[3])), aims):
                 break
+        self.evaluated += int(layout.record.state[EVALUATED]) - before
 
     def kick(self, stop: Callable[[], bool]) -> None:
         """Kick one layout of the pool and coarsen it; it stays unless it is worse."""
@@ -226,6 +230,7 @@ class LayoutSearch:
         )
         if child is None:
             return
+        self.layouts += 1
         self._coarsen(child, stop)
         if not coarsener.better(parent, child):
             self.pool[i] = child

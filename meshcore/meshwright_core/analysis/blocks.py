@@ -2,9 +2,10 @@
 
 A separatrix leaves every vertex at which the mesh is no grid (inside: degree not 4; on the
 boundary: degree above 3) along each of its edges, and goes straight on through inside vertices of
-degree 4 until it meets the boundary or another such vertex. Cut along all of them, the mesh falls
-into blocks, each a regular grid of quads, or a closed band of them around a hole. Coarse meshes at
-the optimum have few blocks: this is the block decomposition that the paper aims at.
+degree 4 until it meets the boundary or another such vertex. Interfaces of regions separate blocks,
+too, and where one turns inside, separatrices leave. Cut along all of them, the mesh falls into
+blocks, each a regular grid of quads, or a closed band of them around a hole. Coarse meshes at the
+optimum have few blocks: this is the block decomposition that the paper aims at.
 """
 
 from __future__ import annotations
@@ -42,8 +43,13 @@ def separatrices(mesh: HalfEdgeMesh, corners: bool = False) -> np.ndarray:
     if corners:
         sources |= boundary & mesh.geometric() & (degree == 3)
     straight = ~boundary & (degree == 4)
-    cut = np.zeros(slots, bool)
     inside = (origin >= 0) & (twin >= 0)
+    cut = np.zeros(slots, bool)
+    region, rows = mesh.arrays.region, np.arange(slots) // 4
+    cut[inside] = region[rows[inside]] != region[twin[inside] // 4]
+    entering = np.flatnonzero(cut & straight[np.maximum(origin[twin], 0)])
+    turning = ~cut[_next(twin[_next(entering)])]
+    sources[origin[twin[entering[turning]]]] = True
     walking = np.flatnonzero(inside & sources[np.maximum(origin, 0)])
     while len(walking):
         back = twin[walking]

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from meshwright import benchmarks, cli
-from meshwright.benchmarks import ablation, block_cells, gmsh_peer, parts
+from meshwright.benchmarks import ablation, block_cells, gmsh_peer, parts, search_speed
 from meshwright_core.domains import random_parts
 
 
@@ -89,6 +89,16 @@ def test_ablation_compares_the_search_with_parts_of_it_left_out(capsys):
     for group in results.values():
         assert list(group) == list(ablation.VARIANTS)
         assert all(row["parts"] == 1 and row["not inverted"] == 1 for row in group.values())
+
+
+def test_speed_of_the_search_is_counted(capsys):
+    command = ["bench", "--suite", "search_speed", "--quick", "--seconds", "3"]
+    assert cli.main([*command, "--json"]) == 0
+    results = json.loads(capsys.readouterr().out)["results"]
+    assert list(results) == ["8-24 corners", "25-50 corners"]
+    for row in results.values():
+        assert all(rate >= 1 for rate in row.values())
+    assert "evaluated moves / s" in search_speed.text(results)
 
 
 def test_options_of_the_search_are_refused_by_suites_without():

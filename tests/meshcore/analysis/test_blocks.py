@@ -41,6 +41,23 @@ def test_a_grid_is_one_block():
     assert not separatrices(grid(3)).any()
 
 
+def test_no_block_is_of_two_regions():
+    """Four by four quads; the others belong to the second region."""
+    whole = grid(4)
+    points, elements = whole.points, whole.elements()
+    middle = points[elements].mean(axis=1)
+    for second, blocks in (
+        (middle[:, 0] > 2, [8, 8]),
+        # where the interface turns, a line leaves along each of the other two edges
+        ((middle[:, 0] > 2) & (middle[:, 1] > 2), [4, 4, 4, 4]),
+        (middle[:, 0] > 9, [16]),
+    ):
+        mesh = HalfEdgeMesh.from_elements(points, elements, regions=second.astype(int))
+        assert sorted(np.bincount(block_of(mesh))) == blocks
+        for block in range(len(blocks)):
+            assert len(set(mesh.regions()[block_of(mesh) == block].tolist())) == 1
+
+
 def test_an_l_has_three():
     # the reflex corner sends a line along each of its two inner edges
     notched = grid(4, holes=[(i, j) for i in (2, 3) for j in (2, 3)])

@@ -68,7 +68,9 @@ class ExportBlocksController(ExportTask):
         """Make the grid of the present mesh and write it in the background."""
         mesh, name = self._document.need_mesh().copy(), Path(path).name
         if order.ending == BLOCK_MESH_DICT and name != BLOCK_MESH_DICT:
-            self._notice.show_message(f"OpenFOAM reads a file that is called {BLOCK_MESH_DICT}.")
+            self._notice.show_message(
+                f"{name} was not written: OpenFOAM reads a file that is called {BLOCK_MESH_DICT}."
+            )
             return
         try:
             check_format(path, order.order, order.extrusion is not None)
