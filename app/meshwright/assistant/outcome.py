@@ -65,6 +65,10 @@ def result_of(
             True,
         )
     standing = gap_words(document.score, document.optimum, "the optimum")
+    left = len(document.history) - document.history.cursor
+    if left:
+        more = "the next step inverts" if left == 1 else f"the next {left:,} steps invert"
+        return f"{standing}: {more} elements, and can be redone.", True
     if document.at_optimum:
         goal = ShapeGoal.of(mesh, effort) if effort is not None else None
         folded = len(inverted(mesh))

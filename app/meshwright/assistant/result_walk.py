@@ -75,14 +75,16 @@ class ResultWalk:
 
     def settle(self) -> bool:
         """Place the vertices; False if that left more elements inverted than before the walk, and
-        the document was taken back to where it began.
+        the document was taken back to where it began. Where vertices of a surface are not smoothed,
+        the walk ends at the last state without such elements.
         """
         document = self._document
         mesh = document.need_mesh()
         if not self.total and self._target is None:
             return True
         if not (document.plane or document.smooth_surfaces):
-            return True  # vertices of such a surface stay where they are
+            self._go_back_to_valid(mesh)
+            return True
         with document.together():
             if not self._place(mesh):
                 self._smooth(mesh)
@@ -101,8 +103,18 @@ class ResultWalk:
         with self._document.together():
             self.skip()
             fine = self.settle()
-            self._document.go_to(here if fine else self._start)
+            reached = self._document.history.cursor
+            self._document.go_to(min(here, reached) if fine else self._start)
         return fine
+
+    def _go_back_to_valid(self, mesh: HalfEdgeMesh) -> None:
+        """End at the last state without more elements inverted than before the walk: vertices of a
+        surface that is not smoothed stay where they are. The steps after it can be redone.
+        """
+        history = self._document.history
+        with self._document.together():
+            while history.cursor > self._start and len(inverted(mesh)) > self._inverted:
+                self._document.go_to(history.cursor - 1)
 
     def _behind(self) -> bool:
         return self.done < self.total * (time.monotonic() - self._began) / (0.75 * self._shown)

@@ -449,12 +449,14 @@ class Document:
 
     def clean_all(self, by: str = YOU) -> int:
         """Remove every cleanable global line of a quad mesh as one step; returns their number."""
+        from meshwright.document.position_repair import smooth_all  # imports scipy
+
         mesh = self._need()
 
         def work() -> int:
             edits = mesh.clean_all()
             if edits and self.smooths:
-                _relax(mesh, None)
+                smooth_all(mesh)
             return len(edits)
 
         return self._do("clean_all", "Clean all", -1, by, work)
@@ -580,8 +582,8 @@ class Document:
         self._do("locked", title, -1, YOU, lambda: _each(wanted, mesh.set_locked, flag))
 
 
-def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...] | None, thorough: bool = True) -> None:
-    """Smooth near ``around`` (vertex ids) or everywhere; imports scipy, so imported late."""
+def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...], thorough: bool) -> None:
+    """Smooth near ``around`` (vertex ids); imports scipy, so imported late."""
     from meshwright_core.geometry.smoothing import relax
 
     relax(mesh, around, thorough)

@@ -1,9 +1,12 @@
 """The way to the result of a search: in slices, skipped, stopped, and never to a worse mesh."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from meshwright.assistant import result_walk
+from meshwright.assistant.outcome import result_of
 from meshwright.assistant.result_walk import ResultWalk
 from meshwright.document.document import Document
 from meshwright_core.geometry.quality import inverted
@@ -78,3 +81,22 @@ def test_a_result_that_would_be_inverted_is_taken_back(result, monkeypatch):
     assert not walk.settle()
     assert document.history.cursor == 0 and not len(inverted(document.mesh))
     assert len(document.history) > len(operations)  # it can be looked at all the same
+
+
+def test_on_a_surface_that_is_not_smoothed_the_way_ends_before_elements_are_inverted(
+    result, monkeypatch
+):
+    document, operations, target = result
+    monkeypatch.setattr(type(document), "plane", property(lambda self: False))
+    walk = ResultWalk(document, "agent", operations, None, target)
+    walk.skip()
+    assert len(inverted(document.mesh))
+    assert walk.settle()
+    assert not len(inverted(document.mesh))
+    assert document.history.cursor < len(document.history) == len(operations)
+    said, unfinished = result_of(
+        document, SimpleNamespace(effort=None, runner=None, held=None), "", True, False
+    )
+    assert unfinished and said.endswith("elements, and can be redone.")
+    document.redo()
+    assert len(inverted(document.mesh))

@@ -66,3 +66,13 @@ def test_max_min_positions_raise_the_worst_element_and_move_no_pinned_vertex():
 def test_triangles_have_no_max_min_positions():
     with pytest.raises(MeshError, match="Only quads"):
         max_min_positions(mw.mesh("star", kind="tri"))
+
+
+def test_clean_all_smooths_without_spoiling_blocks():
+    mesh = blocks()
+    before = weighed_worst(mesh)
+    halfedge = next(h for h in range(4 * mesh.n_elements) if mesh.check("divide_chord", h))
+    mesh.apply("divide_chord", halfedge)
+    document = Document(mesh, "blocks")
+    assert document.clean_all() > 0
+    assert weighed_worst(mesh) >= 0.9 * before > 0.5
