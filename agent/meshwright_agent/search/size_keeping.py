@@ -53,9 +53,9 @@ mesh that it begins with is more irregular than the given one, so that there is 
 DIVIDED, AFTER_SEARCH, SMOOTHED, UNITS_A_SWEEP = 15.0, 6.0, 20.0, 1.0
 """Time of some work, in units of the time to measure all elements once: dividing blocks with few
 sweeps of smoothing; measuring what a search has found; smoothing and untangling; a sweep."""
-FIRST_RUN, SMALL_RUN, ATTEMPTS = 0.4, 0.6, 6
+FIRST_RUN, SMALL_RUN, ATTEMPTS, ROUNDS = 0.4, 0.6, 6, 4
 """Share of the time that is left for each run in place, for the first one on meshes that are not
-large, and the most of them."""
+large, the most of them after a search, and the most searches."""
 FEW = 4
 """Bad elements that are untangled together."""
 LOSS = 1e-6
@@ -203,17 +203,21 @@ def keep_size(
     made, operations, obstacle, ended = mesh, list[Any](), "", ""
     if not enough and fit.valid and not is_large(mesh) and not clock.over(AFTER_SEARCH):
         made, operations, obstacle = _patches_that_fit(mesh, policy, None, fit, clock, seed)
-    if not enough and made.score > mesh.optimum and not clock.over(AFTER_SEARCH):
-        free = clock.left(AFTER_SEARCH)
+    for _ in range(1 if seconds is None else ROUNDS):
+        if enough or made.score == mesh.optimum or clock.over(AFTER_SEARCH):
+            break
+        before, free = made.score, clock.left(AFTER_SEARCH)
         if free is not None:
-            free *= FIRST_RUN if is_large(mesh) else SMALL_RUN
+            free *= FIRST_RUN if is_large(made) else SMALL_RUN
         found = search(made, policy, seconds=free, coarsen=False, progress=progress)
         done, ended = done + found.rollouts, found.reason if seconds is None else ""
-        if is_large(mesh) or fit.valid:
+        if is_large(made) or fit.valid:
             made, more, obstacle = _patches_that_fit(made, policy, found, fit, clock, seed)
         else:
             made, more, obstacle = _in_place(made, found, fit, clock)
         operations = operations + more
+        if made.score == before:
+            break
     obstacles += [obstacle] if obstacle else []
     if not enough and (other := fit.rank(made)) < rank:
         best = replace(best, mesh=made, operations=operations, method="in place", reason=ended)
@@ -225,7 +229,8 @@ def keep_size(
     if obstacles and not lowest:
         best.reason = f"at a lower s {obstacles[0]}"
     best.rollouts, best.blocks = done, blocks
-    best.reason = best.reason or _ended(seconds, clock.cancelled, lowest)
+    early = not clock.over(AFTER_SEARCH + UNITS_A_SWEEP * SWEEPS[-1])
+    best.reason = best.reason or _ended(seconds, clock.cancelled, lowest, early)
     return best
 
 
@@ -275,12 +280,14 @@ def _prepare(kind: str) -> None:
         assert on_curves_of(mesh, divided_to_size(coarse, fit.field, 32.0)).n_elements
 
 
-def _ended(seconds: float | None, over: bool, lowest: bool) -> str:
-    if over:
+def _ended(seconds: float | None, cancelled: bool, lowest: bool, early: bool) -> str:
+    if cancelled:
         return "cancelled"
     if lowest:
         return "at the optimum"
-    return "all rollouts are made" if seconds is None else f"all {seconds:g} seconds are used"
+    if seconds is None:
+        return "all rollouts are made"
+    return "nothing better was found" if early else f"all {seconds:g} seconds are used"
 
 
 def _smoothed(mesh: HalfEdgeMesh) -> HalfEdgeMesh:
