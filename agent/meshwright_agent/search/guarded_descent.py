@@ -2,7 +2,8 @@
 of them.
 
 Guarded rollouts (:mod:`meshwright_agent.search.guarded_rollouts`) are cheap, and most end a little
-above s*, each in another state. From there a leap (:mod:`meshwright_agent.search.leaps`) or a way
+above s*, each in another state. With all strips cut in two there is room for more operations, so
+that a rollout from there often goes on. A leap (:mod:`meshwright_agent.search.leaps`) or a way
 down by annealing often leads on; so does a free rollout from the start, though little of what it
 reaches can be drawn before its strips are divided
 (:mod:`meshwright_agent.search.divided_layouts`). What works differs from part to part, so all of it
@@ -19,7 +20,13 @@ import numpy as np
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.divided_layouts import collapse_chords, drawn_divided, ways_down
+from meshwright_agent.search.divided_layouts import (
+    FINEST,
+    collapse_chords,
+    divide_chords,
+    drawn_divided,
+    ways_down,
+)
 from meshwright_agent.search.guarded_rollouts import (
     THIN_LEAST,
     DrawnState,
@@ -40,12 +47,14 @@ TOGETHER, ELEMENTS_EACH = 2, 200
 comes further in the same time."""
 ROUNDS = 6
 """Guarded rollouts from the start in each turn."""
-CONTINUED = 2
-"""Guarded rollouts from a state: from most states none leads on, from some nearly all do."""
+CONTINUED = 1, 2
+"""Guarded rollouts from a state as it is, and divided: from most states none leads on, from some
+nearly all do."""
 CONTINUED_STATES = 2
 """States from which these are made in each turn, as long as none leads on."""
 KEPT = 12
-"""States of the lowest s that are kept."""
+"""States that are kept, of the lowest s and up to `ABOVE` more."""
+ABOVE = 4
 FREE_WORK, MOST_FREE = 1500, 16
 """Free rollouts from a state in each turn, in its elements and in number."""
 COARSE = 120
@@ -63,9 +72,9 @@ _SLICE = 20
 class GuardedDescent:
     """A descent to s* through states without inverted elements.
 
-    Each turn makes guarded rollouts from the start; goes on from the states of the lowest s that
-    were tried least, the coarsest first, by guarded rollouts, leaps and annealing; and makes free
-    rollouts from the best state or the start, in turn.
+    Each turn makes guarded rollouts from the start, some of them with its strips cut in two; goes
+    on from the states of low s that were tried least by guarded rollouts, from the state as it is
+    and divided, and by leaps; anneals; and makes free rollouts from the best state or the start.
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -74,7 +83,7 @@ class GuardedDescent:
         seed: of the random choices.
 
     Attributes:
-        states: the best ones, the best first.
+        states: the best ones, those of the lowest s first, and of these the coarsest.
         rollouts: how many were made.
     """
 
@@ -95,6 +104,11 @@ class GuardedDescent:
         """The lowest s."""
         return self.states[0].score if self.states else self._mesh.score
 
+    @property
+    def lowest(self) -> list[DrawnState]:
+        """The states of the lowest s, the coarsest first."""
+        return [state for state in self.states if state.score == self.score]
+
     def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
         begun, optimum = self.rollouts, self._mesh.optimum
@@ -106,15 +120,15 @@ class GuardedDescent:
         def granted(wanted: int) -> int:
             return wanted if most is None else min(wanted, most - (self.rollouts - begun))
 
-        turn = 0
+        turn, divisible = 0, 4 * self._mesh.n_elements <= FINEST
         while not over() and granted(1) > 0:
             turn += 1
-            for _ in range(ROUNDS // together):
+            for i in range(ROUNDS // together):
                 if not over() and (count := granted(together)) > 0:
-                    self._round(self._start, count, stop)
+                    self._round(self._start, count, stop, divide=i == 1 and divisible)
             before, tried = self.score, 0
             while self.states and tried < CONTINUED_STATES and not over():
-                self._go_on(granted(CONTINUED), stop)
+                self._go_on(granted, stop)
                 before, tried = self.score, 0 if self.score < before else tried + 1
             while self.states and not over() and self._anneal(stop):
                 pass
@@ -126,37 +140,47 @@ class GuardedDescent:
     def _note(self, state: DrawnState) -> None:
         """Add a state to those found."""
         self.states = sorted([*self.states, state], key=lambda one: one.rank)
-        self.states = [one for one in self.states if one.score == self.score][:KEPT]
+        self.states = [one for one in self.states if one.score <= self.score + ABOVE][:KEPT]
 
-    def _round(self, begin: DrawnState, count: int, stop: Callable[[], bool]) -> None:
-        """So many guarded rollouts from a state."""
+    def _round(
+        self, begin: DrawnState, count: int, stop: Callable[[], bool], divide: bool = False
+    ) -> None:
+        """So many guarded rollouts from a state, or from what its strips cut in two make of it."""
+        mesh = begin.mesh(self._mesh)
+        before = begin.operations + (divide_chords(mesh) if divide else [])
         batch = GuardedRollouts(
-            begin.mesh(self._mesh), self._policy, self._rng, count, self._max_steps, self._ceiling
-        )
+            mesh, self._policy, self._rng, count, self._max_steps,
+            max(self._ceiling, mesh.n_elements),
+        )  # fmt: skip
         batch.run(stop)
         self.rollouts += count
         for state in batch.found:
             if state.score < begin.score:
-                self._note(replace(state, operations=begin.operations + state.operations))
+                self._note(replace(state, operations=before + state.operations))
 
-    def _go_on(self, rollouts: int, stop: Callable[[], bool]) -> None:
-        """At most so many guarded rollouts from a state, then a leap unless they lead on."""
+    def _go_on(self, granted: Callable[[int], int], stop: Callable[[], bool]) -> None:
+        """Guarded rollouts from a state, then from it divided, then a leap, until one leads on."""
         state = self._least_tried(self.states)
-        for _ in range(rollouts):
-            if self.score == state.score and not stop():
-                self._round(state, 1, stop)
-        if self.score == state.score and not stop():
+        before = self.score
+        ways = CONTINUED if 4 * state.elements <= FINEST else CONTINUED[:1]
+        for divide, rollouts in enumerate(ways):
+            for _ in range(granted(rollouts)):
+                if self.score == before and not stop():
+                    self._round(state, 1, stop, bool(divide))
+        if self.score == before and not stop():
             self._leap(state, stop)
 
     def gather(self, stop: Callable[[], bool]) -> None:
         """Guarded rollouts from the start until `stop`: further states of the lowest s."""
-        while self._start.score > self.score and len(self.states) < KEPT and not stop():
+        while self._start.score > self.score and len(self.lowest) < KEPT and not stop():
             self._round(self._start, 1, stop)
 
     @staticmethod
     def _least_tried(states: list[DrawnState]) -> DrawnState:
-        """The state from which something was tried least often, which is counted."""
-        state = min(states, key=lambda one: (one.tries, one.rank))
+        """The state from which something was tried least often, which is counted; a state of an s
+        higher by two counts as tried once more.
+        """
+        state = min(states, key=lambda one: (one.score // 2 + one.tries, one.rank))
         state.tries += 1
         return state
 

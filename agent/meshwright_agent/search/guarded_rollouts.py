@@ -51,6 +51,8 @@ STUCK = 20
 GOAL = 0.1
 """Sine of the worst corner up to which what an operation changes is raised: more takes most of the
 time, and what can be drawn remains the same."""
+TEMPERATURE = 1.2
+"""By which the policy's logits are divided: rollouts that differ more reach s* on more parts."""
 THIN_EVERY = 10
 """Decisions between two passes of :func:`thin_out`."""
 THIN_LEAST = 0.1
@@ -235,7 +237,7 @@ class GuardedRollouts:
         with torch.no_grad():
             logits, _ = self._network(*tensors(observation))
         possible = observation.mask.reshape(len(logits), -1)
-        weights = torch.softmax(logits, dim=1).numpy().astype(float) * possible
+        weights = torch.softmax(logits / TEMPERATURE, dim=1).numpy().astype(float) * possible
         for b in running:
             self._decide(b, observation.chosen[b], weights[b])
             batch.steps[b] += 1

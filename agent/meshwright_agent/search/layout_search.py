@@ -27,8 +27,8 @@ USABLE = 0.5
 CLOSE, COMFORT = 0.9, 0.85
 """... or this share of the best that is attainable; and the share of the larger of that and q* up
 to which more is worth more blocks."""
-PRICE = 4.5
-"""Each tenth of the bound is worth exp(0.45) times the blocks, half as many more."""
+PRICE = 7.0
+"""Each tenth of the bound is worth exp(0.7) times the blocks, twice as many."""
 LEAST = 0.05
 """The least target: a corner below it is as good as folded."""
 SLACK = 3e-3

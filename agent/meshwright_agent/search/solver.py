@@ -210,7 +210,7 @@ def _search_layouts(
 
     def run(i: int) -> None:
         seeker = seekers[i]
-        for state in descents[i].states[:DRAWN] if descents else []:
+        for state in descents[i].lowest[:DRAWN] if descents else []:
             if state.score == drawn and not (seeker.pool and stop()):
                 seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
         # every thread has all candidates where there are few, and its share of them otherwise
@@ -223,7 +223,7 @@ def _search_layouts(
             _add_coarsest(search, seeker, mine[0], coarsen, stop)
         if descents and not bends and not seeker.valid_at(search.score):
             _descend(search, descents[i], search.wanted)
-            for state in descents[i].states[:DRAWN]:
+            for state in descents[i].lowest[:DRAWN]:
                 seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
         if not seeker.pool:
             seeker.add([], coarsen, stop)

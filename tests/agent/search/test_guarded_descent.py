@@ -3,6 +3,7 @@
 import pytest
 
 from meshwright_agent.policy import policy_files
+from meshwright_agent.search.divided_layouts import divide_chords
 from meshwright_agent.search.guarded_descent import KEPT, GuardedDescent
 from meshwright_core.domains import gallery
 from meshwright_core.domains.meshing import mesh_domain
@@ -54,8 +55,18 @@ def test_more_states_of_the_lowest_s_are_gathered(start, policy):
     assert descent.score <= score
     assert len(descent.states) <= KEPT
     assert known in descent.states or descent.states[0].rank < known.rank
+    assert descent.lowest == [state for state in descent.states if state.score == descent.score]
     for state in descent.states:
-        assert state.score == descent.score
         reached = state.mesh(start)
         reached.validate()
         assert not len(inverted(reached))
+
+
+def test_rollouts_from_divided_states_are_drawn(start, policy):
+    divisions = divide_chords(start.copy())
+    descent = GuardedDescent(start, policy, None, 4)
+    descent._round(descent._start, 2, lambda: False, divide=True)
+    assert descent.states
+    for state in descent.states:
+        assert state.operations[: len(divisions)] == divisions
+        assert not len(inverted(state.mesh(start)))
