@@ -107,7 +107,7 @@ def test_improve_keeps_corners_and_the_optimum(run, kind, tmp_path):
     assert output["elements"] == after.n_elements
     assert output["inverted_elements"] == len(quality.inverted(after))
     assert output["inverted_elements"] == len(output["inverted_ids"])
-    assert 1 <= output["rollouts"] <= 3  # it stops at the optimum
+    assert 0 <= output["rollouts"] <= 3  # none where patches are enough; it stops at the optimum
     assert output["operations"] > 0
     assert 0 < output["normalised_return"] <= 1
     with Image.open(tmp_path / "out.png") as picture:
