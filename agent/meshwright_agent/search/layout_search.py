@@ -24,11 +24,12 @@ LAYOUTS = 800
 PREFERENCES = ("blocks", "balanced", "shape")
 USABLE = 0.5
 """Worst scaled Jacobian that a balanced answer has before the number of blocks counts..."""
-CLOSE, COMFORT = 0.9, 0.85
+CLOSE, COMFORT = 0.9, 0.81
 """... or this share of the best that is attainable; and the share of the larger of that and q* up
 to which more is worth more blocks."""
-PRICE = 7.0
-"""Each tenth of the bound is worth exp(0.7) times the blocks, twice as many."""
+PRICE = 6.5
+"""Each tenth of the bound is worth exp(0.65) times the blocks, nearly twice as many. With more, or
+more `COMFORT`, a round hole in a square would get eight blocks, not its ring of four."""
 LEAST = 0.05
 """The least target: a corner below it is as good as folded."""
 SLACK = 3e-3

@@ -174,3 +174,11 @@ def test_half_a_disc_is_drawn_at_the_optimum():
     assert found.perfect and found.optimum == 2
     after = replayed(mesh, found)
     assert len(relax(after)) == 0 and after.score == 2
+
+
+@pytest.mark.parametrize("policy", ["quad"], indirect=True)
+def test_a_round_hole_in_a_square_gets_its_ring_of_four(policy):
+    mesh = mesh_domain(gallery.shape("plate-with-round-hole"), "quad")
+    found = solve(mesh, policy, rollouts=4, seed=1)
+    assert (found.score, found.elements, found.inverted) == (mesh.optimum, 4, 0)
+    assert found.worst_scaled_jacobian == pytest.approx(np.sqrt(0.5), abs=1e-3)
