@@ -24,12 +24,12 @@ LAYOUTS = 800
 PREFERENCES = ("blocks", "balanced", "shape")
 USABLE = 0.5
 """Worst scaled Jacobian that a balanced answer has before the number of blocks counts..."""
-CLOSE, COMFORT = 0.9, 0.81
+CLOSE, COMFORT = 0.9, 0.85
 """... or this share of the best that is attainable; and the share of the larger of that and q* up
 to which more is worth more blocks."""
-PRICE = 6.5
-"""Each tenth of the bound is worth exp(0.65) times the blocks, nearly twice as many. With more, or
-more `COMFORT`, a round hole in a square would get eight blocks, not its ring of four."""
+PRICE = 4.8
+"""Each tenth of the bound is worth exp(0.48) times the blocks, 1.6 times as many. With a little
+more a round hole in a square would get eight blocks, not its ring of four."""
 LEAST = 0.05
 """The least target: a corner below it is as good as folded."""
 SLACK = 3e-3
