@@ -94,6 +94,11 @@ def divide_chords(mesh: HalfEdgeMesh) -> Operations:
     return done
 
 
+def divisible(elements: int) -> bool:
+    """Whether a mesh of so many quads has at most :data:`FINEST` once its strips are divided."""
+    return 4 * elements <= FINEST
+
+
 def drawn_divided(
     reached: HalfEdgeMesh, stop: Callable[[], bool], attempts: int
 ) -> tuple[Operations, bool]:
@@ -102,5 +107,5 @@ def drawn_divided(
     Returns the operations and whether nothing is inverted. A mesh that would have more than
     :data:`FINEST` elements is drawn as it is.
     """
-    divisions = divide_chords(reached) if 4 * reached.n_elements <= FINEST else []
+    divisions = divide_chords(reached) if divisible(reached.n_elements) else []
     return divisions, not len(draw(reached, stop, attempts))

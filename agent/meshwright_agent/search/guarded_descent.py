@@ -21,9 +21,9 @@ from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.divided_layouts import (
-    FINEST,
     collapse_chords,
     divide_chords,
+    divisible,
     drawn_divided,
     ways_down,
 )
@@ -112,6 +112,7 @@ class GuardedDescent:
     def run(self, stop: Callable[[], bool], most: int | None = None) -> None:
         """Go on until s*, until `stop`, or for at most so many rollouts."""
         begun, optimum = self.rollouts, self._mesh.optimum
+        divides = divisible(self._mesh.n_elements)
         together = max(1, min(TOGETHER, ELEMENTS_EACH // self._mesh.n_elements))
 
         def over() -> bool:
@@ -120,12 +121,12 @@ class GuardedDescent:
         def granted(wanted: int) -> int:
             return wanted if most is None else min(wanted, most - (self.rollouts - begun))
 
-        turn, divisible = 0, 4 * self._mesh.n_elements <= FINEST
+        turn = 0
         while not over() and granted(1) > 0:
             turn += 1
             for i in range(ROUNDS // together):
                 if not over() and (count := granted(together)) > 0:
-                    self._round(self._start, count, stop, divide=i == 1 and divisible)
+                    self._round(self._start, count, stop, divide=i == 1 and divides)
             before, tried = self.score, 0
             while self.states and tried < CONTINUED_STATES and not over():
                 self._go_on(granted, stop)
@@ -162,7 +163,7 @@ class GuardedDescent:
         """Guarded rollouts from a state, then from it divided, then a leap, until one leads on."""
         state = self._least_tried(self.states)
         before = self.score
-        ways = CONTINUED if 4 * state.elements <= FINEST else CONTINUED[:1]
+        ways = CONTINUED if divisible(state.elements) else CONTINUED[:1]
         for divide, rollouts in enumerate(ways):
             for _ in range(granted(rollouts)):
                 if self.score == before and not stop():

@@ -51,13 +51,18 @@ def test_tour_waits_for_a_mesh(qtbot, open_window, star):
     assert window.help.tour.callout.isVisible()
 
 
-@pytest.mark.parametrize("size", [(880, 560), (1280, 800), (1900, 1000)])
-def test_each_callout_is_inside_the_window_beside_its_target(qtbot, open_window, star, size):
-    window = open_window(star)
+def tour_at(qtbot, window, size):
+    """The callout of the tour in a window of that size."""
     window.resize(*size)
     qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
     window.help.show_tour()
-    callout = window.help.tour.callout
+    return window.help.tour.callout
+
+
+@pytest.mark.parametrize("size", [(880, 560), (1280, 800), (1900, 1000)])
+def test_each_callout_is_inside_the_window_beside_its_target(qtbot, open_window, star, size):
+    window = open_window(star)
+    callout = tour_at(qtbot, window, size)
     for number, step in enumerate(STEPS, start=1):
         assert callout.count.text() == f"{number} of 5"
         assert callout.heading.text() == step.heading
@@ -122,10 +127,7 @@ def test_tour_does_not_point_at_hidden_widgets(open_window, star):
 @pytest.mark.parametrize("size", [(960, 620), (1280, 800), (1900, 1000)])
 def test_callouts_stand_on_the_canvas_and_cover_no_panel(qtbot, open_window, star, size):
     window = open_window(star)
-    window.resize(*size)
-    qtbot.waitUntil(lambda: (window.width(), window.height()) == size, timeout=WAIT)
-    window.help.show_tour()
-    callout = window.help.tour.callout
+    callout = tour_at(qtbot, window, size)
     places = window.help.places
     for step in STEPS:
         card = callout.geometry().marginsRemoved(QMargins(TIP, TIP, TIP, TIP))
