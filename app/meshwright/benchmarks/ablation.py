@@ -13,9 +13,8 @@ from statistics import median
 from typing import Any
 from unittest.mock import patch
 
-from meshwright.benchmarks.parts import GOOD, ROWS, USABLE, aligned, shown
+from meshwright.benchmarks.parts import GOOD, ROWS, USABLE, aligned, quad_policy, shown
 from meshwright.console import Update
-from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search import solution as positions
 from meshwright_agent.search import solver
@@ -81,9 +80,7 @@ def run(
     seed: int, quick: bool, update: Update, seconds: float = SECONDS, meshes: int = PARTS
 ) -> dict[str, Any]:
     """Improve `meshes` parts of each row in each variant; quick: one part, a tenth of the time."""
-    policy = policy_files.load(policy_files.shipped("quad")[0])
-    policy_files.decide_on_one_thread()
-    solver.prepare(policy)
+    policy = quad_policy()
     found: dict[str, Any] = {}
     done = 0
     for low, high in ROWS:

@@ -45,6 +45,14 @@ USABLE, GOOD = 0.3, 0.8
 WISHES = Wishes()
 
 
+def quad_policy() -> Policy:
+    """The shipped policy for quads, ready to be measured on one core."""
+    policy = policy_files.load(policy_files.shipped("quad")[0])
+    policy_files.decide_on_one_thread()
+    solver.prepare(policy)
+    return policy
+
+
 def run(
     seed: int,
     quick: bool,
@@ -58,9 +66,7 @@ def run(
 
     Where the module `gmsh` can be imported its meshes of about as many quads stand beside parts.
     """
-    policy = policy_files.load(policy_files.shipped("quad")[0])
-    policy_files.decide_on_one_thread()
-    solver.prepare(policy)
+    policy = quad_policy()
     time_each = 0.1 * seconds if quick else seconds
     wishes = Wishes(prefer, elements_shape=elements_shape)
     groups = {"gallery": list(gallery.gallery().values())}

@@ -14,13 +14,11 @@ from typing import Any
 import numpy as np
 import torch
 
-from meshwright.benchmarks.parts import ROWS, aligned, shown
+from meshwright.benchmarks.parts import ROWS, aligned, quad_policy, shown
 from meshwright.console import Update
 from meshwright_agent.env.vector_env import Batch
-from meshwright_agent.policy import policy_files
 from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy
-from meshwright_agent.search import solver
 from meshwright_agent.search.layout_search import LayoutSearch, Preference
 from meshwright_agent.search.search_worker import RolloutBatch, Worker
 from meshwright_core.domains import meshing
@@ -39,9 +37,7 @@ def run(
     seed: int, quick: bool, update: Update, seconds: float = SECONDS, meshes: int = PARTS
 ) -> dict[str, Any]:
     """Measure on `meshes` parts of each row; quick: one part, a tenth of the time."""
-    policy = policy_files.load(policy_files.shipped("quad")[0])
-    policy_files.decide_on_one_thread()
-    solver.prepare(policy)
+    policy = quad_policy()
     found: dict[str, Any] = {}
     for low, high in ROWS:
         decided = [0, 0.0]
