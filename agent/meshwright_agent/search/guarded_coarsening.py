@@ -5,13 +5,15 @@ to a copy, rejected at once where the degrees alone forbid a good shape, then po
 (:mod:`meshwright_core.geometry.layout_positions`) and kept if the layout is better in this order:
 nothing inverted; lower s; worst corner sine, up to a target; smaller sum of the squared
 irregularities; fewer elements. Sines are weighed so that long thin elements count as bad ones
-(:func:`meshwright_core.geometry.element_sines.thinness`). A layout is changed in larger steps by a
+(:func:`meshwright_core.geometry.element_sines.thinness`). Where the worst element is not good
+enough, a strip through it may also be cut in two. A layout is changed in larger steps by a
 *kick*: some random operations, followed by annealing until s is as low as before. All of it is
 compiled; every operation is logged.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -46,11 +48,10 @@ from meshwright_core.core.arrays import (
     copied,
     following,
     opposite,
-    preceding,
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
-from meshwright_core.geometry.element_sines import thinness
+from meshwright_core.geometry.element_sines import element_sine
 from meshwright_core.geometry.layout_positions import layout_bound, position, rails_of
 from meshwright_core.geometry.local_positions import LocalEffort, local_effort, settle
 from meshwright_core.geometry.turning import has_bends
@@ -59,6 +60,7 @@ from meshwright_core.operations.catalogue import (
     CHORD_COLLAPSE,
     CLEANUP,
     CODES,
+    DIVIDE_CHORD,
     GLOBAL_SPLIT,
     NAMES,
     check,
@@ -84,10 +86,14 @@ NEARBY = 60
 """Proposals near where a kick is to begin."""
 SPLIT_PRICE = 0.5
 """Price of a global split in a kick, in units of s."""
+SLICE = 4000
+"""Elements positioned between two looks at the clock: some tens of milliseconds."""
 _LOG = 1 << 12
 
 # entries of the state that the kernels share
 LENGTH, EVALUATED, ACCEPTED = 0, 1, 2
+# how far a pass over the candidates has come
+COUNT, NEXT, GAINED = 0, 1, 2
 
 
 @by_reference
@@ -99,8 +105,8 @@ class Aims(NamedTuple):
     comfort: float
     """Worst corner sine, at least the target, up to which more is worth more elements."""
     price: float
-    """How much more: a difference d of the worst sine counts as a factor exp(price d) of the number
-    of elements."""
+    """How much more: a difference d of the worst sine counts as a factor exp(price d) in
+    :func:`cost`."""
     spread: bool
     """Whether the sum of the squared irregularities counts before the number of elements."""
 
@@ -148,8 +154,12 @@ def squares(m):
 
 @bare_kernel
 def cost(worst, elements, aims):
-    """Elements, weighed against the worst sine: see :class:`Aims`."""
-    return elements * np.exp(-aims.price * min(worst, aims.comfort))
+    """Elements, weighed against the worst sine: see :class:`Aims`.
+
+    Without the first two, so that to double very few is worth less than to double many; 1 and 2
+    count as a quarter and a half.
+    """
+    return max(elements - 2.0, 0.25 * elements) * np.exp(-aims.price * min(worst, aims.comfort))
 
 
 @bare_kernel
@@ -205,49 +215,76 @@ def _log(record, operation, h):
 
 
 @kernel
-def coarsen_layout(m, trial, rails, guard, record, key, most, rng):
-    """Coarsen `m` in place by candidates in random order until none is accepted, or `most` were
-    positioned. trial: arrays of the same size; key (4,): s, worst sine, squares, elements of `m`,
-    kept up to date. Returns whether it came to an end.
+def _try_operation(m, trial, rails, guard, record, key, operation, h):
+    """Apply an operation to `m` if that makes the layout better; returns whether it did.
+
+    trial: arrays of the same size; key (4,): s, worst sine, squares, elements of `m`, kept up to
+    date.
     """
-    found = np.zeros((8 * m.counters[ELEMENT_SLOTS], 2), np.int64)
-    other, active = np.zeros(4), np.zeros(len(m.points), np.bool_)
+    other, state = np.zeros(4), record.state
+    copy_mesh(m, trial)
+    rewrite(trial, operation, h)
+    other[0], other[1] = trial.counters[SCORE], layout_bound(trial, guard.angle)
+    other[2] = squares(trial)
+    other[3] = trial.counters[ELEMENTS]
+    if not is_better(other, key, guard.aims):
+        return False
+    state[EVALUATED] += 1
+    if guard.bends:
+        active = np.zeros(len(m.points), np.bool_)
+        if settle(m, trial, rails, guard.local, active) <= 0.0:
+            return False
+    other[1] = max(0.0, position(trial, rails, guard.aims.comfort, STEPS))
+    if not is_better(other, key, guard.aims):
+        return False
+    copy_mesh(trial, m)
+    _log(record, operation, h)
+    for c in range(4):
+        key[c] = other[c]
+    state[ACCEPTED] += 1
+    return True
+
+
+@kernel
+def coarsen_layout(m, trial, rails, guard, record, key, course, most, rng):
+    """Coarsen `m` in place by candidates in random order until none is accepted, or `most` were
+    positioned. trial, key: as in :func:`_try_operation`; course: where it goes on, kept from call
+    to call. Returns whether it came to an end.
+    """
+    found, at = course
     state = record.state
     stop = state[EVALUATED] + most
-    improved = True
-    while improved:
-        improved = False
-        count = candidates(m, found)
-        for i in range(count):
-            j = i + int(rng.random() * (count - i))
+    while True:
+        if at[NEXT] >= at[COUNT]:
+            if at[COUNT] >= 0 and not at[GAINED]:
+                return True
+            at[COUNT], at[NEXT], at[GAINED] = candidates(m, found), 0, 0
+        for i in range(at[NEXT], at[COUNT]):
+            if state[LENGTH] + 2 > len(record.operations) or state[EVALUATED] >= stop:
+                return False
+            j = i + int(rng.random() * (at[COUNT] - i))
             operation, h = found[j, 0], found[j, 1]
             found[j, 0], found[j, 1] = found[i, 0], found[i, 1]
+            at[NEXT] = i + 1
             if m.edge[h, ORIGIN] < 0 or m.counters[ELEMENTS] <= guard.floor:
                 continue
             if check(m, operation, h, guard.cap) != ALLOWED:
                 continue
-            if state[LENGTH] + 2 > len(record.operations) or state[EVALUATED] >= stop:
-                return False
-            copy_mesh(m, trial)
-            rewrite(trial, operation, h)
-            other[0], other[1] = trial.counters[SCORE], layout_bound(trial, guard.angle)
-            other[2] = squares(trial)
-            other[3] = trial.counters[ELEMENTS]
-            if not is_better(other, key, guard.aims):
-                continue
-            state[EVALUATED] += 1
-            if guard.bends and settle(m, trial, rails, guard.local, active) <= 0.0:
-                continue
-            other[1] = max(0.0, position(trial, rails, guard.aims.comfort, STEPS))
-            if not is_better(other, key, guard.aims):
-                continue
-            copy_mesh(trial, m)
-            _log(record, operation, h)
-            for c in range(4):
-                key[c] = other[c]
-            state[ACCEPTED] += 1
-            improved = True
-    return True
+            if _try_operation(m, trial, rails, guard, record, key, operation, h):
+                at[GAINED] = 1
+
+
+@kernel
+def divide_strip(m, trial, rails, guard, record, key, h):
+    """Cut the strip of half-edge h in two, in place, if that makes the layout better.
+
+    The other arguments are those of :func:`coarsen_layout`. Returns whether it did.
+    """
+    if check(m, DIVIDE_CHORD, h, guard.cap) != ALLOWED:
+        return False
+    if record.state[LENGTH] + 2 > len(record.operations):
+        return False
+    return _try_operation(m, trial, rails, guard, record, key, DIVIDE_CHORD, h)
 
 
 @by_reference
@@ -289,21 +326,17 @@ def _wander(m, h, rng):
 
 
 @kernel
-def worst_halfedge(m):
-    """The half-edge whose origin is the corner with the smallest weighed sine, by the chords."""
+def worst_element(m, rails):
+    """The element with the smallest weighed sine, of its corners and where a side bends of its
+    samples; -1 if there is none.
+    """
     worst, where = np.inf, -1
-    points = m.points
-    for h in range(4 * m.counters[ELEMENT_SLOTS]):
-        if m.edge[h, ORIGIN] < 0:
+    for e in range(m.counters[ELEMENT_SLOTS]):
+        if m.edge[4 * e, ORIGIN] < 0:
             continue
-        o, s = m.edge[h, ORIGIN], m.edge[following(h, 4), ORIGIN]
-        t = m.edge[preceding(h, 4), ORIGIN]
-        px, py = points[s, 0] - points[o, 0], points[s, 1] - points[o, 1]
-        qx, qy = points[t, 0] - points[o, 0], points[t, 1] - points[o, 1]
-        p, q = np.hypot(px, py), np.hypot(qx, qy)
-        sine = thinness(p, q) * (px * qy - py * qx) / (p * q + 1e-300)
+        sine = element_sine(m, rails.turning, rails.gauge, e)
         if sine < worst:
-            worst, where = sine, h
+            worst, where = sine, e
     return where
 
 
@@ -371,6 +404,8 @@ class Layout:
     """(4,) s, worst corner sine up to what counts (0: folded), sum of squares, elements."""
     record: Record
     """How it is reached from the start."""
+    finest: bool = False
+    """Whether it is known that no strip at the worst element cut in two makes it better."""
 
     def copy(self) -> Layout:
         """An independent copy."""
@@ -386,10 +421,6 @@ class Layout:
         """The operations that lead from the start to it."""
         done = self.record.operations[: self.record.state[LENGTH]].tolist()
         return [(NAMES[code], h) for code, h in done]
-
-
-FINEST = Aims(1.0, 1.0, 0.0, False)
-"""Aims for the best positions of a given layout."""
 
 
 class Coarsener:
@@ -473,17 +504,23 @@ class Coarsener:
         ids = np.flatnonzero(free).astype(np.int64)
         return ids, m.points[ids].copy(), m.parameter[ids].copy()
 
-    def coarsen(self, layout: Layout, most: int = 1 << 40, aims: Aims | None = None) -> bool:
-        """Coarsen in place until no candidate is accepted (then true), or `most` were tried.
+    def coarsen(
+        self, layout: Layout, stop: Callable[[], bool] | None = None, aims: Aims | None = None
+    ) -> None:
+        """Coarsen in place until no candidate is accepted, or `stop`.
 
         aims: in place of its own.
         """
         guard = self.guard if aims is None else self.guard._replace(aims=aims)
-        ended = coarsen_layout(
-            layout.arrays, self._spare, self.rails, guard, layout.record, layout.key, most,
-            self.rng,
-        )  # fmt: skip
-        return bool(ended)
+        found = np.zeros((2 * len(layout.arrays.edge), 2), np.int64)
+        course = found, np.array([-1, 0, 0])
+        while stop is None or not stop():
+            ended = coarsen_layout(
+                layout.arrays, self._spare, self.rails, guard, layout.record, layout.key, course,
+                max(1, SLICE // int(layout.key[3])), self.rng,
+            )  # fmt: skip
+            if ended or not self._has_room(layout):
+                break
 
     def kicked(
         self,
@@ -498,12 +535,13 @@ class Coarsener:
         down to `score`, with degrees that permit a worst sine of `bound`, by so many `proposals`,
         or, where sides bend, something stays folded around what has changed.
 
-        at_worst: the operations begin near the worst corner.
+        at_worst: the operations begin near the worst element.
         """
         other = layout.copy()
         plan = Kick(
             jumps, proposals, ROUGH, FINE, score, float(bound), self._weights,
-            self.rails.angle, int(worst_halfedge(other.arrays)) if at_worst else -1, SCATTER,
+            self.rails.angle, 4 * worst_element(other.arrays, self.rails) if at_worst else -1,
+            SCATTER,
         )  # fmt: skip
         if not kick(other.arrays, other.record, plan, self._rules, self.rng):
             return None
@@ -513,6 +551,30 @@ class Coarsener:
                 return None
         self.judge(other)
         return other
+
+    def divided(self, layout: Layout, stop: Callable[[], bool]) -> bool:
+        """Cut in two, in place, a strip through the worst element or beside it; returns whether one
+        was found that makes the layout better, before `stop`.
+        """
+        m = layout.arrays
+        e = int(worst_element(m, self.rails))
+        sides = [4 * e + i for i in range(4)]
+        beside = [following(int(m.edge[h, TWIN]), 4) for h in sides if m.edge[h, TWIN] >= 0]
+        for h in [
+            *self.rng.permutation(sides[:2]).tolist(),
+            *self.rng.permutation(beside).tolist(),
+        ]:
+            if stop():
+                break
+            if divide_strip(
+                m, self._spare, self.rails, self.guard, layout.record, layout.key, h
+            ):  # fmt: skip
+                return True
+        return False
+
+    def _has_room(self, layout: Layout) -> bool:
+        """Whether the log of a layout is not full."""
+        return int(layout.record.state[LENGTH]) + 2 <= len(layout.record.operations)
 
     def better(self, first: Layout, second: Layout) -> bool:
         """Whether the first is the better layout."""

@@ -145,8 +145,11 @@ class GuardedDescent:
 
     def _round(
         self, begin: DrawnState, count: int, stop: Callable[[], bool], divide: bool = False
-    ) -> None:
-        """So many guarded rollouts from a state, or from what its strips cut in two make of it."""
+    ) -> list[DrawnState]:
+        """So many guarded rollouts from a state, or from what its strips cut in two make of it.
+
+        Returns the states of lower s, which are noted.
+        """
         mesh = begin.mesh(self._mesh)
         before = begin.operations + (divide_chords(mesh) if divide else [])
         batch = GuardedRollouts(
@@ -155,9 +158,14 @@ class GuardedDescent:
         )  # fmt: skip
         batch.run(stop)
         self.rollouts += count
-        for state in batch.found:
-            if state.score < begin.score:
-                self._note(replace(state, operations=before + state.operations))
+        lower = [
+            replace(state, operations=before + state.operations)
+            for state in batch.found
+            if state.score < begin.score
+        ]
+        for state in lower:
+            self._note(state)
+        return lower
 
     def _go_on(self, granted: Callable[[int], int], stop: Callable[[], bool]) -> None:
         """Guarded rollouts from a state, then from it divided, then a leap, until one leads on."""
@@ -175,6 +183,11 @@ class GuardedDescent:
         """Guarded rollouts from the start until `stop`: further states of the lowest s."""
         while self._start.score > self.score and len(self.lowest) < KEPT and not stop():
             self._round(self._start, 1, stop)
+
+    def another(self, stop: Callable[[], bool]) -> DrawnState | None:
+        """A further state of the lowest s, if a guarded rollout from the start reaches one."""
+        reached = self._round(self._start, 1, stop)
+        return next((state for state in reached if state.score == self.score), None)
 
     @staticmethod
     def _least_tried(states: list[DrawnState]) -> DrawnState:

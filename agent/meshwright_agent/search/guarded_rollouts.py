@@ -192,7 +192,7 @@ class GuardedRollouts:
         self._steps = task.step_limit(mesh.n_elements) if max_steps is None else max_steps
         self._optimum = mesh.optimum
         self._rails = rails_of(mesh, batch.meshes.vertex.shape[1])
-        self._local = local_effort(GOAL, thorough=False)
+        self._local = local_effort(GOAL, iterations=4, rounds=2, inner=6, rings=1, thorough=False)
         self._thin = thinning_effort()
         self._trial = copied(member_of(batch.meshes, 0))
         active = np.zeros(len(self._trial.points), np.bool_)

@@ -42,13 +42,19 @@ JUMPS = 7
 """The most random operations of a kick."""
 AT_WORST = 0.7
 """Probability that a kick of a layout below the target begins near its worst corner."""
+POOR, MANY = 0.32, 50
+"""Worst sine up to which, and elements from which, strips at the worst element are cut in two where
+sides bend: smaller layouts are better helped by kicks, of which few succeed in large ones."""
+DIVISIONS = 0.2
+"""Probability of doing so instead of a kick."""
+WORTH = 0.9
+"""Share of the worst sine of a layout below the target that a kick has to leave: what is worse is
+seldom made good by coarsening, which takes most of the time."""
 PROPOSALS = 200
 """The most proposals of a kick, relative to the number of elements."""
-SLICE = 4000
-"""Elements positioned between two looks at the clock: some tens of milliseconds."""
-STALE, STALE_ABOVE = 400, 50
-"""Kicks without an improvement after which other starts are asked for, below the target, and where
-s* is not reached and all sides are straight, so that many layouts can be drawn."""
+STALE, STALE_ABOVE, STALE_BENT = 400, 50, 120
+"""Kicks without an improvement after which other starts are asked for: below the target; where s*
+is not reached and all sides are straight, so that many layouts can be drawn; where sides bend."""
 PATIENCE = 4000
 """Kicks without an improvement after which the search gives up, once the target is reached."""
 
@@ -144,8 +150,10 @@ class LayoutSearch:
     @property
     def _stale(self) -> int:
         """How often other starts should have been asked for since the best layout was found."""
+        if self.coarsener.bends:
+            return self.idle // STALE_BENT
         low = self.best is not None and self.best.key[0] <= self.optimum
-        return self.idle // (STALE if low or self.coarsener.bends else STALE_ABOVE)
+        return self.idle // (STALE if low else STALE_ABOVE)
 
     def valid_at(self, score: int) -> bool:
         """Whether the best layout has no inverted element and this s."""
@@ -186,6 +194,12 @@ class LayoutSearch:
             self._coarsen(few, stop, FEW)
             self.coarsener.judge(few)
             self._insert(few)
+            divided = few.copy()
+            if self._divide(divided, stop):
+                self._coarsen(divided, stop)
+                self._insert(divided)
+                if not self._is_poor(divided):
+                    return
         self._coarsen(layout, stop)
         self._insert(layout)
 
@@ -206,10 +220,25 @@ class LayoutSearch:
 
     def _coarsen(self, layout: Layout, stop: Callable[[], bool], aims: Aims | None = None) -> None:
         before = int(layout.record.state[EVALUATED])
-        while not stop():
-            if self.coarsener.coarsen(layout, max(1, SLICE // int(layout.key[3])), aims):
-                break
+        self.coarsener.coarsen(layout, stop, aims)
         self.evaluated += int(layout.record.state[EVALUATED]) - before
+
+    def _divide(self, layout: Layout, stop: Callable[[], bool]) -> bool:
+        """Cut strips at its worst elements in two, in place, as long as the layout is poor and that
+        helps; returns whether one was.
+        """
+        before = int(layout.record.state[EVALUATED])
+        divided = False
+        while self._is_poor(layout) and layout.key[3] < LAYOUTS and not stop():
+            if not self.coarsener.divided(layout, stop):
+                break
+            divided = True
+        self.evaluated += int(layout.record.state[EVALUATED]) - before
+        return divided
+
+    def _is_poor(self, layout: Layout) -> bool:
+        large = self.coarsener.bends and layout.key[3] >= MANY
+        return bool(large and layout.key[1] < min(POOR, self.aims.target))
 
     def kick(self, stop: Callable[[], bool]) -> None:
         """Kick one layout of the pool and coarsen it; it stays unless it is worse."""
@@ -226,12 +255,20 @@ class LayoutSearch:
         if score > self.optimum and rng.random() < 0.7:
             score = self.optimum
         at_worst = parent.key[1] < comfort and rng.random() < AT_WORST
-        child = coarsener.kicked(
-            parent, jumps, score, bound, PROPOSALS * int(parent.key[3]), at_worst
-        )
+        if self._is_poor(parent) and not parent.finest and rng.random() < DIVISIONS:
+            child = parent.copy()
+            if not self._divide(child, stop):
+                parent.finest = not stop()
+                return
+        else:
+            child = coarsener.kicked(
+                parent, jumps, score, bound, PROPOSALS * int(parent.key[3]), at_worst
+            )
         if child is None:
             return
         self.layouts += 1
+        if parent.key[1] < self.aims.target and child.key[1] < WORTH * parent.key[1]:
+            return
         self._coarsen(child, stop)
         if not coarsener.better(parent, child):
             self.pool[i] = child

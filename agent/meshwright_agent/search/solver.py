@@ -72,10 +72,11 @@ TRIED = 24
 COARSEST = 0.5
 """Share of the time for the polish that coarsening without regard to shape takes where nothing
 that rollouts found at s* can be drawn."""
-DESCENT = 0.85
+DESCENT = 0.9
 """Share of the time after which no more guarded rollouts are made."""
-DRAWN = 2
-"""States found by guarded rollouts whose layouts are searched."""
+DRAWN, ADDED = 2, 0.25
+"""States found by guarded rollouts whose layouts are searched, at least; more are added up to this
+share of the time."""
 GATHERED = 0.15
 """Share of the time in which more of them are looked for once there is one at s*."""
 PATCHING, SMOOTHING = 0.75, 0.9
@@ -210,8 +211,9 @@ def _search_layouts(
 
     def run(i: int) -> None:
         seeker = seekers[i]
-        for state in descents[i].lowest[:DRAWN] if descents else []:
-            if state.score == drawn and not (seeker.pool and stop()):
+        for number, state in enumerate(descents[i].lowest if descents else []):
+            enough = number >= DRAWN and search.over(ADDED)
+            if state.score == drawn and not (seeker.pool and (enough or stop())):
                 seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
         # every thread has all candidates where there are few, and its share of them otherwise
         mine = candidates if len(candidates) < 2 * workers else candidates[i::workers]
@@ -231,7 +233,11 @@ def _search_layouts(
             seeker.run(stop, 100 if total is None else total // len(seekers))
             if total is not None or not coarsen or seeker.exhausted:
                 break
-            if seeker.needs_layouts and search.annealing:
+            if seeker.needs_layouts and bends and descents:
+                state = descents[i].another(stop)
+                if state is not None and state.score == drawn:
+                    seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
+            elif seeker.needs_layouts and search.annealing:
                 for candidate in search.more_rollouts(search.seed + 31 * seeker.kicks + 7919 * i):
                     seeker.add(candidate.operations, coarsen, stop)
 

@@ -5,7 +5,7 @@ import pytest
 
 from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.guarded_coarsening import FINEST, Coarsener
+from meshwright_agent.search.guarded_coarsening import Aims, Coarsener
 from meshwright_agent.search.layout_matching import matched_vertices
 from meshwright_agent.search.solution import Solution, judged
 from meshwright_core.domains import gallery
@@ -44,7 +44,7 @@ def test_different_layouts_are_not_matched(star):
 
 def test_positions_given_are_never_made_worse():
     mesh = mesh_domain(gallery.shape("plate-with-round-hole"), "quad")
-    coarsener = Coarsener(mesh, FINEST, ceiling=1)
+    coarsener = Coarsener(mesh, Aims(1.0, 1.0, 0.0, False), ceiling=1)
     placed = mesh.copy()
     placed.move(*coarsener.positions(coarsener.layout([])))
     solution = Solution([], mesh.score, mesh.optimum, 0)
