@@ -27,9 +27,10 @@ USABLE = 0.5
 CLOSE, COMFORT = 0.9, 0.85
 """... or this share of the best that is attainable; and the share of the larger of that and q* up
 to which more is worth more blocks."""
-PRICE = 4.8
-"""Each tenth of the bound is worth exp(0.48) times the blocks, 1.6 times as many. With a little
-more a round hole in a square would get eight blocks, not its ring of four."""
+PRICE = 7.0
+"""Each tenth of the bound is worth exp(0.7) in
+:func:`meshwright_agent.search.guarded_coarsening.cost`, about twice the blocks. With a little more
+a round hole in a square would get eight blocks, not its ring of four."""
 LEAST = 0.05
 """The least target: a corner below it is as good as folded."""
 SLACK = 3e-3
@@ -68,6 +69,8 @@ class Preference:
     worst corner, whatever the number; "balanced": a good worst corner, then few blocks."""
     min_shape: float | None = None
     """Worst scaled Jacobian beyond which more does not count, in place of that of `prefer`."""
+    price: float = PRICE
+    """How much a better worst corner is worth in blocks, see :data:`PRICE`."""
 
     def __post_init__(self) -> None:
         """Raise ValueError for an unknown word, or a shape beyond 0 to 1."""
@@ -86,7 +89,7 @@ class Preference:
             comfort = max(min(COMFORT * max(attainable, bound), most), target)
         else:
             target = comfort = LEAST if self.prefer == "blocks" else most
-        price = PRICE / max(bound, LEAST) if self.prefer == "balanced" else 0.0
+        price = self.price / max(bound, LEAST) if self.prefer == "balanced" else 0.0
         return Aims(target, comfort, price, self.prefer != "blocks")
 
 

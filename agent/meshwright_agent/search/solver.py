@@ -31,7 +31,7 @@ from meshwright_agent.search.guarded_coarsening import Coarsener, Layout
 from meshwright_agent.search.guarded_descent import GuardedDescent
 from meshwright_agent.search.guarded_rollouts import THIN_EVERY
 from meshwright_agent.search.layout_matching import matched_vertices
-from meshwright_agent.search.layout_search import LayoutSearch, Preference, has_layouts
+from meshwright_agent.search.layout_search import PRICE, LayoutSearch, Preference, has_layouts
 from meshwright_agent.search.patchwise import LARGE, improve_large, is_large
 from meshwright_agent.search.search_worker import (
     KEPT,
@@ -104,6 +104,7 @@ def solve(
     shorten: bool = True,
     prefer: str = "balanced",
     min_shape: float | None = None,
+    price: float = PRICE,
     progress: Callable[[int, int], None] | None = None,
     found: Found | None = None,
     cancelled: Callable[[], bool] | None = None,
@@ -133,6 +134,8 @@ def solve(
             :class:`meshwright_agent.search.layout_search.Preference`.
         min_shape: worst scaled Jacobian beyond which more does not count, in place of that of
             `prefer`.
+        price: of a better worst corner, in blocks, see
+            :class:`meshwright_agent.search.layout_search.Preference`.
         progress: called with (rollouts done, lowest s) after rollouts and whenever s falls, from
             the worker threads.
         found: called, likewise, for each state that is better than all before it and would be the
@@ -140,13 +143,13 @@ def solve(
         cancelled: polled; the search ends with the best result so far when it is true.
     """
     require_kind(policy, mesh.kind)
-    preference = Preference(prefer, min_shape)
+    preference = Preference(prefer, min_shape, price)
     if seconds is not None:
         prepare(policy)  # so that loading compiled code takes none of the time
     if is_large(mesh):
         go_on = partial(
             solve, rollouts=rollouts, workers=workers, coarsen=coarsen, shorten=shorten,
-            prefer=prefer, min_shape=min_shape, found=found,
+            prefer=prefer, min_shape=min_shape, price=price, found=found,
         )  # fmt: skip
         return _patch_by_patch(
             mesh, policy, seconds, max_steps, seed, progress, found, cancelled, go_on

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from meshwright_agent.policy import policy_files
+from meshwright_agent.search import guarded_coarsening
 from meshwright_agent.search.coarsening import replayed
+from meshwright_agent.search.guarded_coarsening import Aims, Coarsener
 from meshwright_agent.search.layout_search import PATIENCE, STALE_ABOVE, LayoutSearch, Preference
 from meshwright_agent.search.shortening import shorten
 from meshwright_agent.search.solver import prepare, solve
@@ -12,6 +14,8 @@ from meshwright_core.domains.meshing import mesh_domain
 from meshwright_core.domains.random_parts import random_part
 from meshwright_core.geometry import quality
 from meshwright_core.geometry.shape_bound import attainable_bound, shape_bound
+from meshwright_core.mesh import HalfEdgeMesh
+from meshwright_core.operations.catalogue import Operation
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +51,31 @@ def test_coarsening_under_the_guard_replays_and_stays_valid(prefer):
     reached.validate()
     assert not len(quality.inverted(reached))
     assert quality.scaled_jacobian(reached).min() == pytest.approx(worst, abs=1e-6)
+
+
+def test_coarsening_goes_on_where_it_stopped(monkeypatch):
+    """With few elements between two looks at the clock a pass over all strips still ends."""
+    monkeypatch.setattr(guarded_coarsening, "SLICE", 1)
+    looks = []
+    search = LayoutSearch(part(), Preference("blocks"), seed=1)
+    search.add([], True, lambda: len(looks) > 5000 or looks.append(0))
+    assert len(looks) < 5000
+    few = search.best.copy()
+    search.coarsener.coarsen(few)
+    assert few.key[3] == search.best.key[3] < part().n_elements
+
+
+def test_a_long_strip_is_cut_until_its_elements_are_good():
+    mesh = HalfEdgeMesh.from_elements([[0, 0], [20, 0], [20, 1], [0, 1]], [[0, 1, 2, 3]])
+    coarsener = Coarsener(mesh, Aims(0.9, 0.9, 0.0, True), ceiling=20)
+    layout = coarsener.layout([])
+    assert layout.key[1] == pytest.approx(8 * 20 / 401)
+    while coarsener.divided(layout, never):
+        pass
+    assert layout.key[1] >= 0.9
+    assert layout.key[[0, 2, 3]].tolist() == [0, 0, 3]
+    assert [operation for operation, _ in layout.operations()] == [Operation.DIVIDE_CHORD] * 2
+    assert not coarsener.divided(coarsener.layout([]), lambda: True)
 
 
 def test_shortening_can_keep_the_layout():
