@@ -28,6 +28,7 @@ from meshwright_agent.search.divided_layouts import (
     ways_down,
 )
 from meshwright_agent.search.guarded_rollouts import (
+    STALLED,
     THIN_LEAST,
     DrawnState,
     GuardedRollouts,
@@ -47,6 +48,9 @@ TOGETHER, ELEMENTS_EACH = 2, 200
 comes further in the same time."""
 ROUNDS = 6
 """Guarded rollouts from the start in each turn."""
+STALLED_LATER = 80
+"""Decisions without a lower s after which a rollout ends from the second turn on: where s* is hard
+to reach, more of the long ones do."""
 CONTINUED = 1, 2
 """Guarded rollouts from a state as it is, and divided: from most states none leads on, from some
 nearly all do."""
@@ -96,6 +100,7 @@ class GuardedDescent:
         # by the start of the descent: by those of its rounds the meshes would grow without end
         self._ceiling = policy.task.bounds(mesh.n_elements)[1]
         self._rng = np.random.default_rng(seed)
+        self._stalled = STALLED
         self.states: list[DrawnState] = []
         self.rollouts = 0
 
@@ -123,6 +128,7 @@ class GuardedDescent:
 
         turn = 0
         while not over() and granted(1) > 0:
+            self._stalled = STALLED if turn == 0 else STALLED_LATER
             turn += 1
             for i in range(ROUNDS // together):
                 if not over() and (count := granted(together)) > 0:
@@ -154,7 +160,7 @@ class GuardedDescent:
         before = begin.operations + (divide_chords(mesh) if divide else [])
         batch = GuardedRollouts(
             mesh, self._policy, self._rng, count, self._max_steps,
-            max(self._ceiling, mesh.n_elements),
+            max(self._ceiling, mesh.n_elements), self._stalled,
         )  # fmt: skip
         batch.run(stop)
         self.rollouts += count

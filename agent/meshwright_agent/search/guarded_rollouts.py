@@ -41,7 +41,7 @@ from meshwright_core.operations.catalogue import NAMES, Operation, check, rewrit
 from meshwright_core.operations.refusals import ALLOWED
 
 STALLED = 40
-"""Decisions without a lower s after which a rollout ends."""
+"""Decisions without a lower s after which a rollout ends, by default."""
 TRIES = 6
 """Operations that are tried for one decision."""
 FORGET = 12
@@ -165,6 +165,7 @@ class GuardedRollouts:
         count: rollouts side by side.
         max_steps: length of a rollout, by default that of the policy's task.
         ceiling: largest number of elements, by default that of the policy's task.
+        stalled: decisions without a lower s after which a rollout ends.
 
     Attributes:
         found: the best state of each rollout.
@@ -180,8 +181,10 @@ class GuardedRollouts:
         count: int = 1,
         max_steps: int | None = None,
         ceiling: int | None = None,
+        stalled: int = STALLED,
     ) -> None:
         """Begin at `mesh`."""
+        self._stalled = stalled
         task = policy.task
         self._network, self._task, self._rng = policy.network, task, rng
         floor, own = task.bounds(mesh.n_elements)
@@ -247,7 +250,7 @@ class GuardedRollouts:
             if batch.steps[b] % THIN_EVERY == 0:
                 self._done[b] += self._thinned(member_of(batch.meshes, b))
             ended = self.found[b].score <= self._optimum or not possible[b].any()
-            stalled = batch.steps[b] - self._gained[b] > STALLED or self._idle[b] > STUCK
+            stalled = batch.steps[b] - self._gained[b] > self._stalled or self._idle[b] > STUCK
             if ended or stalled or batch.steps[b] >= self._steps:
                 batch.active[b] = False
 
