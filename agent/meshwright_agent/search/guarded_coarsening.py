@@ -51,7 +51,7 @@ from meshwright_core.core.arrays import (
 )
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
-from meshwright_core.geometry.element_sines import element_sine
+from meshwright_core.geometry.element_sines import element_sine, worst_around
 from meshwright_core.geometry.layout_positions import layout_bound, position, rails_of
 from meshwright_core.geometry.local_positions import LocalEffort, local_effort, settle
 from meshwright_core.geometry.turning import has_bends
@@ -86,6 +86,9 @@ NEARBY = 60
 """Proposals near where a kick is to begin."""
 SPLIT_PRICE = 0.5
 """Price of a global split in a kick, in units of s."""
+LARGE = 400
+"""Elements beyond which only the surroundings of a change are positioned where sides bend: all of
+them may take seconds where something is nearly folded."""
 SLICE = 4000
 """Elements positioned between two looks at the clock: some tens of milliseconds."""
 _LOG = 1 << 12
@@ -230,11 +233,15 @@ def _try_operation(m, trial, rails, guard, record, key, operation, h):
     if not is_better(other, key, guard.aims):
         return False
     state[EVALUATED] += 1
+    every = np.zeros(0, np.bool_)
     if guard.bends:
         active = np.zeros(len(m.points), np.bool_)
         if settle(m, trial, rails, guard.local, active) <= 0.0:
             return False
-    other[1] = max(0.0, position(trial, rails, guard.aims.comfort, STEPS))
+    if guard.bends and trial.counters[ELEMENTS] > LARGE:
+        other[1] = max(0.0, worst_around(trial, rails.turning, rails.gauge, every, 0.0))
+    else:
+        other[1] = max(0.0, position(trial, rails, guard.aims.comfort, STEPS))
     if not is_better(other, key, guard.aims):
         return False
     copy_mesh(trial, m)

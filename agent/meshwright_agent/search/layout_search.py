@@ -45,7 +45,7 @@ AT_WORST = 0.7
 """Probability that a kick of a layout below the target begins near its worst corner."""
 POOR, MANY = 0.32, 50
 """Worst sine up to which, and elements from which, strips at the worst element are cut in two where
-sides bend: smaller layouts are better helped by kicks, of which few succeed in large ones."""
+sides bend: smaller layouts are better helped by kicks, as long as they help."""
 DIVISIONS = 0.2
 """Probability of doing so instead of a kick."""
 WORTH = 0.9
@@ -240,8 +240,9 @@ class LayoutSearch:
         return divided
 
     def _is_poor(self, layout: Layout) -> bool:
-        large = self.coarsener.bends and layout.key[3] >= MANY
-        return bool(large and layout.key[1] < min(POOR, self.aims.target))
+        if not self.coarsener.bends or layout.key[1] >= min(POOR, self.aims.target):
+            return False
+        return bool(layout.key[3] >= MANY) or self.idle >= STALE_BENT
 
     def kick(self, stop: Callable[[], bool]) -> None:
         """Kick one layout of the pool and coarsen it; it stays unless it is worse."""
