@@ -125,7 +125,7 @@ class Stage:
     def picture_of(self, dialog: Any) -> Image.Image:
         """A dialog on a plain background of the size of the window."""
         taken = _pillow(dialog.grab())
-        size = self.window.size()
+        size = self.window.size() * self.window.devicePixelRatio()
         ground = Image.new("RGB", (size.width(), size.height()), self.window.theme.pressed)
         ground.paste(
             taken, ((size.width() - taken.width) // 2, (size.height() - taken.height) // 2)

@@ -18,6 +18,7 @@ from meshwright_core.geometry.coons import at_corners, curved_corners
 from meshwright_core.geometry.curved_elements import curved_elements
 from meshwright_core.geometry.edge_curves import curved_edge_polylines, edge_points
 from meshwright_core.geometry.element_shapes import element_shapes
+from meshwright_core.geometry.max_min_positions import max_min_positions
 from meshwright_core.geometry.quality import inverted
 from meshwright_core.geometry.smoothing import relax
 from meshwright_core.io.history_checks import require_history
@@ -50,6 +51,7 @@ def exercise() -> None:
     quads = HalfEdgeMesh.from_elements(places, elements)
     quads.move([4], np.array([[3.0, 3.0, 0.0]]))
     relax(quads, [4])
+    max_min_positions(quads, np.array([4]))
     inverted(quads)
     element_shapes(quads)
     edge_points(quads, 0, [0.5])

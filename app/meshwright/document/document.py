@@ -583,10 +583,10 @@ class Document:
 
 
 def _relax(mesh: HalfEdgeMesh, around: tuple[int, ...], thorough: bool) -> None:
-    """Smooth near ``around`` (vertex ids); imports scipy, so imported late."""
-    from meshwright_core.geometry.smoothing import relax
+    """Smooth near ``around`` (vertex ids)."""
+    from meshwright.document.position_repair import relax_around  # imports scipy
 
-    relax(mesh, around, thorough)
+    relax_around(mesh, around, thorough)
 
 
 def _ids(vertices: int | np.ndarray) -> list[int]:

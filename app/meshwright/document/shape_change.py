@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from meshwright.document.position_repair import relax_around
 from meshwright_core import HalfEdgeMesh, MeshError, Operation
 from meshwright_core.geometry.movable_part import elements_at
 from meshwright_core.geometry.planes import plane_normal
 from meshwright_core.geometry.quality import Measure
-from meshwright_core.geometry.smoothing import relax
 
 
 class _RollBackError(Exception):
@@ -36,7 +36,7 @@ def shape_change(
             edit = mesh.apply(operation, halfedge)
             touched = np.unique(np.asarray(edit.touched, np.int64))
             if smooth:
-                relax(mesh, edit.touched, thorough=False)
+                relax_around(mesh, edit.touched, thorough=False)
             shared = min(len(points), len(mesh.points))
             moved = (mesh.points[:shared] != points[:shared]).any(axis=1)
             touched = np.union1d(touched, np.flatnonzero(moved))

@@ -62,17 +62,23 @@ class Viewport:
         """Another size in pixels, with the same centre and scale."""
         return replace(self, size=(max(width, 1), max(height, 1)))
 
-    def fitted(self, points: np.ndarray, margin: float = 48.0) -> "Viewport":
-        """The viewport that shows all ``points`` (n, 2 or 3) with a margin of ``margin`` pixels."""
+    def fitted(
+        self, points: np.ndarray, margin: float = 48.0, below: float | None = None
+    ) -> "Viewport":
+        """The viewport that shows all ``points`` (n, 2 or 3) with a margin of ``margin`` pixels;
+        ``below``: of so many pixels under them.
+        """
         points = np.asarray(points, dtype=float)
         if len(points) == 0:
             return replace(self, centre=(0.0, 0.0), pixels=100.0)
         low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
         extent = np.maximum(high - low, 1e-12 + 1e-9 * np.abs(high).max())
-        room = np.maximum(np.array(self.size, dtype=float) - 2.0 * margin, 16.0)
+        below = margin if below is None else below
+        taken = (2.0 * margin, margin + below)
+        room = np.maximum(np.array(self.size, dtype=float) - taken, 16.0)
         centre = (float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0)
         pixels = float(np.clip((room / extent).min(), NEAREST, FARTHEST))
-        return replace(self, centre=centre, pixels=pixels)
+        return replace(self, centre=centre, pixels=pixels).panned(0.0, 0.5 * (margin - below))
 
     def around(self, points: np.ndarray, least: float = 72.0) -> "Viewport":
         """The viewport centred on ``points`` (n, 2 or 3), zoomed in until they are ``least`` pixels

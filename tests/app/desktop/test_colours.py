@@ -16,6 +16,7 @@ from meshwright.graphics.colouring import (
 from meshwright.graphics.theme import THEMES
 from meshwright_core.analysis.blocks import block_of
 from meshwright_core.core.arrays import TWIN
+from meshwright_core.domains import gallery, meshing
 from meshwright_core.geometry import quality
 from meshwright_core.geometry.element_shapes import element_shapes
 
@@ -86,6 +87,31 @@ def test_the_view_shows_colours_and_a_legend(qtbot, open_window, star):
     act["colour.chord"].trigger()
     assert window.colours.chords.empty and legend.legend is None
     assert window.settings.text("view/colour") == "plain"
+
+
+def test_the_legend_covers_nothing_of_the_mesh_in_a_small_window(qtbot, open_window):
+    window = open_window(meshing.mesh_domain(gallery.shape("square"), "quad"))
+    window.resize(900, 600)
+    measured(qtbot, window)
+    canvas, act = window.canvas, window.actions_by_id
+
+    def lowest():
+        points = window.document.mesh.points[window.document.mesh.vertices()]
+        return canvas.viewport.to_screen(points).max(axis=0)
+
+    qtbot.waitUntil(lambda: canvas.height() < 450, timeout=WAIT)
+    plain = canvas.viewport
+    act["colour.jacobian"].trigger()
+    card = window.colours.legend.card
+    assert card.right() < canvas.width() and card.bottom() < canvas.height()
+    assert lowest()[0] > card.left() and lowest()[1] < card.top()
+    act["colour.jacobian"].trigger()
+    assert canvas.viewport == plain
+    act["colour.jacobian"].trigger()
+    canvas.see(canvas.viewport.zoomed(2.0, 10.0, 10.0))
+    seen = canvas.viewport
+    act["colour.jacobian"].trigger()
+    assert canvas.viewport == seen  # a view that was chosen stays
 
 
 def test_colours_follow_an_edit(qtbot, open_window, star):

@@ -146,6 +146,22 @@ def test_commands_on_vertices_are_found_and_have_keys(typed, action):
     assert next(a for a in registry.ACTIONS if a.id == action).shortcuts
 
 
+def test_the_view_moves_to_an_irregular_vertex_only_if_it_must(qtbot, open_window, star):
+    window = open_window(star)
+    canvas = window.canvas
+    fitted = canvas.viewport
+    press(qtbot, window, Qt.Key.Key_N)
+    assert window.document.hover >= 0 and canvas.viewport == fitted
+    canvas.see(fitted.panned(3.0 * canvas.width(), 0.0))
+    press(qtbot, window, Qt.Key.Key_N)
+    place = star.points[star.origin(window.document.hover)]
+    at = canvas.viewport.to_screen(place)
+    assert (at > 0.0).all() and (at < canvas.viewport.size).all()
+    canvas.see(fitted.zoomed(0.02, 100.0, 100.0))
+    press(qtbot, window, Qt.Key.Key_N)
+    assert canvas.viewport.pixels > 0.1 * fitted.pixels
+
+
 def test_vertices_are_changed_by_keys_alone(qtbot, open_window, star):
     window = open_window(star)
     press(qtbot, window, Qt.Key.Key_N)

@@ -9,7 +9,7 @@ from meshwright_core import warm_up
 from meshwright_core.errors import MeshError
 from meshwright_core.geometry import smoothing
 from meshwright_core.geometry.max_min_positions import max_min_positions
-from meshwright_core.geometry.quality import inverted
+from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.weighed_shapes import weighed_worst
 
 
@@ -61,6 +61,43 @@ def test_max_min_positions_raise_the_worst_element_and_move_no_pinned_vertex():
     mesh.move(ids, places, parameters)
     assert weighed_worst(mesh) > before
     assert not len(inverted(mesh))
+
+
+def test_smoothing_after_an_operation_does_not_spoil_blocks():
+    mesh = blocks()
+    spoilt = 0
+    for halfedge in mesh.halfedges_of(mesh.element_ids()).ravel().tolist():
+        if not mesh.check("divide_chord", halfedge):
+            continue
+        plain = mesh.copy()
+        edit = plain.apply("divide_chord", halfedge)
+        just_after = scaled_jacobian(plain).min()
+        smoothing.relax(plain, edit.touched)
+        spoilt += scaled_jacobian(plain).min() < just_after - 0.05
+        document = Document(mesh.copy(), "blocks")
+        document.submit("divide_chord", halfedge)
+        assert scaled_jacobian(document.mesh).min() >= just_after - 0.02
+        document.undo()
+        assert np.array_equal(document.mesh.points, mesh.points)
+    assert spoilt
+
+
+def test_smoothing_a_selection_does_not_spoil_blocks():
+    mesh = blocks()
+    mesh.apply("divide_chord", next(h for h in range(mesh.slots) if mesh.check("divide_chord", h)))
+    before = scaled_jacobian(mesh).min()
+    averaged = mesh.copy()
+    averaged.move(*smoothing.smooth(averaged))
+    assert scaled_jacobian(averaged).min() < before - 0.05
+    Document(mesh, "blocks").smooth(vertices=mesh.vertices())
+    assert scaled_jacobian(mesh).min() >= before - 0.02
+
+
+def test_max_min_positions_of_some_vertices_move_no_other():
+    mesh = mw.mesh("star")
+    inside = np.flatnonzero(~mesh.boundary() & (mesh.degree() > 0))[:2]
+    ids, _, _ = max_min_positions(mesh, inside)
+    assert ids.tolist() == inside.tolist()
 
 
 def test_triangles_have_no_max_min_positions():

@@ -28,7 +28,7 @@ _SWITCHES = (
     (
         "auto_smooth",
         "Smooth around every operation",
-        "The vertices near an operation are smoothed. Corners and locked vertices are fixed, "
+        "The vertices near an operation are smoothed. Corners, locked and pinned ones are fixed, "
         "boundary vertices stay on their side.",
     ),
     (

@@ -59,6 +59,7 @@ class Canvas(QWidget):
         self._fills: np.ndarray | None = None
         self._edges_shown = True
         self._fitted = True
+        self._covered = (0.0, 0.0)
         self._stale = False
         self._at: QPointF | None = None  # the position of the mouse
         self._pinned = -1  # the half-edge hovered by keyboard
@@ -167,8 +168,25 @@ class Canvas(QWidget):
         """Fit the view to the mesh, and refit it when the canvas is resized."""
         self._fitted = True
         if self.edges is not None:
-            self.viewport = self.viewport.fitted(self.edges.points)
+            self.viewport = self._fit_to(self.edges.points)
             self._look()
+
+    def cover(self, width: float, height: float) -> None:
+        """Tell how much of the lower right corner a legend covers, in pixels: where the mesh would
+        lie below it, :meth:`fit` leaves it room. 0 for no legend.
+        """
+        if (width, height) != self._covered:
+            self._covered = (width, height)
+            if self._fitted:
+                self.fit()
+
+    def _fit_to(self, points: np.ndarray) -> Viewport:
+        view = self.viewport.fitted(points)
+        if len(points):
+            lowest = view.to_screen(points).max(axis=0)
+            if (lowest > np.array(view.size) - self._covered).all():
+                view = view.fitted(points, below=self._covered[1])
+        return view
 
     def see(self, viewport: Viewport) -> None:
         """Change the view; it is no longer refitted when the canvas is resized."""

@@ -32,7 +32,7 @@ REST = 60
 MEASURED_AFTER = 90
 """Milliseconds at a half-edge after which the change of shape of each operation is computed."""
 PATIENCE = 0.03
-"""Seconds that this may take."""
+"""Seconds that this may take at a time."""
 FEW = 2000
 """The tag of a preview avoids irregular vertices only up to this many."""
 
@@ -74,6 +74,7 @@ class HoverController(Controller):
         self._rest.timeout.connect(self._draw_ghost)
         self._open = True
         self._suspended = False
+        self._measured: tuple[tuple[int, int], dict[Operation, float | None]] = (self._at, {})
         self._measuring = QTimer(canvas)
         self._measuring.setSingleShot(True)
         self._measuring.setInterval(MEASURED_AFTER)
@@ -210,15 +211,18 @@ class HoverController(Controller):
         mesh, at = self._document.mesh, self._at
         if mesh is None or at[0] != self._document.revision or self._assistant.running:
             return
-        began, found = time.perf_counter(), {}
+        if self._measured[0] != at:
+            self._measured = (at, {})
+        began, found = time.perf_counter(), self._measured[1]
         for offer in self.choices:
-            if offer.allowed and offer.info.is_local:
-                change = shape_change(mesh, offer.operation, at[1], self._document.auto_smooth)
-                if change is not None:
-                    found[offer.operation] = change
+            if offer.allowed and offer.info.is_local and offer.operation not in found:
+                found[offer.operation] = shape_change(
+                    mesh, offer.operation, at[1], self._document.auto_smooth
+                )
                 if time.perf_counter() - began > PATIENCE:
+                    self._measuring.start()
                     break
-        self.panel.show_shapes(found)
+        self.panel.show_shapes({operation: by for operation, by in found.items() if by is not None})
 
     def _draw_ghost(self) -> None:
         """Show the preview of the current operation."""

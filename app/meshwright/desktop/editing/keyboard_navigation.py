@@ -17,6 +17,8 @@ STRIDE = 64.0
 ZOOM = 1.25
 SIZE = 120.0
 """Minimum size in pixels of the elements around a vertex that the view moves to."""
+SEEN = 60.0
+"""Their size from which the view stays where it is, if all of them are in it."""
 _BITS = 16
 
 
@@ -77,7 +79,10 @@ class KeyboardNavigation(Controller):
         around = mesh.points[[vertex, *mesh.neighbours(vertex)]]
         reach = float(np.abs(around - mesh.points[vertex])[:, :2].max())
         box = mesh.points[vertex] + reach * np.array([(-1.0, -1.0, 0.0), (1.0, 1.0, 0.0)])
-        canvas.see(canvas.viewport.around(box, SIZE))
+        corners = canvas.viewport.to_screen(box)
+        within = (corners > 0.0).all() and (corners < canvas.viewport.size).all()
+        if not within or 2.0 * reach * canvas.viewport.pixels < SEEN:
+            canvas.see(canvas.viewport.around(box, SIZE))
         canvas.pin(mesh.outgoing(vertex)[0])
         self._highlight.show(mesh.points[[vertex]])
         self._status.show_message(

@@ -18,7 +18,7 @@ from meshwright.desktop.widgets.action_set import ActionEntry, key_text
 from meshwright.desktop.widgets.basic import named
 from meshwright.graphics.theme import GRID
 
-MOST_COLUMNS = 4
+MOST_COLUMNS = 5
 """There are as many columns as fit the window, up to this number."""
 Block = tuple[str, list[tuple[str, str, str]]]
 """A heading, and for each line the keys, the title of the action, and its tooltip."""

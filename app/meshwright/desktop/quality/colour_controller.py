@@ -115,4 +115,5 @@ class ColourController(Controller):
             return
         self.chords.show(ends, chord)
         self.legend.show(legend)
+        self._canvas.cover(*self.legend.room)
         self._canvas.fill(fills)

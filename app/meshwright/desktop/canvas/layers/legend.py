@@ -1,4 +1,4 @@
-"""The legend of what elements are coloured by, in the lower left corner of the canvas."""
+"""The legend of what elements are coloured by, in the lower right corner of the canvas."""
 
 from __future__ import annotations
 
@@ -74,13 +74,16 @@ class LegendLayer(Layer):
     def card(self) -> QRectF:
         """Where the legend is."""
         scaled = self.legend is not None and self.legend.scaled
-        height = 64.0 if scaled else 48.0
-        return QRectF(
-            MARGIN,
-            self.viewport.size[1] - MARGIN - height,
-            WIDTH if scaled else 0.7 * WIDTH,
-            height,
-        )
+        width, height = (WIDTH, 64.0) if scaled else (0.7 * WIDTH, 48.0)
+        right, bottom = self.viewport.size[0] - MARGIN, self.viewport.size[1] - MARGIN
+        return QRectF(right - width, bottom - height, width, height)
+
+    @property
+    def room(self) -> tuple[float, float]:
+        """Width and height that the legend takes in its corner, with a margin all around."""
+        if self.legend is None:
+            return 0.0, 0.0
+        return self.card.width() + 2.0 * MARGIN, self.card.height() + 2.0 * MARGIN
 
     def _paint_scale(self, painter: QPainter, bar: QRectF, bound: float | None) -> None:
         gradient = QLinearGradient(bar.topLeft(), bar.topRight())
