@@ -52,7 +52,7 @@ from meshwright_core.core.arrays import (
 from meshwright_core.core.compilation import bare_kernel, kernel
 from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.element_sines import element_sine, worst_around
-from meshwright_core.geometry.layout_positions import layout_bound, position, rails_of
+from meshwright_core.geometry.layout_positions import POOR, layout_bound, position, rails_of
 from meshwright_core.geometry.local_positions import LocalEffort, local_effort, settle
 from meshwright_core.geometry.turning import has_bends
 from meshwright_core.mesh import HalfEdgeMesh
@@ -86,10 +86,7 @@ NEARBY = 60
 """Proposals near where a kick is to begin."""
 SPLIT_PRICE = 0.5
 """Price of a global split in a kick, in units of s."""
-LARGE = 400
-"""Elements beyond which only the surroundings of a change are positioned where sides bend: all of
-them may take seconds where something is nearly folded."""
-SLICE = 4000
+SLICE = 2000
 """Elements positioned between two looks at the clock: some tens of milliseconds."""
 _LOG = 1 << 12
 
@@ -233,12 +230,13 @@ def _try_operation(m, trial, rails, guard, record, key, operation, h):
     if not is_better(other, key, guard.aims):
         return False
     state[EVALUATED] += 1
-    every = np.zeros(0, np.bool_)
     if guard.bends:
         active = np.zeros(len(m.points), np.bool_)
         if settle(m, trial, rails, guard.local, active) <= 0.0:
             return False
-    if guard.bends and trial.counters[ELEMENTS] > LARGE:
+    if guard.bends and key[1] < POOR:
+        # all of it would be unfolded at each try
+        every = np.zeros(0, np.bool_)
         other[1] = max(0.0, worst_around(trial, rails.turning, rails.gauge, every, 0.0))
     else:
         other[1] = max(0.0, position(trial, rails, guard.aims.comfort, STEPS))

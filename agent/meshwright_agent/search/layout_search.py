@@ -195,7 +195,11 @@ class LayoutSearch:
             # where sides bend: a layout of few blocks is improved much faster
             few = layout.copy()
             self._coarsen(few, stop, FEW)
+            kept = few.copy()
             self.coarsener.judge(few)
+            if few.key[1] < kept.key[1]:
+                # raising the corners has folded a quad along a curve
+                few = kept
             self._insert(few)
             divided = few.copy()
             if self._divide(divided, stop):
@@ -240,9 +244,10 @@ class LayoutSearch:
         return divided
 
     def _is_poor(self, layout: Layout) -> bool:
+        """Whether the layout, without inverted elements, is to be improved by dividing strips."""
         if not self.coarsener.bends or layout.key[1] >= min(POOR, self.aims.target):
             return False
-        return bool(layout.key[3] >= MANY) or self.idle >= STALE_BENT
+        return bool(layout.key[1] > 0.0) and (layout.key[3] >= MANY or self.idle >= STALE_BENT)
 
     def kick(self, stop: Callable[[], bool]) -> None:
         """Kick one layout of the pool and coarsen it; it stays unless it is worse."""
