@@ -469,6 +469,7 @@ def _warm_up_curves() -> None:
     seeker = LayoutSearch(plate, Preference())
     seeker.add([], True, lambda: False)
     seeker.run(lambda: False, 16)
+    seeker.coarsener.divided(seeker.pool[0].copy(), lambda: False)
     assert not judged(Solution([], 0, 0, 0), plate).inverted
 
 

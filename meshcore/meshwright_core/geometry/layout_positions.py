@@ -325,21 +325,25 @@ def _average(problem, x):
 def _improve(problem, x, effort, afresh):
     """Untangle where needed, then raise the worst corner; returns its sine."""
     used = problem.bent.used
-    used[0] = MIDDLES
+    used[0] = COUNT
     place_layout(problem, x)
     if afresh:
         _average(problem, x)
     worst = worst_sine(problem)
     if worst < POOR:
-        worst = unfold_layout(problem, x, effort.rounds, effort.inner, effort.polish)
-    if worst > FOLDED and len(problem.bent.vertices):
-        # with all samples from the start more stays folded
-        climb(problem, x, effort.goal, effort.iterations)
-        used[0] = COUNT
+        used[0] = MIDDLES
         place_layout(problem, x)
         worst = worst_sine(problem)
         if worst < POOR:
             worst = unfold_layout(problem, x, effort.rounds, effort.inner, effort.polish)
+        if worst > FOLDED and len(problem.bent.vertices):
+            # with all samples from the start more stays folded
+            climb(problem, x, effort.goal, effort.iterations)
+            used[0] = COUNT
+            place_layout(problem, x)
+            worst = worst_sine(problem)
+            if worst < POOR:
+                worst = unfold_layout(problem, x, effort.rounds, effort.inner, effort.polish)
     if FOLDED < worst < effort.goal and len(x):
         worst = climb(problem, x, effort.goal, effort.iterations)
         if effort.goal >= 1.0:
