@@ -243,6 +243,14 @@ class LayoutSearch:
         self.evaluated += int(layout.record.state[EVALUATED]) - before
         return divided
 
+    def _finer(self, parent: Layout, stop: Callable[[], bool]) -> Layout | None:
+        """A divided copy; None where no division helps, which is kept in mind."""
+        child = parent.copy()
+        if self._divide(child, stop):
+            return child
+        parent.finest = not stop()
+        return None
+
     def _is_poor(self, layout: Layout) -> bool:
         """Whether the layout, without inverted elements, is to be improved by dividing strips."""
         if not self.coarsener.bends or layout.key[1] >= min(POOR, self.aims.target):
@@ -265,10 +273,7 @@ class LayoutSearch:
             score = self.optimum
         at_worst = parent.key[1] < comfort and rng.random() < AT_WORST
         if self._is_poor(parent) and not parent.finest and rng.random() < DIVISIONS:
-            child = parent.copy()
-            if not self._divide(child, stop):
-                parent.finest = not stop()
-                return
+            child = self._finer(parent, stop)
         else:
             child = coarsener.kicked(
                 parent, jumps, score, bound, PROPOSALS * int(parent.key[3]), at_worst

@@ -237,9 +237,9 @@ def _search_layouts(
             if total is not None or not coarsen or seeker.exhausted:
                 break
             if seeker.needs_layouts and bends and descents:
-                state = descents[i].another(stop)
-                if state is not None and state.score == drawn:
-                    seeker.add(state.operations, coarsen, stop, state.mesh(mesh))
+                further = descents[i].another(stop)
+                if further is not None and further.score == drawn:
+                    seeker.add(further.operations, coarsen, stop, further.mesh(mesh))
             elif seeker.needs_layouts and search.annealing:
                 for candidate in search.more_rollouts(search.seed + 31 * seeker.kicks + 7919 * i):
                     seeker.add(candidate.operations, coarsen, stop)

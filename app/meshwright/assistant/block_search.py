@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -20,7 +21,10 @@ PRICE = 2.0
 """Of a better worst corner: a block of a structured grid is one more that a person has to set up,
 so each tenth of the bound is worth 1.2 times as many only."""
 FEW = 0.15
-"""Share of the time of a balanced search that goes into one for few blocks."""
+"""Share of the time of a balanced search that goes into one for few blocks, at least."""
+RUNS = 12
+"""The most of these, if they end early: there are many layouts of few blocks, and their shape is a
+matter of chance."""
 
 
 @dataclass(frozen=True)
@@ -45,21 +49,26 @@ def decomposed(
     """A quad mesh of few blocks at a low s, smoothed; `mesh` is not changed.
 
     The measure of the search counts long thin elements as bad ones. Blocks may be long, as they are
-    divided into cells, so a balanced search is followed by one for few blocks, and the answer is
-    :func:`better_blocks` of both.
+    divided into cells, so a balanced search is followed by some for few blocks, and the answer is
+    :func:`better_blocks` of all.
     """
     from meshwright_agent.search import solver
 
+    began = time.perf_counter()
     twice = search.prefer == "balanced" and search.min_shape is None
     with one_thread():
         found = solver.solve(
             mesh, policy, seconds=search.seconds * (1.0 - FEW if twice else 1.0), seed=search.seed,
             prefer=search.prefer, min_shape=search.min_shape, price=PRICE, progress=progress,
         )  # fmt: skip
-        if twice:
+        for i in range(RUNS if twice else 0):
+            left = began + search.seconds - time.perf_counter()
+            if i and left <= 0.0:
+                break
             few = solver.solve(
-                mesh, policy, seconds=FEW * search.seconds, seed=search.seed, prefer="blocks"
-            )
+                mesh, policy, seconds=max(left, FEW * search.seconds), seed=search.seed + i,
+                prefer="blocks",
+            )  # fmt: skip
             found = better_blocks(found, few)
     result = mesh.copy()
     if not found.carry_out(result):
